@@ -32,7 +32,7 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
       coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_,
                    scenario.cycle),
       order_desk_(bus, scenario, self, coordinator_, events_, [this] { publish_state(); }),
-      counters_(bus, process_of(self), self.incarnation,
+      counters_(bus, process_of(self.number), self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
   ledger_writer_ = bus_.advertise(topics::kLedger);

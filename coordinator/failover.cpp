@@ -95,8 +95,8 @@ void Failover::record_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now)
 }
 
 void Failover::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now) {
-  const auto own_sender = static_cast<std::uint32_t>(Sender::kCoordinator) + self_.number;
-  const bool is_own = heartbeat.sender == own_sender && heartbeat.incarnation == self_.incarnation;
+  const bool is_own =
+      heartbeat.sender == process_of(self_.number) && heartbeat.incarnation == self_.incarnation;
   if (is_own || heartbeat.epoch == 0 || heartbeat.mode == msg::CoordinatorMode::COORDINATOR_STANDBY) return;
   if (heartbeat.epoch < highest_) return;
   const CoordinatorNumber number = heartbeat.sender - static_cast<std::uint32_t>(Sender::kCoordinator);

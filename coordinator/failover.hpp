@@ -17,6 +17,11 @@ namespace sidestep {
 /// Number of a coordinator among those that stand by for each other, 0 .. kMaxCoordinators - 1.
 using CoordinatorNumber = std::uint32_t;
 
+/// What this coordinator states as Header.sender.
+constexpr std::uint32_t process_of(CoordinatorNumber number) {
+  return static_cast<std::uint32_t>(Sender::kCoordinator) + number;
+}
+
 /// One instance of a coordinator process.
 struct CoordinatorIdentity {
   CoordinatorNumber number = 0;

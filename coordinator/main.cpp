@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "common/log/log.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "coordinator/coordinator_node.hpp"
@@ -25,7 +24,7 @@ int main(int argc, char** argv) {
   program.participant = [&] {
     return own_number() == 0 ? program.name : "coordinator-" + std::to_string(own_number());
   };
-  program.process = [&] { return static_cast<std::uint32_t>(Sender::kCoordinator) + own_number(); };
+  program.process = [&] { return process_of(own_number()); };
   program.clock_reference = ClockReference::kRobots;
   program.start = [&](Bus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
     const CoordinatorIdentity self{own_number(), incarnation};

@@ -24,7 +24,7 @@ OrderDesk::OrderDesk(Bus& bus, const Scenario& scenario, const CoordinatorIdenti
       coordinator_(coordinator),
       events_(events),
       changed_(std::move(changed)),
-      orders_(scenario, process_of(self)),
+      orders_(scenario, process_of(self.number)),
       answer_writer_(bus.advertise(topics::kOrderAnswer)),
       memory_writer_(bus.advertise(topics::kOrderMemory)) {
   apply_holds();
@@ -39,7 +39,7 @@ void OrderDesk::on_order(const msg::Order& message) {
     drops_.count(DropReason::kRefusedOrder);
   const bool is_announced = apply();
   if (!coordinator_.is_active()) return;
-  // Nobody needs to remember an order that changes nothing, such as a resume while nobody is held.
+  // An order that changes nothing is not remembered, such as a resume while no robot is held.
   const bool is_to_remember = result == msg::OrderResult::RESULT_REMEMBERED && orders_.book().stands(*order);
   if (!is_to_remember) return answer(message.header().sender(), message.terms().order_number(), result);
   confirmations_.add(*order);
@@ -47,7 +47,7 @@ void OrderDesk::on_order(const msg::Order& message) {
 }
 
 void OrderDesk::on_page(const OrderPage& page) {
-  if (page.process == process_of(self_)) return;
+  if (page.process == process_of(self_.number)) return;
   // Later coordinators need not hear other robots' agents.
   if (coordinator_.ledger().has_robot(page.process) || is_coordinator(page.process))
     confirmations_.on_page(page);
@@ -162,7 +162,7 @@ void OrderDesk::announce(std::span<const RememberedOrder> orders, bool have_chan
     has_learned_ = false;
   }
   for (msg::OrderMemory& page : encode(orders, orders_.is_complete(), have_changed)) {
-    page.process(process_of(self_));
+    page.process(process_of(self_.number));
     publish(self_, memory_writer_, page, bus_.now());
   }
 }

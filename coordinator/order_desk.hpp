@@ -60,7 +60,7 @@ class OrderDesk {
   /// any.
   bool apply();
   void announce(std::span<const RememberedOrder> orders, bool have_changed);
-  /// Announces the orders again that clients have repeated, because nobody has confirmed them.
+  /// Announces again the orders that clients have repeated and no process has confirmed.
   void announce_again();
   /// Tells the orders again while agents have to register: they do so once they have been told all that they
   /// remember.

@@ -14,11 +14,12 @@ AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2&
   const double seconds = to_seconds(hold);
   if (profile.along().duration_s() > seconds)
     return {(profile.velocity_after(seconds) - velocity_mps) / seconds, hold};
-  // No single acceleration follows a motion that has ended by then. Two that are held as long do, unless the
-  // robot has to turn back: it comes to rest first, because it brakes better than it speeds up.
+  // The velocity between two holds that end at rest at the displacement.
   Vec2 between_mps = displacement_m / seconds - 0.5 * velocity_mps;
-  const double ahead = between_mps.dot(velocity_mps);
-  if (ahead < 0) between_mps -= ahead / velocity_mps.squaredNorm() * velocity_mps;
+  // A robot that would have to turn back comes to rest first: the limit on speeding up after the turn would
+  // also weaken the braking before it.
+  const double along = between_mps.dot(velocity_mps);
+  if (along < 0) between_mps -= along / velocity_mps.squaredNorm() * velocity_mps;
   return {(between_mps - velocity_mps) / seconds, hold};
 }
 

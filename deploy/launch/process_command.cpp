@@ -95,7 +95,7 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, int ni
 /// How far agents give way to processes that all robots need, where they share a machine. Of a machine with
 /// too little time for all, each process gets the same part. The simulator, vision and the coordinator need
 /// more than an agent does, so that all robots would wait for them.
-constexpr int kAgentNiceness = 10;
+constexpr int kAgentNiceness = 15;
 
 int niceness(const ProcessSpec& process, const HostSpec& host) {
   if (process.program != "sidestep-agent") return 0;

@@ -21,8 +21,7 @@ Result drive_22(bool has_keys) {
   const auto keys = has_keys ? keys_for(scenario) : nullptr;
   LaunchedRun run(scenario,
                   has_keys ? std::vector<std::string>{"--keys", keys->folder()} : std::vector<std::string>{});
-  // On a machine with too little time for all processes, robots drive slowly.
-  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.1; }));
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 1; }));
   const auto begin = usage_of(run);
   const Time began = run.bus().now();
   REQUIRE(run.wait_until([&] { return run.bus().now() - began > std::chrono::seconds(3); }));

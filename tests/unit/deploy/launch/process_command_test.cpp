@@ -101,8 +101,8 @@ TEST_CASE("agents give way where other processes run, and not on computers of ro
   const Fixture fixture;
   ProcessSpec vision = agent_spec(fixture);
   vision.program = "sidestep-vision";
-  CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kLocal, ""), "").niceness == 10);
-  CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kNamespace, "east"), "e").niceness == 10);
+  CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kLocal, ""), "").niceness == 15);
+  CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kNamespace, "east"), "e").niceness == 15);
   CHECK(child_spec(vision, host_of(HostTransport::kLocal, ""), "").niceness == 0);
   // Over ssh the remote program gives way, not the connection.
   for (const bool is_shared : {false, true}) {
@@ -118,7 +118,7 @@ TEST_CASE("agents give way where other processes run, and not on computers of ro
     group.start(spec);
     REQUIRE(fixture.wait_for(group, fixture.path("arguments")));
     const int before = getpriority(PRIO_PROCESS, 0);
-    CHECK(std::stoi(fixture.read("arguments")) == std::min(before + (is_shared ? 10 : 0), 19));
+    CHECK(std::stoi(fixture.read("arguments")) == std::min(before + (is_shared ? 15 : 0), 19));
   }
 }
 

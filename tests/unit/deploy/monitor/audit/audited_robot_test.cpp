@@ -61,7 +61,7 @@ TEST_CASE("a version that arrives late is recent, also if later ones were exclud
   CHECK(first_recent(robot) == 3);
 }
 
-TEST_CASE("a version that nobody granted or registered is in no epoch") {
+TEST_CASE("a version that was neither granted nor registered is in no epoch") {
   KnownVersion known;
   CHECK_FALSE(known.is_in(0));
   CHECK_FALSE(known.is_in(1));
