@@ -76,6 +76,7 @@ class Agent {
   Incarnation incarnation() const { return negotiation_.incarnation(); }
   Epoch epoch() const { return negotiation_.epoch(); }
   bool is_superseded() const { return negotiation_.is_superseded(); }
+  bool must_ask_robot() const { return negotiation_.must_ask_robot(); }
   bool needs_registration() const { return negotiation_.needs_registration(); }
   bool is_fenced() const { return negotiation_.is_fenced(); }
   /// Whether the coordinator in charge has told all orders that this agent remembers. The agent registers

@@ -198,6 +198,7 @@ void AgentNode::begin_cycle() {
   schedule_next_cycle();
   agent_.close_cycle(now);
   report_changes();
+  if (agent_.must_ask_robot()) publish_command(agent_.command(now));
   if (agent_.is_superseded()) return;
   agent_.choose_order();
   confirm_orders();

@@ -46,6 +46,7 @@ bool Negotiation::update_incarnation(const Feedback& feedback) {
 }
 
 void Negotiation::on_feedback(const Feedback& feedback) {
+  unheard_cycles_ = 0;
   const bool is_current = update_incarnation(feedback);
   if (feedback.obeyed_incarnation > incarnation_) {
     // An agent that the robot has obeyed yields to a later one. Until then, a higher incarnation means that
@@ -330,6 +331,7 @@ void Negotiation::observe_knowledge(const Verdict& verdict, Time now) {
 
 void Negotiation::close_cycle(Time now) {
   ++silent_cycles_;
+  ++unheard_cycles_;
   int missed = 0;
   for (SentProposal& sent : proposals_) {
     if (!sent.open || sent.start() > now) continue;

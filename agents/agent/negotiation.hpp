@@ -55,6 +55,9 @@ class Negotiation {
   bool is_absent() const { return fenced_ && !held_.find(executing_); }
   /// The robot obeys a later agent: this one stays silent.
   bool is_superseded() const { return superseded_at_.has_value(); }
+  /// It does, but has said nothing for half a second. Commands go on: they carry the fixes that a robot needs
+  /// to say whom it obeys, and are refused if the one fact about a later agent was true.
+  bool must_ask_robot() const { return is_superseded() && unheard_cycles_ > kMaxUnheardCycles; }
   /// The agent registers only after the robot has acknowledged the epoch. So an agent that the robot does not
   /// obey cannot register for it, and no later agent of the robot can return to an older coordinator.
   bool needs_registration() const {
@@ -151,8 +154,10 @@ class Negotiation {
   std::optional<Time> fenced_at_;            // when the robot acknowledged this agent
   std::optional<Time> unanswered_since_;     // the first request since the last answer
   std::optional<Time> unknown_since_;        // since when the coordinator has not known the robot's versions
-  int silent_cycles_ = 0;                    // since the last fact that acknowledges this agent
-  VersionSet held_;                          // what the robot may be executing, now or later
+  static constexpr int kMaxUnheardCycles = 30;
+  int unheard_cycles_ = 0;  // since the robot's last fact
+  int silent_cycles_ = 0;   // since the last fact that acknowledges this agent
+  VersionSet held_;         // what the robot may be executing, now or later
   VersionNumber executing_ = 0;
   Time latest_fact_{};                    // by the robot's clock
   Incarnation robot_incarnation_ = 0;     // times of different ones are not compared

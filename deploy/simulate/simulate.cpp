@@ -14,7 +14,6 @@
 #include "deploy/monitor/record/recording.hpp"
 #include "deploy/simulate/campaign/build_commit.hpp"
 #include "deploy/simulate/campaign/campaign.hpp"
-#include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/run_picture.hpp"
 #include "deploy/simulate/sight_picture.hpp"
@@ -155,7 +154,7 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
   if (!options.scenario_file.empty()) scenario = scenario_of(options);
   const Duration duration = options.seconds ? from_seconds(*options.seconds) : CampaignOptions{}.duration;
   const Trial trial = sample_trial(options.seed, duration, scenario, has_faults);
-  fmt::print("commit {}\n{}\n", kBuildCommit, scene_summary(trial.scenario));
+  fmt::print("commit {}\n{}\n", kBuildCommit, trial.summary());
   for (const std::string& line : to_lines(trial.plan)) fmt::print("  {}\n", line);
   RunPicture picture(trial.scenario);
   Report report;

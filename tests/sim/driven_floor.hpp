@@ -1,31 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "agents/adapters/robots_node.hpp"
-#include "common/file/temporary_folder.hpp"
 #include "common/messaging/sim/bus.hpp"
-#include "simulator/bases/bases_node.hpp"
+#include "deploy/simulate/system/driven_bases.hpp"
 
 namespace sidestep {
-
-/// Drives simulated bases without a protocol between: as a cable would.
-class DirectDriver : public Driver {
- public:
-  DirectDriver(BasesNode& bases, const Scenario& scenario) : bases_(bases), scenario_(scenario) {}
-
-  void send(std::span<const BaseCommand> commands) override {
-    BaseWorld& world = bases_.world_now();
-    for (const BaseCommand& command : commands) {
-      const auto robot = world.find(find_robot(scenario_, command.robot)->team, number_of(command.robot));
-      world.command(*robot, {command.velocity.linear_mps, command.velocity.turn_radps},
-                    bases_.simulated_now());
-    }
-  }
-
- private:
-  BasesNode& bases_;
-  const Scenario scenario_;
-};
 
 /// The bus of robots with a defect: it changes their commands.
 class DefectiveBus : public SimBus {

@@ -49,7 +49,7 @@ class FencedFloor {
   FencedFloor(std::uint64_t seed, Duration latency)
       : scenario_(shuttles()),
         network_(seed, kBegin, scenario_.network),
-        floor_(network_, scenario_, bases_of(latency), latency, seed),
+        floor_(network_, scenario_, bases_with_latency(latency), latency, seed),
         coordinator_(coordinator_bus_, scenario_, {0, static_cast<Incarnation>(to_ns(kBegin))}, false),
         scratch_(std::make_shared<PlanningScratch>(scenario_)) {
     observer_.become_observer();
@@ -101,13 +101,6 @@ class FencedFloor {
     Agent(Agent&&) = default;
     Agent& operator=(Agent&&) = default;
   };
-  static BaseSettings bases_of(Duration latency) {
-    BaseSettings bases;
-    // Its motors need so long to reach a velocity.
-    constexpr Duration kResponse = 18ms;
-    bases.latency = std::max<Duration>(latency - kResponse, 0ms);
-    return bases;
-  }
   void on_fact(RobotId robot, const msg::Feedback& fact) {
     if (network_.now() < kBegin + kWarmUp) last_[robot] = fact.executing().version_number();
     const Vec2 place_m(fact.x_m(), fact.y_m());

@@ -33,6 +33,25 @@ TEST_CASE("one hostile message of any kind costs no robot more than a moment") {
   }
 }
 
+TEST_CASE("a hostile message of any kind stops no robot that has lost its pose") {
+  Scenario scenario = crossing();
+  scenario.tracking_bound_m = 0.014;
+  scenario.margin_m = 0.032;
+  for (const Forgery& forgery : forgeries()) {
+    CAPTURE(forgery.name);
+    SimSystem system(scenario, 1, {}, SimSystem::kBegin, 100ms);
+    Forger forger(system.network(), scenario, kVictim);
+    system.run_for(2s);
+    // For so long that robots have to find their poses anew, and that nobody insists on the first sender.
+    system.pause("simulator", 2500ms, 0);
+    system.run_for(2000ms);
+    forgery.change(forger);
+    forger.send();
+    CHECK(system.run_until_arrived(system.now() + 20s));
+    CHECK(system.metrics().report().arrived == 8);
+  }
+}
+
 TEST_CASE("robots arrive although somebody reports higher and higher epochs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);

@@ -14,7 +14,6 @@
 #include "deploy/simulate/campaign/build_commit.hpp"
 #include "deploy/simulate/campaign/campaign_summary.hpp"
 #include "deploy/simulate/campaign/results_file.hpp"
-#include "deploy/simulate/campaign/scene_sampler.hpp"
 #include "deploy/simulate/campaign/trial.hpp"
 #include "deploy/simulate/campaign/trial_result.hpp"
 #include "deploy/simulate/campaign/worker_pool.hpp"
@@ -71,7 +70,7 @@ void print_failure(const CampaignOptions& options, const std::optional<Scenario>
   fmt::print("seed {} failed at commit {}\n", result.seed, kBuildCommit);
   for (const std::string& failure : result.failures) fmt::print("  {}\n", failure);
   const Trial trial = sample_trial(result.seed, options.duration, scenario, options.has_faults);
-  fmt::print("  scene: {}\n", scene_summary(trial.scenario));
+  fmt::print("  scene: {}\n", trial.summary());
   for (const std::string& line : to_lines(trial.plan)) fmt::print("    {}\n", line);
   fmt::print("  repeat with: {}\n", replay_command(options, result.seed));
   std::fflush(stdout);

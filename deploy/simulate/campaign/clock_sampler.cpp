@@ -26,10 +26,11 @@ Duration sample_large_offset(Rng& rng) {
 
 class ClockSampler {
  public:
-  ClockSampler(Scenario& scenario, FaultPlan& plan, Duration duration, Rng& rng)
+  ClockSampler(Scenario& scenario, FaultPlan& plan, Duration duration, bool have_robots_clocks, Rng& rng)
       : scenario_(scenario),
         plan_(plan),
         duration_(duration),
+        have_robots_clocks_(have_robots_clocks),
         // The robot and the coordinator each get half of the bound.
         half_bound_s_(0.499 * scenario.clock_bound_s),
         rng_(rng) {}
@@ -43,6 +44,7 @@ class ClockSampler {
     }
     // The simulator's host only carries the robots, which have their own clocks.
     for (RobotSpec& robot : scenario_.robots) {
+      if (!have_robots_clocks_) break;
       const ClockError clock = sample_within_bound();
       robot.clock_offset = clock.offset - plan_.clocks["simulator"].offset;
       robot.clock_drift_ppm = clock.drift_ppm;
@@ -75,13 +77,14 @@ class ClockSampler {
   }
   template <typename Do>
   void repeat_for_robots(Do change) {
+    if (!have_robots_clocks_) return;
     for (std::uint64_t left = 1 + rng_.below(3); left > 0; --left) {
       RobotSpec& robot = scenario_.robots[rng_.below(scenario_.robots.size())];
       if (!plan_.ends.contains(robot.id)) change(robot);
     }
   }
   void take_out_of_bound() {
-    if (rng_.chance(0.2)) {
+    if (!have_robots_clocks_ || rng_.chance(0.2)) {
       const Duration error = sample_large_offset(rng_);
       for (auto& [process, clock] : plan_.clocks) {
         if (process.starts_with("coordinator")) clock.offset += error;
@@ -104,6 +107,7 @@ class ClockSampler {
   Scenario& scenario_;
   FaultPlan& plan_;
   Duration duration_;
+  bool have_robots_clocks_;
   double half_bound_s_;
   Rng& rng_;
   bool has_drift_ = false;
@@ -140,8 +144,9 @@ RobotEnd end_of_clock(Duration error, const Scenario& scenario) {
   return is_detected ? RobotEnd::kClockLeftBound : RobotEnd::kClockBeyondBound;
 }
 
-void sample_clocks(Scenario& scenario, FaultPlan& plan, Duration duration, Rng& rng) {
-  ClockSampler(scenario, plan, duration, rng).sample();
+void sample_clocks(Scenario& scenario, FaultPlan& plan, Duration duration, bool have_robots_clocks,
+                   Rng& rng) {
+  ClockSampler(scenario, plan, duration, have_robots_clocks, rng).sample();
 }
 
 }  // namespace sidestep

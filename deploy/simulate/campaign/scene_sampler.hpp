@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/config/scenario.hpp"
@@ -8,9 +9,13 @@
 
 namespace sidestep {
 
-/// A scene with 5 to 30 robots, dense enough that they interact (0.5 to 3 m² each), up to five obstacles, and
-/// enough goals per robot that none reaches its last one within a few minutes.
-Scenario sample_scene(Rng& rng);
+/// Sometimes how late robots obey that are driven bases; otherwise they have firmware.
+std::optional<Duration> sample_base_latency(Rng& rng);
+
+/// A scene with 5 to 30 robots, 16 if they are driven bases, dense enough that they interact (0.5 to 3 m²
+/// each), up to five obstacles, and enough goals per robot that none reaches its last one within a few
+/// minutes.
+Scenario sample_scene(Rng& rng, bool has_driven_bases = false);
 
 /// A description in one line.
 std::string scene_summary(const Scenario& scenario);

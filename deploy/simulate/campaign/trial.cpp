@@ -56,6 +56,13 @@ UnexpectedStates find_unexpected_states(const std::vector<RobotProgress>& progre
   return unexpected;
 }
 
+/// Bases that get no commands go on by themselves, off their versions; see the protocol's assumptions.
+void keep_driving(FaultPlan& plan) {
+  for (TimedFault& timed : plan.faults) {
+    if (auto* const pause = std::get_if<Pause>(&timed.fault)) std::erase(pause->processes, "simulator");
+  }
+}
+
 /// Whether every robot out of the clock bound is so far out that no version may have been granted to it.
 bool is_detection_certain(const Trial& trial) {
   const auto is_large = [](Duration offset) { return std::chrono::abs(offset) > kCertainlyDetectedOffset; };
@@ -127,16 +134,35 @@ void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress
     fail("stuck: no robot moves, long after the last fault");
 }
 
+std::set<std::string> Trial::fault_kinds() const {
+  std::set<std::string> kinds = sidestep::fault_kinds(scenario, plan);
+  if (base_latency) kinds.insert("robots with lead");
+  return kinds;
+}
+
+std::string Trial::summary() const {
+  if (!base_latency) return scene_summary(scenario);
+  return fmt::format("driven bases that obey after {:.0f} ms; {}", 1e3 * to_seconds(*base_latency),
+                     scene_summary(scenario));
+}
+
 Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Scenario>& scenario,
                    bool has_faults) {
   Rng rng(seed);
   Rng scene_rng = rng.fork(), fault_rng = rng.fork(), clock_rng = rng.fork(), disturbance_rng = rng.fork(),
       opponent_rng = rng.fork(), planner_rng = rng.fork(), laser_rng = rng.fork(), reception_rng = rng.fork(),
-      clock_jump_rng = rng.fork(), order_rng = rng.fork();
-  Trial trial{seed, scenario ? *scenario : sample_scene(scene_rng), {}, duration};
-  if (!scenario) {
-    sample_opponents(trial.scenario, opponent_rng);
+      clock_jump_rng = rng.fork(), order_rng = rng.fork(), base_rng = rng.fork();
+  Trial trial{seed, {}, {}, duration};
+  if (scenario) {
+    trial.scenario = *scenario;
+  } else {
+    trial.base_latency = sample_base_latency(base_rng);
+    trial.scenario = sample_scene(scene_rng, trial.base_latency.has_value());
     sample_planners(trial.scenario, planner_rng);
+  }
+  // The simulator of bases has neither people nor lasers.
+  if (!scenario && !trial.base_latency) {
+    sample_opponents(trial.scenario, opponent_rng);
     sample_lasers(trial.scenario, laser_rng);
   }
   const FaultTimes times(duration - std::min(kFaultFreeEnd, duration / 2), fault_rng);
@@ -144,11 +170,13 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   plan.healed_at = times.healed_at();
   if (!has_faults) return trial;
   plan = sample_faults(trial.scenario, SimSystem::process_names(trial.scenario), times, fault_rng);
-  sample_clocks(trial.scenario, plan, duration, clock_rng);
+  if (trial.base_latency) keep_driving(plan);
+  sample_clocks(trial.scenario, plan, duration, !trial.base_latency, clock_rng);
   if (disturbance_rng.chance(0.08)) trial.scenario.vision.ghost_probability = disturbance_rng.uniform(0, 0.2);
   if (disturbance_rng.chance(0.08))
     trial.scenario.vision.ghost_obstacle_probability = disturbance_rng.uniform(0, kMaxGhostObstacles);
-  sample_disturbances(trial.scenario, times, plan, disturbance_rng);
+  // Disturbances are the firmware's.
+  if (!trial.base_latency) sample_disturbances(trial.scenario, times, plan, disturbance_rng);
   sample_reception(trial.scenario, times, plan, reception_rng);
   sample_clock_jumps(trial.scenario, times, plan, clock_jump_rng);
   sample_orders(trial.scenario, times, plan, order_rng);
@@ -163,7 +191,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   result.robots = static_cast<int>(trial.scenario.robots.size());
   result.fault_kinds = trial.fault_kinds();
   result.robot_s = result.robots * to_seconds(trial.duration);
-  SimSystem system(trial.scenario, trial.seed, trial.plan.clocks);
+  SimSystem system(trial.scenario, trial.seed, trial.plan.clocks, SimSystem::kBegin, trial.base_latency);
   DistanceMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecoveryTime, trial.duration));
   system.on_truth([&](const msg::GroundTruth& truth) {
     meter.add(truth);

@@ -22,8 +22,11 @@ struct Trial {
   Scenario scenario;
   FaultPlan plan;
   Duration duration{0};
+  std::optional<Duration> base_latency = std::nullopt;  ///< if robots are driven bases; see SimSystem
 
-  std::set<std::string> fault_kinds() const { return sidestep::fault_kinds(scenario, plan); }
+  std::set<std::string> fault_kinds() const;
+  /// A description in one line, without the faults.
+  std::string summary() const;
 };
 
 /// Samples everything that the seed determines. Without a scenario the scene is sampled, too; without faults

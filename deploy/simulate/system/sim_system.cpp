@@ -12,6 +12,7 @@
 #include "common/messaging/senders.hpp"
 #include "common/messaging/sole_sender.hpp"
 #include "coordinator/coordinator_node.hpp"
+#include "deploy/simulate/system/driven_bases.hpp"
 #include "simulator/images/image_output.hpp"
 #include "vision/images/image_input.hpp"
 #include "vision/images/image_options.hpp"
@@ -94,12 +95,13 @@ std::string twin_process(RobotId robot) { return agent_process(robot) + " (twin)
 std::string second_process(const std::string& process) { return process + std::string(kSecond); }
 
 SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks,
-                     Time begin)
+                     Time begin, std::optional<Duration> base_latency)
     : scenario_(scenario),
       seed_(seed),
       rng_(seed),
       clocks_(std::move(clocks)),
       begin_(begin),
+      base_latency_(base_latency),
       scratch_(std::make_shared<PlanningScratch>(scenario_)),
       network_(seed, begin, scenario.network),
       metrics_(scenario_),
@@ -169,6 +171,8 @@ void SimSystem::start(const std::string& name) {
   if (agent != robot_of_.end()) {
     const auto scratch = &scenario == &scenario_ ? scratch_ : std::make_shared<PlanningScratch>(scenario);
     process->run(std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch));
+  } else if (first_of(name) == "simulator" && base_latency_) {
+    process->run(std::make_shared<DrivenBases>(bus, scenario, *base_latency_, incarnation, seed_));
   } else if (first_of(name) == "simulator") {
     process->run(std::make_shared<SimulatorProcess>(bus, scenario, incarnation, seed_));
   } else if (first_of(name) == "vision") {

@@ -35,8 +35,10 @@ class SimSystem {
   static constexpr Time kBegin = time_from_ns(1'000'000'000'000);
   /// Starts all processes at this virtual time. `clocks` holds the errors of processes' clocks; they apply
   /// to all incarnations.
+  /// With a latency, robots are driven bases that obey after it, and have the simulator's clock
+  /// (DrivenBases); otherwise they have firmware.
   SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks = {},
-            Time begin = kBegin);
+            Time begin = kBegin, std::optional<Duration> base_latency = std::nullopt);
   ~SimSystem();
   SimSystem(const SimSystem&) = delete;
   SimSystem& operator=(const SimSystem&) = delete;
@@ -108,6 +110,7 @@ class SimSystem {
   std::map<std::string, ClockError> clocks_;
   std::map<std::string, Scenario> scenarios_;  // of processes that use another one
   Time begin_;
+  std::optional<Duration> base_latency_;
   std::shared_ptr<PlanningScratch> scratch_;  // shared by all agents
   SimNetwork network_;
   RunMetrics metrics_;

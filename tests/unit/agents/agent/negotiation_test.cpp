@@ -176,6 +176,28 @@ TEST_CASE("a silent agent continues although its robot's clock was set back mean
   CHECK_FALSE(f.n.is_superseded());
 }
 
+TEST_CASE("a silent agent asks its robot when this says nothing any more, and only then") {
+  NegotiationFixture f;
+  f.become_ready();
+  for (int cycle = 0; cycle < 40; ++cycle) f.n.close_cycle(at_s(1));
+  CHECK_FALSE(f.n.must_ask_robot());
+  for (int cycle = 0; cycle < 40; ++cycle) {
+    f.n.on_feedback(fact(f.initial, 2 + 0.01 * cycle, f.n.incarnation() + 1));
+    f.n.close_cycle(at_s(2));
+    REQUIRE(f.n.is_superseded());
+    CHECK_FALSE(f.n.must_ask_robot());
+  }
+  int cycles = 1;
+  for (; !f.n.must_ask_robot() && cycles < 100; ++cycles) f.n.close_cycle(at_s(3));
+  CHECK(cycles > 10);
+  CHECK(cycles < 60);
+  CHECK(f.n.is_superseded());
+  CHECK_FALSE(f.n.may_propose(at_s(3)));
+  CHECK_FALSE(f.n.needs_registration());
+  f.n.on_feedback(fact(f.initial, 4, f.n.incarnation() + 1));
+  CHECK_FALSE(f.n.must_ask_robot());
+}
+
 TEST_CASE("an agent goes on although a version starts much later, by a wrong clock") {
   NegotiationFixture f;
   f.become_ready();

@@ -145,7 +145,8 @@ TEST_CASE("every kind of fault occurs in a sensible share of the trials, and non
                                  "ghost obstacles",
                                  "lasers",
                                  "lasting cut",
-                                 "process clock step"}) {
+                                 "process clock step",
+                                 "robots with lead"}) {
     CAPTURE(kind, trials[kind]);
     CHECK(trials[kind] >= 0.03 * kTrials);
     CHECK(trials[kind] <= 0.25 * kTrials);

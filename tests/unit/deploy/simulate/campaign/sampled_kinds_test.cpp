@@ -391,7 +391,7 @@ TEST_CASE("random clocks have every kind of error") {
     FaultPlan plan;
     plan.hosts = {names};
     plan.healed_at = kHealedAt;
-    sample_clocks(changed, plan, kDuration, rng);
+    sample_clocks(changed, plan, kDuration, true, rng);
     plans.begin();
     plans.has("none", plan.clocks.empty());
     plans.has("drift", std::ranges::any_of(plan.clocks,

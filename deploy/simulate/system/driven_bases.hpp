@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "agents/adapters/robots_node.hpp"
+#include "common/file/temporary_folder.hpp"
+#include "simulator/bases/bases_node.hpp"
+
+namespace sidestep {
+
+/// Drives simulated bases without a protocol between: as a cable would.
+class DirectDriver : public Driver {
+ public:
+  /// `bases` must outlive the driver.
+  DirectDriver(BasesNode& bases, const Scenario& scenario) : bases_(bases), scenario_(scenario) {}
+
+  void send(std::span<const BaseCommand> commands) override;
+
+ private:
+  BasesNode& bases_;
+  const Scenario scenario_;
+};
+
+/// A base that has its commanded velocity this long after the command, as far as its acceleration allows.
+BaseSettings bases_with_latency(Duration latency);
+
+/// Robots without firmware in one process with what sidestep-robot does for them: they obey their commands
+/// after a latency. Their memory ends with the process.
+class DrivenBases {
+ public:
+  /// The bus must make no callback after the destruction.
+  DrivenBases(Bus& bus, const Scenario& scenario, Duration latency, Incarnation incarnation,
+              std::uint64_t seed);
+
+  void on_event(LogLevel min_level, const OnLogEvent& callback);
+
+ private:
+  TemporaryFolder memory_;
+  BasesNode bases_;
+  DirectDriver driver_;
+  RobotsNode robots_;
+};
+
+}  // namespace sidestep
