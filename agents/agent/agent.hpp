@@ -189,6 +189,9 @@ class Agent {
   std::span<const Vec2> preferred_accelerations(const Vec2& velocity_mps, Duration hold);
   /// Adds what a robot at a position would see of the map to the steering.
   void add_walls(const Vec2& position_m);
+  /// The acceleration towards a place, held for at least a cycle.
+  AccelerationCommand hold_towards(const Vec2& displacement_m, const Vec2& velocity_mps,
+                                   const MotionLimits& limits) const;
   AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route,
                              double max_speed_mps) const;
   /// As follow(), at the highest speed at which the robot is at rest before anybody who was hidden can touch

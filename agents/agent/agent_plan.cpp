@@ -152,8 +152,14 @@ AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, c
     if (!is_standstill) limits.speed_mps = speed;
   }
   limits.speed_mps = std::min(limits.speed_mps, max_speed_mps);
-  return desired_acceleration(displacement, at_start.velocity_mps, limits, cycle_,
-                              cycle_ * negotiation_.lead());
+  return hold_towards(displacement, at_start.velocity_mps, limits);
+}
+
+AccelerationCommand Agent::hold_towards(const Vec2& displacement_m, const Vec2& velocity_mps,
+                                        const MotionLimits& limits) const {
+  const Duration min_hold = std::max(cycle_, settings_.min_hold);
+  return desired_acceleration(displacement_m, velocity_mps, limits, min_hold,
+                              std::max(min_hold, cycle_ * negotiation_.lead()));
 }
 
 bool Agent::may_end_inflation(const Version& base, Time start) const {

@@ -83,8 +83,7 @@ AccelerationCommand Agent::creep_away(const State& at_start, const HiddenSpace& 
     nearest_m = distance_m;
     away = (at_start.position_m - at).stableNormalized();
   }
-  return desired_acceleration(rules_.radius_m * away, at_start.velocity_mps, limits, cycle_,
-                              cycle_ * negotiation_.lead());
+  return hold_towards(rules_.radius_m * away, at_start.velocity_mps, limits);
 }
 
 void Agent::update_occlusion(const Intent& intent, const State& at_start, const HiddenSpace& hidden,

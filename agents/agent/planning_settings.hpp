@@ -24,6 +24,10 @@ struct PlanningSettings {
   double moving_grid_m = 0.05;  ///< grid of their positions and radii: avoids replanning in every cycle
   Duration moving_horizon{150'000'000};  ///< their motion over this time is added to their radii
 
+  /// An acceleration is held for at least this long, also if cycles are shorter. Motors take some 10 ms to
+  /// reach one: robots would leave versions that soon brake again.
+  Duration min_hold{16'000'000};
+
   // Goals.
   double at_goal_m = 0.001;             ///< a robot whose version ends this close to its goal stays there
   double neighbour_at_goal_m = 0.02;    ///< a neighbour at rest this close to its goal is assumed to stay
