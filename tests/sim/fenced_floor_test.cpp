@@ -176,9 +176,9 @@ Outcome run_floors(std::uint64_t first_seed, double robot_hours, bool is_disturb
   return sum;
 }
 
-double hours_of_environment() {
-  const char* const text = std::getenv("SIDESTEP_ROBOT_HOURS");
-  return text ? std::atof(text) : 1000;
+double from_environment(const char* name, double otherwise) {
+  const char* const text = std::getenv(name);
+  return text ? std::atof(text) : otherwise;
 }
 
 }  // namespace
@@ -191,8 +191,9 @@ TEST_CASE("restarts and twins of agents make no driven robot leave its version, 
 }
 
 TEST_CASE("the same for a thousand robot-hours or as many as the environment says", "[.][slow]") {
-  const double hours = hours_of_environment();
-  const Outcome outcome = run_floors(1'000'000, hours, true);
+  const double hours = from_environment("SIDESTEP_ROBOT_HOURS", 1000);
+  const auto first = static_cast<std::uint64_t>(from_environment("SIDESTEP_FIRST_SEED", 1'000'000));
+  const Outcome outcome = run_floors(first, hours, true);
   WARN(hours << " robot-hours, " << outcome.restarts << " restarts, " << outcome.twins << " twins: "
              << outcome.contacts << " contacts, " << outcome.own_stops << " own stops, " << outcome.drifts
              << " of drift, " << outcome.violations << " violations, " << outcome.driven_m / 1000 << " km");

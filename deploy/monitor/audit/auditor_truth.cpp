@@ -21,6 +21,11 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
   const std::size_t index = index_of(robot);
   const bool is_vision = totals_.reference == AuditReference::kVision;
   Observation& pending = observations_[index];
+  // A simulator of robots without firmware does not know their references.
+  const bool is_seen = is_vision || pending.reference_error_m < 0;
+  // Whoever may miss messages does not know for how long facts were under way, and what the robot's clock
+  // shows. It is within bound of the clocks of cameras and of such a simulator.
+  const bool is_by_bound = is_vision || (is_seen && !input_.is_complete);
   const std::int64_t ahead_ns = feedback.valid_at_ns() - reception.latest_ns;
   const std::int64_t gained_ns = ahead_ns - std::exchange(robot.clock_ahead_ns, ahead_ns);
   if (pending.at_ns == kNever) return;
@@ -29,8 +34,8 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     pending = Observation();
     return;
   }
-  // By the robot's clock. Ground truth is stamped by the auditor's clock, cameras' clocks are within bound.
-  const std::int64_t at_ns = pending.at_ns + (is_vision ? 0 : ahead_ns);
+  // By the robot's clock.
+  const std::int64_t at_ns = pending.at_ns + (is_by_bound ? 0 : ahead_ns);
   if (feedback.valid_at_ns() < at_ns) return;
   const Observation observation = std::exchange(pending, Observation());
   if (!input_.is_complete && !reception.is_next) {
@@ -40,7 +45,7 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
   }
   const bool is_off = feedback.is_off_reference() || feedback.is_lifted() || !robot.fact ||
                       robot.fact->is_off_reference || robot.fact->is_lifted ||
-                      (is_vision && !has_sound_clock_[index]);
+                      (is_by_bound && !has_sound_clock_[index]);
   const KnownVersion* executed = executed_at(robot, feedback.executing().version_number(), at_ns);
   // An own stop may have been made, and left, between the two facts.
   const bool may_be_off = !input_.is_complete && executed && executed->is_own_stop;
@@ -48,8 +53,6 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     seen_displacements_[index] = {};
     return;
   }
-  // A simulator of robots without firmware does not know their references.
-  const bool is_seen = is_vision || observation.reference_error_m < 0;
   double error_m = observation.reference_error_m, inflation_m = executed->version.inflation_m();
   if (is_seen || input_.is_complete) {
     const AuditPath::Node reference = executed->path.at_ns(at_ns);
