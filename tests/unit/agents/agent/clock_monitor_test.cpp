@@ -190,6 +190,19 @@ TEST_CASE("clock measurements start anew with a new epoch and with a restarted r
   CHECK(f.clocks.is_beyond_bound(at_s(0.27)));
 }
 
+TEST_CASE("the clock that a robot had before a restart does not narrow what is known of its clock") {
+  ClockFixture f;
+  f.spread_s = 0;
+  f.measure_both(0, 10);
+  REQUIRE(f.clocks.max_robot_offset(at_s(0.2)) < from_seconds(0.0004));
+  f.robot_s = 0.0005;
+  f.min_delay_s = 0.001;
+  Feedback restarted = f.feedback(0.2);
+  restarted.robot_incarnation = 6;
+  f.clocks.on_feedback(restarted, kSelf, restarted.valid_at - from_seconds(f.robot_s) + from_seconds(0.001));
+  CHECK(f.clocks.max_robot_offset(at_s(0.21)) >= from_seconds(f.robot_s));
+}
+
 TEST_CASE("echoes of other senders' messages and impossible stamps are ignored") {
   ClockFixture f;
   f.measure_robot(0);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/messaging/topics.hpp"
+#include "common/messaging/version_codec.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
@@ -74,6 +75,13 @@ TEST_CASE("a list with an impossible number is refused as a whole, because it wo
     CHECK(is_refused([=](List&, Obstacle& o) { o.radius_m(bad); }));
     CHECK(is_refused([=](List&, Obstacle& o) { o.position_variance_m2(bad); }));
     CHECK(is_refused([=](List& l, Obstacle&) { l.complete_within_m(bad); }));
+  }
+  // The bounds themselves are possible.
+  for (const double sign : {-1.0, 1.0}) {
+    for (const double m : {kMaxCoordinate_m, 1.001 * kMaxCoordinate_m}) {
+      CHECK(is_refused([=](List&, Obstacle& o) { o.x_m(sign * m); }) == (m > kMaxCoordinate_m));
+      CHECK(is_refused([=](List&, Obstacle& o) { o.y_m(sign * m); }) == (m > kMaxCoordinate_m));
+    }
   }
   CHECK(is_refused([](List&, Obstacle& o) { o.radius_m(-0.1); }));
   CHECK(is_refused([](List&, Obstacle& o) { o.position_variance_m2(-1); }));

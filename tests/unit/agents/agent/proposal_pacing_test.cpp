@@ -14,6 +14,15 @@ TEST_CASE("on a fast network the lead is one cycle, and single slow answers do n
   CHECK(pacing.lead() == 1);
 }
 
+TEST_CASE("one in eight of the last sixteen answers may be slow, more increase the lead") {
+  for (int slow = 0; slow <= 16; ++slow) {
+    CAPTURE(slow);
+    ProposalPacing pacing(kCycle);
+    for (int i = 0; i < 16; ++i) pacing.on_round_trip(Duration{i < slow ? 100'000'000 : 500'000});
+    CHECK(pacing.lead() == (slow <= 2 ? 1 : 9));
+  }
+}
+
 TEST_CASE("on a slow network the lead covers the answer and the command") {
   ProposalPacing pacing(kCycle);
   for (int i = 0; i < 20; ++i) pacing.on_round_trip(Duration{100'000'000});
