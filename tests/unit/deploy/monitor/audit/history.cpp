@@ -120,7 +120,13 @@ struct Deliver {
 }  // namespace
 
 AuditTotals audit_of(const History& history, const AuditInput& input) {
+  return audit_of(history, input, nullptr);
+}
+
+AuditTotals audit_of(const History& history, const AuditInput& input,
+                     const std::function<void(const Violation&)>& on_violation) {
   Auditor auditor(history.scenario, input);
+  auditor.on_violation(on_violation);
   for (const ReceivedMessage& received : history.messages)
     std::visit(Deliver{auditor, received.at}, received.message);
   return auditor.totals();

@@ -67,6 +67,9 @@ History history_of(const Scenario& scenario, std::uint64_t seed, Duration durati
 History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act);
 
 AuditTotals audit_of(const History& history, const AuditInput& input);
+/// Calls back for each violation in the history, also beyond those that totals keep.
+AuditTotals audit_of(const History& history, const AuditInput& input,
+                     const std::function<void(const Violation&)>& on_violation);
 
 /// One message of a history, and when it reaches the auditor.
 struct Delivery {
