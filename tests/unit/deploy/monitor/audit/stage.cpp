@@ -93,15 +93,15 @@ void Stage::propose(const std::vector<msg::Version>& candidates) {
   auditor.on_proposal(proposal, now);
 }
 
-void Stage::decide(RobotId robot, std::uint64_t proposal, VersionNumber granted) {
+void Stage::decide(RobotId robot, std::uint64_t proposal, VersionNumber granted, msg::Reason reason) {
   msg::Verdict verdict;
   verdict.robot(robot);
-  verdict.header(header("verdict", kCoordinator));
+  verdict.header(header("verdict", coordinator, coordinator_life));
   verdict.epoch(epoch);
   verdict.proposal_number(proposal);
   verdict.request_stamp_ns(to_ns(now));
   verdict.granted_version(granted);
-  verdict.reasons().fill(msg::Reason::REASON_CONFLICT);
+  verdict.reasons().fill(reason);
   auditor.on_verdict(verdict, now);
 }
 
@@ -130,7 +130,7 @@ void Stage::drive(const msg::Version& version) {
 
 void Stage::show_page(const std::vector<msg::Version>& versions) {
   msg::LedgerPage page;
-  page.header(header("ledger", kCoordinator));
+  page.header(header("ledger", coordinator, coordinator_life));
   page.epoch(epoch);
   page.versions(versions);
   auditor.on_ledger(page, now);

@@ -38,7 +38,8 @@ class Stage {
   void report(const msg::Feedback& fact);
   void register_versions(RobotId robot, const std::vector<msg::Version>& versions);
   void propose(const std::vector<msg::Version>& candidates);
-  void decide(RobotId robot, std::uint64_t proposal, VersionNumber granted);
+  void decide(RobotId robot, std::uint64_t proposal, VersionNumber granted,
+              msg::Reason reason = msg::Reason::REASON_CONFLICT);
   /// Proposes the version alone and grants it.
   void grant(const msg::Version& version);
   void command(const msg::Version& version);
@@ -49,12 +50,14 @@ class Stage {
   /// The next message of a sender on a topic, sent now.
   msg::Header header(std::string_view topic, std::uint32_t sender, Incarnation incarnation = kLife);
   std::uint64_t count(AuditRule rule) const;
-  /// The rules that were broken, one line each.
+  /// The violations, one per line.
   std::string lines() const;
 
   Scenario scenario;
   Time now{std::chrono::seconds(1000)};
-  Epoch epoch = 5;
+  Epoch epoch = 5;  ///< of all messages but facts
+  std::uint32_t coordinator = kCoordinator;
+  Incarnation coordinator_life = kLife;
   std::array<msg::Feedback, 2> facts;  ///< what each robot reports next
   std::vector<Violation> violations;
   Auditor auditor;
