@@ -29,7 +29,7 @@ struct Pair {
 
   AuditPath::Node separation(double s) const {
     const AuditPath::Node p = a.at_s(a_from_s + s), q = b.at_s(b_from_s + s);
-    return {s, p.x - q.x, p.y - q.y, p.vx - q.vx, p.vy - q.vy, 0, 0};
+    return {s, p.x - q.x, p.y - q.y, p.vx - q.vx, p.vy - q.vy};
   }
   double distance(double s) const {
     const AuditPath::Node gap = separation(s);
@@ -97,20 +97,15 @@ bool is_sane(const msg::Version& version) {
 
 AuditPath::AuditPath(const msg::Version& version)
     : start_ns_(version.start_ns()), count_(version.phase_count()) {
-  nodes_[0] = {0, version.x_m(), version.y_m(), version.vx_mps(), version.vy_mps(), 0, 0};
+  nodes_[0] = {0, version.x_m(), version.y_m(), version.vx_mps(), version.vy_mps()};
   for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
     const msg::MotionPhase& phase = version.phases()[i];
     nodes_[i].ax = phase.ax_mps2();
     nodes_[i].ay = phase.ay_mps2();
     const double t = static_cast<double>(phase.duration_ns()) * 1e-9;
     const Node& n = nodes_[i];
-    nodes_[i + 1] = {n.elapsed_s + t,
-                     n.x + n.vx * t + n.ax * t * t / 2,
-                     n.y + n.vy * t + n.ay * t * t / 2,
-                     n.vx + n.ax * t,
-                     n.vy + n.ay * t,
-                     0,
-                     0};
+    nodes_[i + 1] = {n.elapsed_s + t, n.x + n.vx * t + n.ax * t * t / 2, n.y + n.vy * t + n.ay * t * t / 2,
+                     n.vx + n.ax * t, n.vy + n.ay * t};
     const double max_phase_speed = std::max(length(n.vx, n.vy), length(nodes_[i + 1].vx, nodes_[i + 1].vy));
     reach_m_ += t * max_phase_speed;
     max_speed_mps_ = std::max(max_speed_mps_, max_phase_speed);
@@ -122,7 +117,7 @@ AuditPath::Node AuditPath::at_s(double elapsed_s) const {
   int i = 0;
   while (i < count_ && nodes_[static_cast<std::size_t>(i) + 1].elapsed_s <= elapsed_s) ++i;
   const Node& n = nodes_[static_cast<std::size_t>(i)];
-  if (i == count_) return {elapsed_s, n.x, n.y, 0, 0, 0, 0};
+  if (i == count_) return {elapsed_s, n.x, n.y};
   const double t = elapsed_s - n.elapsed_s;
   return {elapsed_s,
           n.x + n.vx * t + n.ax * t * t / 2,

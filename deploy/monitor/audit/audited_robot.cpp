@@ -23,7 +23,7 @@ auto last_proposal(Robot& robot, Matches matches) -> decltype(&robot.proposals[0
 }  // namespace
 
 void EpochMemory::add(Epoch epoch) {
-  if (epoch == 0 || holds(epoch)) return;
+  if (holds(epoch)) return;
   max_evicted_ = std::max(max_evicted_, std::min(epoch, epochs_.back()));
   epochs_.back() = std::max(epoch, epochs_.back());
   std::ranges::sort(epochs_, std::greater<>());

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "common/motion/version.hpp"
 #include "common/time/time.hpp"
 #include "idl/header.hpp"
 
