@@ -109,6 +109,33 @@ TEST_CASE("paths that do not come near each other are found so from the ends of 
   CHECK(found.at_ns == 1'000'000'000);
 }
 
+TEST_CASE("two robots that brake slowly, one towards the other, are found to come near") {
+  int near = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    const double angle_rad = rng.uniform(0, 6), cutoff_m = 0.02;
+    const auto braking = [&](double sign) {
+      const double speed_mps = rng.uniform(1, 3), seconds = rng.uniform(2, 20);
+      // They meet at the origin, late in their motion.
+      const double way_m = speed_mps * seconds / 2 * rng.uniform(0.8, 1);
+      const Vec2 from_m = -sign * way_m * Vec2(1, 0) + Vec2(0, rng.uniform(-0.02, 0.02));
+      Trajectory trajectory(time_from_ns(1'000'000'000) + from_seconds(rng.uniform(0, 1)),
+                            {rotated(from_m, angle_rad), rotated({sign * speed_mps, 0}, angle_rad)});
+      append_stop(trajectory, speed_mps / seconds);
+      return trajectory;
+    };
+    const Trajectory a = braking(1), b = braking(-1);
+    const double expected_m = clearance_m(a, b, 0);
+    const ClosestApproach found = closest_approach(AuditPath(encode({0, 1, 2, 0, a, 0})),
+                                                   AuditPath(encode({1, 1, 2, 0, b, 0})), cutoff_m);
+    if (expected_m >= cutoff_m) continue;
+    ++near;
+    CHECK(found.distance_m == Approx(expected_m).margin(3e-6));
+  }
+  CHECK(near > 50);
+}
+
 TEST_CASE("implausible versions are rejected") {
   msg::Version version = encode({0, 1, 2, 0, Trajectory::resting(time_from_ns(5), {1, 1}), 0});
   version.phase_count(msg::MAX_PHASES);

@@ -158,6 +158,16 @@ TEST_CASE("executed versions are counted with what was received of them, also af
   CHECK(robot.forgotten_in == 7);
 }
 
+TEST_CASE("the rest in which a robot was switched on is no version of an agent, version 1 is") {
+  for (const VersionNumber number : {0u, 1u}) {
+    AuditedRobot robot;
+    robot.traceable_from_ns = 100;
+    add_content(robot, number, 0, 101);
+    robot.find(number)->was_executed = true;
+    CHECK(robot.executed_versions().all == number);
+  }
+}
+
 TEST_CASE("a version is found near its former index") {
   AuditedRobot robot = robot_with(10, 0);
   const std::size_t size = robot.versions.size();

@@ -232,6 +232,39 @@ TEST_CASE(
   CHECK(stage.count(AuditRule::kObstacle) == (is_reported ? 1 : 0));
 }
 
+TEST_CASE("an obstacle at the end of a fast straight path is found") {
+  const double closer_m = GENERATE(-0.001, 0.001);
+  Scenario scenario = stage_scenario();
+  scenario.obstacles.push_back(Circle{{-1, 1.5}, 0.2});
+  Stage stage(scenario);
+  stage.begin();
+  // At full speed at once, which is not continuous, so that the path is no shorter than its speed allows.
+  msg::Version version = stage.next(stage.rest(0), 1);
+  version.vy_mps(1);
+  append(version, 1.3 - separation_m(scenario) + closer_m - 0.125, {0, 0});
+  brake(version, 4);
+  stage.grant(version);
+  CHECK(stage.count(AuditRule::kObstacle) == (closer_m > 0 ? 1 : 0));
+}
+
+TEST_CASE("a base of unknown content excuses nothing") {
+  Scenario scenario = stage_scenario();
+  scenario.obstacles.push_back(Circle{{0, 0}, 0.3});
+  scenario.robots[0].start_m = {-0.41, 0};
+  Stage stage(scenario);
+  stage.begin();
+  stage.decide(0, 1, 1);  // nobody has proposed it
+  stage.violations.clear();
+  msg::Version version = stage.next(stage.rest(0), 2);
+  append(version, 1, {0.05, 0});
+  append(version, 1, {-0.05, 0});
+  version.base(1);
+  stage.grant(version);
+  CHECK(stage.count(AuditRule::kObstacle) == 1);
+  CHECK(stage.count(AuditRule::kContinuity) == 0);
+  CHECK(stage.count(AuditRule::kInflation) == 0);
+}
+
 TEST_CASE("blocked cells of a map are obstacles") {
   const double closer_m = GENERATE(-0.001, 0.001);
   Scenario scenario = stage_scenario();
@@ -280,6 +313,8 @@ TEST_CASE("a version that jumps from its base in place or speed, or starts befor
   INFO(stage.lines());
   CHECK(stage.count(AuditRule::kContinuity) == (is_reported ? 1 : 0));
   CHECK(stage.violations.size() == stage.count(AuditRule::kContinuity));
+  if (is_reported)
+    CHECK_THAT(stage.violations.front().detail, ContainsSubstring("0.250000 s after its base's start"));
 }
 
 TEST_CASE("a version that starts when its base does, or before, is reported") {

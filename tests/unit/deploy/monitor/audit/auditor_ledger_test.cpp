@@ -144,16 +144,16 @@ TEST_CASE("a version is granted once, except that its coordinator may repeat its
 TEST_CASE("versions are granted in increasing order in each epoch") {
   Stage stage;
   stage.begin();
-  stage.grant(stage.next(stage.rest(0), 5));
+  stage.grant(stage.next(stage.rest(0), 10));
   SECTION("a lower number") {
     stage.grant(stage.next(stage.rest(0), 4));
     CHECK(stage.count(AuditRule::kVersionOrder) == 1);
-    stage.grant(stage.next(stage.rest(0), 6));
-    CHECK(stage.count(AuditRule::kVersionOrder) == 1);
-    stage.grant(stage.next(stage.rest(0), 3));
+    stage.grant(stage.next(stage.rest(0), 7));
+    CHECK(stage.count(AuditRule::kVersionOrder) == 2);
+    stage.grant(stage.next(stage.rest(0), 11));
     CHECK(stage.count(AuditRule::kVersionOrder) == 2);
   }
-  SECTION("a higher number") { stage.grant(stage.next(stage.rest(0), 6)); }
+  SECTION("a higher number") { stage.grant(stage.next(stage.rest(0), 11)); }
   SECTION("a lower number of another robot") { stage.grant(stage.next(stage.rest(1), 4)); }
   SECTION("a lower number in a new epoch, and a higher one in the former epoch") {
     ++stage.epoch;
@@ -344,6 +344,7 @@ TEST_CASE("a version whose verdict was missed is judged if a page of the epoch o
   stage.show_page({stage.rest(0), fast, stage.rest(1)});
   stage.show_page({stage.rest(0), fast, stage.rest(1)});
   CHECK((stage.count(AuditRule::kLimits) > 0) == is_certain);
+  if (is_certain) CHECK(stage.violations.front().epoch == stage.epoch);
   const std::size_t found = stage.violations.size();
   // The verdict is not another grant.
   stage.decide(0, 1, 1);
@@ -390,6 +391,60 @@ TEST_CASE("a version that comes too close to what is registered is reported when
   CHECK(found.version + found.other_version == 1);
   CHECK(found.epoch == narrow.epoch);
   CHECK(narrow.violations.size() == 1);
+}
+
+TEST_CASE("versions with much inflation conflict far away") {
+  Stage stage;
+  for (msg::Feedback& fact : stage.facts) fact.executing().inflation_m(0.4);
+  stage.begin();
+  msg::Version version = moving(stage.next(stage.facts[0].executing(), 1), 1.01);
+  version.inflation_m(0.4);
+  stage.grant(version);
+  stage.advance(1ms);
+  stage.report(0);
+  stage.report(1);
+  CHECK(stage.count(AuditRule::kClearance) == 1);
+}
+
+TEST_CASE("versions that were forgotten because of many others break no rule") {
+  Stage stage;
+  stage.begin();
+  const VersionNumber first = 10, count = 70;
+  for (VersionNumber number = first; number < first + count; ++number)
+    stage.grant(stage.next(stage.rest(0), number, 1s));
+  REQUIRE(stage.violations.empty());
+  // The rest and the first versions are forgotten: 64 remain.
+  const VersionNumber forgotten = first + count - 64 - 1;
+  SECTION("a command with the last one that is forgotten") {
+    stage.command(stage.next(stage.rest(0), forgotten, 1s));
+  }
+  SECTION("a command with the first one that is not") {
+    stage.command(stage.next(stage.rest(0), forgotten + 1, 1s));
+  }
+  SECTION("a command with one that was never granted") {
+    stage.command(stage.next(stage.rest(0), first + count, 1s));
+    CHECK(stage.count(AuditRule::kForwarded) == 1);
+    return;
+  }
+  SECTION("a repeated verdict") { stage.decide(0, forgotten, forgotten); }
+  SECTION("a page") {
+    stage.show_page({stage.next(stage.rest(0), forgotten, 1s)});
+    stage.violations.clear();
+  }
+  INFO(stage.lines());
+  CHECK(stage.violations.empty());
+}
+
+TEST_CASE("of many violations the first twenty are kept, and all are counted") {
+  Stage stage;
+  stage.begin();
+  for (VersionNumber number = 1; number <= 30; ++number) {
+    stage.decide(0, number, number);  // nobody has proposed it
+  }
+  CHECK(stage.violations.size() >= 30);
+  const AuditTotals totals = stage.auditor.totals();
+  CHECK(totals.first.size() == 20);
+  CHECK(totals.violations == stage.violations.size());
 }
 
 TEST_CASE("pages prove that the ledger held a registered version before it granted another one") {

@@ -221,6 +221,26 @@ TEST_CASE("an audit that hears of no grant reports exactly the pairs that were e
   check_reported(expected, reported_pairs(history, kComplete));
 }
 
+TEST_CASE("facts of a robot whose clock is out of bound prove no pair") {
+  const std::size_t place = GENERATE(0u, 1u);
+  History history = too_close(0.15);
+  history.remove_if<msg::Verdict>([](const msg::Verdict&) { return true; });
+  history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
+  const auto before = reported_pairs(history, kComplete);
+  REQUIRE_FALSE(before.empty());
+  const RobotId robot = before.begin()->first[place].first;
+  const auto involves = [&](const auto& entry) {
+    return entry.first[0].first == robot || entry.first[1].first == robot;
+  };
+  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) {
+    if (fact.robot() == robot) fact.valid_at_ns(fact.valid_at_ns() + 3'000'000);
+  });
+  auto after = reported_pairs(history, kComplete);
+  CHECK(std::ranges::none_of(after, involves));
+  CHECK(static_cast<std::ptrdiff_t>(after.size()) ==
+        static_cast<std::ptrdiff_t>(before.size()) - std::ranges::count_if(before, involves));
+}
+
 TEST_CASE("an audit that may miss messages reports most pairs that are too close, and no other") {
   const double less_m = GENERATE(0.05, 0.15);
   const bool has_pages = GENERATE(true, false);

@@ -204,6 +204,47 @@ TEST_CASE("with ground truth the simulator tells whether a robot is disturbed, n
   CHECK(seen.position() == 1);
 }
 
+TEST_CASE("once ground truth has replaced vision, vision is not used any more") {
+  Seen seen;
+  seen.run(2s);
+  msg::GroundTruth truth;
+  truth.robots().resize(1);
+  truth.robots()[0].x_m(-1);
+  truth.robots()[0].disturbance_end_ns(-1);
+  const auto run_with_truth = [&](Duration duration) {
+    for (const Time end = seen.now + duration; seen.now < end;) {
+      truth.header(seen.header("truth", 30'000));
+      truth.valid_at_ns(to_ns(seen.now));
+      seen.auditor.on_truth(truth, seen.now);
+      seen.run(17ms);
+    }
+  };
+  run_with_truth(1s);
+  seen.place(0, {-1.5, 0});
+  run_with_truth(1s);
+  CHECK(seen.violations.empty());
+  CHECK(seen.auditor.totals().reference == AuditReference::kVisionThenGroundTruth);
+  CHECK(seen.auditor.totals().coverage.reference == Approx(1).margin(0.01));
+  truth.robots()[0].x_m(-1.5);
+  truth.robots()[0].reference_error_m(0.5);
+  run_with_truth(100ms);
+  CHECK(seen.position() > 1);
+}
+
+TEST_CASE("a robot that is switched off is silent, which leaves no gap") {
+  const auto kind =
+      GENERATE(msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF, msg::DisturbanceKind::DISTURBANCE_PUSH);
+  Seen seen(kIncomplete);
+  seen.run(2s);
+  seen.disturb(0, kind);
+  for (int i = 0; i < 200; ++i) {
+    seen.advance(10ms);
+    seen.report(1);
+  }
+  const bool is_off = kind == msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF;
+  CHECK(seen.auditor.totals().coverage.time == Approx(is_off ? 1 : 0.5).margin(0.02));
+}
+
 TEST_CASE("robots that vision shows in contact are reported with both numbers, obstacles with one") {
   Seen seen;
   seen.run(2s);

@@ -46,8 +46,10 @@ msg::RememberedOrder resume(std::uint32_t robot, std::uint64_t number, std::uint
 struct Run {
   explicit Run(bool is_complete = true)
       : audit({3, 4, 5}, is_complete, stamps,
-              [this](AuditRule rule, RobotId robot, VersionNumber version, Epoch epoch, const std::string&) {
+              [this](AuditRule rule, RobotId robot, VersionNumber version, Epoch epoch,
+                     const std::string& detail) {
                 found.push_back({rule, robot, version, epoch});
+                details.push_back(detail);
               }) {}
 
   msg::Header header(std::uint64_t channel, std::uint32_t sender) {
@@ -137,6 +139,7 @@ struct Run {
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint64_t> sent;
   ComparableStamps stamps;
   std::vector<Found> found;
+  std::vector<std::string> details;
   OrderAudit audit;
 };
 
@@ -148,6 +151,8 @@ TEST_CASE("a grant between two memories with one hold of its robot is reported o
   run.remember(kFirst, {hold(4, 100)});
   run.remember(kFirst, {hold(4, 100)});
   CHECK(run.found == std::vector<Found>{{AuditRule::kHeld, 4, 31, 7}});
+  CHECK(run.details.front() ==
+        "was granted 0.001 s after the coordinator had told hold 100 of client 1000001, which still stands");
   run.grant(kFirst, 4, 33, 8);
   run.remember(kFirst, {hold(4, 100)});
   CHECK(run.found.back() == Found{AuditRule::kHeld, 4, 33, 8});
@@ -214,6 +219,18 @@ TEST_CASE("a grant at the time of the second memory may follow it") {
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
+TEST_CASE("a hold that was told after a memory without it still stands, though the memory arrives last") {
+  Run run;
+  const msg::OrderMemory first = run.page(kFirst, {}, 0, 2), second = run.page(kFirst, {}, 1, 2),
+                         told = run.page(kFirst, {hold(4, 100)}, 0, 0);
+  run.audit.on_memory(first);
+  run.audit.on_memory(told);
+  run.audit.on_memory(second);
+  run.grant(kFirst, 4, 31);
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.count(AuditRule::kHeld) == 1);
+}
+
 TEST_CASE("a grant that may repeat an earlier one was not made before the given time") {
   Run run;
   run.remember(kFirst, {hold(4, 100)});
@@ -227,9 +244,10 @@ TEST_CASE("the newest grant of a robot counts, however late an older verdict arr
   Run run;
   run.remember(kFirst, {hold(4, 100)});
   run.grant(kFirst, 4, 31);
-  run.grant(kFirst, 4, GENERATE(31, 30));
+  const VersionNumber second = GENERATE(30u, 31u, 32u);
+  run.grant(kFirst, 4, second);
   run.remember(kFirst, {hold(4, 100)});
-  CHECK(run.found == std::vector<Found>{{AuditRule::kHeld, 4, 31, 7}});
+  CHECK(run.found == std::vector<Found>{{AuditRule::kHeld, 4, std::max<VersionNumber>(31, second), 7}});
 }
 
 TEST_CASE("a memory counts only if all of its pages were received in one sequence") {
@@ -437,6 +455,9 @@ TEST_CASE("a new coordinator that was told an order and does not remember it is 
   run.succeed();
   CHECK(run.forgotten() == 1);
   CHECK(run.found == std::vector<Found>{{AuditRule::kForgottenOrder, 4, 0, 8}});
+  CHECK(run.details.front() ==
+        "hold 100 of client 1000001, confirmed by coordinator 0, is not in the memory of coordinator 1, and "
+        "nothing has replaced it");
 }
 
 TEST_CASE("a new coordinator is reported only if it is certain that an agent has told it the order") {
@@ -495,6 +516,16 @@ TEST_CASE("a new coordinator is reported only if it is certain that an agent has
   SECTION("the coordinator has granted nothing yet") {
     run.learn();
     run.register_agent(4, 8);
+  }
+  SECTION("the coordinator has granted only after the first page of its memory") {
+    run.learn();
+    run.register_agent(4, 8);
+    run.audit.on_memory(run.page(kSecond, {}, 0, 2));
+    run.grant(kSecond, 5, 31, 8);
+    // A grant is no message of this topic.
+    run.audit.on_memory(run.page(kSecond, {}, 1, 2));
+    CHECK(run.found.empty());
+    return;
   }
   SECTION("the coordinator does not know yet whether it remembers all orders") {
     run.learn();

@@ -75,6 +75,35 @@ TEST_CASE("a robot that touches a blocked cell of the map is found") {
   CHECK(show(2.92) == 1);
 }
 
+TEST_CASE("positions more than 20 ms apart in time are not compared") {
+  const auto [apart_ns, begins] = GENERATE(table<std::int64_t, std::size_t>(
+      {{19'900'000, 1}, {20'100'000, 0}, {-19'900'000, 1}, {-20'100'000, 0}}));
+  CAPTURE(apart_ns);
+  Scenario s = scenario(0.0005);
+  s.margin_m = 0.05;
+  SeenContacts contacts(s);
+  std::size_t found = 0;
+  for (std::int64_t at_ns = 1'000'000'000; at_ns < 1'200'000'000; at_ns += kFrame_ns) {
+    found += contacts
+                 .update({{at_ns, Vec2(0, 0), Vec2(0, 0), true},
+                          {at_ns + apart_ns, Vec2(0.17, 0), Vec2(0, 0), true}})
+                 .size();
+  }
+  CHECK(found == begins);
+}
+
+TEST_CASE("a contact that was observed once before world states were missed must be observed twice again") {
+  Frames frames;
+  CHECK(frames.show_apart(0.17) == 0);
+  frames.contacts.on_missed();
+  CHECK(frames.show_apart(0.17) == 0);
+  CHECK(frames.show_apart(0.17) == 1);
+  // A contact that has begun is not forgotten.
+  frames.contacts.on_missed();
+  CHECK(frames.show_apart(0.17) == 0);
+  CHECK(frames.show_apart(0.17) == 0);
+}
+
 TEST_CASE("positions of different times are compared at one time") {
   SeenContacts contacts(scenario(0.0005));
   // The second robot follows the first one at 2 m/s, 0.21 m behind, and is observed 19 ms later.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "tests/catch.hpp"
+
 namespace sidestep {
 
 using namespace std::chrono_literals;
@@ -21,7 +23,10 @@ Scenario stage_scenario() {
 
 Stage::Stage(Scenario staged, const AuditInput& input)
     : scenario(std::move(staged)), auditor(scenario, input) {
-  auditor.on_violation([this](const Violation& violation) { violations.push_back(violation); });
+  auditor.on_violation([this](const Violation& violation) {
+    CHECK(violation.detected == now);
+    violations.push_back(violation);
+  });
   for (RobotId robot = 0; robot < 2; ++robot) {
     facts[robot].robot(robot);
     facts[robot].executing(rest(robot));
@@ -101,7 +106,7 @@ void Stage::decide(RobotId robot, std::uint64_t proposal, VersionNumber granted,
   verdict.proposal_number(proposal);
   verdict.request_stamp_ns(to_ns(now));
   verdict.granted_version(granted);
-  verdict.reasons().fill(reason);
+  verdict.reasons().fill(granted == 0 ? reason : msg::Reason::REASON_GRANTED);
   auditor.on_verdict(verdict, now);
 }
 
