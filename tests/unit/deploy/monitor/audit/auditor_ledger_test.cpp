@@ -393,6 +393,66 @@ TEST_CASE("a version that comes too close to what is registered is reported when
   CHECK(narrow.violations.size() == 1);
 }
 
+TEST_CASE("a verdict that is repeated does not make the grant later") {
+  Narrow narrow(kComplete);
+  narrow.grant(narrow.closer);
+  narrow.advance(1ms);
+  narrow.report(1);
+  narrow.advance(1ms);
+  narrow.decide(0, 1, 1);
+  narrow.report(0);
+  CHECK(narrow.too_close() == 1);
+}
+
+TEST_CASE("a version is compared for a while after a fact has excluded it, because other facts come later") {
+  Narrow narrow(kComplete);
+  narrow.grant(narrow.closer);
+  narrow.report(0);
+  narrow.facts[0].executing(narrow.next(narrow.rest(0), 9, -1ms));
+  for (int i = 0; i < 5; ++i) {
+    narrow.report(0);
+    narrow.advance(9ms);
+  }
+  CHECK(narrow.too_close() == 0);
+  narrow.report(1);
+  CHECK(narrow.too_close() == 1);
+}
+
+TEST_CASE("a robot's own stop is not compared, except with what is granted after a page has listed it") {
+  const bool is_listed = GENERATE(true, false);
+  Narrow narrow(kComplete);
+  msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.01);
+  narrow.facts[0].executing(stop);
+  narrow.facts[0].is_off_reference(true);
+  narrow.report(0);
+  narrow.violations.clear();  // it does not brake
+  const msg::Version version = moving(narrow.next(narrow.rest(1), 2), -0.01);
+  if (!is_listed) narrow.grant(version);
+  narrow.page({stop, narrow.rest(1)});
+  narrow.violations.clear();  // without the version
+  if (is_listed) narrow.grant(version);
+  for (int i = 0; i < 3; ++i) {
+    narrow.advance(5ms);
+    narrow.report(0);
+    narrow.report(1);
+  }
+  INFO(narrow.lines());
+  CHECK(narrow.too_close() == (is_listed ? 1 : 0));
+}
+
+TEST_CASE("a robot's own stop that comes too close is no violation") {
+  Narrow narrow(kComplete);
+  msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.05);
+  narrow.facts[0].executing(stop);
+  narrow.facts[0].is_off_reference(true);
+  for (int i = 0; i < 5; ++i) {
+    narrow.report(0);
+    narrow.page({stop, narrow.rest(1)});
+    narrow.report(1);
+  }
+  CHECK(narrow.too_close() == 0);
+}
+
 TEST_CASE("versions with much inflation conflict far away") {
   Stage stage;
   for (msg::Feedback& fact : stage.facts) fact.executing().inflation_m(0.4);

@@ -550,7 +550,7 @@ TEST_CASE("facts of a robot's earlier life are ignored, until it has been silent
   const bool was_silent = GENERATE(true, false);
   CAPTURE(is_near, was_silent);
   Stage stage;
-  const Incarnation before = Stage::kLife + 1'000'000 - (is_near ? 1 : 200'000);
+  const Incarnation before = Stage::kLife + 1'000'000 - (is_near ? 100'000 : 100'001);
   const auto report = [&](Incarnation life, double x_m) {
     msg::Feedback fact = stage.facts[0];
     fact.header(stage.header("feedback", 0, life));

@@ -319,6 +319,40 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
   CHECK(shown.count(AuditRule::kContact) == 1 - undecided);
 }
 
+TEST_CASE(
+    "a moving robot is excused until it can have braked, 0.2 s after it can have heard of a disturbance") {
+  const auto is_excused_after = [](Duration duration) {
+    Shown shown;
+    shown.truth.robots()[1].vx_mps(1);
+    shown.run(50ms);
+    shown.push(0);
+    shown.run(110ms);  // in place, and at rest
+    shown.run(duration);
+    shown.touch(0, 1);
+    shown.run(20ms);
+    return shown.count(AuditRule::kContact) == 0;
+  };
+  const MotionLimits limits = stage_scenario().limits;
+  const Duration braking = from_seconds(limits.speed_mps / limits.deceleration_mps2) + 200ms;
+  CHECK(is_excused_after(braking - 60ms));
+  CHECK_FALSE(is_excused_after(braking + 60ms));
+}
+
+TEST_CASE("robots in contact may appear a millimetre apart, and then push each other no more") {
+  const double apart_m = GENERATE(0.1805, 0.1815);
+  Shown shown;
+  shown.run(50ms);
+  shown.push(0);
+  shown.truth.robots()[0].x_m(1 - apart_m);
+  shown.truth.robots()[0].reference_error_m(2 - apart_m);
+  shown.run(20ms);
+  shown.touch(0, 1);
+  shown.run(3s);
+  shown.touch(1, msg::NO_ROBOT);
+  shown.run(20ms);
+  CHECK(shown.count(AuditRule::kContact) == (apart_m < 0.181 ? 0 : 1));
+}
+
 TEST_CASE("the counters of every simulator begin anew") {
   Shown shown;
   shown.run(20ms);

@@ -9,6 +9,18 @@ namespace sidestep {
 
 using namespace std::chrono_literals;
 
+namespace {
+
+// Rules that concern no epoch.
+constexpr AuditRule kWithoutEpoch[] = {AuditRule::kUniqueVersion,   AuditRule::kSent,
+                                       AuditRule::kSwitch,          AuditRule::kLateSwitch,
+                                       AuditRule::kOffReference,    AuditRule::kTracking,
+                                       AuditRule::kPosition,        AuditRule::kContact,
+                                       AuditRule::kCrash,           AuditRule::kFirmwareMonitor,
+                                       AuditRule::kStaleIncarnation};
+
+}  // namespace
+
 Scenario stage_scenario() {
   Scenario scenario;
   scenario.field.length_m = 6;
@@ -25,6 +37,7 @@ Stage::Stage(Scenario staged, const AuditInput& input)
     : scenario(std::move(staged)), auditor(scenario, input) {
   auditor.on_violation([this](const Violation& violation) {
     CHECK(violation.detected == now);
+    if (std::ranges::count(kWithoutEpoch, violation.rule) > 0) CHECK(violation.epoch == 0);
     violations.push_back(violation);
   });
   for (RobotId robot = 0; robot < 2; ++robot) {
