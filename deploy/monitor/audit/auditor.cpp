@@ -307,28 +307,28 @@ void Auditor::check_forwarded(AuditedRobot& robot, VersionNumber number) {
 }
 
 void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
-  const auto subscribe = [&]<typename Message>(const Topic<Message>& topic, RobotId robot,
-                                               void (Auditor::*on)(const Message&, Time)) {
+  const auto subscribe = [&]<typename Message>(const Topic<Message>& topic,
+                                               void (Auditor::*on)(const Message&, Time), RobotId robot = 0) {
     bus.subscribe<Message>(
         topic, robot, [&bus, &auditor, on](const Message& message) { (auditor.*on)(message, bus.now()); });
   };
-  subscribe(topics::kProposal, 0, &Auditor::on_proposal);
-  subscribe(topics::kRegistration, 0, &Auditor::on_registration);
-  subscribe(topics::kCoordinator, 0, &Auditor::on_coordinator);
-  subscribe(topics::kLedger, 0, &Auditor::on_ledger);
-  subscribe(topics::kTruth, 0, &Auditor::on_truth);
-  subscribe(topics::kWorld, 0, &Auditor::on_world);
-  subscribe(topics::kDisturbance, 0, &Auditor::on_disturbance);
-  subscribe(topics::kAttestation, 0, &Auditor::on_attestation);
-  subscribe(topics::kOrder, 0, &Auditor::on_order);
-  subscribe(topics::kOrderAnswer, 0, &Auditor::on_order_answer);
-  subscribe(topics::kOrderMemory, 0, &Auditor::on_order_memory);
-  subscribe(topics::kAgentOrders, 0, &Auditor::on_order_memory);
-  subscribe(topics::kOrderStatus, 0, &Auditor::on_order_status);
+  subscribe(topics::kProposal, &Auditor::on_proposal);
+  subscribe(topics::kRegistration, &Auditor::on_registration);
+  subscribe(topics::kCoordinator, &Auditor::on_coordinator);
+  subscribe(topics::kLedger, &Auditor::on_ledger);
+  subscribe(topics::kTruth, &Auditor::on_truth);
+  subscribe(topics::kWorld, &Auditor::on_world);
+  subscribe(topics::kDisturbance, &Auditor::on_disturbance);
+  subscribe(topics::kAttestation, &Auditor::on_attestation);
+  subscribe(topics::kOrder, &Auditor::on_order);
+  subscribe(topics::kOrderAnswer, &Auditor::on_order_answer);
+  subscribe(topics::kOrderMemory, &Auditor::on_order_memory);
+  subscribe(topics::kAgentOrders, &Auditor::on_order_memory);
+  subscribe(topics::kOrderStatus, &Auditor::on_order_status);
   for (const RobotSpec& robot : scenario.robots) {
-    subscribe(topics::kVerdict, robot.id, &Auditor::on_verdict);
-    subscribe(topics::kCommand, robot.id, &Auditor::on_command);
-    subscribe(topics::kFeedback, robot.id, &Auditor::on_feedback);
+    subscribe(topics::kVerdict, &Auditor::on_verdict, robot.id);
+    subscribe(topics::kCommand, &Auditor::on_command, robot.id);
+    subscribe(topics::kFeedback, &Auditor::on_feedback, robot.id);
   }
   // Also when no message arrives.
   call_periodically(bus, kAdvancePeriod, [&bus, &auditor] { auditor.advance(bus.now()); });

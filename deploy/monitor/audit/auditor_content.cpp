@@ -92,9 +92,8 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
     for (int i = 0; i <= path.phase_count(); ++i) {
       const AuditPath::Node& n = path.phase(i);
       for (const double turn : {0.0, n.ax != 0 ? -n.vx / n.ax : 0.0, n.ay != 0 ? -n.vy / n.ay : 0.0}) {
-        const bool is_within =
-            turn >= 0 && i < path.phase_count() && n.elapsed_s + turn < path.phase(i + 1).elapsed_s;
-        const AuditPath::Node p = is_within ? path.at_s(n.elapsed_s + turn) : n;
+        // If it changes sign elsewhere, this is another point of the path.
+        const AuditPath::Node p = path.at_s(n.elapsed_s + turn);
         most = std::max({most, std::abs(p.x) - limit_x_m, std::abs(p.y) - limit_y_m});
       }
     }

@@ -239,7 +239,7 @@ void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_
   const double lead_s = static_cast<double>(std::clamp<std::int64_t>(lead_ns, 0, kMaxMotorLead_ns)) * 1e-9;
   const AuditPath::Node braked = own_stop.path.at_s(lead_s);
   const double speed = std::hypot(braked.vx, braked.vy);
-  const double expected_s = lead_s + speed / scenario_.limits.deceleration_mps2 + 1e-6;
+  const double expected_s = lead_s + speed / scenario_.limits.deceleration_mps2;
   if (own_stop.path.duration_s() > 1.01 * expected_s + 0.001)
     fail(fmt::format("takes {:.4f} s to stop from {:.4f} m/s", own_stop.path.duration_s(), speed));
 }
