@@ -120,6 +120,27 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
   CHECK(stage.violations.empty());
 }
 
+TEST_CASE("robots may have every number up to 1023") {
+  const RobotId robot = GENERATE(2u, 820u, 1023u);
+  Scenario scenario = stage_scenario();
+  scenario.robots[1].id = robot;
+  Auditor auditor(scenario, kComplete);
+  msg::Feedback fact;
+  fact.robot(robot);
+  fact.header().sender(robot);
+  fact.header().message_number(1);
+  fact.executing().robot(robot);
+  auditor.on_feedback(fact, Time{1s});
+  msg::Disturbance disturbance;
+  disturbance.robot(robot);
+  auditor.on_disturbance(disturbance, Time{1s});
+  msg::Verdict verdict;
+  verdict.robot(robot);
+  auditor.on_verdict(verdict, Time{1s});
+  CHECK(auditor.totals().received == 2);
+  CHECK(auditor.totals().invalid == 0);
+}
+
 TEST_CASE("a version number stands for one version of one agent") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);

@@ -173,4 +173,13 @@ std::string Stage::lines() const {
   return text;
 }
 
+msg::Version moving(msg::Version version, double speed_mps) {
+  version.phase_count(2);
+  version.phases()[0].duration_ns(1'000'000'000);
+  version.phases()[0].ax_mps2(speed_mps);
+  version.phases()[1].duration_ns(1'000'000'000);
+  version.phases()[1].ax_mps2(-speed_mps);
+  return version;
+}
+
 }  // namespace sidestep

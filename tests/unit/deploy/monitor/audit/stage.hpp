@@ -66,4 +66,7 @@ class Stage {
   std::map<std::tuple<std::string_view, std::uint32_t, Incarnation>, std::uint64_t> sent_;
 };
 
+/// The version, made to gain this speed along x within a second, and to brake in another second.
+msg::Version moving(msg::Version version, double speed_mps);
+
 }  // namespace sidestep
