@@ -99,9 +99,9 @@ class Auditor {
   };
   /// A displacement that vision shows.
   struct SeenDisplacement {
-    std::int64_t since_ns = kNever;  ///< in all observations since then the robot is out of place
-    bool is_reported = false;        ///< so that it is reported once
-    bool was_in_place = false;       ///< before that
+    std::int64_t since_ns = kNever;           ///< in all observations since then the robot is out of place
+    bool is_reported = false;                 ///< so that it is reported once
+    std::int64_t in_place_since_ns = kNever;  ///< ... and from then on it was in place; kNever: unknown
   };
 
   void report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch, std::string detail);
@@ -213,9 +213,11 @@ class Auditor {
   /// `reported`: number of crashes of moving robots in the previous ground truth.
   void check_crashes(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining);
   /// Whether everything that may excuse a contact of this robot was received.
-  bool are_excuses_known(std::optional<std::size_t> robot) const;
+  /// `apart_ns`: when vision has last seen the robot apart from what it touches.
+  bool are_excuses_known(std::optional<std::size_t> robot, std::int64_t apart_ns = kAlways) const;
   /// Whether a contact is excused; it is then counted. nullopt: an obstacle.
-  bool is_excused_contact(RobotId first, std::optional<RobotId> second, Time at);
+  bool is_excused_contact(RobotId first, std::optional<RobotId> second, Time at,
+                          std::int64_t apart_ns = kAlways);
   void record_positions(const msg::GroundTruth& truth);
   void record_sights(const msg::WorldState& world);
   /// Whether vision is the reference, because it has shown robots for a while without any ground truth.

@@ -100,12 +100,14 @@ const KnownVersion* Auditor::executed_at(const AuditedRobot& robot, VersionNumbe
   return executed && executed->has_content ? executed : nullptr;
 }
 
-bool Auditor::is_excused_contact(RobotId first, std::optional<RobotId> second, Time at) {
+bool Auditor::is_excused_contact(RobotId first, std::optional<RobotId> second, Time at,
+                                 std::int64_t apart_ns) {
   const auto first_index = roster_index(first),
              second_index = second ? roster_index(*second) : std::optional<std::size_t>();
   const auto cause = disturbances_.on_contact(first_index, second_index, at);
   if (!cause) {
-    if (are_excuses_known(first_index) && (!second || are_excuses_known(second_index))) return false;
+    if (are_excuses_known(first_index, apart_ns) && (!second || are_excuses_known(second_index, apart_ns)))
+      return false;
     ++totals_.undecided_contacts;
     return true;
   }
@@ -114,13 +116,14 @@ bool Auditor::is_excused_contact(RobotId first, std::optional<RobotId> second, T
   return true;
 }
 
-bool Auditor::are_excuses_known(std::optional<std::size_t> robot) const {
+bool Auditor::are_excuses_known(std::optional<std::size_t> robot, std::int64_t apart_ns) const {
   if (input_.is_complete) return true;
-  // A robot that is not seen now may have been disturbed since it was last seen. Vision shows whether it was
-  // in place before.
+  // A robot that is not seen now may have been disturbed since it was last seen.
+  if (!robot || !observed_[*robot] || are_contacts_unknown_ || disturbances_.is_uncertain(*robot))
+    return false;
+  // By vision, robots that touch may have done so since one of them was out of place.
   const bool is_vision = totals_.reference == AuditReference::kVision;
-  return robot && observed_[*robot] && !are_contacts_unknown_ && !disturbances_.is_uncertain(*robot) &&
-         (!is_vision || seen_displacements_[*robot].was_in_place);
+  return !is_vision || seen_displacements_[*robot].in_place_since_ns <= apart_ns;
 }
 
 void Auditor::check_contacts(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining) {

@@ -66,7 +66,7 @@ void Auditor::on_world(const msg::WorldState& world, Time now) {
     const RobotId first = robots_[contact.first].id;
     const std::optional<RobotId> second =
         contact.second ? std::optional(robots_[*contact.second].id) : std::nullopt;
-    if (is_excused_contact(first, second, at)) continue;
+    if (is_excused_contact(first, second, at, contact.apart_ns)) continue;
     report(AuditRule::kContact, first, nullptr, 0,
            second ? fmt::format("touches robot {}, as vision shows: {:.6f} m between the centres", *second,
                                 contact.distance_m)
@@ -136,12 +136,12 @@ void Auditor::check_seen_position(const AuditedRobot& robot, const KnownVersion&
   SeenDisplacement& displacement = seen_displacements_[index_of(robot)];
   const double bound_m = tracking_bound_m_ + executed.version.inflation_m() + sight_allowance_m_;
   if (error_m <= bound_m) {
-    displacement = {};
-    displacement.was_in_place = true;
+    const bool was_in_place = displacement.in_place_since_ns != kNever && displacement.since_ns == kNever;
+    displacement = {kNever, false, was_in_place ? displacement.in_place_since_ns : at_ns};
     return;
   }
   // Who joins a run does not know what has displaced a robot before.
-  if (!input_.is_complete && !displacement.was_in_place) return;
+  if (!input_.is_complete && displacement.in_place_since_ns == kNever) return;
   if (is_known_to_be_displaced(robot)) {
     ++totals_.excused_displacements;
     return;

@@ -46,9 +46,10 @@ double SeenContacts::distance_from_map_m(const Vec2& position_m) const {
   return nearest_m;
 }
 
-bool SeenContacts::observe(const Pair& pair, double distance_m, double contact_distance_m,
-                           double allowance_m) {
+bool SeenContacts::observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m,
+                           std::int64_t at_ns) {
   if (distance_m > contact_distance_m + kEndOfContact_m) {
+    apart_ns(pair) = at_ns;
     if (!observations_.empty()) observations_.erase(pair);
     return false;
   }
@@ -62,6 +63,8 @@ void SeenContacts::on_missed() {
 
 std::vector<SeenContact> SeenContacts::update(const std::vector<Sight>& sights) {
   std::vector<SeenContact> began;
+  seen_ = sights.size() + obstacles_.size() + 1;
+  apart_ns_.resize(sights.size() * seen_, SeenContact().apart_ns);
   for (std::size_t i = 0; i < sights.size(); ++i) {
     const Sight& a = sights[i];
     for (std::size_t j = i + 1; j < sights.size(); ++j) {
@@ -73,16 +76,18 @@ std::vector<SeenContact> SeenContacts::update(const std::vector<Sight>& sights) 
       // The earlier observation is extrapolated to the time of the later one.
       const Vec2 moved_m = later_s > 0 ? Vec2(a.velocity_mps * later_s) : Vec2(b.velocity_mps * later_s);
       const double distance_m = (a.position_m + moved_m - b.position_m).norm();
-      if (observe({i, j}, distance_m, 2 * radius_m_, robot_allowance_m(later_s)))
-        began.push_back({i, j, distance_m});
+      const std::int64_t at_ns = std::max(a.observed_at_ns, b.observed_at_ns);
+      if (observe({i, j}, distance_m, 2 * radius_m_, robot_allowance_m(later_s), at_ns))
+        began.push_back({i, j, distance_m, apart_ns({i, j})});
     }
     const double allowance_m = std::max(0.0, position_error_m_ - guaranteed_to_obstacle_m_);
     for (std::size_t k = 0; a.is_new && k < obstacles_.size() + (map_ ? 1 : 0); ++k) {
       const double distance_m = k < obstacles_.size()
                                     ? obstacles_[k].distance_m(a.position_m.x(), a.position_m.y())
                                     : distance_from_map_m(a.position_m);
-      if (observe({i, sights.size() + k}, distance_m, radius_m_, allowance_m))
-        began.push_back({i, std::nullopt, distance_m});
+      const Pair pair(i, sights.size() + k);
+      if (observe(pair, distance_m, radius_m_, allowance_m, a.observed_at_ns))
+        began.push_back({i, std::nullopt, distance_m, apart_ns(pair)});
     }
   }
   return began;

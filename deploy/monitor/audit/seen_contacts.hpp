@@ -28,6 +28,8 @@ struct SeenContact {
   std::size_t first = 0;              ///< index in the roster
   std::optional<std::size_t> second;  ///< nullopt: an obstacle
   double distance_m = 0;              ///< between the centres, or from the obstacle's edge
+  /// When they were last seen apart; the lowest number: never.
+  std::int64_t apart_ns = std::numeric_limits<std::int64_t>::min();
 };
 
 /// Finds contacts in what vision shows: robots at a distance below the sum of their radii. The protocol keeps
@@ -47,7 +49,9 @@ class SeenContacts {
                                                      ///< the map is the last obstacle
 
   /// Whether a contact begins.
-  bool observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m);
+  bool observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m,
+               std::int64_t at_ns);
+  std::int64_t& apart_ns(const Pair& pair) { return apart_ns_[pair.first * seen_ + pair.second]; }
   double robot_allowance_m(double time_difference_s) const;
 
   double radius_m_;
@@ -59,7 +63,9 @@ class SeenContacts {
   double position_error_m_;
   double acceleration_mps2_;
   double guaranteed_m_, guaranteed_to_obstacle_m_;
-  std::map<Pair, int> observations_;  ///< of pairs in contact
+  std::map<Pair, int> observations_;    ///< of pairs in contact
+  std::size_t seen_ = 0;                ///< robots, obstacles and the map
+  std::vector<std::int64_t> apart_ns_;  ///< by robot, then what may touch it
 };
 
 /// Upper bound of the error of an observed position, per axis.

@@ -14,7 +14,8 @@ constexpr AuditInput kIncomplete{};
 /// A stage whose cameras show both robots in place, unless a test changes that.
 struct Seen : Stage {
   explicit Seen(const AuditInput& input = kComplete, double inflation_m = 0)
-      : Stage(stage_scenario(), input) {
+      : Seen(stage_scenario(), input, inflation_m) {}
+  Seen(const Scenario& staged, const AuditInput& input, double inflation_m = 0) : Stage(staged, input) {
     world.robots().resize(2);
     for (RobotId robot = 0; robot < 2; ++robot) {
       facts[robot].executing().inflation_m(inflation_m);
@@ -263,6 +264,23 @@ TEST_CASE("robots that vision shows in contact are reported with both numbers, o
     CHECK(seen.contact() == 0);
     CHECK(seen.auditor.totals().excused_contacts == 1);
   }
+}
+
+TEST_CASE("robots that touch since one of them was out of place are undecided if messages may be missed") {
+  const bool is_complete = GENERATE(true, false);
+  const bool were_apart = GENERATE(true, false);
+  CAPTURE(is_complete, were_apart);
+  Scenario scenario = stage_scenario();
+  // Where both are in place they touch.
+  scenario.robots[0].start_m = {1 - 0.17, 0};
+  Seen seen(scenario, is_complete ? kComplete : kIncomplete);
+  if (were_apart) seen.place(0, {-1, 0});
+  seen.run(2s);
+  seen.place(0, {1 - 0.17, 0});
+  seen.run(100ms);
+  // It came back into place while the two touched, or before anybody looked.
+  CHECK(seen.contact() == (is_complete ? 1 : 0));
+  CHECK(seen.auditor.totals().undecided_contacts == (is_complete ? 0 : 1));
 }
 
 TEST_CASE("a contact of two world states counts only if none was missed in between") {

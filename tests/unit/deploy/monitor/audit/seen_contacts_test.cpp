@@ -41,6 +41,29 @@ TEST_CASE("robots that overlap in two observations are in contact, once until th
   CHECK(frames.show_apart(0.179) == 1);
 }
 
+TEST_CASE("a contact tells when the two were seen apart, if ever") {
+  Frames frames;
+  const auto touch = [&](const Vec2& second_m) {
+    std::vector<SeenContact> began;
+    for (int i = 0; i < 2; ++i) {
+      frames.at_ns += kFrame_ns;
+      const Sight first{frames.at_ns, Vec2(0, 2.82), Vec2(0, 0), true};
+      for (const SeenContact& contact :
+           frames.contacts.update({first, {frames.at_ns - 1, second_m, Vec2(0, 0), true}}))
+        began.push_back(contact);
+    }
+    return began;
+  };
+  const auto at_first = touch({0.179, 2.82});
+  REQUIRE(at_first.size() == 2);
+  for (const SeenContact& contact : at_first) CHECK(contact.apart_ns == SeenContact().apart_ns);
+  CHECK(frames.show({0, 2}, {0.5, 2}) == 0);
+  const std::int64_t apart_ns = frames.at_ns;
+  const auto then = touch({0.179, 2.82});
+  REQUIRE(then.size() == 2);
+  for (const SeenContact& contact : then) CHECK(contact.apart_ns == apart_ns);
+}
+
 TEST_CASE("one false observation is no contact") {
   Frames frames;
   CHECK(frames.show_apart(0.1) == 0);
