@@ -22,18 +22,21 @@ class ReceptionSampler {
     if (rng_.chance(0.15)) {
       for (std::uint64_t left = 1 + rng_.below(3); left > 0; --left) sample_for_a_while();
     }
-    if (scenario_.coordinators > 1 && rng_.chance(0.12) && !has_other_rules()) sample_for_good();
+    if (scenario_.coordinators > 1 && rng_.chance(0.12) && can_others_serve()) sample_for_good();
   }
 
  private:
   void add(Duration at, Fault fault) {
     if (at < plan_.healed_at) plan_.faults.push_back({at, std::move(fault)});
   }
-  /// A coordinator with other rules cannot serve.
-  bool has_other_rules() const {
-    return std::ranges::any_of(plan_.faults, [](const TimedFault& timed) {
+  /// A coordinator with other rules cannot serve, nor take over one whose clock is so wrong that it refuses
+  /// what vision says.
+  bool can_others_serve() const {
+    const bool has_other_rules = std::ranges::any_of(plan_.faults, [](const TimedFault& timed) {
       return std::holds_alternative<StartWithOtherRule>(timed.fault);
     });
+    const std::size_t out_of_bound = robots_with(plan_, RobotEnd::kClockOutOfBound).size();
+    return !has_other_rules && out_of_bound < scenario_.robots.size();
   }
   std::string random_coordinator() {
     return coordinator_process(
