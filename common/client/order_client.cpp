@@ -131,7 +131,12 @@ bool OrderClient::renumber(SentOrder& sent, const msg::OrderAnswer& answer) {
                            sent.order.kind == msg::OrderKind::ORDER_HOLD ||
                            sent.order.kind == msg::OrderKind::ORDER_RESUME;
   if (sent.is_number_final || !is_behind || !is_affected || is_refused(answer.result())) return false;
-  if (sent.order.kind == msg::OrderKind::ORDER_RESUME && is_followed_by_hold(sent)) return false;
+  if (sent.order.kind == msg::OrderKind::ORDER_RESUME) {
+    // A number that this clock has passed is that of an order given later, perhaps a hold, not of a clock
+    // ahead.
+    const bool is_late = answer.newest_number() <= static_cast<OrderNumber>(to_ns(bus_.now()));
+    if (is_late || is_followed_by_hold(sent)) return false;
+  }
   sent.is_number_final = true;
   by_number_.erase(sent.order.number);
   sent.order.number = ++newest_;

@@ -47,7 +47,7 @@ struct SentOrder {
 /// they have replaced, cancelled, lifted or removed), and follows what becomes of them. If
 /// this client's clock is behind those of others, an order is numbered again, above all that the coordinators
 /// know: otherwise an earlier order of another client would count as later. That never moves an order behind
-/// a later one of this client.
+/// a later one of this client, nor a resume behind a later hold of anybody.
 class OrderClient {
  public:
   OrderClient(Bus& bus, ClientId client);

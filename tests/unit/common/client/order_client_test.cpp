@@ -314,6 +314,26 @@ TEST_CASE("a resume of all robots that was lost does not end a later hold of one
   CHECK_FALSE(system.book.is_held(4));
 }
 
+TEST_CASE(
+    "a resume that was lost is not numbered above another client's later hold, unless the clock is behind") {
+  const bool is_clock_behind = GENERATE(false, true);
+  System system;
+  system.answers_orders = false;
+  const OrderHandle resume = system.client.resume(kAllRobots);
+  const OrderNumber first = system.client.find(resume)->order.number;
+  system.run_for(500ms);
+  Order hold{msg::OrderKind::ORDER_HOLD, 3, kClient + 1};
+  hold.number = static_cast<OrderNumber>(to_ns(system.client_bus.now() + (is_clock_behind ? 5s : 0s)));
+  system.book.merge({hold});
+  system.answers_orders = true;
+  system.run_for(1s);
+  const SentOrder* const sent = system.client.find(resume);
+  REQUIRE(sent);
+  CHECK(sent->phase == OrderPhase::kAccepted);
+  CHECK((sent->order.number == first) == !is_clock_behind);
+  CHECK((sent->order.number > hold.number) == is_clock_behind);
+}
+
 TEST_CASE("a robot goes where it was ordered last, although the order before was lost") {
   System system;
   system.answers_orders = false;
