@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -189,7 +190,10 @@ class Agent {
   std::span<const Vec2> preferred_accelerations(const Vec2& velocity_mps, Duration hold);
   /// Adds what a robot at a position would see of the map to the steering.
   void add_walls(const Vec2& position_m);
-  /// The acceleration towards a place, held for at least a cycle.
+  /// How long an acceleration may be held: from min_hold() to max_hold().
+  Duration min_hold() const { return std::max(cycle_, settings_.min_hold); }
+  Duration max_hold() const { return std::max(min_hold(), cycle_ * negotiation_.lead()); }
+  /// The acceleration towards a place.
   AccelerationCommand hold_towards(const Vec2& displacement_m, const Vec2& velocity_mps,
                                    const MotionLimits& limits) const;
   AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route,

@@ -73,9 +73,9 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   if (!route.reaches_goal && ends_at(route.end_m)) return std::nullopt;
   if (assignment_.goal() && goal().speed_limit_mps)
     max_speed_mps = std::min(max_speed_mps, *goal().speed_limit_mps);
-  max_speed_mps = std::min(
-      max_speed_mps, zones_.max_speed_mps(at_start.position_m, at_start.velocity_mps.norm(), rules_.radius_m,
-                                          cycle_ * (negotiation_.lead() + 1), rules_.limits));
+  max_speed_mps =
+      std::min(max_speed_mps, zones_.max_speed_mps(at_start.position_m, at_start.velocity_mps.norm(),
+                                                   rules_.radius_m, max_hold() + cycle_, rules_.limits));
   Intent intent = planner_.local ? steer_locally(at_start, start, route) : steer(at_start, start, route);
   intent.target_m = target;
   const HiddenSpace hidden = hidden_space();
@@ -157,9 +157,7 @@ AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, c
 
 AccelerationCommand Agent::hold_towards(const Vec2& displacement_m, const Vec2& velocity_mps,
                                         const MotionLimits& limits) const {
-  const Duration min_hold = std::max(cycle_, settings_.min_hold);
-  return desired_acceleration(displacement_m, velocity_mps, limits, min_hold,
-                              std::max(min_hold, cycle_ * negotiation_.lead()));
+  return desired_acceleration(displacement_m, velocity_mps, limits, min_hold(), max_hold());
 }
 
 bool Agent::may_end_inflation(const Version& base, Time start) const {

@@ -83,7 +83,7 @@ Intent Agent::steer_locally(const State& at_start, Time start, Route route) {
     bodies_nearby_.push_back(
         {state_if_continued(version->trajectory, start).position_m, rules_.radius_m + version->inflation_m});
   const LocalChoice choice = local_driver_->choose(
-      {at_start, path, &route_obstacles_->world(), bodies_nearby_, to_seconds(cycle_ * negotiation_.lead())});
+      {at_start, path, &route_obstacles_->world(), bodies_nearby_, to_seconds(max_hold())});
   route.waypoint_m = choice.target_m;
   if (!choice.velocity_mps) return steer(at_start, start, route);
   preferred_mps_.assign(choice.preferred_mps.begin(), choice.preferred_mps.end());

@@ -55,9 +55,10 @@ class Negotiation {
   bool is_absent() const { return fenced_ && !held_.find(executing_); }
   /// The robot obeys a later agent: this one stays silent.
   bool is_superseded() const { return superseded_at_.has_value(); }
-  /// It does, but has said nothing for half a second. Commands go on: they carry the fixes that a robot needs
-  /// to say whom it obeys, and are refused if the one fact about a later agent was true.
-  bool must_ask_robot() const { return is_superseded() && unheard_cycles_ > kMaxUnheardCycles; }
+  /// The last that the robot has said is that it obeys a later agent, and it has been silent for half a
+  /// second. Commands go on: they carry the fixes without which a robot cannot say whom it obeys. If it does
+  /// obey a later agent, it refuses them.
+  bool must_ask_robot() const { return is_superseded() && unheard_cycles_ * cycle_ > kMaxUnheard; }
   /// The agent registers only after the robot has acknowledged the epoch. So an agent that the robot does not
   /// obey cannot register for it, and no later agent of the robot can return to an older coordinator.
   bool needs_registration() const {
@@ -154,7 +155,7 @@ class Negotiation {
   std::optional<Time> fenced_at_;            // when the robot acknowledged this agent
   std::optional<Time> unanswered_since_;     // the first request since the last answer
   std::optional<Time> unknown_since_;        // since when the coordinator has not known the robot's versions
-  static constexpr int kMaxUnheardCycles = 30;
+  static constexpr Duration kMaxUnheard{500'000'000};
   int unheard_cycles_ = 0;  // since the robot's last fact
   int silent_cycles_ = 0;   // since the last fact that acknowledges this agent
   VersionSet held_;         // what the robot may be executing, now or later

@@ -42,7 +42,7 @@ TEST_CASE("a hostile message of any kind stops no robot that has lost its pose")
     SimSystem system(scenario, 1, {}, SimSystem::kBegin, 100ms);
     Forger forger(system.network(), scenario, kVictim);
     system.run_for(2s);
-    // For so long that robots have to find their poses anew, and that nobody insists on the first sender.
+    // Long enough that robots lose their poses and that processes accept another sender.
     system.pause("simulator", 2500ms, 0);
     system.run_for(2000ms);
     forgery.change(forger);

@@ -23,8 +23,8 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
   Observation& pending = observations_[index];
   // A simulator of robots without firmware does not know their references.
   const bool is_seen = is_vision || pending.reference_error_m < 0;
-  // Whoever may miss messages does not know for how long facts were under way, and what the robot's clock
-  // shows. It is within bound of the clocks of cameras and of such a simulator.
+  // If messages may be missed, the delay of facts is unknown, and so is the offset of the robot's clock. It
+  // is within bound of the clocks of cameras and of such a simulator.
   const bool is_by_bound = is_vision || (is_seen && !input_.is_complete);
   const std::int64_t ahead_ns = feedback.valid_at_ns() - reception.latest_ns;
   const std::int64_t gained_ns = ahead_ns - std::exchange(robot.clock_ahead_ns, ahead_ns);

@@ -253,7 +253,7 @@ TEST_CASE("a base of unknown content excuses nothing") {
   scenario.robots[0].start_m = {-0.41, 0};
   Stage stage(scenario);
   stage.begin();
-  stage.decide(0, 1, 1);  // nobody has proposed it
+  stage.decide(0, 1, 1);  // that was not proposed
   stage.violations.clear();
   msg::Version version = stage.next(stage.rest(0), 2);
   append(version, 1, {0.05, 0});

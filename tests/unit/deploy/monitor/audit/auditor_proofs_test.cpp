@@ -158,7 +158,7 @@ TEST_CASE("of many violations the first twenty are kept, and all are counted") {
   Stage stage;
   stage.begin();
   for (VersionNumber number = 1; number <= 30; ++number) {
-    stage.decide(0, number, number);  // nobody has proposed it
+    stage.decide(0, number, number);  // that was not proposed
   }
   CHECK(stage.violations.size() >= 30);
   const AuditTotals totals = stage.auditor.totals();

@@ -10,13 +10,6 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-/// Reports only this rule, so often.
-void check_only(const Stage& stage, AuditRule rule, std::uint64_t expected) {
-  INFO(stage.lines());
-  CHECK(stage.count(rule) == expected);
-  CHECK(stage.violations.size() == stage.count(rule));
-}
-
 TEST_CASE("facts that contradict the fact before are reported, one violation each") {
   Stage stage;
   stage.begin();

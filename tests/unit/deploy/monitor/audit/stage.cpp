@@ -182,4 +182,10 @@ msg::Version moving(msg::Version version, double speed_mps) {
   return version;
 }
 
+void check_only(const Stage& stage, AuditRule rule, std::uint64_t expected) {
+  INFO(stage.lines());
+  CHECK(stage.count(rule) == expected);
+  CHECK(stage.violations.size() == stage.count(rule));
+}
+
 }  // namespace sidestep

@@ -66,6 +66,9 @@ class Stage {
   std::map<std::tuple<std::string_view, std::uint32_t, Incarnation>, std::uint64_t> sent_;
 };
 
+/// Checks that only this rule was broken, and how often.
+void check_only(const Stage& stage, AuditRule rule, std::uint64_t expected);
+
 /// The version, made to gain this speed along x within a second, and to brake in another second.
 msg::Version moving(msg::Version version, double speed_mps);
 
