@@ -112,7 +112,7 @@ TEST_CASE("nothing is proposed two cycles after the last fact, and again after t
   NegotiationFixture f;
   f.become_ready();
   REQUIRE(f.n.lead() == 1);
-  int cycles = 1;  // since the last fact
+  int cycles = 0;
   for (; f.n.may_propose(at_s(1.0)) && cycles < 100; ++cycles) f.n.close_cycle(at_s(1.0));
   CHECK(cycles == 3);
   CHECK(f.n.wait_reason(at_s(1.0)) == WaitReason::kRobotSilent);
@@ -187,7 +187,7 @@ TEST_CASE("a silent agent asks its robot when this says nothing any more, and on
     REQUIRE(f.n.is_superseded());
     CHECK_FALSE(f.n.must_ask_robot());
   }
-  int cycles = 0;
+  int cycles = 1;  // since the last fact
   for (; !f.n.must_ask_robot() && cycles < 100; ++cycles) f.n.close_cycle(at_s(3));
   CHECK(cycles == 30);  // half a second
   CHECK(f.n.is_superseded());
