@@ -82,6 +82,8 @@ bool OrderBook::has_room(const Order& order) const {
   const bool stands = known != orders_.end() && known->second.order.kind == order.kind;
   if (stands) return true;  // and is replaced
   if (order.kind == msg::OrderKind::ORDER_ZONE) return zones_[static_cast<std::size_t>(rank)] < kMaxZones;
+  if (order.kind == msg::OrderKind::ORDER_RESUME)
+    return rank != Rank::kClient || !is_exception(order) || exception_count() < kMaxExceptions;
   const bool is_bounded = order.kind == msg::OrderKind::ORDER_HOLD && rank == Rank::kClient;
   return !is_bounded || holds_[static_cast<std::size_t>(rank)] < kMaxHolds;
 }
@@ -124,6 +126,11 @@ bool OrderBook::is_exception(const Order& resume) const {
   return all != orders_.end() && all->second.order.number < resume.number;
 }
 
+std::size_t OrderBook::exception_count() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      resumes_.by_age, [&](const auto& age) { return is_exception(orders_.at(age.second).order); }));
+}
+
 void OrderBook::clear_lifted_by(const Order& resume) {
   const Place own = place_of(resume);
   const bool is_for_all = resume.robot == kAllRobots;
@@ -144,15 +151,23 @@ void OrderBook::clear_lifted_by(const Order& resume) {
   clear(Kind::kResume, is_for_all ? 0 : resume.robot, resume.robot);
 }
 
-// A resume that still has an effect is forgotten last: if it were, its robot would be held again.
+// If an exception were forgotten, its robot would be held again.
 void OrderBook::forget_oldest_resumes() {
-  while (resumes_.by_age.size() > kMaxResumes) {
-    const auto is_over = [&](const auto& age) { return !is_exception(orders_.at(age.second).order); };
-    const auto found = std::ranges::find_if(resumes_.by_age, is_over);
-    const auto oldest = found == resumes_.by_age.end() ? resumes_.by_age.begin() : found;
-    resumes_.forgotten_number = std::max(resumes_.forgotten_number, oldest->first);
-    remove(orders_.find(oldest->second));
-  }
+  if (resumes_.by_age.size() <= kMaxResumes) return;
+  const std::size_t exceptions = exception_count();
+  const auto forget = [&](std::size_t excess, bool are_exceptions) {
+    for (auto next = resumes_.by_age.begin(); excess > 0;) {
+      const auto [number, place] = *next++;
+      const auto entry = orders_.find(place);
+      if (is_exception(entry->second.order) != are_exceptions) continue;
+      resumes_.forgotten_number = std::max(resumes_.forgotten_number, number);
+      remove(entry);
+      --excess;
+    }
+  };
+  const auto beyond = [](std::size_t count, std::size_t limit) { return count > limit ? count - limit : 0; };
+  forget(beyond(resumes_.by_age.size() - exceptions, kMaxResumes), false);
+  forget(beyond(exceptions, kMaxMergedExceptions), true);
 }
 
 void OrderBook::forget_oldest_removals() {

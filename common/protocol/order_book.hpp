@@ -21,20 +21,23 @@ namespace sidestep {
 /// What remains of clients' resumes and removals is bounded: the oldest ones are forgotten first. So books
 /// that have merged the same orders hold the same ones, whatever the order of arrival, unless more than
 /// kMaxResumes holds or kMaxRemovals zones have been lifted since. A book that has forgotten a resume may
-/// take the lifted hold back from another process: robots are held rather than released.
+/// take the lifted hold back from another process: robots are held rather than released. A resume that
+/// excepts one robot from a client's hold of all is not forgotten as long as that hold stands.
 class OrderBook {
  public:
   enum class Outcome {
     kStored,
     kKnown,     ///< stood there before, with at least this progress; or changes nothing
     kReplaced,  ///< a later order stands in its place, has lifted it or has removed it
-    kFull       ///< too many holds or zones of clients
+    kFull       ///< too many holds, zones or exceptions of clients
   };
 
-  /// Takes an order, or its progress, that another process remembers. Never refuses one for lack of room.
+  /// Takes an order, or its progress, that another process remembers. Never refuses one for lack of room, but
+  /// of more than kMaxMergedExceptions the oldest are forgotten.
   Outcome merge(const RememberedOrder& order);
-  /// As merge(), for an order that a client sends. Clients have room for a bounded number of holds and zones.
-  /// An order that may be a late repetition of one that is forgotten counts as replaced.
+  /// As merge(), for an order that a client sends. Clients have room for a bounded number of holds, zones,
+  /// and exceptions from holds of all robots. An order that may be a late repetition of one that is forgotten
+  /// counts as replaced.
   Outcome admit(const Order& order);
   /// What the robot has done with its order of this client and number; the others that it has finished are
   /// left. Whether anything is new.
@@ -73,6 +76,8 @@ class OrderBook {
   /// Resumes of clients, and removals of zones, that a book remembers so that late orders are recognised.
   static constexpr std::size_t kMaxResumes = 512;
   static constexpr std::size_t kMaxRemovals = 256;
+  /// Robots that clients can except from their holds of all: more than a scenario has.
+  static constexpr std::size_t kMaxExceptions = 2048, kMaxMergedExceptions = 2 * kMaxExceptions;
 
  private:
   enum class Kind : std::uint8_t { kDrive, kHold, kResume, kZone };
@@ -94,6 +99,7 @@ class OrderBook {
   bool lifts_any(const Order& resume) const;
   /// Whether the resume releases one robot of a client that still holds all.
   bool is_exception(const Order& resume) const;
+  std::size_t exception_count() const;
   void store(const Place& place, const RememberedOrder& order);
   void remove(std::map<Place, RememberedOrder>::iterator entry);
   /// Adds the order to the counts of holds and zones, or takes it out, and remembers its age.

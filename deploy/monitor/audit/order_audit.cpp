@@ -12,8 +12,9 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxKept = 4096;
-// A coordinator may forget clients' oldest resumes beyond 512, and removals of zones beyond 256. Half as many
-// at the time of a whole memory show that it may do so before the next one.
+// A coordinator may forget clients' oldest resumes beyond 512, but for exceptions from holds of all robots
+// that stand, and removals of zones beyond 256. Half as many at the time of a whole memory show that it may
+// do so before the next one.
 constexpr std::size_t kManyResumes = 256, kManyRemovals = 128;
 constexpr auto kOperator = static_cast<std::uint32_t>(Sender::kOperator);
 // Clients other than operator, referee and scenario share one place for orders to drive.
@@ -53,10 +54,10 @@ std::string name_of(msg::OrderKind kind) {
 class OrderAudit::Memory {
  public:
   explicit Memory(const std::vector<Terms>& orders) {
+    for (const Terms& order : orders) by_subject_[order.subject] = order;
     for (const Terms& order : orders) {
-      by_subject_[order.subject] = order;
       const bool is_of_client = driver_of(order.client) == kAnyClient;
-      resumes_ += order.kind == msg::OrderKind::ORDER_RESUME && is_of_client;
+      resumes_ += order.kind == msg::OrderKind::ORDER_RESUME && is_of_client && !excepts(order);
       removals_ += order.kind == msg::OrderKind::ORDER_REMOVE_ZONE;
     }
   }
@@ -84,7 +85,15 @@ class OrderAudit::Memory {
       case Matter::kResume:
         break;
     }
-    return true;  // what a resume has lifted shows in the holds
+    // Otherwise the absence of the hold shows that it was lifted.
+    return !excepts(order) || has_resume({{}, order.client, order.number - 1}, order.robot) ||
+           has_resume({{}, order.client, order.number - 1}, msg::ALL_ROBOTS);
+  }
+  /// Whether the resume excepts a robot from a hold of all that stands.
+  bool excepts(const Terms& resume) const {
+    const auto hold = by_subject_.find({Matter::kHold, msg::ALL_ROBOTS, resume.client, 0});
+    return resume.robot != msg::ALL_ROBOTS && hold != by_subject_.end() &&
+           hold->second.number < resume.number;
   }
   bool has_many_resumes() const { return resumes_ >= kManyResumes; }
   bool has_many_removals() const { return removals_ >= kManyRemovals; }
@@ -152,7 +161,6 @@ void OrderAudit::on_answer(const msg::OrderAnswer& answer) {
   const auto sent = sent_.find({answer.order_number(), answer.client()});
   if (sent == sent_.end()) return;  // a repetition may have been numbered otherwise, or it was missed
   const Terms& order = sent->second;
-  if (order.kind == msg::OrderKind::ORDER_RESUME) return;  // what it lifts shows in the holds
   Confirmed& last = confirmed_[order.subject];
   if (std::pair(last.terms.number, last.terms.client) < std::pair(order.number, order.client))
     last = {order, answer.header().sender(), coordinator->incarnation, answer.header().stamp_ns()};
@@ -302,8 +310,10 @@ void OrderAudit::judge_confirmed(const Memory& memory, std::uint32_t sender, con
     if (!is_own && !(is_granting && has_witness(confirmed.terms, coordinator.epoch))) return false;
     const Terms& order = confirmed.terms;
     const Matter matter = std::get<Matter>(order.subject);
-    if ((matter == Matter::kHold && may_lack_resumes_) || (matter == Matter::kZone && may_lack_removals_))
-      return false;
+    const bool may_be_forgotten = matter == Matter::kZone                                ? may_lack_removals_
+                                  : matter == Matter::kHold || matter == Matter::kResume ? may_lack_resumes_
+                                                                                         : false;
+    if (may_be_forgotten) return false;
     if (memory.accounts_for(order)) return false;
     report_(AuditRule::kForgottenOrder, order.robot == msg::ALL_ROBOTS ? roster_.front() : order.robot, 0,
             coordinator.epoch,

@@ -283,6 +283,51 @@ TEST_CASE("one robot that was released of all stays released, whatever else is l
   CHECK(book.is_held(6));
 }
 
+TEST_CASE("clients can release every robot of a large fleet from their holds of all, one by one") {
+  OrderBook book, other;
+  OrderNumber number = 0;
+  const ClientId third = kAnna + 7;
+  const int clients = GENERATE(1, 2);
+  for (int i = 0; i < clients; ++i)
+    book.admit(hold(kAllRobots, kAnna + static_cast<ClientId>(i), ++number).order);
+  for (RobotId robot = 0; robot < kMaxRobots; ++robot) {
+    for (int i = 0; i < clients; ++i)
+      REQUIRE(book.admit(resume(robot, kAnna + static_cast<ClientId>(i), ++number).order) ==
+              OrderBook::Outcome::kStored);
+  }
+  const auto held_in = [](const OrderBook& some) {
+    int held = 0;
+    for (RobotId robot = 0; robot < kMaxRobots; ++robot) held += some.is_held(robot);
+    return held;
+  };
+  CHECK(held_in(book) == 0);
+  for (const RememberedOrder& order : book.all()) other.merge(order);
+  CHECK(held_in(other) == 0);
+  // One client more finds no room, says so, and resumes all.
+  if (clients < 2) return;
+  book.admit(hold(kAllRobots, third, ++number).order);
+  CHECK(book.admit(resume(3, third, ++number).order) == OrderBook::Outcome::kFull);
+  CHECK(held_in(book) == static_cast<int>(kMaxRobots));
+  CHECK(book.admit(resume(kAllRobots, third, ++number).order) == OrderBook::Outcome::kStored);
+  CHECK(held_in(book) == 0);
+  // Room is given back with the hold.
+  CHECK(book.admit(resume(kAllRobots, kAnna, ++number).order) == OrderBook::Outcome::kStored);
+  book.admit(hold(kAllRobots, third, ++number).order);
+  CHECK(book.admit(resume(3, third, ++number).order) == OrderBook::Outcome::kStored);
+  CHECK_FALSE(book.is_held(3));
+}
+
+TEST_CASE("exceptions from holds of all that other processes remember are bounded") {
+  OrderBook book;
+  OrderNumber number = 0;
+  for (ClientId i = 0; i < 5; ++i) {
+    book.merge(hold(kAllRobots, kAnna + i, ++number));
+    for (RobotId robot = 0; robot < kMaxRobots; ++robot) book.merge(resume(robot, kAnna + i, ++number));
+  }
+  CHECK(book.all().size() <= OrderBook::kMaxMergedExceptions + 5);
+  CHECK(book.is_held(0));  // rather than released
+}
+
 TEST_CASE("what another process remembers is never refused, however full a book is") {
   OrderBook book;
   OrderNumber number = 0;

@@ -160,6 +160,19 @@ TEST_CASE("a confirmed order that a coordinator remembers no more, without a lat
   CHECK(forgotten(go, {remembered(msg::OrderKind::ORDER_CANCEL, 99, kClient + 1, 1001)}) == 0);
   CHECK(forgotten(go, {remembered(msg::OrderKind::ORDER_GO, 99, kClient, 999)}) == 1);
   CHECK(forgotten(go, {remembered(msg::OrderKind::ORDER_GO, 99, kOperator, 1001)}) == 1);
+  const auto resume = [](std::uint32_t robot, std::uint32_t client, std::uint64_t number) {
+    return remembered(msg::OrderKind::ORDER_RESUME, robot, client, number);
+  };
+  const auto hold_all = [](std::uint32_t client, std::uint64_t number) {
+    return remembered(msg::OrderKind::ORDER_HOLD, msg::ALL_ROBOTS, client, number);
+  };
+  CHECK(forgotten(resume(99, kClient, 1000), {}) == 0);
+  CHECK(forgotten(resume(99, kClient, 1000), {hold_all(kClient, 999)}) == 1);
+  CHECK(forgotten(resume(msg::ALL_ROBOTS, kClient, 1000), {hold_all(kClient + 1, 999)}) == 0);
+  CHECK(forgotten(resume(99, kClient, 1000), {hold_all(kClient, 1000)}) == 0);
+  CHECK(forgotten(resume(99, kClient, 1000), {hold_all(kClient + 1, 999)}) == 0);
+  CHECK(forgotten(resume(99, kClient, 1000), {hold_all(kClient, 999), resume(99, kOperator, 1000)}) == 0);
+  CHECK(forgotten(resume(99, kClient, 1000), {hold_all(kClient, 999), resume(98, kClient, 1000)}) == 1);
   CHECK(forgotten(zone, {removal}) == 0);
   CHECK(forgotten(zone, {other_zone}) == 1);
 }
