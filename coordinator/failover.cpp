@@ -175,7 +175,7 @@ void Failover::update(Time now, bool is_granting) {
   if (is_active()) return observe_own_service(now, is_granting);
   if (are_heartbeats_lost(now)) return begin_epoch(now, takeover_cause(now));
   if (const auto robot = unserved_robot(now))
-    begin_epoch(now, {msg::RoleReason::ROLE_EPOCH_OF_AGENT, *robot, Duration{0}, highest_});
+    begin_epoch(now, {msg::RoleReason::ROLE_EPOCH_OF_AGENT, *robot, Duration{0}, 0});
 }
 
 void Failover::observe_own_service(Time now, bool is_granting) {

@@ -17,6 +17,9 @@ namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
+// Registrations that only measure a clock are farther apart than those that ask for another coordinator, see
+// FleetReception::kMaxRequestGap.
+constexpr Duration kBetweenMeasurements{500'000'000};
 // An agent that asks for another coordinator may do so for long.
 constexpr int kCyclesBetweenRequests = 6;
 constexpr Duration kOrderStatusPeriod{1'000'000'000};
@@ -205,7 +208,6 @@ void AgentNode::begin_cycle() {
   if (!commanded_) publish_command(agent_.command(now));
   commanded_ = false;
   if (registration_wait_ > 0) --registration_wait_;
-  if (measurement_wait_ > 0) --measurement_wait_;
   register_if_due();
   if (const auto start = agent_.start_to_propose(now, next_cycle_)) negotiate(*start);
 }
@@ -257,15 +259,16 @@ void AgentNode::register_if_due() {
   publish(may_register ? agent_.registration() : agent_.epoch_notice());
 }
 
-void AgentNode::measure_coordinator_clock() {
-  if (measurement_wait_ > 0 || agent_.needs_registration()) return;
-  measurement_wait_ = kCyclesBetweenRegistrations;
+void AgentNode::measure_coordinator_clock(Duration since_last) {
+  if (agent_.needs_registration() || !has_elapsed(since_last, measured_at_)) return;
+  measured_at_ = bus_.now();
   publish(agent_.registration());
 }
 
 bool AgentNode::clocks_agree() {
   clocks_.on_epoch(agent_.epoch());
-  if (clocks_.is_measurement_due(bus_.now())) measure_coordinator_clock();
+  // As long as nobody answers, the agent asks.
+  if (clocks_.is_measurement_due(bus_.now())) measure_coordinator_clock(kCyclesBetweenRegistrations * cycle_);
   return clocks_.allows_motion(bus_.now());
 }
 
@@ -283,7 +286,7 @@ void AgentNode::negotiate(Time start) {
   const auto plan = timed(plan_durations_, [&] { return agent_.plan(robot_now(), start, max_speed_mps); });
   if (!plan) return;
   // More measurements narrow the interval, so that the robot may drive faster.
-  if (max_speed_mps < max_speed_mps_) measure_coordinator_clock();
+  if (max_speed_mps < max_speed_mps_) measure_coordinator_clock(kBetweenMeasurements);
   const auto proposal = timed(search_durations_, [&] { return agent_.search(*plan, robot_now()); });
   if (proposal) publish_proposal(*proposal);
 }

@@ -58,7 +58,8 @@ class AgentNode {
   void begin_cycle();
   void register_if_due();
   /// Requests a measurement by a registration, which the coordinator answers, unless it did so recently.
-  void measure_coordinator_clock();
+  /// Registers once more, for the answer, unless it has done so since then.
+  void measure_coordinator_clock(Duration since_last);
   /// Whether the clocks allow proposals. Requests a measurement if one is due.
   bool clocks_agree();
   void measure_robot_clock(const Feedback& feedback);
@@ -102,7 +103,7 @@ class AgentNode {
   Time next_cycle_;            // by the robot's clock, like all times passed to the agent
   bool commanded_ = false;     // a command has been published in this cycle
   int registration_wait_ = 0;  // cycles until the next registration
-  int measurement_wait_ = 0;   // cycles until the next request for a clock measurement
+  Time measured_at_{};         // the latest request for a clock measurement
   DurationHistogram negotiation_durations_, plan_durations_, search_durations_;
   Writer<msg::Command> command_writer_;
   Writer<msg::Registration> registration_writer_;

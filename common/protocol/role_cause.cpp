@@ -19,6 +19,8 @@ std::string describe(const RoleCause& cause) {
     case msg::RoleReason::ROLE_EPOCH_OF_COORDINATOR:
       return fmt::format("coordinator {} has the higher epoch {}", cause.peer, cause.learned);
     case msg::RoleReason::ROLE_EPOCH_OF_AGENT:
+      if (cause.learned == 0)
+        return fmt::format("the agent of robot {} asks for another coordinator", cause.peer);
       return fmt::format("the agent of robot {} knows the higher epoch {}", cause.peer, cause.learned);
     case msg::RoleReason::ROLE_EPOCH_OF_ROBOT:
       return fmt::format("robot {} obeys the higher epoch {}", cause.peer, cause.learned);

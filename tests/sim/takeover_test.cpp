@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "common/config/scenario_loader.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/ideal_floor.hpp"
 
@@ -178,6 +179,27 @@ TEST_CASE("a plausible hostile epoch costs one change of epoch, an implausible o
   CHECK(floor.granting_coordinator() >= 0);
   CHECK(floor.run_until_arrived(20) >= floor.scenario.margin_m);
   CHECK(floor.arrived() == 8);
+}
+
+TEST_CASE(
+    "standbys leave a coordinator alone that serves, also where messages take so long that robots slow "
+    "down") {
+  for (const double delay_ms : {0.2, 0.6, 1.0, 3.0}) {
+    const int coordinators = GENERATE(2, 4);
+    CAPTURE(delay_ms, coordinators);
+    const Scenario scenario =
+        parse_scenario("coordinators: " + std::to_string(coordinators) + "\nnetwork: {delay_min_ms: " +
+                           std::to_string(delay_ms) + ", delay_max_ms: " + std::to_string(delay_ms) +
+                           "}\nfield: {length_m: 8, width_m: 8}\ncircle: {count: 10, spacing_m: 0.4}\n",
+                       "circle.yaml");
+    SimSystem system(scenario, 1);
+    system.run_for(std::chrono::seconds(12));
+    const Report report = system.metrics().report();
+    CHECK(report.epochs.size() == 1);
+    CHECK(report.arrived == 10);
+    CHECK(report.contacts == 0);
+    CHECK(report.audit->violations == 0);
+  }
 }
 
 }  // namespace sidestep::takeover_test

@@ -19,6 +19,8 @@ TEST_CASE("the reason of an epoch names who knew a higher one") {
         "coordinator 1 has the higher epoch 77");
   CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_AGENT, 5, Duration{0}, 77}) ==
         "the agent of robot 5 knows the higher epoch 77");
+  CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_AGENT, 5, Duration{0}, 0}) ==
+        "the agent of robot 5 asks for another coordinator");
   CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_ROBOT, 5, Duration{0}, 77}) ==
         "robot 5 obeys the higher epoch 77");
   CHECK(describe({msg::RoleReason::ROLE_SHARED_EPOCH, 2, Duration{0}, 0}) ==
