@@ -130,7 +130,8 @@ class [[gnu::visibility("default")]] Client {
   /// Sends a robot to up to 64 goals, one after another, instead of what this rank of client has ordered it
   /// before.
   OrderId go(RobotId robot, const std::vector<Goal>& goals);
-  /// The robot brakes, and stays where it comes to rest.
+  /// Ends what this rank of client has ordered the robot. It goes on with an order of another rank, if there
+  /// is one, else it brakes and stays where it comes to rest.
   OrderId cancel(RobotId robot);
   /// Stops a robot until it is resumed. This is not a certified emergency stop: it takes effect when a
   /// coordinator hears it.

@@ -109,7 +109,8 @@ void check_images(YamlMap& map, const Scenario& scenario) {
 
 void read_vision(YamlMap& map, VisionSpec& vision) {
   read_section(map, "vision", [&](YamlMap& inner) {
-    inner.read("rate_hz", {1, 1000}, vision.rate_hz);
+    // Frames farther apart than 0.3 s watch nothing.
+    inner.read("rate_hz", {4, 1000}, vision.rate_hz);
     inner.read("columns", {1, 16}, vision.columns);
     inner.read("rows", {1, 16}, vision.rows);
     inner.read("overlap_m", {0, 10}, vision.overlap_m);
@@ -125,7 +126,7 @@ void read_vision(YamlMap& map, VisionSpec& vision) {
 
 void read_odometry(YamlMap& map, OdometrySpec& odometry) {
   read_section(map, "odometry", [&](YamlMap& inner) {
-    inner.read("scale_error", {0, 0.2}, odometry.scale_error);
+    inner.read("scale_error", {0, 0.05}, odometry.scale_error);
     inner.read("velocity_noise_mps", {0, 1}, odometry.velocity_noise_mps);
   });
 }

@@ -101,7 +101,8 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   anchor_odometry_m_ = odometry;
   anchor_m_ = predicted + correction.head<2>();
   scale_ += correction.z();
-  if (!(std::abs(scale_) <= kMaxScaleDeviations * settings_.scale_error)) {
+  // The odometry's relative error e is that of 1 + e = 1 / (1 - scale).
+  if (!(scale_ < 1 && std::abs(scale_ / (1 - scale_)) <= kMaxScaleDeviations * settings_.scale_error)) {
     // Wheels that roll while the robot is displaced look like such an error.
     scale_ = 0;
     covariance_(2, 2) = settings_.scale_error * settings_.scale_error;

@@ -238,7 +238,9 @@ void add_zone(const CliCommand& root, std::function<int()>& action) {
 
 void add_order_commands(const CliCommand& root, std::function<int()>& action) {
   add_go(root, action);
-  add_simple(root, action, "cancel", "Cancels the robot's order to go", false, &OrderClient::cancel);
+  add_simple(root, action, "cancel",
+             "Ends the operator's order to go; the robot goes on with what others have ordered", false,
+             &OrderClient::cancel);
   add_simple(root, action, "hold",
              "Stops robots until they are resumed. Not a certified emergency stop: it needs a coordinator",
              true, &OrderClient::hold);

@@ -8,6 +8,7 @@
 #include "common/camera/camera_grid.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/pose_error.hpp"
+#include "vision/tracking/camera_watch.hpp"
 
 namespace sidestep {
 namespace {
@@ -73,6 +74,10 @@ TrackerSettings tracker_settings(const Scenario& scenario) {
   settings.robot.heading_noise_rad = std::max(kMinHeadingNoise_rad, scenario.vision.heading_noise_rad);
   if (scenario.vision.images) set_image_noise(scenario, settings.robot);
   settings.robot.gate_m = scenario.radius_m;
+  // Slow cameras may miss no frame until they have found an object.
+  const Duration between_frames = from_seconds(1.5 / scenario.vision.rate_hz);
+  settings.robot.max_gap = settings.ball.max_gap =
+      std::clamp(between_frames, settings.robot.max_gap, CameraWatch::kMaxGap);
   settings.ball.position_noise_m = settings.robot.position_noise_m;
   settings.obstacles.position_noise_m =
       scenario.vision.images ? kContourError_m : settings.robot.position_noise_m;

@@ -77,6 +77,9 @@ void PlaybackBus::read_header(const std::string& path) {
 }
 
 Scenario PlaybackBus::scenario() const {
+  if (header_.scenario_text.empty())
+    throw std::invalid_argument(
+        "the recording holds no scenario: it is of a random scene, which only viewers of MCAP files show");
   return parse_scenario(header_.scenario_text, header_.scenario_name + ".yaml", header_.map.get());
 }
 
