@@ -7,7 +7,7 @@
 #include "agents/agent/negotiation.hpp"
 #include "tests/catch.hpp"
 
-namespace sidestep {
+namespace sidestep::negotiation_fixture {
 
 inline constexpr RobotId kRobot = 3;
 inline constexpr Incarnation kSelf = 1000;
@@ -76,4 +76,4 @@ struct NegotiationFixture {
   }
 };
 
-}  // namespace sidestep
+}  // namespace sidestep::negotiation_fixture

@@ -6,6 +6,8 @@
 
 namespace sidestep::negotiation_outside_test {
 
+using namespace negotiation_fixture;
+
 /// Whether a registration says that the robot is absent.
 bool is_empty(const Registration& registration) { return registration.versions->versions().empty(); }
 

@@ -8,6 +8,8 @@
 
 namespace sidestep::negotiation_test {
 
+using namespace negotiation_fixture;
+
 TEST_CASE("an agent proposes only after its robot has acknowledged it and the coordinator knows it") {
   NegotiationFixture f;
   CHECK_FALSE(f.n.is_fenced());
