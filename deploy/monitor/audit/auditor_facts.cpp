@@ -248,8 +248,7 @@ void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& execu
                                   const msg::Feedback& feedback, const Reception& reception) {
   const bool is_switch = robot.fact && robot.fact->executing != executing.number;
   if (is_switch && executing.sent_ns != kNever && input_.is_complete &&
-      robot.fact->epoch_since_ns != kNever && executing.sent_ns > robot.fact->epoch_since_ns &&
-      executing.sent_epoch < robot.fact->obeyed_epoch) {
+      executing.sent_ns > robot.fact->epoch_since_ns && executing.sent_epoch < robot.fact->obeyed_epoch) {
     report(AuditRule::kStaleEpoch, robot.id, &executing, executing.sent_epoch,
            fmt::format("was sent after the robot had obeyed epoch {}", robot.fact->obeyed_epoch));
   }

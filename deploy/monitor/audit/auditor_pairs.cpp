@@ -50,7 +50,7 @@ bool Auditor::was_checked_against(const KnownVersion& granted, const KnownVersio
     const bool was_granted = other.granted_in == epoch && !other.is_own_stop;
     return are_listed && (was_granted || other.listed_from_ns <= granted.entered_after_ns);
   }
-  if (!granted.is_in(epoch) || !other.is_in(epoch)) return false;
+  if (!other.is_in(epoch)) return false;
   // An own stop enters the ledger unchecked. It constrains only versions granted after a page contained it.
   if (other.is_own_stop && other.granted_by_ns >= granted.granted_by_ns) return false;
   return other.granted_in == epoch || other.was_executed;
