@@ -82,6 +82,14 @@ TEST_CASE("every part below the minimum leaves a run not judged, with its reason
     totals.unidentified_contacts = 3;
     reason = "the robots of 3 contacts are unknown";
   }
+  SECTION("one contact of unknown robots") {
+    totals.unidentified_contacts = 1;
+    reason = "the robots of 1 contacts are unknown";
+  }
+  SECTION("one contact that a disturbance may excuse") {
+    totals.undecided_contacts = 1;
+    reason = "1 contacts and crashes are undecided because of missed messages";
+  }
   SECTION("contacts that a disturbance may excuse") {
     totals.undecided_contacts = 2;
     totals.undecided_crashes = 1;
@@ -119,6 +127,7 @@ TEST_CASE("the coverage is its smallest part, for any parts") {
 
 TEST_CASE("a share of nothing is whole") {
   CHECK(share_of(0, 0) == 1);
+  CHECK(share_of(0, 1) == 0);
   CHECK(share_of(0, 4) == 0);
   CHECK(share_of(3, 4) == 0.75);
 }

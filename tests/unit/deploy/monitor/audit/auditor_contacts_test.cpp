@@ -106,6 +106,12 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
     (void)shown.header("truth", 30'000, shown.life);
   }
   SECTION("nothing was missed") { undecided = 0; }
+  SECTION("a message of an agent was missed, which tells of no disturbance") {
+    (void)shown.header("registration", 0, Stage::kAgent);
+    shown.register_versions(0, {shown.rest(0)});
+    REQUIRE(shown.auditor.totals().missed == 1);
+    undecided = 0;
+  }
   shown.run(3s);
   shown.touch(0, 1);
   shown.run(50ms);

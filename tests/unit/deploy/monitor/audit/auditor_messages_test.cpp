@@ -222,6 +222,7 @@ TEST_CASE("a coordinator that still misses registrations after it has granted is
       stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
     }
     SECTION("by a clock that was set back") {
+      stage.advance(1ns);
       stage.auditor.on_coordinator(state(stage, kMode), stage.now);
       msg::CoordinatorState late = state(stage, kMode, {1});
       late.header().stamp_ns(to_ns(stage.now) - 1);

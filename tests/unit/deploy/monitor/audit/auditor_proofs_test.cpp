@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which messages prove that versions of two robots are too close.
 #include <algorithm>
+#include <cstdio>
 
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/monitor/audit/stage.hpp"
@@ -49,6 +50,12 @@ TEST_CASE("a version that comes too close to what is registered is reported when
   CHECK(std::max(found.robot, *found.other) == 1);
   CHECK(found.version + found.other_version == 1);
   CHECK(found.epoch == narrow.epoch);
+  double distance_m = 0, at_s = 0, required_m = 0;
+  REQUIRE(std::sscanf(found.detail.c_str(), "%lf m apart at %lf s, %lf m required", &distance_m, &at_s,
+                      &required_m) == 3);
+  CHECK(distance_m == Approx(0.16));
+  CHECK(at_s == Approx(1e-9 * static_cast<double>(narrow.closer.start_ns()) + 2).margin(0.1));
+  CHECK(required_m == Approx(2 * narrow.scenario.radius_m + narrow.scenario.margin_m));
   CHECK(narrow.violations.size() == 1);
 }
 
@@ -166,6 +173,39 @@ TEST_CASE("of many violations the first twenty are kept, and all are counted") {
   CHECK(totals.violations == stage.violations.size());
 }
 
+TEST_CASE("two granted versions that are too close together are reported, though neither was executed yet") {
+  Narrow narrow(kComplete);
+  narrow.grant(moving(narrow.next(narrow.rest(0), 1), 0.01));
+  narrow.grant(moving(narrow.next(narrow.rest(1), 2), -0.01));
+  narrow.advance(1ms);
+  narrow.report(0);
+  narrow.report(1);
+  CHECK(narrow.too_close() == 1);
+  CHECK(narrow.violations.size() == 1);
+}
+
+TEST_CASE("times of two robots are compared only while both clocks are sound") {
+  const bool is_sound = GENERATE(true, false);
+  const RobotId first = GENERATE(RobotId{0}, RobotId{1});
+  CAPTURE(is_sound, first);
+  Narrow narrow(kComplete);
+  narrow.command(narrow.closer);
+  narrow.now = time_from_ns(narrow.closer.start_ns());
+  narrow.facts[0].executing(narrow.closer);
+  narrow.report(0);
+  narrow.report(1);
+  narrow.advance(500ms);
+  // What the first robot executes until now is proven; then its clock jumps.
+  narrow.report(first);
+  msg::Feedback late = narrow.facts[first];
+  narrow.advance(1ms);
+  if (!is_sound) late.valid_at_ns(to_ns(narrow.now + 1s));
+  narrow.report(late);
+  narrow.advance(1ms);
+  narrow.report(1 - first);
+  CHECK(narrow.too_close() == (is_sound ? 1 : 0));
+}
+
 TEST_CASE("pages prove that the ledger held a registered version before it granted another one") {
   Narrow narrow(kIncomplete);
   const std::vector<msg::Version> before{narrow.rest(0), narrow.rest(1)},
@@ -206,6 +246,14 @@ TEST_CASE("pages prove that the ledger held a registered version before it grant
   }
   SECTION("the page before does not list the other robot") {
     narrow.page({narrow.rest(1)});
+    narrow.grant(narrow.closer);
+    narrow.page(after);
+  }
+  SECTION("the page before lists a robot that is not on the roster instead of the other robot") {
+    msg::Version stranger = narrow.rest(1);
+    stranger.robot(77);
+    narrow.page({narrow.rest(1), stranger});
+    CHECK(narrow.auditor.totals().invalid == 1);
     narrow.grant(narrow.closer);
     narrow.page(after);
   }

@@ -91,8 +91,8 @@ TEST_CASE("a robot switches only along bases") {
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1, 50ms), second = stage.next(first, 2, 60ms),
                      third = stage.next(second, 3, 70ms), other = stage.next(stage.rest(0), 4, 80ms);
-  msg::Version place = stage.next(stage.rest(0), 5, 90ms);
-  for (const auto& version : {first, second, third, other, place}) {
+  const msg::Version moved = moving(stage.next(stage.rest(0), 5, 90ms), 0.1);
+  for (const auto& version : {first, second, third, other, moved}) {
     stage.grant(version);
     stage.command(version);
   }
@@ -107,6 +107,22 @@ TEST_CASE("a robot switches only along bases") {
     // At rest on base 0: the robot may have been lifted and put down, if facts may have been missed.
     stage.facts[0].executing(other);
     expected = is_complete ? 1 : 0;
+  }
+  SECTION("from another one into motion, which no robot does that is put down") {
+    stage.advance(10ms);
+    stage.facts[0].executing(moved);
+    expected = 1;
+  }
+  SECTION("from the base of the one that it executes, at rest") {
+    stage.facts[0].executing(second);
+    stage.report(0);
+    stage.advance(20ms);
+    msg::Version late = stage.next(first, 7, -5ms);
+    stage.command(late);
+    stage.facts[0].executing(late);
+    stage.report(0);
+    CHECK(stage.count(AuditRule::kSwitch) == 1);
+    return;
   }
   SECTION("along versions that are not known") {
     msg::Version stranger = stage.next(first, 9, -10ms);

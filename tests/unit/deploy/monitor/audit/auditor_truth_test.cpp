@@ -134,6 +134,20 @@ TEST_CASE("a robot whose clock jumps is not compared at that moment") {
   CHECK(shown.position() == 0);
 }
 
+TEST_CASE(
+    "a robot whose reference the simulator does not know may be out of place for 300 ms, as by vision") {
+  const double unknown = GENERATE(-1.0, -0.01);
+  Shown shown;
+  for (msg::TrueRobotState& robot : shown.truth.robots()) robot.reference_error_m(unknown);
+  shown.run(100ms);
+  CHECK(shown.violations.empty());
+  shown.truth.robots()[0].x_m(-1.05);
+  shown.run(250ms);
+  CHECK(shown.violations.empty());
+  shown.run(100ms);
+  check_only(shown, AuditRule::kPosition, 1);
+}
+
 TEST_CASE("a displaced robot is excused, one that nobody disturbed is not") {
   const bool is_disturbed = GENERATE(true, false);
   Shown shown;
