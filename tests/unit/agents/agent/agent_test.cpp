@@ -214,6 +214,22 @@ TEST_CASE(
   CHECK(d.plans(1.06));
 }
 
+TEST_CASE("each own stop of the robot counts once as a loss of its reference") {
+  DrivenAgent d;
+  Feedback stopped = resting_at({0, 0}, 1);
+  const auto losses_after = [&](VersionNumber number, bool is_off_reference) {
+    stopped.executing.number = number;
+    stopped.is_off_reference = is_off_reference;
+    d.agent.on_feedback(stopped);
+    return d.agent.status(at_s(1)).reference_losses();
+  };
+  CHECK(losses_after(50, false) == 0);
+  CHECK(losses_after(51, true) == 1);
+  CHECK(losses_after(51, true) == 1);
+  CHECK(losses_after(52, false) == 1);
+  CHECK(losses_after(53, true) == 2);
+}
+
 TEST_CASE("an observation from the future is dropped and counted, and later valid ones are still used") {
   DrivenAgent d;
   d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
