@@ -37,6 +37,37 @@ TEST_CASE("a trial result survives a round trip through a line of text") {
   CHECK(to_line(back) == line);
 }
 
+TEST_CASE("each number of a trial result survives a round trip through a line of text") {
+  TrialResult result;
+  result.fault_kinds = {"push", "slip"};
+  std::uint64_t* const counts[] = {
+      &result.contacts,  &result.excused_contacts, &result.audit_violations, &result.firmware_violations,
+      &result.proposals, &result.grants,           &result.denials};
+  std::uint64_t next = 1;
+  for (std::uint64_t* const count : counts) *count = next++;
+  result.robots = 21;
+  result.stationary = 22;
+  double* const numbers[] = {&result.pair_s,         &result.excused_pair_s,
+                             &result.robot_s,        &result.distance_m,
+                             &result.wall_s,         &result.distance_after_recovery_m,
+                             &result.min_clearance_m};
+  for (double* const number : numbers) *number = 0.5 + static_cast<double>(next++);
+  const TrialResult back = parse_trial_result(to_line(result));
+  CHECK(to_line(back) == to_line(result));
+  CHECK(to_line(back) != to_line(TrialResult{}));
+  CHECK(back.firmware_violations == result.firmware_violations);
+  CHECK(back.distance_after_recovery_m == result.distance_after_recovery_m);
+}
+
+TEST_CASE("a summary of trials whose workers died contains only numbers") {
+  CampaignSummary summary;
+  TrialResult dead;
+  dead.failures = {"the worker process died"};
+  summary.add(dead);
+  CHECK(summary.text().find("nan") == std::string::npos);
+  CHECK(summary.failed() == 1);
+}
+
 TEST_CASE("a summary does not depend on the order of the results") {
   CampaignSummary forwards, backwards;
   std::vector<TrialResult> results(20);
@@ -48,6 +79,7 @@ TEST_CASE("a summary does not depend on the order of the results") {
     results[i].proposals = 100;
     results[i].denials = i;
   }
+  results[19].distance_m = 12'345;
   results[4].contacts = 2;
   results[7].excused_contacts = 3;
   results[7].excused_by_cause = {{"push", 2}, {"slip", 1}};
@@ -78,6 +110,7 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK_THAT(forwards.text(),
              ContainsSubstring("4 excused contacts, 3 of cause push, 1 of cause slip; contacts are excused "
                                "in 1.00 % of the time of all pairs"));
+  CHECK_THAT(forwards.text(), ContainsSubstring("2.00 robot-hours, 12.4 km driven"));
   CHECK_THAT(forwards.text(), ContainsSubstring("smallest clearance, in metres: seed 7 (-0.002)"));
 }
 

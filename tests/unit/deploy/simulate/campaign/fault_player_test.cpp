@@ -184,8 +184,13 @@ TEST_CASE("a system that never starts to drive is reported as stuck") {
   CHECK(dead.failures[1] == "no coordinator ever granted");
   CHECK_THAT(dead.failures[2], ContainsSubstring("robots 0, 1 do not drive"));
   CHECK_THAT(dead.failures[3], ContainsSubstring("no robot moves"));
+  CHECK(dead.distance_after_recovery_m == 0);
   trial.plan.faults.clear();
-  CHECK(run_trial(trial).failures.empty());
+  const TrialResult alive = run_trial(trial);
+  CHECK(alive.failures.empty());
+  // It is counted from three seconds on, of ten.
+  CHECK(alive.distance_after_recovery_m > 0.5 * alive.distance_m);
+  CHECK(alive.distance_after_recovery_m < 0.9 * alive.distance_m);
 }
 
 }  // namespace sidestep::fault_player_test

@@ -29,7 +29,7 @@ TEST_CASE("random scenes have the specified size and density, and no two are ali
     const double each_m2 = scenario.field.length_m * scenario.field.width_m / static_cast<double>(count);
     CHECK(each_m2 >= 0.49);
     CHECK(each_m2 <= 3.01);
-    CHECK(std::ranges::all_of(scenario.robots, [](const RobotSpec& r) { return r.goals.size() >= 100; }));
+    CHECK(std::ranges::all_of(scenario.robots, [](const RobotSpec& r) { return r.goals.size() == 150; }));
     CHECK(seen.insert(scene_summary(scenario)).second);
   }
   CHECK(min_robots == 5);

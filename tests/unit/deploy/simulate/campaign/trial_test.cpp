@@ -132,6 +132,10 @@ TEST_CASE("robots that need not move may rest, and all may rest at their goals")
   judged.has_arrived = true;
   CHECK(judged.failures().empty());
   judged.has_arrived = false;
+  judged.end(1, RobotEnd::kTakenAway, msg::AgentState::AGENT_DRIVING);
+  judged.check_fails("no robot moves");
+  judged.end(1, RobotEnd::kLifted, msg::AgentState::AGENT_ABSENT);
+  judged.check_fails("no robot moves");
   judged.end(1, RobotEnd::kClockBeyondBound, msg::AgentState::AGENT_DRIVING);
   CHECK(judged.failures().empty());
 }
