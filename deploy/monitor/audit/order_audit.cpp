@@ -256,6 +256,7 @@ void OrderAudit::on_memory(const msg::OrderMemory& memory) {
   coordinator->memory.insert(coordinator->memory.end(), orders.begin(), orders.end());
   if (++coordinator->pages < memory.page_count()) return;
   judge(header.sender(), *coordinator, memory.is_complete());
+  coordinator->pages = 0;
 }
 
 void OrderAudit::judge(std::uint32_t sender, Coordinator& coordinator, bool claims_completeness) {
