@@ -70,6 +70,8 @@ void FaultPlayer::operator()(const Partition& partition) {
 
 void FaultPlayer::operator()(const LastingCut& cut) {
   for_each_link(cut.from, cut.to, [](Link& link) { link.is_cut_for_good = true; });
+  if (!clients_) return;
+  for (const std::string& process : cut.to) clients_->expect_nothing_of(process);
 }
 
 void FaultPlayer::operator()(const Pause& pause) {

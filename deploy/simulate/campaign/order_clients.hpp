@@ -32,6 +32,8 @@ class OrderClients {
   OrderClients(SimSystem& system, double radius_m);
 
   void give(const Order& order);
+  /// Of a coordinator that hears somebody no more, nothing is expected.
+  void expect_nothing_of(const std::string& coordinator);
   /// What was wrong, in words.
   std::vector<std::string> failures() const;
 
@@ -71,6 +73,7 @@ class OrderClients {
   std::map<RobotId, Time> disturbed_until_;
   std::map<RobotId, Vec2> rest_m_;                       // where robots that must rest are
   std::map<std::uint32_t, Memory> arriving_, memories_;  // by coordinator; the last whole ones
+  std::set<std::uint32_t> excused_;                      // coordinators
   std::vector<std::string> failures_;
 };
 

@@ -107,6 +107,26 @@ TEST_CASE("a coordinator that was started again and hears nobody fails no trial 
   CHECK(clients.failures().empty());
 }
 
+TEST_CASE("a coordinator that hears nobody for good fails no trial by an order that it could not hear") {
+  Scenario scenario = waiting_robots(2);
+  scenario.coordinators = 2;
+  SimSystem system{scenario, 1};
+  OrderClients clients{system, scenario.radius_m};
+  system.run_for(2s);
+  LinkQuality cut;
+  cut.is_cut = true;
+  for (const std::string& process : SimSystem::process_names(scenario))
+    if (process != "coordinator 1") system.set_link(process, "coordinator 1", cut);
+  system.pause("coordinator 1", 1s, 0);
+  Order order{msg::OrderKind::ORDER_GO, 0, kClient};
+  order.goals = {{{-1.8, -1.5}}};
+  clients.give(order);
+  system.run_for(1500ms);
+  CHECK(clients.failures().size() == 1);
+  clients.expect_nothing_of("coordinator 1");
+  CHECK(clients.failures().empty());
+}
+
 TEST_CASE("an order without an answer fails a trial") {
   Trial trial;
   trial.system.kill("coordinator");
