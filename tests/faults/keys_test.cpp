@@ -251,12 +251,19 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
       [&] { return run.logged("keys: refuses client forklift at 127.0.0.1, whose key is revoked"); }));
   CHECK_FALSE(attack(run, client, seconds(3), client_id("forklift")));
 
-  const Duration validity = run.bus().now() - keyed.keys.now() + seconds(8);
-  Attacker brief(keyed.with_keys(keyed.keys.issue({Role::kClient, 0, 0, "brief"}, validity)));
-  REQUIRE(attack(run, brief, seconds(7), client_id("brief")));
+  // One whom nobody hears before its key expires has a successor, see heard_attacker().
+  std::unique_ptr<Attacker> brief;
+  bool has_moved_robot = false;
+  for (int i = 0; i < 4 && !has_moved_robot; ++i) {
+    const Duration validity = run.bus().now() - keyed.keys.now() + seconds(8);
+    brief = std::make_unique<Attacker>(
+        keyed.with_keys(keyed.keys.issue({Role::kClient, 0, 0, "brief"}, validity)));
+    has_moved_robot = attack(run, *brief, seconds(7), client_id("brief"));
+  }
+  REQUIRE(has_moved_robot);
   REQUIRE(run.wait_until(
       [&] { return run.logged("keys: refuses client brief at 127.0.0.1, whose key has expired"); }));
-  CHECK_FALSE(attack(run, brief, seconds(3), client_id("brief")));
+  CHECK_FALSE(attack(run, *brief, seconds(3), client_id("brief")));
 
   // The robot of a revoked agent stays, and others drive on.
   REQUIRE(revoke({"agent", "2"}) == "exit code 0");
