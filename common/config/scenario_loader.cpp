@@ -110,7 +110,7 @@ void check_images(YamlMap& map, const Scenario& scenario) {
 void read_vision(YamlMap& map, VisionSpec& vision) {
   read_section(map, "vision", [&](YamlMap& inner) {
     // Frames farther apart than 0.3 s watch nothing.
-    inner.read("rate_hz", {4, 1000}, vision.rate_hz);
+    inner.read("rate_hz", {5, 1000}, vision.rate_hz);
     inner.read("columns", {1, 16}, vision.columns);
     inner.read("rows", {1, 16}, vision.rows);
     inner.read("overlap_m", {0, 10}, vision.overlap_m);

@@ -58,6 +58,17 @@ void count_own_stops(SimSystem& system, int& own_stops) {
   });
 }
 
+TEST_CASE("robots arrive whatever rate of cameras and error of wheels a scenario may state") {
+  const auto [rate_hz, scale_error] = GENERATE(table<double, double>({{5, 0.005}, {7, 0.02}, {1000, 0.05}}));
+  Scenario scenario = shipped("crossing");
+  scenario.vision.rate_hz = rate_hz;
+  scenario.odometry.scale_error = scale_error;
+  CAPTURE(rate_hz, scale_error);
+  MonitoredSystem run(scenario, 1);
+  CHECK(run.system.run_until_arrived(run.system.begin() + std::chrono::seconds(60)));
+  run.require_safe();
+}
+
 TEST_CASE("simulated robots keep to whatever limits of motion a scenario states") {
   const auto seed = GENERATE(range(1u, 31u));
   Rng rng(seed);
