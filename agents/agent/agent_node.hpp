@@ -57,8 +57,8 @@ class AgentNode {
   }
   void begin_cycle();
   void register_if_due();
-  /// Requests a measurement by a registration, which the coordinator answers, unless it did so recently.
-  /// Registers once more, for the answer, unless it has done so since then.
+  /// Registers once more, because the coordinator's answer measures its clock, unless the last registration
+  /// is younger than this.
   void measure_coordinator_clock(Duration since_last);
   /// Whether the clocks allow proposals. Requests a measurement if one is due.
   bool clocks_agree();

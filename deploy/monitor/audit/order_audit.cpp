@@ -2,7 +2,6 @@
 #include "deploy/monitor/audit/order_audit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <fmt/format.h>
 
 #include "common/messaging/senders.hpp"
@@ -62,12 +61,15 @@ class OrderAudit::Memory {
     }
   }
 
-  /// Whether a resume of the hold's owner or an operator, for exactly this robot or all robots, came later.
-  bool has_resume(const Terms& hold, std::uint32_t scope) const {
-    return std::ranges::any_of(std::array{hold.client, kOperator}, [&](std::uint32_t client) {
-      const auto found = by_subject_.find({Matter::kResume, scope, client, 0});
-      return found != by_subject_.end() && found->second.number > hold.number;
-    });
+  /// The number of the latest resume of this client or an operator, for exactly this robot or all robots;
+  /// 0: there is none.
+  std::uint64_t last_resume(std::uint32_t client, std::uint32_t scope) const {
+    std::uint64_t last = 0;
+    for (const std::uint32_t by : {client, kOperator}) {
+      const auto found = by_subject_.find({Matter::kResume, scope, by, 0});
+      if (found != by_subject_.end()) last = std::max(last, found->second.number);
+    }
+    return last;
   }
   /// Whether the order stands, or the memory says why it does not.
   bool accounts_for(const Terms& order) const {
@@ -75,19 +77,20 @@ class OrderAudit::Memory {
     if (found != by_subject_.end() &&
         std::pair(found->second.number, found->second.client) >= std::pair(order.number, order.client))
       return true;
+    const std::uint64_t resumed =
+        std::max(last_resume(order.client, order.robot), last_resume(order.client, msg::ALL_ROBOTS));
     switch (std::get<Matter>(order.subject)) {
       case Matter::kDrive:
         return false;
       case Matter::kHold:
-        return has_resume(order, order.robot) || has_resume(order, msg::ALL_ROBOTS);
+        return resumed > order.number;
       case Matter::kZone:
         return false;
       case Matter::kResume:
         break;
     }
     // Otherwise the absence of the hold shows that it was lifted.
-    return !excepts(order) || has_resume({{}, order.client, order.number - 1}, order.robot) ||
-           has_resume({{}, order.client, order.number - 1}, msg::ALL_ROBOTS);
+    return !excepts(order) || resumed >= order.number;
   }
   /// Whether the resume excepts a robot from a hold of all that stands.
   bool excepts(const Terms& resume) const {
@@ -282,9 +285,9 @@ void OrderAudit::judge_grants(const Memory& memory, Coordinator& coordinator) {
     if (is_for_all && may_lack_resumes_) continue;
     for (auto grant = coordinator.grants.begin(); grant != coordinator.grants.end();) {
       const auto& [robot, granted] = *grant;
-      const bool was_held = (is_for_all ? !memory.has_resume(hold, robot) : hold.robot == robot) &&
-                            granted.earliest_ns > told->second &&
-                            granted.stamp_ns < coordinator.memory_stamp_ns;
+      const bool was_held =
+          (is_for_all ? memory.last_resume(hold.client, robot) <= hold.number : hold.robot == robot) &&
+          granted.earliest_ns > told->second && granted.stamp_ns < coordinator.memory_stamp_ns;
       if (!was_held) {
         ++grant;
         continue;
