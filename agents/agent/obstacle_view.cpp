@@ -22,8 +22,7 @@ bool is_possible(const ObservedObstacle& obstacle) {
 }
 
 bool is_possible(const msg::ObstacleList& message) {
-  return message.header().sender() == static_cast<std::uint32_t>(Sender::kVision) &&
-         message.complete_within_m() >= 0 && message.complete_within_m() <= kCompleteEverywhere_m &&
+  return message.complete_within_m() >= 0 && message.complete_within_m() <= kCompleteEverywhere_m &&
          message.obstacles().size() <= msg::MAX_OBSTACLES;
 }
 

@@ -19,10 +19,6 @@ PoseFix fix_from(const msg::TrackedRobot& message) {
 
 WorldObservations WorldView::decode(const msg::WorldState& message) {
   WorldObservations world;
-  if (message.header().sender() != static_cast<std::uint32_t>(Sender::kVision)) {
-    ++foreign_;
-    return world;
-  }
   world.vision = message.header().incarnation();
   world.valid_at = time_from_ns(message.valid_at_ns());
   if (const msg::TrackedRobot* self = find_self(message)) {

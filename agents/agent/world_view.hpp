@@ -29,7 +29,6 @@ class WorldView {
   [[nodiscard]] WorldObservations decode(const msg::WorldState& message);
   std::uint64_t invalid() const { return invalid_; }
   void count_drops(DropCounters& drops) const {
-    drops.count(DropReason::kMalformedWorld, std::nullopt, foreign_);
     drops.count(DropReason::kMalformedObservation, std::nullopt, invalid_);
   }
 
@@ -40,7 +39,6 @@ class WorldView {
   RobotId robot_;
   std::size_t index_ = 0;      // of the robot in the last world that contained it
   std::uint64_t invalid_ = 0;  ///< observations of the robot
-  std::uint64_t foreign_ = 0;  ///< world states that are not from vision
 };
 
 }  // namespace sidestep

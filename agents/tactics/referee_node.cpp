@@ -58,7 +58,6 @@ void RefereeNode::on_datagram(std::span<const std::byte> bytes, const league::En
 }
 
 void RefereeNode::on_world(const msg::WorldState& world) {
-  if (world.header().sender() != static_cast<std::uint32_t>(Sender::kVision)) return;
   const BallState ball{{world.ball().x_m(), world.ball().y_m()},
                        {world.ball().vx_mps(), world.ball().vy_mps()}};
   const bool is_seen = world.ball().is_visible() && is_plausible(ball.position_m, kMaxCoordinate_m) &&

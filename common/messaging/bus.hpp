@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/messaging/attachment.hpp"
+#include "common/messaging/senders.hpp"
 #include "common/messaging/sole_sender.hpp"
 #include "common/messaging/topics.hpp"
 #include "common/protocol/drop_counters.hpp"
@@ -128,12 +129,14 @@ class Bus {
       callback(*static_cast<const Message*>(message));
     });
   }
-  /// `callback` takes a const Message&.
+  /// `callback` takes a const Message&. It gets no messages in the name of processes that may not write the
+  /// topic.
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe(topic, robot,
             [this, robot, info = TopicInfo(topic), sender = SoleSender(listening_),
              callback = std::move(callback)](const Message& message) mutable {
+              if (!may_be_from(info, message.header())) return;
               if (!has_same_rules(info, message.header())) return;
               if (info.is_sole && !admit(sender, info, robot, message.header())) return;
               if (header_watcher_) header_watcher_(info, message.header());
@@ -158,6 +161,12 @@ class Bus {
   virtual void add_drops(DropCounters& drops) const { (void)drops; }
 
  private:
+  bool may_be_from(const TopicInfo& topic, const msg::Header& header) {
+    if (topic.writers.overlaps(roles_of(header.sender()))) return true;
+    count_drop(DropReason::kForgedSender);
+    return false;
+  }
+
   bool has_same_rules(const TopicInfo& topic, const msg::Header& header) {
     if (!on_refused_ || !topic.is_checked || header.rules() == rules_) return true;
     count_drop(DropReason::kOtherRules);

@@ -25,7 +25,8 @@ class Roles {
   constexpr Roles() = default;
   constexpr Roles(Role role) : bits_(static_cast<std::uint16_t>(1U << static_cast<unsigned>(role))) {}
 
-  constexpr bool has(Role role) const { return (bits_ & Roles(role).bits_) != 0; }
+  constexpr bool has(Role role) const { return overlaps(role); }
+  constexpr bool overlaps(Roles other) const { return (bits_ & other.bits_) != 0; }
   friend constexpr Roles operator|(Roles a, Roles b) {
     a.bits_ |= b.bits_;
     return a;

@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <string_view>
 
+#include "common/messaging/roles.hpp"
+#include "common/motion/version.hpp"
+
 namespace sidestep {
 
 /// Values of Header.sender. A robot and its agents use the robot's number. The others use these bases, plus
@@ -25,6 +28,28 @@ inline constexpr std::uint32_t kMaxCoordinators = 8;
 constexpr bool is_coordinator(std::uint32_t sender) {
   const auto first = static_cast<std::uint32_t>(Sender::kCoordinator);
   return sender >= first && sender < first + kMaxCoordinators;
+}
+
+/// The roles of processes that may have this Header.sender. A robot's facts have its agent's number, and an
+/// operator may speak as a client.
+constexpr Roles roles_of(std::uint32_t sender) {
+  if (sender < kMaxRobots) return Role::kAgent | Role::kSimulator | Role::kRobot;
+  if (is_coordinator(sender)) return Role::kCoordinator;
+  if (sender >= static_cast<std::uint32_t>(Sender::kClient)) return Role::kClient | Role::kOperator;
+  switch (static_cast<Sender>(sender)) {
+    case Sender::kVision:
+      return Role::kVision;
+    case Sender::kSimulator:
+      return Role::kSimulator;
+    case Sender::kRobots:
+      return Role::kRobot;
+    case Sender::kOperator:
+      return Role::kOperator;
+    case Sender::kReferee:
+      return Role::kReferee;
+    default:
+      return {};
+  }
 }
 
 /// The id of the client with this name: programs of different names hardly ever have the same one.

@@ -142,8 +142,12 @@ const std::vector<Cause> kCauses{
        s.send(topics::kFeedback, s.feedback);
      }},
     {DropReason::kMalformedVerdict, "agent 0",
-     [](Stranger& s, SimSystem&) { s.send(topics::kVerdict, from<msg::Verdict>(Sender::kVision)); }},
-    {DropReason::kMalformedWorld, "agent 0",
+     [](Stranger& s, SimSystem&) {
+       auto verdict = from<msg::Verdict>(Sender::kCoordinator);
+       verdict.robot(5);
+       s.send(topics::kVerdict, verdict);
+     }},
+    {DropReason::kForgedSender, "agent 0",
      [](Stranger& s, SimSystem&) { s.send(topics::kWorld, from<msg::WorldState>(Sender::kSimulator)); }},
     {DropReason::kMalformedObservation, "agent 0",
      [](Stranger& s, SimSystem&) { s.send(topics::kWorld, world_of(s, kNan)); }},
@@ -155,13 +159,17 @@ const std::vector<Cause> kCauses{
      }},
     {DropReason::kMalformedScan, "agent 0",
      [](Stranger& s, SimSystem&) {
-       auto scan = from<msg::LaserScan>(Sender::kVision);
+       auto scan = from<msg::LaserScan>(0);
        scan.header().incarnation(s.feedback.header().incarnation());
        s.send(topics::kScan, scan);
      },
      [](Scenario& scenario) { scenario.laser.emplace(); }},
     {DropReason::kMalformedLedgerPage, "agent 0",
-     [](Stranger& s, SimSystem&) { s.send(topics::kLedger, from<msg::LedgerPage>(Sender::kVision)); }},
+     [](Stranger& s, SimSystem&) {
+       auto page = from<msg::LedgerPage>(Sender::kCoordinator);
+       page.page_index(kMaxRobots);
+       s.send(topics::kLedger, page);
+     }},
     {DropReason::kMalformedVersion, "agent 0",
      [](Stranger& s, SimSystem&) {
        auto page = from<msg::LedgerPage>(Sender::kCoordinator);
@@ -184,10 +192,6 @@ const std::vector<Cause> kCauses{
      [](Stranger& s, SimSystem&) { s.send(topics::kRegistration, from<msg::Registration>(5)); }},
     {DropReason::kMalformedProposal, "coordinator",
      [](Stranger& s, SimSystem&) { s.send(topics::kProposal, from<msg::Proposal>(5)); }},
-    {DropReason::kMalformedAttestation, "coordinator",
-     [](Stranger& s, SimSystem&) {
-       s.send(topics::kAttestation, from<msg::AbsenceAttestation>(Sender::kVision));
-     }},
     {DropReason::kMalformedCommand, "simulator",
      [](Stranger& s, SimSystem&) {
        s.command.desired_heading_rad(kNan);
@@ -305,7 +309,11 @@ const std::vector<Cause> kCauses{
        s.send(topics::kAttestation, from<msg::AbsenceAttestation>(Sender::kOperator));
      }},
     {DropReason::kMalformedOrder, "coordinator",
-     [](Stranger& s, SimSystem&) { s.send(topics::kOrder, from<msg::Order>(Sender::kVision)); }},
+     [](Stranger& s, SimSystem&) {
+       auto order = from<msg::Order>(Sender::kOperator);
+       order.terms().order_kind(static_cast<msg::OrderKind>(99));
+       s.send(topics::kOrder, order);
+     }},
     {DropReason::kRefusedOrder, "coordinator",
      [](Stranger& s, SimSystem&) {
        s.send(topics::kOrder,
@@ -368,10 +376,10 @@ const std::vector<Cause> kCauses{
 /// Reasons that no message on SimBus causes, and the tests that cause them.
 const std::set<DropReason> kElsewhere{
     DropReason::kUnreadable,          // dds/robustness_test
+    DropReason::kMalformedDatagram,   // dds/robustness_test
     DropReason::kForgottenPeer,       // dds/presence_test, of processes that sleep for seconds
-    DropReason::kUnknownParticipant,  // dds/gate_test, of processes with keys, as the next two
+    DropReason::kUnknownParticipant,  // dds/gate_test, of processes with keys, as the next
     DropReason::kRefusedParticipant,
-    DropReason::kForgedSender,
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
     DropReason::kMalformedLeaguePacket,  // league/league_source_test, as the next three
     DropReason::kRepeatedLeagueFrame,

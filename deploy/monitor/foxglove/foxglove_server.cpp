@@ -35,7 +35,9 @@ std::optional<std::uint32_t> id_in(const Json& json, const char* key) {
 }
 
 WebMessage text_message(const Json& json) {
-  return {std::make_shared<const std::string>(json.dump()), false};
+  // A viewer may have sent half a character.
+  return {std::make_shared<const std::string>(json.dump(-1, ' ', false, Json::error_handler_t::replace)),
+          false};
 }
 
 }  // namespace

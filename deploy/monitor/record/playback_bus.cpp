@@ -31,7 +31,7 @@ std::shared_ptr<const OccupancyMap> map_of(const MapFiles& files) {
   const TemporaryFolder folder;
   write_file(folder.file(kMapFile), files.yaml);
   write_file(folder.file(kMapImageFile), files.image);
-  return std::make_shared<const OccupancyMap>(load_occupancy_map(folder.file(kMapFile)));
+  return std::make_shared<const OccupancyMap>(load_map(folder.file(kMapFile)).cells);
 }
 
 }  // namespace

@@ -14,8 +14,9 @@ void print_unknown_topic(const std::string& channel);
 /// Says on stderr why only the beginning of a recording was used, if so.
 void print_damage(const std::string& recording_file, const std::string& damage);
 
-/// Calls `use` with each message of a channel. False, after print_unknown_topic(): it belongs to no topic.
-/// Throws std::invalid_argument if this process's keys do not allow reading it.
+/// Calls `use` with each message of a channel, also with those that processes refuse. False, after
+/// print_unknown_topic(): it belongs to no topic. Throws std::invalid_argument if this process's keys do not
+/// allow reading it.
 template <typename Use>
 [[nodiscard]] bool subscribe_to_channel(Bus& bus, const std::string& channel, Use use) {
   bool is_known = false;
@@ -26,7 +27,7 @@ template <typename Use>
     if (!bus.may_read(topic, *robot))
       throw std::invalid_argument("the keys of this process do not allow reading the topic '" + channel +
                                   "'");
-    bus.subscribe<Message>(topic, *robot, [use](const Message& message) { use(message); });
+    bus.observe<Message>(topic, *robot, [use](const Message& message) { use(message); });
   });
   if (!is_known) print_unknown_topic(channel);
   return is_known;

@@ -67,7 +67,10 @@ class SimSystem {
   /// Pauses a process as by SIGSTOP and SIGCONT; see SimBus::pause. Does nothing if it is dead.
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
   /// Disturbs a robot as an operator would.
-  void disturb(msg::Disturbance& disturbance) { disturbance_writer_.publish(disturbance, now()); }
+  void disturb(msg::Disturbance& disturbance) {
+    disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
+    disturbance_writer_.publish(disturbance, now());
+  }
   /// Publishes a client's order.
   void send(const Order& order);
   /// Calls back with every answer of a coordinator to an order, and with every status of an order.

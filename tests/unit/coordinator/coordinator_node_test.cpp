@@ -230,7 +230,7 @@ TEST_CASE(
   SECTION("no such robot") { floor.attest(77); }
   SECTION("the sender is no operator") {
     floor.attest(1, Sender::kVision);
-    CHECK(drops_of(floor.node).total() == 1);
+    CHECK(drops_of(floor.bus).total(DropReason::kForgedSender) == 1);
   }
   CHECK_FALSE(floor.node.coordinator().is_granting());
 }
@@ -310,7 +310,7 @@ TEST_CASE("the place of a displaced robot is published with every world state") 
   world.header().sender(1);
   see(0.5);
   CHECK(floor.state.notices()[0].x_m() == 0.4);
-  CHECK(drops_of(floor.node).total() == 1);
+  CHECK(drops_of(floor.bus).total(DropReason::kForgedSender) == 1);
 }
 
 TEST_CASE("a world from the future is counted, displaces nobody and does not count as watching") {

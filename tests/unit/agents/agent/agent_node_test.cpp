@@ -76,6 +76,7 @@ msg::LedgerPage valid_page() {
 
 msg::Disturbance placement(RobotId robot, double x) {
   msg::Disturbance disturbance;
+  disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
   disturbance.robot(robot);
   disturbance.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PLACE);
   disturbance.x_m(x);
@@ -109,15 +110,17 @@ struct NodeFixture {
   }
   /// Runs until the next status has arrived.
   void run() { network.run_until(network.now() + Duration{250'000'000}); }
-  /// Sends one message. Returns how many the node counts as dropped in addition.
+  /// What the node and its bus have dropped.
+  std::uint64_t dropped() const { return drops_of(node).total() + drops_of(agent_bus).total(); }
+  /// Sends one message. Returns how many are counted as dropped in addition.
   template <typename Message>
   std::uint64_t send(const Topic<Message>& topic, Message message) {
     auto writer = other_bus.advertise(topic, kRobot);
     run();  // the agent finds the writer
-    const std::uint64_t before = drops_of(node).total();
+    const std::uint64_t before = dropped();
     writer.publish(message, other_bus.now());
     run();
-    return drops_of(node).total() - before;
+    return dropped() - before;
   }
   template <typename Message, typename Spoil>
   std::uint64_t send_spoilt(const Topic<Message>& topic, Message message, Spoil spoil) {
@@ -279,6 +282,10 @@ TEST_CASE("only an invalid placement of the agent's own robot is counted") {
   msg::Disturbance push = placement(kRobot, kNan);
   push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
   CHECK(f.send(topics::kDisturbance, push) == 0);
+  // Only an operator says where a robot was put.
+  msg::Disturbance forged = placement(kRobot, 1);
+  forged.header().sender(kRobot);
+  CHECK(f.send(topics::kDisturbance, forged) == 1);
 }
 
 }  // namespace sidestep::agent_node_test

@@ -25,6 +25,7 @@ TEST_CASE("a process answers a probe with its own clock, its host's and the cloc
   const Time sent = client.now();
   msg::ClockProbe probe;
   probe.client(1'000'007);
+  probe.header().sender(1'000'007);
   writer.publish(probe, sent);
   network.run_until(network.now() + 1s);
   REQUIRE(answers.size() == 1);
@@ -49,6 +50,7 @@ TEST_CASE("however many probes arrive, a process answers at a bounded rate") {
   for (int i = 0; i < 10'000; ++i) {
     msg::ClockProbe probe;
     probe.client(static_cast<std::uint32_t>(i));
+    probe.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     writer.publish(probe, client.now());
     network.run_until(network.now() + 100us);
   }

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "common/messaging/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::impairment_test {
@@ -12,6 +13,7 @@ constexpr int kMessages = 100'000;
 
 msg::NetworkFault valid_fault() {
   msg::NetworkFault fault;
+  fault.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
   fault.loss(0.1);
   fault.mean_burst(4);
   fault.duplicate(0.2);

@@ -108,12 +108,14 @@ TEST_CASE("one refused message is enough for both sides to name the difference")
 TEST_CASE("of any number of invented processes 256 are named, and then one in ten seconds") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01);
+  a.bus.subscribe(topics::kRegistration, [](const msg::Registration&) {});
   SimBus stranger(network);
-  auto writer = stranger.advertise(topics::kCoordinator);
+  auto writer = stranger.advertise(topics::kRegistration);
+  network.run_until(network.now() + 1s);
   for (std::uint32_t i = 0; i < 5000; ++i) {
-    msg::CoordinatorState state;
-    state.header().sender(i);
-    writer.publish(state, stranger.now());
+    msg::Registration registration;
+    registration.header().sender(i % kMaxRobots);
+    writer.publish(registration, stranger.now());
     network.run_until(network.now() + 1ms);
   }
   CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 5000);

@@ -16,6 +16,7 @@ TEST_CASE("a malformed network fault is ignored, logged and counted") {
   apply_network_faults(bus, 3);
   auto writer = sender.advertise(topics::kNetworkFault);
   msg::NetworkFault fault;
+  fault.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
   fault.target(3);
   fault.loss(std::numeric_limits<double>::quiet_NaN());
   const CaptureStderr captured;

@@ -277,6 +277,7 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
   scene.run(milliseconds(50));
   const auto send = [&](RobotId robot, msg::DisturbanceKind kind) {
     msg::Disturbance message;
+    message.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     message.robot(robot);
     message.disturbance_kind(kind);
     message.grip(2);
@@ -334,6 +335,7 @@ TEST_CASE("disturbances, own stops with their reason, and contacts are reported"
   const LogEvents events(scene.node);
   auto writer = scene.outside.advertise(topics::kDisturbance);
   msg::Disturbance push;
+  push.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
   push.robot(0);
   push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
   push.vx_mps(2);

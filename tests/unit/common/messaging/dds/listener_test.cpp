@@ -57,6 +57,7 @@ TEST_CASE("a listener receives the bytes of a topic of unknown type") {
   DdsBus bus(test_settings("vision"));
   auto writer = bus.advertise(topics::kWorld);
   msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   world.robots().resize(1000);
   DdsListener listener(test_settings("listener"));
   const auto is_announced = [&] { return find(listener.endpoints(), "world", true) != nullptr; };

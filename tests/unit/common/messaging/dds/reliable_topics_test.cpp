@@ -31,6 +31,7 @@ TEST_CASE("publishes reliable messages on request", "[.reliable_writer][slow]") 
     Request request;
     if (read(STDIN_FILENO, &request, sizeof request) != sizeof request) return bus.stop();
     msg::AbsenceAttestation message;
+    message.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     message.robot(request.key);
     message.header().incarnation(request.number);
     writer.publish(message, bus.now());

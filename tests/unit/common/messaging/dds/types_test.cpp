@@ -167,6 +167,7 @@ TEST_CASE("samples have equal handles if and only if their keys are equal") {
   Decoder decoder(topics::kVerdict);
   const auto handle_of = [&](std::uint32_t robot) {
     msg::Verdict verdict;
+    verdict.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
     verdict.robot(robot);
     GuardedType::Sample sample{&verdict, true};
     fast_dds::rtps::InstanceHandle_t handle;

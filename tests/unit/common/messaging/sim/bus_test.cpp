@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <set>
 
+#include "common/keys/identity.hpp"
 #include "tests/catch.hpp"
+#include "tests/drops.hpp"
 
 namespace sidestep::bus_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 constexpr Topic<msg::CoordinatorState> kReliable{
     {"reliable",
-     {},
+     Role::kCoordinator,
      {},
      Qos::kEvent,
      false,
@@ -24,6 +26,7 @@ NetworkSpec delays(double min_s, double max_s, double loss = 0, double duplicate
 
 msg::CoordinatorState numbered(std::uint64_t n) {
   msg::CoordinatorState state;
+  state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
   state.epoch(n);
   return state;
 }
@@ -127,10 +130,67 @@ TEST_CASE("the channels of a per-robot topic are separate") {
   b.subscribe(topics::kVerdict, 3, std::function([&](const msg::Verdict&) { ++three; }));
   b.subscribe(topics::kVerdict, 4, std::function([&](const msg::Verdict&) { ++four; }));
   msg::Verdict verdict;
+  verdict.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
   writer.publish(verdict, a.now());
   net.run_until(kBegin + std::chrono::seconds(1));
   CHECK(three == 1);
   CHECK(four == 0);
+}
+
+TEST_CASE("a subscription gets no message in the name of a process that may not write the topic") {
+  const auto of = [](Sender sender, std::uint32_t number = 0) {
+    return static_cast<std::uint32_t>(sender) + number;
+  };
+  const std::vector<std::uint32_t> senders{0,
+                                           kMaxRobots - 1,
+                                           kMaxRobots,
+                                           of(Sender::kCoordinator),
+                                           of(Sender::kVision),
+                                           9999,
+                                           of(Sender::kSimulator),
+                                           of(Sender::kRobots),
+                                           of(Sender::kOperator),
+                                           of(Sender::kReferee),
+                                           4294967295,
+                                           of(Sender::kScenario),
+                                           client_id("forklift"),
+                                           of(Sender::kCoordinator, kMaxCoordinators),
+                                           999999,
+                                           of(Sender::kCoordinator, kMaxCoordinators - 1)};
+  std::vector<Identity> identities{{Role::kVision},
+                                   {Role::kSimulator},
+                                   {Role::kReferee},
+                                   {Role::kOperator},
+                                   {Role::kViewer},
+                                   {Role::kJudge},
+                                   {Role::kClient, 0, 0, "forklift"},
+                                   {Role::kRobot, 0, kMaxRobots - 1}};
+  for (std::uint32_t i = 0; i < kMaxCoordinators; ++i) identities.push_back({Role::kCoordinator, i, i});
+  for (const std::uint32_t robot : {0U, kMaxRobots - 1}) identities.push_back({Role::kAgent, robot, robot});
+  int admitted = 0;
+  for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
+    for (const std::uint32_t sender : senders) {
+      CAPTURE(topic.name, sender);
+      const std::uint32_t robot = sender < kMaxRobots ? sender : 0;
+      const bool may = std::ranges::any_of(identities, [&](const Identity& identity) {
+        return may_write(identity, topic, robot) && may_speak_as(identity, sender);
+      });
+      SimNetwork net(1, kBegin, {});
+      SimBus from(net), to(net);
+      int received = 0;
+      to.subscribe(topic, robot, [&](const Message&) { ++received; });
+      auto writer = from.advertise(topic, robot);
+      net.run_until(net.now() + std::chrono::seconds(1));
+      Message message;
+      message.header().sender(sender);
+      writer.publish(message, net.now());
+      net.run_until(net.now() + std::chrono::seconds(1));
+      CHECK(received == (may ? 1 : 0));
+      CHECK(drops_of(to).total(DropReason::kForgedSender) == (may ? 0 : 1));
+      admitted += may;
+    }
+  });
+  CHECK(admitted > 30);
 }
 
 TEST_CASE("a killed process receives nothing, but its earlier messages still arrive") {

@@ -35,6 +35,7 @@ struct Rig {
     for (std::uint64_t n = 1; n <= count; ++n) {
       sender.at(from + Duration{1ms} * n, [this, n] {
         msg::CoordinatorState state;
+        state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
         state.epoch(n);
         writer.publish(state, sender.now());
       });
@@ -192,6 +193,7 @@ TEST_CASE("an observer receives every message without delay on a bad network") {
   for (std::uint64_t n = 1; n <= 100; ++n) {
     sender.at(kBegin + Duration{1ms} * n, [&, n] {
       msg::CoordinatorState state;
+      state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
       state.epoch(n);
       writer.publish(state, sender.now());
     });
@@ -219,6 +221,7 @@ struct ReliablePair {
   }
   void send(std::uint64_t number) {
     msg::AbsenceAttestation message;
+    message.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     message.header().incarnation(number);
     from_a.publish(message, a.now());
     message.robot(1);
@@ -301,9 +304,11 @@ TEST_CASE("reliable messages do not change the losses and delays of others") {
     auto reliable = sender.advertise(topic);
     for (std::uint64_t n = 1; n <= 500; ++n) {
       msg::CoordinatorState state;
+      state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
       state.epoch(n);
       writer.publish(state, sender.now());
       msg::AbsenceAttestation message;
+      message.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
       message.robot(static_cast<std::uint32_t>(n));
       reliable.publish(message, sender.now());
       if (with_heartbeats) network.run_until(network.now() + 1ms);

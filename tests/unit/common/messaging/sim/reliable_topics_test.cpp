@@ -35,6 +35,7 @@ class SimRig {
   void kill_reader() { reader_process_.reset(); }
   void write(std::uint64_t number, std::uint32_t key) {
     msg::AbsenceAttestation message;
+    message.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     message.robot(key);
     message.header().incarnation(number);
     writer_.publish(message, writer_process_->now());

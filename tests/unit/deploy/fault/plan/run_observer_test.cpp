@@ -15,6 +15,7 @@ struct Fixture {
   void send_state(std::uint32_t number, std::uint64_t epoch, msg::CoordinatorMode mode,
                   const std::vector<msg::RobotNotice>& notices = {}) {
     msg::CoordinatorState state;
+    state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + number);
     state.coordinator(number);
     state.epoch(epoch);
     state.coordinator_mode(mode);
@@ -24,6 +25,7 @@ struct Fixture {
   }
   void send_truth(std::uint64_t contacts) {
     msg::GroundTruth truth;
+    truth.header().sender(static_cast<std::uint32_t>(Sender::kSimulator));
     truth.contacts(contacts);
     for (std::uint32_t k = 0; k < msg::MAX_CONTACTS; ++k) {
       truth.recent_contacts()[k].first(k);
@@ -115,6 +117,7 @@ TEST_CASE("notices of coordinators and agents are recorded, and the last heartbe
   run.send_state(0, 40, kGranting);
   CHECK_FALSE(run.history().is_missing(4));
   msg::AgentStatus status;
+  status.header().sender(2);
   status.robot(2);
   status.agent_state(msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
   run.statuses.publish(status, run.network.now());

@@ -9,6 +9,7 @@
 #include "common/config/config_error.hpp"
 #include "deploy/fault/test_command.hpp"
 #include "tests/catch.hpp"
+#include "tests/text_of.hpp"
 
 namespace sidestep::sim_test_run_test {
 
@@ -125,11 +126,6 @@ TEST_CASE("without ground truth nothing is judged") {
   for (const std::string& failure : failures)
     CHECK_THAT(failure,
                ContainsSubstring("not judged") && ContainsSubstring("ground truth is missing after"));
-}
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 TEST_CASE("the command runs each file with each seed, writes JUnit XML and returns 1 if one failed") {

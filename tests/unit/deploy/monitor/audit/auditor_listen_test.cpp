@@ -41,6 +41,13 @@ class ManualBus : public Bus {
   std::map<std::string, std::vector<std::function<void(const void*)>>> readers_;
 };
 
+template <typename Message>
+Message from(Sender sender) {
+  Message message;
+  message.header().sender(static_cast<std::uint32_t>(sender));
+  return message;
+}
+
 struct Listening {
   Listening() { listen(bus, scenario, auditor); }
   std::uint64_t invalid() const { return auditor.totals().invalid; }
@@ -57,26 +64,26 @@ TEST_CASE("an auditor on a bus hears every topic, of every robot of the roster")
   CHECK(run.invalid() == 1);
   run.bus.deliver(topics::kRegistration, msg::Registration());
   CHECK(run.invalid() == 2);
-  run.bus.deliver(topics::kLedger, msg::LedgerPage());
+  run.bus.deliver(topics::kLedger, from<msg::LedgerPage>(Sender::kCoordinator));
   CHECK(run.invalid() == 3);
-  msg::WorldState world;
+  auto world = from<msg::WorldState>(Sender::kVision);
   world.valid_at_ns(-1);
   run.bus.deliver(topics::kWorld, world);
   CHECK(run.invalid() == 4);
-  msg::GroundTruth truth;
+  auto truth = from<msg::GroundTruth>(Sender::kSimulator);
   truth.valid_at_ns(-1);
   run.bus.deliver(topics::kTruth, truth);
   CHECK(run.invalid() == 5);
-  msg::Disturbance disturbance;
+  auto disturbance = from<msg::Disturbance>(Sender::kOperator);
   disturbance.robot(9);
   run.bus.deliver(topics::kDisturbance, disturbance);
   CHECK(run.invalid() == 6);
-  msg::AbsenceAttestation attestation;
+  auto attestation = from<msg::AbsenceAttestation>(Sender::kOperator);
   attestation.robot(9);
   run.bus.deliver(topics::kAttestation, attestation);
   CHECK(run.invalid() == 7);
   for (const RobotId robot : {0u, 1u}) {
-    msg::Verdict verdict;
+    auto verdict = from<msg::Verdict>(Sender::kCoordinator);
     verdict.robot(9);
     run.bus.deliver(topics::kVerdict, verdict, robot);
     CHECK(run.invalid() == 8 + 3 * robot);
@@ -90,7 +97,7 @@ TEST_CASE("an auditor on a bus hears every topic, of every robot of the roster")
     CHECK(run.invalid() == 10 + 3 * robot);
   }
   const std::uint64_t received = run.auditor.totals().received;
-  run.bus.deliver(topics::kCoordinator, msg::CoordinatorState());
+  run.bus.deliver(topics::kCoordinator, from<msg::CoordinatorState>(Sender::kCoordinator));
   CHECK(run.auditor.totals().received == received + 1);
 }
 
@@ -195,7 +202,7 @@ TEST_CASE("for an auditor on a bus time passes without messages") {
     fact.executing().robot(robot);
     run.bus.deliver(topics::kFeedback, fact, robot);
   }
-  msg::CoordinatorState state;
+  auto state = from<msg::CoordinatorState>(Sender::kCoordinator);
   state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
   run.bus.deliver(topics::kCoordinator, state);
   run.bus.advance(3s);

@@ -142,6 +142,9 @@ TEST_CASE("messages of clients that make no sense are told apart, and writing is
     CHECK_FALSE(server.on_message(client, bad));
   CHECK(server.on_message(client, R"({"op":"advertise","channels":[]})"));
   CHECK(client.texts.back().at("op") == "status");
+  // The answer quotes the operation up to half of a character.
+  CHECK(server.on_message(client, R"({"op":")" + std::string(99, 'a') + "\u00e9\"}"));
+  CHECK(client.texts.back().at("op") == "status");
 }
 
 }  // namespace sidestep::foxglove_test

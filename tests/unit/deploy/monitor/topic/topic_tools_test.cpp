@@ -106,6 +106,7 @@ class Publisher {
  private:
   void tick() {
     msg::WorldState world;
+    world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
     world.frames(77);
     writer_.publish(world, bus_.now());
     bus_.at(bus_.now() + Duration{10'000'000}, [this] { tick(); });
@@ -276,7 +277,7 @@ TEST_CASE("topic delay measures the senders of a topic") {
   const Outcome outcome = topic({"delay", "world", "--seconds", "1"});
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Matches("SENDER[^]*\nagent 0 +[1-9][0-9]+ +0 +0 +0 [^]*"));
+  CHECK_THAT(outcome.out, Matches("SENDER[^]*\nvision +[1-9][0-9]+ +0 +0 +0 [^]*"));
   CHECK(topic({"delay", "nothing", "--seconds", "1"}).exit_code == kExitFailure);
 }
 
