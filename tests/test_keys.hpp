@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <span>
 #include <string>
 
 #include "common/file/temporary_folder.hpp"
@@ -31,6 +32,10 @@ class TestKeys {
   Time now() const { return now_; }
   std::string issue(const Identity& identity, Duration validity = std::chrono::hours(1)) {
     return store_.issue(identity, now_, now_ + validity);
+  }
+  /// Returns how many keys are revoked that were not.
+  std::size_t revoke(const Identity& identity) {
+    return store_.revoke(std::span(&identity, 1), now_).front().revoked;
   }
 
  private:

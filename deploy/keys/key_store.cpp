@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <stdexcept>
+#include <sys/file.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -33,6 +34,27 @@ void write_private_file(const std::string& path, const std::string& text) {
   if (file >= 0) close(file);
   if (!is_written) throw std::system_error(error, std::generic_category(), "cannot write " + path);
 }
+
+/// While it exists, no other process changes a folder of keys.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder) {
+    const std::string path = folder + "/private/lock";
+    file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    int result = file_ < 0 ? -1 : flock(file_, LOCK_EX);
+    while (result < 0 && file_ >= 0 && errno == EINTR) result = flock(file_, LOCK_EX);
+    if (result == 0) return;
+    const int error = errno;
+    if (file_ >= 0) close(file_);
+    throw std::system_error(error, std::generic_category(), "cannot lock " + path);
+  }
+  ~FolderLock() { close(file_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int file_ = -1;
+};
 
 /// Replaces a file or link by a link to a file of the folder `public`.
 void link_public_file(const std::string& folder, const char* name) {
@@ -73,14 +95,19 @@ void KeyStore::create(const std::string& folder, Time now, Time until) {
 }
 
 KeyStore::KeyStore(const std::string& folder) : folder_(folder) {
-  std::error_code none;
-  if (!fs::exists(private_file(kIdentityKey), none))
+  std::error_code error;
+  const bool exists = fs::exists(private_file(kIdentityKey), error);
+  if (error)
+    throw std::invalid_argument(
+        fmt::format("cannot read the folder of keys {}: {}", folder_, error.message()));
+  if (!exists)
     throw std::invalid_argument(
         fmt::format("expected a folder that `sidestep keys init` has made, but {} does not exist",
                     private_file(kIdentityKey)));
 }
 
 std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
+  const FolderLock lock(folder_);
   const Authority identities = identity_authority(folder_);
   const Authority permissions(public_file(key_files::kPermissionsAuthority), private_file(kPermissionsKey));
   // Fast DDS checks the authorities only as long as they are valid.
@@ -106,30 +133,44 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
   return folder;
 }
 
-std::size_t KeyStore::revoke(const Identity& identity, Time now) {
+std::vector<Revocation> KeyStore::revoke(std::span<const Identity> identities, Time now) {
+  const FolderLock lock(folder_);
   std::set<std::string> serials = revoked_serials(folder_);
-  std::size_t count = 0;
-  for (const IssuedKey& key : keys()) {
-    if (key.name == to_text(identity) && serials.insert(key.serial).second) ++count;
+  const std::vector<IssuedKey> issued = keys();
+  std::vector<Revocation> result;
+  for (const Identity& identity : identities) {
+    Revocation& done = result.emplace_back(Revocation{identity});
+    for (const IssuedKey& key : issued) {
+      if (key.name == to_text(identity)) ++(serials.insert(key.serial).second ? done.revoked : done.before);
+    }
   }
-  if (count == 0)
-    throw std::invalid_argument(
-        fmt::format("no valid key was issued for {}; `sidestep keys show` lists all", to_text(identity)));
-  const Authority identities = identity_authority(folder_);
+  const Authority authority = identity_authority(folder_);
   write_file(public_file(key_files::kRevoked),
-             identities.revocation_list(serials, now, identities.certificate().not_after()));
-  fs::remove_all(folder_ + "/enclaves/" + folder_name(identity));
-  return count;
+             authority.revocation_list(serials, now, authority.certificate().not_after()));
+  if (revoked_serials(folder_) != serials)
+    throw std::runtime_error("the list of revoked keys in " + public_file(key_files::kRevoked) +
+                             " is not what was written; these keys may still be valid");
+  for (const Identity& identity : identities) fs::remove_all(folder_ + "/enclaves/" + folder_name(identity));
+  return result;
 }
 
 std::vector<IssuedKey> KeyStore::keys() const {
   const std::set<std::string> serials = revoked_serials(folder_);
   std::vector<IssuedKey> result;
   for (const auto& entry : fs::directory_iterator(public_file(kIssued))) {
-    const Certificate certificate = Certificate::load(entry.path().string());
-    const auto identity = certificate.identity();
-    result.push_back({identity ? to_text(*identity) : certificate.subject(), certificate.serial(),
-                      certificate.not_after(), serials.count(certificate.serial()) > 0});
+    if (entry.path().extension() != ".pem") continue;  // what a process that was killed has left
+    IssuedKey& key = result.emplace_back();
+    key.serial = entry.path().stem().string();
+    try {
+      const Certificate certificate = Certificate::load(entry.path().string());
+      const auto identity = certificate.identity();
+      key.name = identity ? to_text(*identity) : certificate.subject();
+      key.serial = certificate.serial();
+      key.not_after = certificate.not_after();
+    } catch (const std::exception& error) {
+      key.problem = error.what();
+    }
+    key.is_revoked = serials.count(key.serial) > 0;
   }
   std::ranges::sort(result, [](const IssuedKey& a, const IssuedKey& b) {
     return std::tie(a.name, a.not_after, a.serial) < std::tie(b.name, b.not_after, b.serial);

@@ -27,11 +27,14 @@ struct KeysOptions {
   bool again = false;
 };
 
+/// Hosts whose clocks are behind this one's by up to this accept what is issued now.
+constexpr Duration kClockSlack = std::chrono::minutes(10);
+
 Duration days(double count) { return from_seconds(count * 24 * 3600); }
 
 int init(const KeysOptions& options) {
   const Time now = DdsBus::clock();
-  KeyStore::create(options.folder, now, now + days(options.days));
+  KeyStore::create(options.folder, now - kClockSlack, now + days(options.days));
   fmt::print(
       "made {}: two certificate authorities, valid until {}\n"
       "{}/private holds their private keys: who can read it can command all robots; no robot needs it\n",
@@ -55,7 +58,7 @@ int issue(const KeysOptions& options) {
         throw std::invalid_argument(to_text(identity) + " has a key already; --again makes a new one");
       continue;
     }
-    const std::string folder = store.issue(identity, now, now + days(options.days));
+    const std::string folder = store.issue(identity, now - kClockSlack, now + days(options.days));
     if (identities.size() <= 4) fmt::print("{}: {}\n", to_text(identity), folder);
     ++issued;
   }
@@ -69,15 +72,30 @@ int revoke(const KeysOptions& options) {
   const std::vector<Identity> identities = parse_key_list(options.words);
   if (identities.empty()) throw UsageError("expected identities: " + identity_forms());
   KeyStore store(options.folder);
-  for (const Identity& identity : identities) {
-    const std::size_t count = store.revoke(identity, DdsBus::clock());
-    fmt::print("revoked {} key{} of {}\n", count, count == 1 ? "" : "s", to_text(identity));
+  std::vector<std::string> unknown;
+  for (const Revocation& done : store.revoke(identities, DdsBus::clock() - kClockSlack)) {
+    const std::string name = to_text(done.identity);
+    if (done.revoked > 0)
+      fmt::print("revoked {} key{} of {}\n", done.revoked, done.revoked == 1 ? "" : "s", name);
+    else if (done.before > 0)
+      fmt::print("{}: revoked already\n", name);
+    else
+      unknown.push_back(name);
   }
   fmt::print(
       "processes that use {}/enclaves refuse them within a second; copy {}/public/crl.pem into the folders "
       "of keys "
       "on other hosts\n",
       options.folder, options.folder);
+  std::vector<std::string> problems;
+  if (!unknown.empty())
+    problems.push_back(
+        fmt::format("no key was issued for {}; `sidestep keys show` lists all", fmt::join(unknown, ", ")));
+  for (const IssuedKey& key : store.keys()) {
+    if (!key.problem.empty() && !key.is_revoked)
+      problems.push_back(fmt::format("not known whose key this is, so it is not revoked: {}", key.problem));
+  }
+  if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "\n")));
   return 0;
 }
 
@@ -86,8 +104,9 @@ int show(const KeysOptions& options) {
   const Time now = DdsBus::clock();
   fmt::print("{:<24} {:<22} {:<10} {}\n", "identity", "valid until", "state", "serial number");
   for (const IssuedKey& key : store.keys()) {
-    fmt::print("{:<24} {:<22} {:<10} {}\n", key.name, date_text(key.not_after),
+    fmt::print("{:<24} {:<22} {:<10} {}\n", key.name, key.problem.empty() ? date_text(key.not_after) : "",
                key.is_revoked                   ? "revoked"
+               : !key.problem.empty()           ? "unreadable"
                : key.not_after < now            ? "expired"
                : key.not_after < now + days(14) ? "expires soon"
                                                 : "valid",
@@ -111,7 +130,7 @@ void add_keys_command(const CliCommand& root, std::function<int()>& action) {
     return command;
   };
   const auto add_days = [&](const CliCommand& command) {
-    command.add_option("--days", options->days, "validity").check(in_range(0.0, 36500.0)).show_default();
+    command.add_option("--days", options->days, "validity").check(in_range(1.0, 36500.0)).show_default();
   };
   const auto add_folder = [&](const CliCommand& command) {
     command.add_option("--keys", options->folder, "folder that `keys init` has made").show_default();

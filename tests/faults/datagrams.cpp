@@ -26,6 +26,22 @@ constexpr std::uint16_t kPortsOfDomain = 250;
 
 std::uint16_t first_port(int domain) { return static_cast<std::uint16_t>(7400 + kPortsOfDomain * domain); }
 
+constexpr std::size_t kHeaderSize = 20;  // of a datagram of RTPS
+
+/// Where its submessages begin (RTPS 2.2, 8.3.3).
+std::vector<std::size_t> submessages(std::span<const std::uint8_t> datagram) {
+  std::vector<std::size_t> result;
+  for (std::size_t at = kHeaderSize; at + 4 <= datagram.size();) {
+    result.push_back(at);
+    const bool is_little_endian = (datagram[at + 1] & 1) != 0;
+    const std::size_t length = is_little_endian ? datagram[at + 2] + 256U * datagram[at + 3]
+                                                : datagram[at + 3] + 256U * datagram[at + 2];
+    if (length == 0) break;
+    at += 4 + length;
+  }
+  return result;
+}
+
 void send_to(int socket, in_addr address, std::uint16_t port, std::span<const std::uint8_t> bytes) {
   sockaddr_in to{};
   to.sin_family = AF_INET;
@@ -118,6 +134,45 @@ void Capture::run() {
     if (datagrams_.size() >= kMaxCaptured) continue;
     datagrams_.push_back({port, {packet.data() + header + sizeof(udphdr), packet.data() + size}});
   }
+}
+
+std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::span<const std::uint8_t> other,
+                                  Rng& rng) {
+  std::vector<std::uint8_t> result(datagram.begin(), datagram.end());
+  const std::vector<std::size_t> starts = submessages(datagram);
+  if (starts.empty()) return result;
+  const auto any_of = [&rng](const auto& values) { return values[rng.below(std::size(values))]; };
+  const auto any_byte = [&rng] { return static_cast<std::uint8_t>(rng.below(256)); };
+  const std::size_t start = any_of(starts);
+  switch (rng.below(6)) {
+    case 0:
+      for (int left = 1 << rng.below(4); left > 0; --left)
+        result[kHeaderSize + rng.below(result.size() - kHeaderSize)] = any_byte();
+      break;
+    case 1:
+      result[start + rng.below(std::min<std::size_t>(40, result.size() - start))] =
+          any_of(std::array<std::uint8_t, 6>{0, 1, 127, 128, 255, any_byte()});
+      break;
+    case 2:
+      result.resize(kHeaderSize + rng.below(result.size() - kHeaderSize));
+      break;
+    case 3:
+      if (const auto others = submessages(other); !others.empty())
+        result.insert(result.end(), other.begin() + static_cast<std::ptrdiff_t>(any_of(others)), other.end());
+      break;
+    case 4: {
+      const auto length =
+          any_of(std::array<std::size_t, 7>{0, 1, 4, 20, 56, 65535, result.size() - kHeaderSize});
+      result[start + 2] = static_cast<std::uint8_t>(length);
+      result[start + 3] = static_cast<std::uint8_t>(length >> 8);
+      break;
+    }
+    default:
+      result[start] =
+          any_of(std::array<std::uint8_t, 17>{0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0e, 0x0f, 0x12, 0x13,
+                                              0x15, 0x16, 0x30, 0x31, 0x32, 0x33, 0x80});
+  }
+  return result;
 }
 
 DatagramSender::DatagramSender() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "common/random/rng.hpp"
+
 namespace sidestep {
 
 /// A UDP datagram to a port of this machine's loopback interface.
@@ -44,6 +46,11 @@ class Capture {
   std::vector<CapturedDatagram> datagrams_;
   std::thread thread_;
 };
+
+/// A datagram of a process of DDS as somebody who has no keys may alter it: single bytes, the kind, length or
+/// content of a submessage, its end cut off, or submessages of another datagram behind it.
+std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::span<const std::uint8_t> other,
+                                  Rng& rng);
 
 /// Sends datagrams to ports of the loopback interface from a port of its own.
 class DatagramSender {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <signal.h>
 
 #include "common/client/client.hpp"
@@ -314,14 +315,15 @@ TEST_CASE("keys that are revoked during a run are refused on other hosts, too") 
   keyed.check_unharmed();
 }
 
-TEST_CASE("replayed and altered datagrams do no harm to robots that drive with keys", "[slow]") {
+/// While robots drive to and fro, repeats and alters what their processes say to each other.
+void repeat_and_alter(Duration duration, std::uint64_t seed) {
   SIDESTEP_NEEDS_ROOT();
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
-  const std::uint64_t seed = 41;
   CAPTURE(seed);
   Rng rng(seed);
+  const std::map<std::string, pid_t> processes = run.children();
   const Capture capture(keyed.domain());
   Shuttle shuttle(keyed);
   // A replay repeats what has counted before, and also what has been answered since.
@@ -330,28 +332,44 @@ TEST_CASE("replayed and altered datagrams do no harm to robots that drive with k
   const std::vector<CapturedDatagram> captured = capture.datagrams();
   REQUIRE(captured.size() > 1000);
   DatagramSender sender;
-  int replayed = 0, altered = 0;
+  int replayed = 0, changed = 0;
   const std::uint64_t read_before = datagrams_read();
   const Time begin = run.bus().now();
-  REQUIRE(run.wait_until([&] {
-    shuttle.drive();
-    const double elapsed_s = to_seconds(run.bus().now() - begin);
-    for (; replayed + altered < elapsed_s * kDatagramsPerSecond;) {
-      CapturedDatagram datagram = captured[rng.below(captured.size())];
-      const bool is_altered = rng.below(2) == 0 && !datagram.bytes.empty();
-      if (is_altered)
-        datagram.bytes[rng.below(datagram.bytes.size())] ^= static_cast<std::uint8_t>(1 + rng.below(255));
-      sender.send(datagram.port, datagram.bytes);
-      ++(is_altered ? altered : replayed);
-    }
-    return elapsed_s > 10;
-  }));
+  // wait_until() waits for a minute at most.
+  while (run.bus().now() - begin < duration) {
+    const Time part_begin = run.bus().now();
+    REQUIRE(run.wait_until([&] {
+      shuttle.drive();
+      const double elapsed_s = to_seconds(run.bus().now() - begin);
+      while (replayed + changed < elapsed_s * kDatagramsPerSecond) {
+        const CapturedDatagram& datagram = captured[rng.below(captured.size())];
+        const bool is_altered = rng.below(2) == 0;
+        const CapturedDatagram& other = captured[rng.below(captured.size())];
+        sender.send(datagram.port, is_altered ? altered(datagram.bytes, other.bytes, rng) : datagram.bytes);
+        ++(is_altered ? changed : replayed);
+      }
+      return run.bus().now() - part_begin > seconds(10);
+    }));
+  }
   // They reached processes, beside what those said to each other.
   const std::uint64_t read = datagrams_read() - read_before;
-  CHECK(read > static_cast<std::uint64_t>(replayed + altered));
-  WARN(captured.size() << " datagrams captured, " << replayed << " replayed, " << altered
-                       << " altered; orders carried out: " << shuttle.drive());
+  CHECK(read > static_cast<std::uint64_t>(replayed + changed));
+  CHECK(run.children() == processes);
+  const int carried_out = shuttle.drive();
   keyed.check_unharmed();
+  CHECK(run.report()["deaths"].empty());
+  std::uint64_t dropped = 0;
+  for (const auto& [process, counts] : run.report()["counters"].items())
+    dropped += counts.value("malformed_datagram", std::uint64_t{0});
+  CHECK(dropped > 0);
+  WARN(captured.size() << " datagrams captured, " << replayed << " replayed, " << changed << " altered, "
+                       << dropped << " dropped as malformed; orders carried out: " << carried_out);
 }
+
+TEST_CASE("replayed and altered datagrams do no harm to robots that drive with keys", "[slow]") {
+  repeat_and_alter(seconds(15), 41);
+}
+
+TEST_CASE("the same for ten minutes", "[.long][slow]") { repeat_and_alter(std::chrono::minutes(10), 42); }
 
 }  // namespace sidestep::keys_attack_test

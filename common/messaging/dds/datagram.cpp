@@ -6,6 +6,8 @@
 #include <concepts>
 #include <cstring>
 
+#include "common/messaging/dds/datagram_format.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -13,19 +15,12 @@ using Bytes = std::span<const std::uint8_t>;
 
 // RTPS 2.2, 9.4.4: protocol, version, vendor, GUID prefix.
 constexpr std::array<std::uint8_t, 8> kHeader{'R', 'T', 'P', 'S', 2, 2, 1, 15};
-constexpr std::size_t kHeaderSize = kHeader.size() + sizeof(ParticipantId);
+static_assert(kHeader.size() + sizeof(ParticipantId) == kDatagramHeaderSize);
 constexpr std::array<std::uint8_t, 4> kProtocol{'R', 'T', 'P', 'S'};
 
-constexpr std::uint8_t kLittleEndian = 1;
-constexpr std::size_t kSubmessageHeaderSize = 4;
-
-constexpr std::uint8_t kPadSubmessage = 0x01, kTimestampSubmessage = 0x09, kSourceSubmessage = 0x0c,
-                       kDataSubmessage = 0x15, kDataPartSubmessage = 0x16;
 constexpr std::array<std::uint8_t, 4> kParticipantWriter{0, 1, 0, 0xc2};
 constexpr std::size_t kDataHeaderSize = 20;
 
-// Vendors may use 0x80 to 0xff (RTPS 2.2, 9.4.5.1.1).
-constexpr std::uint8_t kPresenceSubmessage = 0xf0;
 constexpr std::array<std::uint8_t, 4> kPresenceMark{'S', 'i', 'd', '1'};
 constexpr std::size_t kNoticeSize = sizeof(ParticipantId) + 4 + 8;
 
@@ -87,7 +82,7 @@ bool read_announcement(Bytes body, std::uint8_t flags, Bytes sender, Participant
   };
   body = body.subspan(kDataHeaderSize);
   if ((flags & kHasInlineQos) != 0 &&
-      !for_each_parameter(body, (flags & kLittleEndian) != 0, [&](std::uint16_t id, Bytes value) {
+      !for_each_parameter(body, (flags & kLittleEndianFlag) != 0, [&](std::uint16_t id, Bytes value) {
         if (id == kKeyHash) check_guid(value);
       }))
     return false;
@@ -112,7 +107,7 @@ bool read_announcement(Bytes body, std::uint8_t flags, Bytes sender, Participant
 }  // namespace
 
 std::optional<ParticipantId> sender_of(Bytes datagram) {
-  if (datagram.size() < kHeaderSize) return std::nullopt;
+  if (datagram.size() < kDatagramHeaderSize) return std::nullopt;
   if (!std::equal(kProtocol.begin(), kProtocol.end(), datagram.begin())) return std::nullopt;
   ParticipantId result;
   std::memcpy(result.data(), datagram.data() + kHeader.size(), result.size());
@@ -121,13 +116,13 @@ std::optional<ParticipantId> sender_of(Bytes datagram) {
 
 std::optional<ParticipantAnnouncement> participant_announcement(Bytes datagram, bool& is_plain) {
   is_plain = false;
-  if (datagram.size() < kHeaderSize) return std::nullopt;
+  if (datagram.size() < kDatagramHeaderSize) return std::nullopt;
   const Bytes sender = datagram.subspan(kHeader.size(), sizeof(ParticipantId));
   std::optional<ParticipantAnnouncement> result;
-  for (Bytes left = datagram.subspan(kHeaderSize); !left.empty();) {
+  for (Bytes left = datagram.subspan(kDatagramHeaderSize); !left.empty();) {
     if (left.size() < kSubmessageHeaderSize) return std::nullopt;
     const std::uint8_t kind = left[0], flags = left[1];
-    const bool is_little_endian = (flags & kLittleEndian) != 0;
+    const bool is_little_endian = (flags & kLittleEndianFlag) != 0;
     std::size_t size = is_little_endian ? left[2] | left[3] << 8 : left[2] << 8 | left[3];
     left = left.subspan(kSubmessageHeaderSize);
     if (size == 0 && kind != kTimestampSubmessage && kind != kPadSubmessage)
@@ -148,11 +143,10 @@ std::optional<ParticipantAnnouncement> participant_announcement(Bytes datagram, 
 }
 
 bool copy_without_timestamp(Bytes datagram, Datagram& copy) {
-  constexpr std::uint8_t kDestination = 0x0e, kPrefix = 0x31, kBody = 0x30, kPostfix = 0x32;
   constexpr std::size_t kPlainTimestampSize = 12;  // with its header
-  std::size_t begin = kHeaderSize;
+  std::size_t begin = kDatagramHeaderSize;
   const auto size_at = [&](std::size_t at) -> std::size_t {
-    const bool is_little_endian = (datagram[at + 1] & kLittleEndian) != 0;
+    const bool is_little_endian = (datagram[at + 1] & kLittleEndianFlag) != 0;
     return is_little_endian ? datagram[at + 2] | datagram[at + 3] << 8
                             : datagram[at + 2] << 8 | datagram[at + 3];
   };
@@ -161,20 +155,20 @@ bool copy_without_timestamp(Bytes datagram, Datagram& copy) {
            datagram.size() - at - kSubmessageHeaderSize >= size_at(at);
   };
   const auto next = [&](std::size_t at) { return at + kSubmessageHeaderSize + size_at(at); };
-  if (has(begin, kDestination)) begin = next(begin);
-  if (!has(begin, kPrefix)) return false;
+  if (has(begin, kDestinationSubmessage)) begin = next(begin);
+  if (!has(begin, kEncryptedPrefixSubmessage)) return false;
   const std::size_t body = next(begin);
   // The body is the encrypted submessage after its size.
-  if (!has(body, kBody) || size_at(body) != kPlainTimestampSize + 4) return false;
+  if (!has(body, kEncryptedBodySubmessage) || size_at(body) != kPlainTimestampSize + 4) return false;
   const std::size_t postfix = next(body);
-  if (!has(postfix, kPostfix) || !has(next(postfix), kPrefix)) return false;
+  if (!has(postfix, kEncryptedPostfixSubmessage) || !has(next(postfix), kEncryptedPrefixSubmessage)) return false;
   copy.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(begin));
   append(copy, datagram.subspan(next(postfix)));
   return true;
 }
 
 Datagram departure_of(const ParticipantId& participant) {
-  constexpr std::uint8_t kData = 0x15, kHasInlineQos = 2;
+  constexpr std::uint8_t kHasInlineQos = 2;
   constexpr std::uint16_t kKeyHash = 0x70, kStatus = 0x71, kEnd = 1;
   constexpr std::array<std::uint8_t, 4> kReader{0, 1, 0, 0xc7}, kWriter{0, 1, 0, 0xc2},
       kParticipant{0, 0, 1, 0xc1}, kDisposedAndUnregistered{0, 0, 0, 3};
@@ -196,7 +190,7 @@ Datagram departure_of(const ParticipantId& participant) {
   append(body, kDisposedAndUnregistered);
   append(body, kEnd);
   append(body, std::uint16_t{0});
-  return one_submessage(participant, kData, kLittleEndian | kHasInlineQos, body);
+  return one_submessage(participant, kDataSubmessage, kLittleEndianFlag | kHasInlineQos, body);
 }
 
 Datagram presence_datagram(const ParticipantId& sender, std::span<const PresenceNotice> notices) {
@@ -207,16 +201,16 @@ Datagram presence_datagram(const ParticipantId& sender, std::span<const Presence
     append(body, static_cast<std::uint32_t>(notice.kind));
     append(body, notice.number);
   }
-  return one_submessage(sender, kPresenceSubmessage, kLittleEndian, body);
+  return one_submessage(sender, kPresenceSubmessage, kLittleEndianFlag, body);
 }
 
 std::optional<std::vector<PresenceNotice>> presence_notices(Bytes datagram) {
-  constexpr std::size_t kFixedSize = kHeaderSize + kSubmessageHeaderSize + kPresenceMark.size();
+  constexpr std::size_t kFixedSize = kDatagramHeaderSize + kSubmessageHeaderSize + kPresenceMark.size();
   if (datagram.size() < kFixedSize || datagram.size() > kFixedSize + Presence::kMaxNotices * kNoticeSize ||
       (datagram.size() - kFixedSize) % kNoticeSize != 0)
     return std::nullopt;
-  const Bytes submessage = datagram.subspan(kHeaderSize);
-  if (submessage[0] != kPresenceSubmessage || submessage[1] != kLittleEndian) return std::nullopt;
+  const Bytes submessage = datagram.subspan(kDatagramHeaderSize);
+  if (submessage[0] != kPresenceSubmessage || submessage[1] != kLittleEndianFlag) return std::nullopt;
   Bytes left = submessage.subspan(2);
   if (take<std::uint16_t>(left) != left.size()) return std::nullopt;
   if (!std::equal(kPresenceMark.begin(), kPresenceMark.end(), left.begin())) return std::nullopt;

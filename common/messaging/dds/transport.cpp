@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/messaging/dds/datagram.hpp"
+#include "common/messaging/dds/datagram_check.hpp"
 #include "common/messaging/dds/delayed_datagrams.hpp"
 #include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/event_loop.hpp"
@@ -82,6 +83,11 @@ class UdpTransport : public fast_dds::ChainedTransport {
                    const rtps::Locator_t& remote) override {
     const std::optional<ParticipantId> sender = sender_of(datagram);
     if (!sender) return;  // Fast DDS would refuse it too
+    if (!presence_notices(datagram)) {
+      datagram = descriptor_.gate ? checked_datagram(datagram) : without_statistics(datagram);
+      descriptor_.counts->malformed += datagram.empty();
+      if (datagram.empty()) return;
+    }
     if (!passes_gate(*sender, datagram, local, remote)) return;
     if (is_discovery(local))
       on_discovery(next, *sender, datagram, local, remote);

@@ -10,6 +10,7 @@ namespace sidestep {
 struct TransportCounts {
   std::atomic<std::uint64_t> impaired{0};    ///< lost by injected network faults
   std::atomic<std::uint64_t> overflowed{0};  ///< found a queue full
+  std::atomic<std::uint64_t> malformed{0};   ///< must not be given to Fast DDS, see checked_datagram()
   std::atomic<std::uint64_t> forgotten{0};   ///< of a forgotten participant, see Presence
 };
 

@@ -46,7 +46,7 @@ TEST_CASE("what is wrong with keys is said in plain words") {
   SECTION("revoked") {
     const TemporaryFolder copy;
     fs::copy(folder, copy.file("agent-3"));
-    keys.store().revoke({Role::kAgent, 3, 3}, keys.now());
+    keys.revoke({Role::kAgent, 3, 3});
     fs::copy_file(keys.folder() + "/public/crl.pem", copy.file("agent-3/crl.pem"),
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem_of(copy.file("agent-3"), keys.now()),

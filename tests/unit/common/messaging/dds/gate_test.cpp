@@ -84,7 +84,7 @@ TEST_CASE("the list of revoked keys is read again when it changes, and a broken 
     // File systems have coarse clocks.
     std::filesystem::last_write_time(file, before + std::chrono::seconds(1));
   };
-  change([&] { f.keys.store().revoke({Role::kAgent, 3, 3}, f.keys.now()); });
+  change([&] { f.keys.revoke({Role::kAgent, 3, 3}); });
   CHECK(f.gate.newly_refused() == std::vector{agent});
   change([&] { write_file(file, "nonsense"); });
   CHECK(f.gate.newly_refused().empty());

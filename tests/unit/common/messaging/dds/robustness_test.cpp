@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Failures between processes: mismatched endpoints, invalid payloads, processes that are stopped or die.
 #include <algorithm>
+#include <arpa/inet.h>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <map>
 #include <set>
 #include <signal.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -114,12 +116,45 @@ TEST_CASE("invalid payloads are counted, reported once and dropped, and valid on
   DdsBus vision(test_settings("vision"));
   auto good = vision.advertise(topics::kWorld);
   msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   const auto is_received = [&] {
     good.publish(world, vision.now());
     return received > 0;
   };
   CHECK(run_until(is_received, bus));
   hostile.delete_writer(writer);
+}
+
+/// Sends a datagram to the port on which a bus of this machine hears messages.
+void send_to(const DdsBus& bus, const std::vector<std::uint8_t>& datagram) {
+  const std::string locators = bus.locators(), address = "UDPv4:[127.0.0.1]:";
+  const auto found = locators.find(address);
+  REQUIRE(found != std::string::npos);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(locators.substr(found + address.size()))));
+  const int sender = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  REQUIRE(sendto(sender, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+                 sizeof to) == static_cast<ssize_t>(datagram.size()));
+  close(sender);
+}
+
+TEST_CASE("a datagram that would end Fast DDS by an assertion is dropped and counted") {
+  DdsBus bus(test_settings());
+  bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {});
+  // Statistics of Fast DDS, which must be last, and another submessage behind them.
+  std::vector<std::uint8_t> datagram{'R', 'T', 'P', 'S', 2, 2, 1, 15, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  for (int i = 0; i < 2; ++i) {
+    datagram.insert(datagram.end(), {0x80, 1, 56, 0});
+    datagram.resize(datagram.size() + 56);
+  }
+  CHECK(run_until(
+      [&] {
+        send_to(bus, datagram);
+        return drops_of(bus).total(DropReason::kMalformedDatagram) >= 10;
+      },
+      bus));
 }
 
 /// Adds enough readers that announcing them takes several messages.
@@ -145,6 +180,7 @@ TEST_CASE("publishes until it is asked to end", "[.victim][slow]") {
   const StopSignals stop_signals([&bus] { bus.stop(); });
   auto writer = bus.advertise(topics::kVerdict, robot);
   msg::Verdict verdict;
+  verdict.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
   verdict.robot(robot);
   bus.subscribe<msg::WorldState>(topics::kWorld, [&](const msg::WorldState& world) {
     verdict.proposal_number(world.header().message_number());
@@ -229,6 +265,7 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
   }
   auto writer = bus.advertise(topics::kWorld);
   msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   const auto talk_until = [&](auto condition) {
     const auto talk = [&] {
       writer.publish(world, bus.now());
@@ -295,6 +332,7 @@ void let_neighbours_leave(int times, std::uint64_t seed) {
   }
   auto writer = bus.advertise(topics::kWorld);
   msg::WorldState world;
+  world.header().sender(static_cast<std::uint32_t>(Sender::kVision));
   const auto talk_until = [&](auto condition) {
     return run_until(
         [&] {

@@ -32,6 +32,7 @@ struct Connection {
     return run_until(
         [&] {
           msg::Verdict verdict;
+          verdict.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
           verdict.robot(kRobot);
           writer.publish(verdict, here.now());
           last_sent = verdict.header().message_number();
@@ -50,6 +51,7 @@ struct Connection {
 
 msg::NetworkFault cut_fault() {
   msg::NetworkFault fault;
+  fault.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
   fault.target(kRobot);
   fault.mean_burst(1);
   fault.is_cut(true);
