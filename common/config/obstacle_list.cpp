@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/obstacle_list.hpp"
 
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
 #include <optional>
 #include <stdexcept>
 
+#include "common/file/home_folder.hpp"
 #include "common/map/map_file.hpp"
 
 namespace sidestep {
@@ -111,6 +113,21 @@ std::string text_of(const ConvexPolygon& polygon) {
   return fmt::format("polygon: {{corners_m: [{}]}}", corners);
 }
 
+/// What the user of a map has to know; empty: nothing.
+std::string notice_of(const LoadedMap& map, const std::string& name, const std::string& unknown) {
+  std::string text;
+  if (map.unknown > 0)
+    text = fmt::format("map {}: nobody knows whether {} of {} cells are free; they count as {}{}", name,
+                       map.unknown, std::int64_t{map.cells.grid().columns} * map.cells.grid().rows, unknown,
+                       unknown == "free" ? "" : ", unless the scenario says `unknown: free`");
+  if (map.yaw_rad != 0)
+    text += fmt::format(
+        "{}map {} is turned by {:.6g} rad; coordinates of the scenario are along its rows "
+        "and columns, those of other programs are turned by as much",
+        text.empty() ? "" : "; ", name, map.yaw_rad);
+  return text;
+}
+
 }  // namespace
 
 std::vector<Shape> read_obstacles(YamlMap& map, std::size_t max_count) {
@@ -132,13 +149,21 @@ std::string obstacle_text(const Shape& shape) {
 
 std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map, const OccupancyMap* cells) {
   const YAML::Node node = map.find("map");
-  if (!node.IsDefined()) return nullptr;
   const YamlLocation location = map.location_of("map");
+  constexpr std::array<std::string_view, 2> kUnknown{"blocked", "free"};
+  std::string unknown{kUnknown[0]};
+  map.read("unknown", kUnknown, unknown);
+  if (!node.IsDefined() && map.find("unknown").IsDefined())
+    map.location_of("unknown").fail("there is no map that could have unknown cells");
+  if (!node.IsDefined()) return nullptr;
   const std::string name = text_from(node, location);
   if (name.empty()) location.fail("expected the path of a map's YAML file, got nothing");
-  const std::string path = (std::filesystem::path(location.file).parent_path() / name).string();
+  const std::string path = (std::filesystem::path(location.file).parent_path() / with_home(name)).string();
   try {
-    return std::make_shared<const FloorMap>(cells != nullptr ? *cells : load_occupancy_map(path), name);
+    if (cells != nullptr) return std::make_shared<const FloorMap>(*cells, name);
+    LoadedMap loaded = load_map(path, unknown == kUnknown[1] ? UnknownCells::kFree : UnknownCells::kBlocked);
+    const std::string notice = notice_of(loaded, name, unknown);
+    return std::make_shared<const FloorMap>(std::move(loaded.cells), name, notice);
   } catch (const std::exception& error) {
     location.fail(error.what());
   }

@@ -2,16 +2,13 @@
 #include "common/config/yaml_document.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <sstream>
+#include <stdexcept>
 #include <yaml-cpp/eventhandler.h>
 
 #include "common/config/config_error.hpp"
+#include "common/file/read_file.hpp"
 
 namespace sidestep {
 namespace {
@@ -37,13 +34,13 @@ class DocumentLine : public YAML::EventHandler {
 }  // namespace
 
 std::string read_yaml_file(const std::string& path, const std::string& expected) {
-  const auto fail = [&](const std::string& why) {
-    throw ConfigError(path, 1, fmt::format("cannot read the file ({}), expected {} in YAML", why, expected));
-  };
-  if (std::filesystem::is_directory(path)) fail("a directory");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(std::strerror(errno));
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  constexpr std::size_t kMaxBytes = 16'000'000;
+  try {
+    return read_file(path, kMaxBytes);
+  } catch (const std::runtime_error& error) {
+    throw ConfigError(path, 1,
+                      fmt::format("cannot read the file ({}), expected {} in YAML", error.what(), expected));
+  }
 }
 
 // In yaml-cpp 0.7, Load silently ignores all documents after the first, and LoadAll does not return for some

@@ -32,8 +32,9 @@ std::uint64_t fingerprint_of(const OccupancyMap& map) {
 
 }  // namespace
 
-FloorMap::FloorMap(OccupancyMap map, std::string name)
+FloorMap::FloorMap(OccupancyMap map, std::string name, std::string notice)
     : name_(std::move(name)),
+      notice_(std::move(notice)),
       cells_(std::move(map)),
       field_(cells_),
       rectangles_(rectangles_of(cells_)),

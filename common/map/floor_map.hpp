@@ -19,9 +19,11 @@ class FloorMap {
 
   /// `name` is that of the map's file, for people. Throws std::invalid_argument if the blocked cells form
   /// more than kMaxRectangles rectangles: paths around them would take too long.
-  explicit FloorMap(OccupancyMap map, std::string name = "map");
+  explicit FloorMap(OccupancyMap map, std::string name = "map", std::string notice = "");
 
   const std::string& name() const { return name_; }
+  /// What its user has to know about the file, in one line; empty: nothing. Programs print it at their start.
+  const std::string& notice() const { return notice_; }
   const OccupancyMap& cells() const { return cells_; }
   const DistanceField& field() const { return field_; }
   /// Rectangles that together cover exactly the blocked cells, without the outside. They overlap.
@@ -36,7 +38,7 @@ class FloorMap {
   std::optional<Circle> disc_facing(const Vec2& p, double within_m) const;
 
  private:
-  std::string name_;
+  std::string name_, notice_;
   OccupancyMap cells_;
   DistanceField field_;
   std::vector<Box> rectangles_;

@@ -3,10 +3,19 @@
 
 #include <istream>
 
+#include "common/map/map_image.hpp"
+
 namespace sidestep {
 
 /// Throws MapImageError if an image has no pixels or is larger than a map may be.
 void check_image_size(long columns, long rows);
+
+/// Sets a cell as the state of its pixel says.
+inline void set_cell(ImageCells& cells, int column, int row, CellState state, UnknownCells unknown) {
+  cells.unknown += state == CellState::kUnknown;
+  if (state == CellState::kOccupied || (state == CellState::kUnknown && unknown == UnknownCells::kBlocked))
+    cells.blocked.set(column, row);
+}
 
 /// The number of bytes from the current position of a file to its end.
 [[nodiscard]] long bytes_left(std::istream& file);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/map/map_file.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
+#include "common/file/home_folder.hpp"
 #include "common/file/write_file.hpp"
 #include "common/map/map_image.hpp"
 
@@ -15,6 +17,10 @@ namespace {
 constexpr const char* kExpectedMap = "a map";
 /// A probability this near its threshold counts as unknown: the brightness is rounded.
 constexpr double kTie = 1e-9;
+/// Map savers write unknown cells as 205 of 255, which some free thresholds would call free.
+constexpr double kUnknownGrey = 50.0 / 255;
+/// A yaw that moves no corner of a map by more than a millimetre.
+constexpr double kMaxIgnoredYaw_rad = 1e-6;
 constexpr char kBlockedPixel = 0, kFreePixel = static_cast<char>(254);
 
 /// How a pixel's brightness tells whether its cell is free.
@@ -24,11 +30,14 @@ struct Interpretation {
   bool is_negated = false;
   double occupied_above = 0, free_below = 0;
 
-  /// Trinary and scale differ only for cells that are not free.
-  bool is_free(double brightness) const {
-    if (mode == Mode::kRaw) return std::round(255 * brightness) / 100 < free_below - kTie;
-    const double occupied = is_negated ? brightness : 1 - brightness;
-    return occupied < free_below - kTie && !(occupied > occupied_above);
+  /// Trinary and scale differ only for the grey of unknown cells.
+  CellState state(double brightness) const {
+    double occupied = is_negated ? brightness : 1 - brightness;
+    if (mode == Mode::kTrinary && std::abs(occupied - kUnknownGrey) < kTie) return CellState::kUnknown;
+    if (mode == Mode::kRaw) occupied = std::round(255 * brightness) / 100;
+    if (mode == Mode::kRaw && occupied > 1) return CellState::kUnknown;
+    if (occupied > occupied_above) return CellState::kOccupied;
+    return occupied < free_below - kTie ? CellState::kFree : CellState::kUnknown;
   }
 };
 
@@ -46,15 +55,14 @@ Interpretation::Mode read_mode(YamlMap& map) {
   map.location_of("mode").fail("expected trinary, scale or raw, got \"" + name.substr(0, 40) + "\"");
 }
 
-/// 0 or 1, or false or true.
+/// 0 or 1, or a truth value in any of YAML's forms.
 bool read_negate(YamlMap& map) {
   const YAML::Node node = map.require("negate");
-  if (node.IsScalar() && (node.Scalar() == "true" || node.Scalar() == "false")) {
-    bool value = false;
-    map.read("negate", value);
-    return value;
-  }
-  return integer_from(node, map.location_of("negate"), {0, 1}) == 1;
+  bool value = false;
+  if (node.IsScalar() && YAML::convert<bool>::decode(node, value)) return value;
+  const double number = number_from(node, map.location_of("negate"), {0, 1});
+  if (number != 0 && number != 1) map.location_of("negate").fail("expected 0 or 1, or false or true");
+  return number == 1;
 }
 
 Interpretation read_interpretation(YamlMap& map) {
@@ -68,21 +76,24 @@ Interpretation read_interpretation(YamlMap& map) {
   return result;
 }
 
-Vec2 read_origin(YamlMap& map) {
+/// In the axes of the map's rows and columns.
+Vec2 read_origin(YamlMap& map, double& yaw_rad) {
   const YamlLocation location = map.location_of("origin");
   const std::vector<double> origin =
       numbers_from(map.require("origin"), location, 3, 3, {-kMaxMapOrigin_m, kMaxMapOrigin_m});
-  if (origin[2] != 0) location.fail(fmt::format("the map is rotated by {} rad, expected yaw 0", origin[2]));
-  return {origin[0], origin[1]};
+  yaw_rad = std::abs(origin[2]) < kMaxIgnoredYaw_rad ? 0 : origin[2];
+  return rotated(Vec2(origin[0], origin[1]), -yaw_rad);
 }
 
-BitGrid read_image(YamlMap& map, const std::string& path, const Interpretation& interpretation) {
+ImageCells read_image(YamlMap& map, const std::string& path, const Interpretation& interpretation,
+                      UnknownCells unknown) {
   const YamlLocation location = map.location_of("image");
   const std::string name = text_from(map.require("image"), location);
   if (name.empty()) location.fail("expected the path of an image, got nothing");
-  const std::string image = (std::filesystem::path(path).parent_path() / name).string();
+  const std::string image = (std::filesystem::path(path).parent_path() / with_home(name)).string();
   try {
-    return read_map_image(image, [&](double brightness) { return interpretation.is_free(brightness); });
+    return read_map_image(
+        image, [&](double brightness) { return interpretation.state(brightness); }, unknown);
   } catch (const MapImageError& error) {
     location.fail(fmt::format("{}: {}", image, error.what()));
   }
@@ -90,18 +101,19 @@ BitGrid read_image(YamlMap& map, const std::string& path, const Interpretation& 
 
 }  // namespace
 
-OccupancyMap load_occupancy_map(const std::string& path) {
+LoadedMap load_map(const std::string& path, UnknownCells unknown) {
   YamlMap map = document_map(read_yaml_file(path, kExpectedMap), path, kExpectedMap);
   MapGrid grid;
   grid.resolution_m = required_number(map, "resolution", {kMinResolution_m, kMaxResolution_m});
-  grid.origin_m = read_origin(map);
+  double yaw_rad = 0;
+  grid.origin_m = read_origin(map, yaw_rad);
   const Interpretation interpretation = read_interpretation(map);
   (void)map.find("image");
   map.finish();
-  BitGrid blocked = read_image(map, path, interpretation);
-  grid.columns = blocked.columns();
-  grid.rows = blocked.rows();
-  return {grid, std::move(blocked)};
+  ImageCells cells = read_image(map, path, interpretation, unknown);
+  grid.columns = cells.blocked.columns();
+  grid.rows = cells.blocked.rows();
+  return {OccupancyMap(grid, std::move(cells.blocked)), cells.unknown, yaw_rad};
 }
 
 MapFiles map_files(const OccupancyMap& map, const std::string& image_name) {

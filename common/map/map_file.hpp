@@ -3,17 +3,26 @@
 
 #include <string>
 
+#include "common/map/map_image.hpp"
 #include "common/map/occupancy_map.hpp"
 
 namespace sidestep {
 
+/// A map as its file has it, and what its user has to know.
+struct LoadedMap {
+  OccupancyMap cells;
+  std::size_t unknown = 0;  ///< cells of which nobody knows whether they are free
+  double yaw_rad = 0;       ///< of the map's rows and columns in the frame of other programs
+};
+
 /// Reads a map in the format of ROS's map_server: a YAML file with the keys image, resolution, origin,
 /// negate, occupied_thresh, free_thresh and optionally mode (trinary, scale, raw), and a PGM or PNG image,
 /// whose path is relative to the YAML file. A cell is free only if its probability of occupancy is below
-/// free_thresh; **unknown cells are blocked**. In mode raw, the samples are the probability in per cent, and
-/// those above 100 are unknown. Throws ConfigError; errors of the image name it. The map must not be rotated
-/// (yaw 0).
-[[nodiscard]] OccupancyMap load_occupancy_map(const std::string& path);
+/// free_thresh. In mode trinary, pixels of the grey that map savers write for unknown cells are unknown,
+/// whatever free_thresh says. In mode raw, the samples are the probability in per cent, and those above 100
+/// are unknown. The axes are those of the map's rows and columns, also if its origin has a yaw. Throws
+/// ConfigError; errors of the image name it.
+[[nodiscard]] LoadedMap load_map(const std::string& path, UnknownCells unknown = UnknownCells::kBlocked);
 
 /// The contents of the two files of a map.
 struct MapFiles {
@@ -21,7 +30,7 @@ struct MapFiles {
   std::string image;  ///< PGM
 };
 
-/// What load_occupancy_map reads as this map, if the image is stored as `image_name`.
+/// What load_map reads as this map, if the image is stored as `image_name`.
 [[nodiscard]] MapFiles map_files(const OccupancyMap& map, const std::string& image_name);
 
 /// Writes them as `path`.pgm and `path`.yaml. Throws std::runtime_error if a file cannot be written.

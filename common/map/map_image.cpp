@@ -13,7 +13,7 @@
 
 namespace sidestep {
 
-BitGrid read_map_image(const std::string& path, const IsFree& is_free) {
+ImageCells read_map_image(const std::string& path, const StateOf& state_of, UnknownCells unknown_cells) {
   std::error_code unknown;
   if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))
     throw MapImageError("it is not a regular file");
@@ -24,8 +24,8 @@ BitGrid read_map_image(const std::string& path, const IsFree& is_free) {
   const std::string_view begin(magic, sizeof(magic));
   file.clear();
   file.seekg(0);
-  if (begin == "P2" || begin == "P5") return read_pgm(file, is_free);
-  if (begin == "\x89P") return read_png(file, is_free);
+  if (begin == "P2" || begin == "P5") return read_pgm(file, state_of, unknown_cells);
+  if (begin == "\x89P") return read_png(file, state_of, unknown_cells);
   throw MapImageError("it is neither a PGM image (P2 or P5) nor a PNG image");
 }
 

@@ -44,7 +44,7 @@ void read_raw_row(std::istream& file, bool is_wide, std::vector<char>& bytes, st
 
 }  // namespace
 
-BitGrid read_pgm(std::istream& file, const IsFree& is_free) {
+ImageCells read_pgm(std::istream& file, const StateOf& state_of, UnknownCells unknown) {
   char magic[2] = {};
   file.read(magic, sizeof(magic));
   const bool is_plain = magic[1] == '2';
@@ -58,10 +58,10 @@ BitGrid read_pgm(std::istream& file, const IsFree& is_free) {
   if (bytes_left(file) + (is_plain ? 1 : 0) < columns * rows * (is_plain || is_wide ? 2 : 1))
     fail_truncated();
 
-  std::vector<bool> free_samples;
+  std::vector<CellState> states;
   for (long sample = 0; sample <= max_sample; ++sample)
-    free_samples.push_back(is_free(static_cast<double>(sample) / static_cast<double>(max_sample)));
-  BitGrid blocked(static_cast<int>(columns), static_cast<int>(rows));
+    states.push_back(state_of(static_cast<double>(sample) / static_cast<double>(max_sample)));
+  ImageCells cells{BitGrid(static_cast<int>(columns), static_cast<int>(rows))};
   std::vector<char> bytes(static_cast<std::size_t>(columns * (is_wide ? 2 : 1)));
   std::vector<long> samples(static_cast<std::size_t>(columns));
   for (int row = static_cast<int>(rows) - 1; row >= 0; --row) {
@@ -69,14 +69,14 @@ BitGrid read_pgm(std::istream& file, const IsFree& is_free) {
       for (long& sample : samples) sample = read_number(file, "pixel", kMaxSample, false);
     else
       read_raw_row(file, is_wide, bytes, samples);
-    for (int column = 0; column < blocked.columns(); ++column) {
+    for (int column = 0; column < cells.blocked.columns(); ++column) {
       const long sample = samples[static_cast<std::size_t>(column)];
       if (sample > max_sample)
         throw MapImageError(fmt::format("a pixel is {}, but its maximum sample is {}", sample, max_sample));
-      if (!free_samples[static_cast<std::size_t>(sample)]) blocked.set(column, row);
+      set_cell(cells, column, row, states[static_cast<std::size_t>(sample)], unknown);
     }
   }
-  return blocked;
+  return cells;
 }
 
 }  // namespace sidestep

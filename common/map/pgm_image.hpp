@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Reads a PGM image (Netpbm's specification: plain "P2" and raw "P5") from a stream that can seek; see
 /// read_map_image.
-[[nodiscard]] BitGrid read_pgm(std::istream& file, const IsFree& is_free);
+[[nodiscard]] ImageCells read_pgm(std::istream& file, const StateOf& state_of, UnknownCells unknown);
 
 }  // namespace sidestep

@@ -57,7 +57,7 @@ struct PngImage : png_image {
 
 }  // namespace
 
-BitGrid read_png(std::istream& file, const IsFree& is_free) {
+ImageCells read_png(std::istream& file, const StateOf& state_of, UnknownCells unknown) {
   constexpr int kChannels = 4;
   if (bytes_left(file) > kMaxFileBytes) throw MapImageError("the file is too large for a map");
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -73,17 +73,17 @@ BitGrid read_png(std::istream& file, const IsFree& is_free) {
   std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
   image.require(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr));
 
-  std::vector<bool> free_sums;
-  for (int sum = 0; sum <= 3 * 255; ++sum) free_sums.push_back(is_free(sum / (3 * 255.0)));
-  BitGrid blocked(columns, rows);
+  std::vector<CellState> states;
+  for (int sum = 0; sum <= 3 * 255; ++sum) states.push_back(state_of(sum / (3 * 255.0)));
+  ImageCells cells{BitGrid(columns, rows)};
   const png_byte* pixel = pixels.data();
   for (int row = rows - 1; row >= 0; --row) {
     for (int column = 0; column < columns; ++column, pixel += kChannels) {
       const auto sum = static_cast<std::size_t>(pixel[0] + pixel[1] + pixel[2]);
-      if (pixel[3] != 255 || !free_sums[sum]) blocked.set(column, row);
+      set_cell(cells, column, row, pixel[3] == 255 ? states[sum] : CellState::kUnknown, unknown);
     }
   }
-  return blocked;
+  return cells;
 }
 
 }  // namespace sidestep

@@ -9,6 +9,6 @@ namespace sidestep {
 
 /// Reads a PNG image from a stream that can seek; see read_map_image. Samples are taken as they are stored:
 /// an image whose gamma would change them is rejected.
-[[nodiscard]] BitGrid read_png(std::istream& file, const IsFree& is_free);
+[[nodiscard]] ImageCells read_png(std::istream& file, const StateOf& state_of, UnknownCells unknown);
 
 }  // namespace sidestep

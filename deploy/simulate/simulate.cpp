@@ -176,6 +176,7 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
 int simulate(const SimulateOptions& options) {
   const Scenario scenario = scenario_of(options);
   fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
+  if (scenario.map && !scenario.map->notice().empty()) fmt::print(stderr, "{}\n", scenario.map->notice());
   if (scenario.has_test_keys)
     fmt::print(stderr, "faults and expectations in {} apply to `sidestep test` only\n",
                options.scenario_file);

@@ -107,10 +107,17 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
       const std::string message = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
       if (self->is_closing_) return self->read();
-      if (!self->server_.handlers.on_message(*self, message, self->stream_.got_binary()))
-        self->close("the message makes no sense");
+      if (!self->makes_sense(message)) self->close("the message makes no sense");
       self->read();
     });
+  }
+
+  bool makes_sense(const std::string& message) {
+    try {
+      return server_.handlers.on_message(*this, message, stream_.got_binary());
+    } catch (const std::exception&) {
+      return false;  // others are served on
+    }
   }
 
   void write() {
@@ -179,9 +186,17 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const bool must_close = !request.keep_alive();
     const std::optional<Url> url = parse_target(view(request.target()));
     if (!url) return answer({400, "text/plain", "the path is not valid\n"}, must_close);
-    answer(server_.handlers.respond({std::string(view(request.method_string())), url->path, url->query,
-                                     request.body(), command_refusal(server_.access, source)}),
+    answer(response_to({std::string(view(request.method_string())), url->path, url->query, request.body(),
+                        command_refusal(server_.access, source)}),
            must_close);
+  }
+
+  WebResponse response_to(const WebRequest& request) {
+    try {
+      return server_.handlers.respond(request);
+    } catch (const std::exception& error) {
+      return {500, "text/plain", std::string("this request cannot be answered: ") + error.what() + "\n"};
+    }
   }
 
   void answer(WebResponse response, bool must_close) {

@@ -5,12 +5,12 @@
 #include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
+#include "common/file/read_file.hpp"
 #include "deploy/monitor/topic/idl/idl_lexer.hpp"
 
 namespace sidestep {
@@ -21,6 +21,8 @@ using Extensibility = IdlType::Extensibility;
 
 constexpr int kMaxNesting = 100;
 constexpr std::size_t kMaxFiles = 1000;
+// Types that hold each other several times grow exponentially.
+constexpr std::uint64_t kMaxValues = 10'000'000;
 
 /// What annotations say of the definition or member that follows.
 struct Annotations {
@@ -35,14 +37,6 @@ IdlTypePtr type_of(Kind kind) {
   return std::make_shared<const IdlType>(std::move(type));
 }
 
-IdlTypePtr array_of(IdlTypePtr element, std::uint32_t size) {
-  IdlType type;
-  type.kind = Kind::kArray;
-  type.element = std::move(element);
-  type.bound = size;
-  return std::make_shared<const IdlType>(std::move(type));
-}
-
 /// The definitions of one or several files.
 class Parser {
  public:
@@ -51,14 +45,18 @@ class Parser {
     const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
     if (!files_.insert(canonical.string()).second) return;
     if (files_.size() > kMaxFiles) throw IdlError(path.string() + ": too many files");
-    if (std::filesystem::is_directory(path, error))
-      throw IdlError(path.string() + ": cannot be read: a folder");
-    std::ifstream file(path);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file) throw IdlError(path.string() + ": cannot be read");
-    IdlTokens tokens = tokens_of_idl(text, path.string());
+    IdlTokens tokens = tokens_of_idl(read(path.string()), path.string());
     for (const std::string& include : tokens.includes) parse_file(path.parent_path() / include);
     parse_tokens(std::move(tokens.tokens), path.string());
+  }
+
+  static std::string read(const std::string& path) {
+    constexpr std::size_t kMaxBytes = 4'000'000;
+    try {
+      return read_file(path, kMaxBytes);
+    } catch (const std::runtime_error& error) {
+      throw IdlError(fmt::format("{}: cannot be read: {}", path, error.what()));
+    }
   }
 
   void parse_tokens(std::vector<IdlToken> tokens, const std::string& file_name) {
@@ -249,8 +247,31 @@ class Parser {
   }
 
   void define(IdlType type) {
+    if (type.kind == Kind::kStruct) type.values = 0;
+    for (const IdlMember& member : type.members) {
+      type.depth = std::max(type.depth, 1 + member.type->depth);
+      type.values += member.type->values;
+    }
+    check_size(type);
     const std::string name = type.name;
     types_[name] = std::make_shared<const IdlType>(std::move(type));
+  }
+
+  void check_size(const IdlType& type) const {
+    if (type.depth > kMaxNesting) fail("a type is nested too deeply");
+    if (type.values > kMaxValues)
+      fail(fmt::format("a message of this type has {} values, more than {}", type.values, kMaxValues));
+  }
+
+  IdlTypePtr array_of(IdlTypePtr element, std::uint32_t size) const {
+    IdlType type;
+    type.kind = Kind::kArray;
+    type.element = std::move(element);
+    type.bound = size;
+    type.depth = 1 + type.element->depth;
+    type.values = size * type.element->values;  // both are below 2^31
+    check_size(type);
+    return std::make_shared<const IdlType>(std::move(type));
   }
 
   /// The type of a declarator: an array if dimensions follow.
@@ -258,6 +279,7 @@ class Parser {
     std::vector<std::uint32_t> sizes;
     while (take_if("[")) {
       sizes.push_back(positive(parse_number()));
+      if (std::cmp_greater(sizes.size(), kMaxNesting)) fail("an array has too many dimensions");
       expect("]");
     }
     IdlTypePtr type = element;
@@ -366,6 +388,8 @@ class Parser {
     type.element = parse_type();
     if (take_if(",")) type.bound = positive(parse_number());
     expect(">");
+    type.depth = 1 + type.element->depth;
+    check_size(type);
     return std::make_shared<const IdlType>(std::move(type));
   }
 

@@ -49,6 +49,8 @@ struct IdlType {
   std::vector<IdlMember> members{};  ///< of a struct, those that it inherits first
   std::map<std::uint32_t, std::string> enumerators{};        ///< of an enum
   Extensibility extensibility = Extensibility::kAppendable;  ///< of a struct
+  int depth = 1;                                             ///< types within each other, this one included
+  std::uint64_t values = 1;  ///< of a message of this type whose sequences are empty
 };
 
 }  // namespace sidestep

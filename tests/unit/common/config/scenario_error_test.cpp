@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every error in a scenario is reported with its line.
-#include <fstream>
+#include <cstdlib>
 #include <sstream>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/random/rng.hpp"
+#include "tests/text_of.hpp"
 #include "tests/unit/common/config/scenario_errors.hpp"
 #include "tests/unit/common/map/map_folder.hpp"
 
 namespace sidestep::scenario_error_test {
 
 const std::string kScenarios = SIDESTEP_SOURCE_DIR "/deploy/scenarios/";
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 TEST_CASE("a margin below the safety budget is rejected with the required margin") {
   // The defaults match exactly: 2 x 3 mm + 2 x 0.5 ms x 2 x 2 m/s.
@@ -241,6 +235,38 @@ TEST_CASE("starts and goals in blocked cells, and maps that cannot be read, are 
   CHECK_THAT(error("hall.pgm", "[0, 0]", "[1, 0]"), ContainsSubstring("scenario.yaml:1: map: "));
   CHECK_THAT(error("\"\"", "[0, 0]", "[1, 0]"), ContainsSubstring("expected the path of a map's YAML file"));
   CHECK_THAT(error("[1, 2]", "[0, 0]", "[1, 0]"), ContainsSubstring("scenario.yaml:1: map: "));
+}
+
+TEST_CASE("robots drive through unknown cells of a map only if the scenario says so, and the map says it") {
+  const test::MapFolder folder;
+  // 4 x 4 m of cells of 0.1 m, free but for unknown ones from x = 0 on.
+  std::string image = "P5 40 40 255\n";
+  for (int row = 0; row < 40; ++row) image += std::string(20, '\xfe') + std::string(20, '\xcd');
+  write_file(folder / "map.pgm", image);
+  const auto load = [&](const std::string& extra, const std::string& origin) {
+    write_file(folder / "map.yaml", "image: map.pgm\nresolution: 0.1\norigin: " + origin +
+                                        "\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n");
+    return parse_scenario(
+        "map: map.yaml\n" + extra + "robots: [{id: 0, start_m: [-1, 0], goals_m: [[1, 0]]}]\n",
+        folder / "scenario.yaml");
+  };
+  CHECK_THROWS_WITH(load("", "[-2, -2, 0]"), ContainsSubstring("goal of robot 0"));
+  CHECK_THROWS_WITH(load("unknown: blocked\n", "[-2, -2, 0]"), ContainsSubstring("goal of robot 0"));
+  CHECK(load("unknown: free\n", "[-2, -2, 0]").map->notice() ==
+        "map map.yaml: nobody knows whether 800 of 1600 cells are free; they count as free");
+  CHECK_THAT(load("unknown: free\n", "[-2, 2, -1.5707963267948966]").map->notice(),
+             ContainsSubstring("map map.yaml is turned by -1.5708 rad"));
+  CHECK_THROWS_WITH(load("unknown: perhaps\n", "[-2, -2, 0]"),
+                    ContainsSubstring("scenario.yaml:2: unknown: "));
+  check_rejected(kRobot + "unknown: free\n", 2, "there is no map");
+  // Paths below the user's home folder.
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  setenv("HOME", (folder / "").c_str(), 1);
+  const auto at_home = [&] {
+    return parse_scenario("map: ~/map.yaml\nunknown: free\n" + kRobot, "elsewhere.yaml").map->cells().grid();
+  };
+  CHECK(at_home().columns == 40);
+  setenv("HOME", home.c_str(), 1);
 }
 
 TEST_CASE("starts and goals in an obstacle or outside the field are rejected") {

@@ -23,9 +23,13 @@ class MapFolder {
 
   /// The map of a YAML text and, unless empty, an image "map.pgm".
   OccupancyMap load(const std::string& yaml, const std::string& image) const {
+    return load_all(yaml, image).cells;
+  }
+  LoadedMap load_all(const std::string& yaml, const std::string& image,
+                     UnknownCells unknown = UnknownCells::kBlocked) const {
     if (!image.empty()) write_file(*this / "map.pgm", image);
     write_file(*this / "map.yaml", yaml);
-    return load_occupancy_map(*this / "map.yaml");
+    return load_map(*this / "map.yaml", unknown);
   }
 
   /// The message of the ConfigError that load() throws, from the file's name on, or "accepted".

@@ -55,7 +55,10 @@ std::string with_chunks(const std::string& png, const std::string& chunks) {
 
 std::string drawing(const std::string& png, double free_above) {
   std::istringstream file(png);
-  const BitGrid bits = read_png(file, [&](double brightness) { return brightness > free_above; });
+  const auto state_of = [&](double brightness) {
+    return brightness > free_above ? CellState::kFree : CellState::kOccupied;
+  };
+  const BitGrid bits = read_png(file, state_of, UnknownCells::kBlocked).blocked;
   return test::drawing({MapGrid{bits.columns(), bits.rows(), 1, {0, 0}}, bits});
 }
 

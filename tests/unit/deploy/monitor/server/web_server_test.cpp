@@ -22,6 +22,7 @@ class TestServer {
   explicit TestServer(const std::string& address = "127.0.0.1") {
     WebHandlers handlers;
     handlers.respond = [](const WebRequest& request) {
+      if (request.path == "/throw") throw std::runtime_error("no reason");
       return WebResponse{
           200, "text/plain",
           request.method + " " + request.path + " " + request.body + " " + request.command_refusal};
@@ -33,6 +34,7 @@ class TestServer {
     };
     handlers.on_message = [](WebSocket& socket, const std::string& message, bool is_binary) {
       if (message == "garbage" || is_binary) return false;
+      if (message == "throw") throw std::runtime_error("no reason");
       socket.send_event({std::make_shared<const std::string>("echo " + message), false});
       return true;
     };
@@ -151,6 +153,19 @@ TEST_CASE("a viewer whose messages make no sense or are too long is disconnected
   other.send("still here");
   CHECK(other.receive()->text == "echo still here");
   CHECK(wait_until([&] { return server.closed == 3; }));
+}
+
+TEST_CASE("an exception of a handler ends one answer or one viewer, and nothing else") {
+  TestServer server;
+  SocketClient other(server.port(), "one"), viewer(server.port(), "one");
+  viewer.send("throw");
+  CHECK_FALSE(viewer.receive(2s));
+  CHECK(viewer.close_reason() == "the message makes no sense");
+  const HttpAnswer answer = http_request(server.port(), "GET", "/throw");
+  CHECK(answer.status == 500);
+  CHECK(answer.body == "this request cannot be answered: no reason\n");
+  other.send("still here");
+  CHECK(other.receive()->text == "echo still here");
 }
 
 TEST_CASE("a viewer that reads slowly gets the newest state, and the server's memory stays bounded") {

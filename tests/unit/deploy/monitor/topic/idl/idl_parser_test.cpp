@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/monitor/topic/idl/idl_parser.hpp"
 
+#include <fmt/format.h>
+
 #include "common/file/temporary_folder.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/message_schema.hpp"
@@ -115,6 +117,17 @@ TEST_CASE("wrong IDL is refused with the file, the line and the reason") {
   std::string sequences = "struct A { ";
   for (int i = 0; i < 200; ++i) sequences += "sequence<";
   CHECK_THROWS_WITH(parse(sequences), ContainsSubstring("nested too deeply"));
+  std::string dimensions;
+  for (int i = 0; i < 200'000; ++i) dimensions += "[1]";
+  CHECK_THROWS_WITH(parse("struct A { long x" + dimensions + "; };"),
+                    ContainsSubstring("an array has too many dimensions"));
+  std::string chain = "typedef sequence<long> T0;", doubling = "struct S0 { octet x; };";
+  for (int i = 0; i < 150; ++i) chain += fmt::format("typedef sequence<T{}> T{};", i, i + 1);
+  for (int i = 0; i < 40; ++i) doubling += fmt::format("struct S{} {{ S{} a, b; }};\n", i + 1, i);
+  CHECK_THROWS_WITH(parse(chain), ContainsSubstring("nested too deeply"));
+  check(doubling, "24: a message of this type has 16777216 values, more than 10000000");
+  check("struct A { octet x[5000][5000]; };",
+        "1: a message of this type has 25000000 values, more than 10000000");
 }
 
 }  // namespace sidestep::idl_parser_test

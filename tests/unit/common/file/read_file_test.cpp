@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/file/read_file.hpp"
+
+#include <sys/stat.h>
+
+#include "common/file/home_folder.hpp"
+#include "common/file/temporary_folder.hpp"
+#include "common/file/write_file.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::read_file_test {
+
+TEST_CASE("a regular file is read as a whole, up to a size") {
+  const TemporaryFolder folder;
+  const std::string text = std::string("a\0b\r\n", 5) + std::string(300'000, 'x');
+  write_file(folder.file("text"), text);
+  CHECK(read_file(folder.file("text"), text.size()) == text);
+  CHECK_THROWS_WITH(read_file(folder.file("text"), text.size() - 1), Equals("more than 0 MB"));
+  write_file(folder.file("empty"), "");
+  CHECK(read_file(folder.file("empty"), 0).empty());
+  CHECK_FALSE(read_file("/proc/self/status", 1'000'000).empty());
+}
+
+TEST_CASE("what is no regular file is refused at once") {
+  const TemporaryFolder folder;
+  REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(read_file(folder.file("pipe"), 100), Equals("not a regular file"));
+  CHECK_THROWS_WITH(read_file("/dev/zero", 100), Equals("not a regular file"));
+  CHECK_THROWS_WITH(read_file(folder.path(), 100), Equals("a directory"));
+  CHECK_THROWS_WITH(read_file(folder.file("none"), 100), Equals("No such file or directory"));
+}
+
+TEST_CASE("a path may begin with the user's home folder") {
+  CHECK(with_home("~").starts_with("/"));
+  CHECK(with_home("~/maps/a.yaml") == with_home("~") + "/maps/a.yaml");
+  for (const char* path : {"", "a~", "~other/a", "/~/a", "./~"}) CHECK(with_home(path) == path);
+}
+
+}  // namespace sidestep::read_file_test
