@@ -4,7 +4,7 @@
 #include <string>
 
 #include "common/messaging/dds/bus.hpp"
-#include "deploy/launch/free_domain.hpp"
+#include "common/messaging/dds/free_domain.hpp"
 
 namespace sidestep {
 

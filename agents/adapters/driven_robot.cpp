@@ -249,6 +249,11 @@ BodyVelocity DrivenRobot::tick(Time now, robot::StableMemory& memory) {
   return command;
 }
 
+bool DrivenRobot::is_at_rest(Time now) const {
+  if (!side_.has_pose() || side_.is_lifted()) return true;
+  return !side_.has_pending() && to_ns(now - settings_.latency) >= side_.executing().end_ns();
+}
+
 Feedback DrivenRobot::feedback(Time now) {
   Feedback facts = from_plain(side_.facts(to_ns(now)), robot_);
   const Pose pose = predicted(now);

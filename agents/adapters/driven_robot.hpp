@@ -62,6 +62,9 @@ class DrivenRobot {
   /// The facts, without robot_incarnation. Precondition: may_report().
   Feedback feedback(Time now);
 
+  /// Whether the base stands, and goes on standing without further versions.
+  bool is_at_rest(Time now) const;
+
   const robot::RobotSide<float>& side() const { return side_; }
   RobotId id() const { return robot_; }
   /// The start of the next pending version; Time::max() if none is pending.

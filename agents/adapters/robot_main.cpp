@@ -87,7 +87,8 @@ int main(int argc, char** argv) {
   program.start = [&options](DdsBus& bus, const Scenario& scenario, Incarnation incarnation) -> RunningNodes {
     auto nodes = std::make_shared<Nodes>(bus, scenario, incarnation, options);
     log_events_of(nodes->node);
-    return {nodes, [&nodes = *nodes] { return nodes.node.is_commanded(); }};
+    return {nodes, [&node = nodes->node] { return node.is_commanded(); },
+            [&node = nodes->node] { return node.come_to_rest(); }};
   };
   return run_process(argc, argv, program);
 }

@@ -67,6 +67,7 @@ void RobotsNode::tick() {
 }
 
 void RobotsNode::on_command(Entry& entry, const msg::Command& message) {
+  if (comes_to_rest_) return;
   const Time now = clock();
   if (const auto command = decode(message, entry.robot->id(), now))
     entry.robot->on_command(*command, now, *entry.memory);
@@ -123,6 +124,12 @@ void RobotsNode::report_changes(Entry& entry) {
 bool RobotsNode::is_commanded() const {
   return std::ranges::any_of(
       robots_, [](const Entry& entry) { return entry.robot->side().obeyed_incarnation() != 0; });
+}
+
+bool RobotsNode::come_to_rest() {
+  comes_to_rest_ = true;
+  const Time now = clock();
+  return std::ranges::all_of(robots_, [&](const Entry& entry) { return entry.robot->is_at_rest(now); });
 }
 
 void RobotsNode::count_drops(DropCounters& drops) const {

@@ -33,6 +33,9 @@ class RobotsNode {
   void count_drops(DropCounters& drops) const;
   /// Whether a robot obeys an agent by this process's clock.
   bool is_commanded() const;
+  /// Takes no commands from now on, so that all robots come to rest at the ends of their versions. Returns
+  /// whether they have.
+  bool come_to_rest();
   const DrivenRobot& robot(std::size_t index) const { return *robots_[index].robot; }
 
  private:
@@ -66,6 +69,7 @@ class RobotsNode {
   std::unordered_map<RobotId, std::size_t> index_of_;
   std::vector<BaseCommand> commands_;
   Time next_tick_;
+  bool comes_to_rest_ = false;
   CounterPublisher counters_;
 };
 

@@ -17,7 +17,7 @@ namespace sidestep::client {
 struct Settings {
   std::string name;                     ///< of this program; clients of different names have their own holds
   bool is_operator = false;             ///< its orders come before all others, and its resume ends all holds
-  int domain = 0;                       ///< DDS domain of the run, 0 .. 99
+  int domain = 0;                       ///< DDS domain of the run, 0 .. 232
   std::string interface = "127.0.0.1";  ///< address of the network interface to use, or "all"
   /// Addresses of the hosts of all processes, on networks without multicast; empty: multicast.
   std::vector<std::string> peers{};

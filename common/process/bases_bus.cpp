@@ -16,7 +16,7 @@ void add_bases_bus_options(const CliCommand& app, const std::string& condition, 
                  condition +
                      ": DDS domain of these topics, on this machine and without keys "
                      "[--domain, --interface]")
-      .check(in_range(0, 99));
+      .check(in_range(0, kMaxDomain));
 }
 
 std::shared_ptr<Bus> bases_bus(DdsBus& bus, const BasesBusOptions& options) {

@@ -172,9 +172,19 @@ CommandLine::CommandLine(const std::string& description, const std::string& prog
 
 CommandLine::~CommandLine() = default;
 
+/// As the library wants them. It takes "-.5" for an option, but not "-0.5".
+std::vector<std::string> CommandLine::reversed(std::vector<std::string> arguments) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::string& argument : arguments) {
+    if (argument.size() > 2 && argument.starts_with("-.") && is_digit(argument[2])) argument.insert(1, "0");
+  }
+  std::ranges::reverse(arguments);
+  return arguments;
+}
+
 std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
   try {
-    app_->parse(argc, argv);
+    app_->parse(reversed({argv + 1, argv + argc}));
   } catch (const CLI::ParseError& error) {
     return app_->exit(error) == 0 ? 0 : kExitUsage;
   }
@@ -182,9 +192,8 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
 }
 
 void CommandLine::parse(std::vector<std::string> arguments) {
-  std::ranges::reverse(arguments);
   try {
-    app_->parse(std::move(arguments));
+    app_->parse(reversed(std::move(arguments)));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }

@@ -99,6 +99,7 @@ class CommandLine {
   void parse(std::vector<std::string> arguments);
 
  private:
+  static std::vector<std::string> reversed(std::vector<std::string> arguments);
   std::unique_ptr<CLI::App> app_;
 };
 

@@ -41,7 +41,13 @@ Incarnation next_incarnation(Incarnation previous, Time now) {
 }
 
 void add_dds_options(const CliCommand& app, DdsSettings& settings) {
-  app.add_option("--domain", settings.domain, "DDS domain, 0 .. 99").check(in_range(0, 99)).show_default();
+  app.add_option("--domain", settings.domain, "DDS domain, 0 .. 232")
+      .check(in_range(0, kMaxDomain))
+      .show_default();
+  add_dds_options_but_domain(app, settings);
+}
+
+void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings) {
   app.add_option("--interface", settings.interface, "address of the network interface to use, or 'all'")
       .show_default();
   app.add_option("--peers", settings.peers,

@@ -22,7 +22,10 @@ struct RunningNodes {
   std::shared_ptr<void> nodes;
   /// Whether the process works by its clock with others, so that it must keep it when the host's clock is
   /// set. Empty: never.
-  std::function<bool()> uses_clock;
+  std::function<bool()> uses_clock = {};
+  /// Called when the process is asked to end, and then every 10 ms until it returns true. Only then does the
+  /// process end. Empty: it ends at once.
+  std::function<bool()> finish = {};
 };
 
 /// The parts of a program that differ from the others; run_process() provides the rest.
@@ -54,6 +57,7 @@ int run_process(int argc, char** argv, const Program& program);
 
 /// Adds --domain, --interface, --peers, --keys and --insecure.
 void add_dds_options(const CliCommand& app, DdsSettings& settings);
+void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings);
 
 /// Calls `work` and returns its exit code. Prints exceptions on stderr and returns kExitUsage for
 /// ConfigError and std::invalid_argument, kExitFailure for all others.

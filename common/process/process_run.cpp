@@ -35,13 +35,23 @@ class StoppableBus {
     request_.bus = &bus;
     if (request_.is_made) bus.stop();
   }
-  ~StoppableBus() { request_.bus = nullptr; }
+  ~StoppableBus() { release(); }
   StoppableBus(const StoppableBus&) = delete;
   StoppableBus& operator=(const StoppableBus&) = delete;
+
+  /// Stops it no more.
+  void release() { request_.bus = nullptr; }
 
  private:
   StopRequest& request_;
 };
+
+/// Stops the bus once the process has been asked to end and the nodes have finished.
+void stop_when_finished(DdsBus& bus, const StopRequest& request, const std::function<bool()>& finish) {
+  constexpr Duration kPeriod = std::chrono::milliseconds(10);
+  if (request.is_made && finish()) return bus.stop();
+  bus.at(bus.now() + kPeriod, [&] { stop_when_finished(bus, request, finish); });
+}
 
 void log_step(Duration host_ahead) {
   log(LogLevel::kWarning,
@@ -54,7 +64,7 @@ void log_step(Duration host_ahead) {
 bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSettings& dds,
                 Incarnation incarnation, StopRequest& stop) {
   DdsBus bus(dds);
-  const StoppableBus stoppable(stop, bus);
+  StoppableBus stoppable(stop, bus);
   const std::uint32_t process = program.process();
   const RulesExchange rules(bus, process, SharedRules(scenario), [](const RulesMismatch& mismatch) {
     log(LogLevel::kWarning, describe(mismatch));
@@ -82,9 +92,14 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
   const HostClockWatch watch(bus, program.clock_reference, max_clock_difference(scenario.clock_bound_s),
                              {DdsBus::host_clock_ahead, is_in_use, adopt, log_step});
   if (dds.faults) apply_network_faults(bus, process);
+  if (running.finish) {
+    stoppable.release();
+    stop_when_finished(bus, stop, running.finish);
+  }
   log(LogLevel::kInfo,
       fmt::format("Fast DDS {}, domain {}, listening on {}", fast_dds_version(), dds.domain, bus.locators()));
   log(LogLevel::kInfo, budget_line(budget_of(scenario), scenario.margin_m));
+  if (scenario.map && !scenario.map->notice().empty()) log(LogLevel::kInfo, scenario.map->notice());
   bus.run();
   if (yields_to) throw std::runtime_error(*yields_to);
   return adopts && !stop.is_made;

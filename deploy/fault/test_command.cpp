@@ -10,13 +10,13 @@
 
 #include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
+#include "common/messaging/dds/free_domain.hpp"
 #include "common/process/exit_code.hpp"
 #include "common/process/log_option.hpp"
 #include "deploy/fault/plan/fault_test.hpp"
 #include "deploy/fault/plan/junit.hpp"
 #include "deploy/fault/play/launched_test_run.hpp"
 #include "deploy/fault/play/sim_test_run.hpp"
-#include "deploy/launch/free_domain.hpp"
 #include "deploy/launch/run.hpp"
 
 namespace sidestep {
@@ -106,8 +106,8 @@ void add_test_command(const CliCommand& root, std::function<int()>& action) {
   seeds.excludes(seed);
   const Option dds = command.add_flag("--dds", options->is_over_dds,
                                       "run over DDS, with one process for each part of the system");
-  command.add_option("--domain", options->domain, "DDS domain, 0 .. 99 [one that is free]")
-      .check(in_range(0, 99))
+  command.add_option("--domain", options->domain, "DDS domain, 0 .. 232 [one that is free]")
+      .check(in_range(0, kMaxDomain))
       .needs(dds);
   const Option interface =
       command

@@ -12,6 +12,7 @@
 #include "common/messaging/senders.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/launch/process_command.hpp"
+#include "deploy/launch/process_group.hpp"
 #include "deploy/launch/process_keys.hpp"
 
 namespace sidestep {
@@ -29,6 +30,12 @@ constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
 constexpr const char* kMonitor = "monitor";
 
+/// Of robots that take no more commands: the longest acceleration of a version, the latency of bases, and the
+/// braking after them.
+Duration time_to_rest(const MotionLimits& limits) {
+  return 1s + from_seconds(limits.speed_mps / limits.deceleration_mps2);
+}
+
 /// For audit and recording.
 DdsSettings seeing_all(DdsSettings dds) {
   dds.keeps_all = true;
@@ -38,12 +45,13 @@ DdsSettings seeing_all(DdsSettings dds) {
 }  // namespace
 
 Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
-                   const NamespaceNetwork* network, const std::string& log_path)
+                   const NamespaceNetwork* network, Processes& processes, std::vector<std::string> deaths)
     : options_(options),
       scenario_(scenario),
       placement_(placement),
       network_(network),
-      group_(log_path),
+      children_(processes),
+      deaths_(std::move(deaths)),
       revoked_keys_(key_folder_of_process(options, "vision", scenario)),
       bus_(seeing_all(options.dds)),
       rules_(bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario),
@@ -72,8 +80,33 @@ Report Launcher::run() {
     is_interrupted_ = true;
     bus_.stop();
   });
-  require_free_domain();
+  if (deaths_.empty()) require_free_domain();
   const Time begin = bus_.now();
+  try {
+    work();
+  } catch (const std::exception& error) {
+    abort_reason_ = error.what();
+  }
+  Report report = metrics_.report();
+  for (const std::string& name : children_.terminate(kTerminationTimeout))
+    print(name + " did not stop in time and was killed", LogLevel::kWarning);
+  report.program = "run";
+  report.seed = options_.floor.seed;
+  report.abort_reason = abort_reason_;
+  report.must_arrive = !metrics_.awaits_orders();
+  report.duration_s = to_seconds(bus_.now() - begin);
+  report.fast_dds = fast_dds_version();
+  if (ready_at_) report.startup_s = to_seconds(*ready_at_ - begin);
+  report.processes = children_.resource_use();
+  report.director_deaths = deaths_;
+  if (recording_) {
+    recording_->add_report(bus_.now(), to_json(report));
+    recording_->close();
+  }
+  return report;
+}
+
+void Launcher::work() {
   print(fmt::format("Fast DDS {}, domain {}", fast_dds_version(), options_.dds.domain));
   if (network_) {
     print(fmt::format(
@@ -88,42 +121,28 @@ Report Launcher::run() {
     start_due_agents();
     send_revoked_keys();
     bus_.run_until(next_poll());
-    for (const ChildEvent& event : group_.poll(0ms)) handle(event);
+    for (const ChildEvent& event : children_.poll(0ms)) handle(event);
     print_new_epochs();
     if (!options_.is_quiet) display_.update(metrics_, bus_.now());
   }
-  Report report = metrics_.report();
-  for (const std::string& name : group_.terminate(kTerminationTimeout))
-    print(name + " did not stop in time and was killed", LogLevel::kWarning);
-  report.program = "run";
-  report.seed = options_.floor.seed;
-  report.abort_reason = abort_reason_;
-  report.must_arrive = !metrics_.awaits_orders();
-  report.duration_s = to_seconds(bus_.now() - begin);
-  report.fast_dds = fast_dds_version();
-  if (ready_at_) report.startup_s = to_seconds(*ready_at_ - begin);
-  report.processes = group_.resource_use();
-  if (recording_) {
-    recording_->add_report(bus_.now(), to_json(report));
-    recording_->close();
-  }
-  return report;
 }
 
 void Launcher::require_free_domain() {
   bus_.observe<msg::CoordinatorState>(topics::kCoordinator, 0, [this](const msg::CoordinatorState& state) {
-    if (processes_.empty()) other_run_ = state.header().sender();
+    if (processes_.empty()) other_run_ = state.header();
   });
   bus_.run_until(bus_.now() + kListeningTime);
   if (other_run_)
-    throw std::invalid_argument(
-        fmt::format("DDS domain {} is in use: another run works in it, {} is heard; end that run, or choose "
-                    "another --domain",
-                    options_.dds.domain, process_name(*other_run_)));
+    // Incarnations are readings of the clock at the start of a process.
+    throw std::invalid_argument(fmt::format(
+        "DDS domain {} is in use: another run works in it, whose {} has been running since {}; end "
+        "that run, or choose another --domain or --domain auto",
+        options_.dds.domain, process_name(other_run_->sender()),
+        date_text(time_from_ns(static_cast<std::int64_t>(other_run_->incarnation())))));
 }
 
 void Launcher::print(const std::string& line, LogLevel level) {
-  if (level >= options_.log_level) group_.log(log_line(options_.dds.participant, level, line));
+  if (level >= options_.log_level) children_.log(log_line(options_.dds.participant, level, line));
   if (!options_.is_quiet) display_.print(line);
 }
 
@@ -142,7 +161,7 @@ Time Launcher::next_poll() {
 }
 
 void Launcher::start(const std::string& name, const std::string& program, bool is_restarted,
-                     const std::vector<std::string>& arguments) {
+                     const std::vector<std::string>& arguments, Duration rest_time) {
   ProcessSpec process{name,
                       program,
                       options_.scenario_file,
@@ -151,7 +170,8 @@ void Launcher::start(const std::string& name, const std::string& program, bool i
                       is_restarted,
                       options_.dds.peers,
                       key_folder_of_process(options_, name, scenario_),
-                      options_.dds.insecure};
+                      options_.dds.insecure,
+                      rest_time};
   if (options_.faults) process.arguments.push_back("--faults");
   process.arguments.push_back("--log-level");
   process.arguments.emplace_back(to_text(options_.log_level));
@@ -160,9 +180,9 @@ void Launcher::start(const std::string& name, const std::string& program, bool i
 }
 
 void Launcher::start(const ProcessSpec& process, const HostSpec& host) {
-  const pid_t pid = group_.start(child(process, host));
+  const pid_t pid = children_.start(child(process, host));
   processes_[process.name] = process;
-  print(fmt::format("started {} as pid {}{}", process.name, pid,
+  print(fmt::format("{} {} as pid {}{}", deaths_.empty() ? "started" : "goes on:", process.name, pid,
                     options_.hosts_file.empty() ? "" : " on host " + host.name));
 }
 
@@ -173,7 +193,7 @@ ChildSpec Launcher::child(const ProcessSpec& process, const HostSpec& host) cons
 void Launcher::restart(const std::string& process, const std::string& scenario_file) {
   ProcessSpec spec = processes_.at(process);
   spec.scenario_file = scenario_file;
-  group_.restart(child(spec, placement_.host_of(process)));
+  children_.restart(child(spec, placement_.host_of(process)));
   dead_.erase(process);
 }
 
@@ -199,16 +219,16 @@ void Launcher::start_monitor() {
   if (!options_.dds.keys.empty())
     argv.insert(argv.end(), {"--keys", key_folder_of(options_.dds.keys, {Role::kViewer})});
   if (options_.dds.insecure) argv.emplace_back("--insecure");
-  group_.start({kMonitor, argv, false});
+  children_.start({kMonitor, argv, false});
   print(fmt::format("monitor: http://127.0.0.1:{}/", *options_.monitor_port));
 }
 
 void Launcher::start_core() {
   const RestartSpec& restart = scenario_.restart;
-  FloorOptions floor = options_.floor;
-  floor.memory_folder = robot_memory_.path();
-  const FloorProcess robots = robots_process(floor), vision = vision_process(floor);
-  start(robots.name, robots.program, !floor.driver.empty() && restart.robots, robots.arguments);
+  const bool is_driven = !options_.floor.driver.empty();
+  const FloorProcess robots = robots_process(options_.floor), vision = vision_process(options_.floor);
+  start(robots.name, robots.program, is_driven && restart.robots, robots.arguments,
+        is_driven ? time_to_rest(scenario_.limits) : 0s);
   start(vision.name, vision.program, restart.vision, vision.arguments);
   if (scenario_.coordinators == 1) return start("coordinator", "sidestep-coordinator", restart.coordinator);
   // All begin as standbys, so a restarted coordinator does not take over from the active one.
@@ -231,7 +251,7 @@ void Launcher::send_revoked_keys() try {
   if (!list) return;
   // Processes of this machine have no input: they read the file themselves.
   for (const auto& [name, process] : processes_)
-    group_.add_input(name, file_input(key_files::kRevoked, *list));
+    children_.add_input(name, file_input(key_files::kRevoked, *list));
 } catch (const std::runtime_error& error) {
   print(error.what(), LogLevel::kWarning);
 }
@@ -261,7 +281,7 @@ void Launcher::handle(const ChildEvent& event) {
 }
 
 void Launcher::print_last_lines(const std::string& process) {
-  const auto lines = group_.last_lines(process);
+  const auto lines = children_.last_lines(process);
   for (std::size_t i = lines.size() - std::min(lines.size(), kShownLines); i < lines.size(); ++i) {
     if (!options_.is_quiet) display_.print("  " + lines[i]);
   }

@@ -12,14 +12,13 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
-#include "common/file/temporary_folder.hpp"
 #include "common/log/log_level.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "deploy/launch/hosts/namespaces.hpp"
 #include "deploy/launch/hosts/placement.hpp"
 #include "deploy/launch/process_command.hpp"
-#include "deploy/launch/process_group.hpp"
+#include "deploy/launch/processes.hpp"
 #include "deploy/launch/revoked_keys.hpp"
 #include "deploy/launch/run.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
@@ -40,10 +39,10 @@ struct RunDirector {
 /// Starts the processes of one run, monitors them until the run is over, and stops them.
 class Launcher {
  public:
-  /// All arguments must outlive the launcher. `network` is null unless this process created the hosts'
-  /// namespaces.
+  /// All arguments must outlive the launcher. `network` is null unless the hosts' namespaces were created for
+  /// this run. `deaths`: why earlier launchers of the run have died, see keep_processes().
   Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
-           const NamespaceNetwork* network, const std::string& log_path);
+           const NamespaceNetwork* network, Processes& processes, std::vector<std::string> deaths = {});
 
   /// The director decides when the run is over, instead of arrivals, deaths and the time limit.
   void follow(RunDirector director) { director_ = std::move(director); }
@@ -55,7 +54,7 @@ class Launcher {
   const RunMetrics& metrics() const { return metrics_; }
   /// Sends a signal to a process; false if it does not run.
   [[nodiscard]] bool send_signal(const std::string& process, int signal) {
-    return group_.send_signal(process, signal);
+    return children_.send_signal(process, signal);
   }
   /// Kills a process if it runs, and starts it again with a scenario file.
   void restart(const std::string& process, const std::string& scenario_file);
@@ -67,7 +66,7 @@ class Launcher {
   void print(const std::string& line, LogLevel level = LogLevel::kInfo);
   void print_new_epochs();
   void start(const std::string& name, const std::string& program, bool is_restarted,
-             const std::vector<std::string>& arguments = {});
+             const std::vector<std::string>& arguments = {}, Duration rest_time = Duration::zero());
   void start(const ProcessSpec& process, const HostSpec& host);
   ChildSpec child(const ProcessSpec& process, const HostSpec& host) const;
   void start_core();
@@ -76,10 +75,12 @@ class Launcher {
   void send_revoked_keys();
   Time next_poll();
   void handle(const ChildEvent& event);
-  /// Starts the process that shows the run in the browser.
   /// Throws std::invalid_argument if a coordinator is heard although nothing was started.
   void require_free_domain();
+  /// Starts the process that shows the run in the browser.
   void start_monitor();
+  /// Until the run is over.
+  void work();
   void print_last_lines(const std::string& process);
   /// Whether the run is over; then abort_reason_ says why if it was aborted.
   bool is_over();
@@ -94,12 +95,12 @@ class Launcher {
   const Scenario& scenario_;
   const Placement& placement_;
   const NamespaceNetwork* network_;
-  TemporaryFolder robot_memory_;  ///< of the robots' side, which begins anew with each run
-  ProcessGroup group_;
+  Processes& children_;
+  const std::vector<std::string> deaths_;         ///< of earlier launchers of the run
   std::map<std::string, ProcessSpec> processes_;  ///< by name
   RevokedKeys revoked_keys_;
   RunDirector director_;
-  std::optional<std::uint32_t> other_run_;  // a process that was heard before any was started
+  std::optional<msg::Header> other_run_;  // of a process that was heard before any was started
   DdsBus bus_;
   RulesExchange rules_;
   RunMetrics metrics_;

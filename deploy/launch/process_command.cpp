@@ -10,6 +10,7 @@
 #include "common/config/yaml_document.hpp"
 #include "common/keys/key_folder.hpp"
 #include "deploy/launch/hosts/command.hpp"
+#include "deploy/launch/process_group.hpp"
 
 namespace sidestep {
 namespace {
@@ -23,8 +24,8 @@ using Arguments = std::vector<std::string>;
 constexpr const char* kRemoteScript = R"(trap '' HUP PIPE
 exec 3<&0
 umask 077
-scenario=$1 program=$2 niceness=$3 files=$4
-shift 4
+scenario=$1 program=$2 niceness=$3 grace_s=$4 files=$5
+shift 5
 case $program in */*) program=$(realpath -- "$program") ;; esac
 folder=$(mktemp -d) && cd "$folder" || exit 1
 receive() { read -r size name <&3 && head -c "$size" <&3 >./part && mv ./part "./$name"; }
@@ -34,13 +35,16 @@ while [ "$files" -gt 0 ]; do
 done
 nice -n "$niceness" "$program" --scenario "$folder/$scenario" "$@" </dev/null 3<&- &
 child=$!
-{ while receive; do :; done; kill "$child"; sleep 3; kill -9 "$child"; } >/dev/null 2>&1 &
+{ while receive; do :; done; kill "$child"; sleep "$grace_s"; kill -9 "$child"; } >/dev/null 2>&1 &
 watchdog=$!
 wait "$child"
 status=$?
 kill "$watchdog"
 rm -r "$folder"
 exit "$status")";
+
+/// From when a remote process is asked to end until it is killed, besides its robots' time to rest.
+constexpr double kGrace_s = 3;
 
 std::string shell_quoted(const std::string& word) {
   std::string result(1, '\'');
@@ -69,7 +73,7 @@ std::vector<SentFile> sent_files(const ProcessSpec& process) {
   return files;
 }
 
-Arguments ssh_arguments(const HostSpec& host, const std::string& program, int niceness,
+Arguments ssh_arguments(const HostSpec& host, const std::string& program, int niceness, double grace_s,
                         const std::vector<SentFile>& files, const Arguments& options) {
   Arguments remote{"sh",
                    "-c",
@@ -78,6 +82,7 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, int ni
                    files.front().name,
                    program,
                    std::to_string(niceness),
+                   fmt::format("{:.1f}", grace_s),
                    std::to_string(files.size())};
   append(remote, options);
   for (std::string& word : remote) word = shell_quoted(word);
@@ -128,10 +133,12 @@ ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host, const std
   if (process.insecure) append(options, {"--insecure"});
   append(options, process.arguments);
   ChildSpec child{process.name, {}, process.restart};
+  child.rest_time = std::chrono::ceil<std::chrono::milliseconds>(process.rest_time);
   if (is_remote) {
     const std::vector<SentFile> files = sent_files(process);
     for (const SentFile& file : files) child.input += file_input(file.name, file.content);
-    child.argv = ssh_arguments(host, program, niceness(process, host), files, options);
+    child.argv = ssh_arguments(host, program, niceness(process, host),
+                               kGrace_s + to_seconds(process.rest_time), files, options);
     return child;
   }
   child.niceness = niceness(process, host);

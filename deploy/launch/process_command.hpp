@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "common/time/time.hpp"
 #include "deploy/launch/hosts/hosts_file.hpp"
-#include "deploy/launch/process_group.hpp"
+#include "deploy/launch/processes.hpp"
 
 namespace sidestep {
 
@@ -20,6 +21,7 @@ struct ProcessSpec {
   std::vector<std::string> peers{};  ///< as DdsSettings::peers
   std::string keys{};                ///< as DdsSettings::keys, on this machine
   bool insecure = false;             ///< as DdsSettings::insecure
+  Duration rest_time{0};             ///< as ChildSpec::rest_time
 };
 
 /// The child process that runs the program on a host: the program itself, `ip netns exec` for the namespace

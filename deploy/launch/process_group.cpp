@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <deque>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
@@ -34,15 +35,10 @@ constexpr ProcessGroup::Milliseconds kMinBackoff{100}, kMaxBackoff{2000};
   throw std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
-std::string reason_of(int status) {
-  if (WIFEXITED(status)) return fmt::format("exit code {}", WEXITSTATUS(status));
-  const char* const name = sigabbrev_np(WTERMSIG(status));
-  return fmt::format("signal {} (SIG{})", WTERMSIG(status), name ? name : "?");
-}
-
 /// Executes the program in a forked child. Uses system calls only, because the parent may have threads.
-[[noreturn]] void execute(char* const argv[], int input, int output, int niceness, pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+[[noreturn]] void execute(char* const argv[], int input, int output, int niceness, int last_signal,
+                          pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, last_signal);
   if (getppid() != parent) _exit(126);  // the parent died before the line above
   setpgid(0, 0);                        // Ctrl-C reaches only the parent, which stops its children in order
   setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + niceness);
@@ -112,6 +108,14 @@ struct ProcessGroup::Child {
   std::string partial;
   std::deque<std::string> lines;
 };
+
+bool ProcessGroup::drives_robots(const Child& child) { return child.spec.rest_time > Milliseconds::zero(); }
+
+std::string reason_of(int status) {
+  if (WIFEXITED(status)) return fmt::format("exit code {}", WEXITSTATUS(status));
+  const char* const name = sigabbrev_np(WTERMSIG(status));
+  return fmt::format("signal {} (SIG{})", WTERMSIG(status), name ? name : "?");
+}
 
 std::string sibling_program_path(const std::string& name) {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
@@ -193,7 +197,9 @@ void ProcessGroup::spawn(Child& child) {
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = fork();
-  if (pid == 0) execute(argv.data(), input.read_end, output.write_end, child.spec.niceness, parent);
+  if (pid == 0)
+    execute(argv.data(), input.read_end, output.write_end, child.spec.niceness,
+            drives_robots(child) ? SIGTERM : SIGKILL, parent);
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close_fd(output.write_end);
   close_fd(input.read_end);
@@ -225,8 +231,9 @@ void ProcessGroup::send_input(Child& child) {
   }
 }
 
-void ProcessGroup::wait_for_activity(Milliseconds timeout) {
+bool ProcessGroup::wait_for_activity(Milliseconds timeout, std::span<const int> descriptors) {
   std::vector<pollfd> watched;
+  for (const int descriptor : descriptors) watched.push_back({descriptor, POLLIN, 0});
   SteadyTime until = steady_clock::now() + timeout;
   for (const auto& child : children_) {
     if (child->pidfd >= 0) watched.push_back({child->pidfd, POLLIN, 0});
@@ -236,6 +243,8 @@ void ProcessGroup::wait_for_activity(Milliseconds timeout) {
   }
   const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
   ::poll(watched.data(), watched.size(), static_cast<int>(std::max<Milliseconds::rep>(left.count(), 0)));
+  return std::any_of(watched.begin(), watched.begin() + static_cast<std::ptrdiff_t>(descriptors.size()),
+                     [](const pollfd& entry) { return entry.revents != 0; });
 }
 
 void ProcessGroup::drain(Child& child) {
@@ -295,12 +304,12 @@ void ProcessGroup::start_due(std::vector<ChildEvent>& events) {
   }
 }
 
-std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout) {
+std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout, std::span<const int> descriptors) {
   const SteadyTime until = steady_clock::now() + timeout;
   std::vector<ChildEvent> events;
   while (true) {
     const auto left = std::chrono::ceil<Milliseconds>(until - steady_clock::now());
-    wait_for_activity(std::max(left, Milliseconds{0}));
+    const bool is_called = wait_for_activity(std::max(left, Milliseconds{0}), descriptors);
     for (const auto& child : children_) {
       ChildEvent event;
       drain(*child);
@@ -308,24 +317,36 @@ std::vector<ChildEvent> ProcessGroup::poll(Milliseconds timeout) {
       if (reap(*child, event)) events.push_back(event);
     }
     if (!is_terminating_) start_due(events);
-    if (!events.empty() || steady_clock::now() >= until) return events;
+    if (is_called || !events.empty() || steady_clock::now() >= until) return events;
   }
+}
+
+void ProcessGroup::ask_to_end(Child& child) {
+  child.restart_at = SteadyTime::max();
+  if (!child.is_running) return;
+  if (child.input >= 0)
+    close_fd(child.input);
+  else
+    kill(child.pid, SIGTERM);
+}
+
+void ProcessGroup::end_all(Milliseconds timeout, const std::function<bool(const Child&)>& is_meant) {
+  Milliseconds rest_time{0};
+  for (const auto& child : children_) {
+    if (!is_meant(*child)) continue;
+    ask_to_end(*child);
+    rest_time = std::max(rest_time, child->spec.rest_time);
+  }
+  const SteadyTime until = steady_clock::now() + timeout + rest_time;
+  const auto is_left = [&](const auto& child) { return child->is_running && is_meant(*child); };
+  while (std::ranges::any_of(children_, is_left) && steady_clock::now() < until)
+    poll(std::chrono::ceil<Milliseconds>(until - steady_clock::now()));
 }
 
 std::vector<std::string> ProcessGroup::terminate(Milliseconds timeout) {
   is_terminating_ = true;
-  for (const auto& child : children_) {
-    child->restart_at = SteadyTime::max();
-    if (!child->is_running) continue;
-    if (child->input >= 0)
-      close_fd(child->input);
-    else
-      kill(child->pid, SIGTERM);
-  }
-  const SteadyTime until = steady_clock::now() + timeout;
-  while (running() > 0 && steady_clock::now() < until) {
-    poll(std::chrono::ceil<Milliseconds>(until - steady_clock::now()));
-  }
+  end_all(timeout, drives_robots);
+  end_all(timeout, [](const Child&) { return true; });
   std::vector<std::string> killed;
   for (const auto& child : children_) {
     if (!child->is_running) continue;

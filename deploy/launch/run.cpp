@@ -6,16 +6,34 @@
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/temporary_folder.hpp"
+#include "common/messaging/dds/free_domain.hpp"
+#include "common/process/process.hpp"
 #include "deploy/launch/hosts/run_hosts.hpp"
 #include "deploy/launch/launcher.hpp"
+#include "deploy/launch/process_keeper.hpp"
 #include "deploy/launch/process_keys.hpp"
 
 namespace sidestep {
 
+namespace {
+
+/// FOLDER/NAME-NUMBER.EXTENSION
+std::string numbered(const std::filesystem::path& file, std::size_t number) {
+  return (file.parent_path() /
+          fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()))
+      .string();
+}
+
+}  // namespace
+
 int run(const RunOptions& given) {
   RunOptions options = given;
+  std::optional<FreeDomain> free_domain;
+  options.dds.domain = given.domain == "auto" ? free_domain.emplace().number() : std::stoi(given.domain);
   const Scenario scenario = load_scenario(options.scenario_file);
   fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
+  if (scenario.map && !scenario.map->notice().empty()) fmt::print(stderr, "{}\n", scenario.map->notice());
   if (scenario.has_test_keys)
     fmt::print(stderr, "faults and expectations in {} apply to `sidestep test` only\n",
                options.scenario_file);
@@ -32,10 +50,31 @@ int run(const RunOptions& given) {
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
   const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
   require_keys(options, scenario);
-  const Report report = Launcher(options, scenario, hosts.placement(), hosts.network(), log_path).run();
-  write_report(report, report_path);
-  fmt::print("\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);
-  return exit_code(report.verdict());
+  const TemporaryFolder robot_memory;  // begins anew with each run
+  options.floor.memory_folder = robot_memory.path();
+  ProcessGroup group(log_path);
+  const auto finish = [&](const Report& report) {
+    write_report(report, report_path);
+    fmt::print("\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);
+    return exit_code(report.verdict());
+  };
+  DirectorWork work;
+  work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
+    return run_guarded("sidestep run", [&] {
+      if (!deaths.empty() && !options.recording_file.empty())
+        options.recording_file = numbered(options.recording_file, deaths.size() + 1);
+      return finish(Launcher(options, scenario, hosts.placement(), hosts.network(), processes, deaths).run());
+    });
+  };
+  work.on_lost = [&](const std::string& reason) {
+    Report report;
+    report.program = "run";
+    report.scenario = scenario.name;
+    report.robots = static_cast<int>(scenario.robots.size());
+    report.abort_reason = "the process that directs the run died: " + reason;
+    (void)finish(report);
+  };
+  return keep_processes(group, work);
 }
 
 }  // namespace sidestep

@@ -20,6 +20,7 @@ struct RunOptions {
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
   std::optional<std::string> monitor_port;  ///< of a page that shows the run; nullopt: none
+  std::string domain = "0";                 ///< of run(): instead of that of `dds`; "auto": one that is free
   DdsSettings dds;  ///< if it has keys, then those of all identities: each process gets its own
   FloorOptions floor;
   std::optional<double> seconds;         ///< overrides the scenario's time limit

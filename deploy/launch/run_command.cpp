@@ -40,7 +40,13 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
                    "if clients give the goals: end when all robots have finished their orders");
   command.add_option("--planner", options->planner, "planner of all robots' paths [the scenario's]")
       .check(one_of(driving_planners()));
-  add_dds_options(command, options->dds);
+  command
+      .add_option("--domain", options->domain,
+                  "DDS domain, 0 .. 232, or 'auto': one that this machine does not use")
+      .check(
+          [](const std::string& text) { return text == "auto" ? "" : in_range(0, kMaxDomain).problem(text); })
+      .show_default();
+  add_dds_options_but_domain(command, options->dds);
   add_log_option(command, options->log_level);
   command.add_flag("--faults", options->faults,
                    "let all processes accept `sidestep fault network`; for tests");

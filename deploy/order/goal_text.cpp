@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
@@ -21,7 +22,8 @@ std::vector<double> parse_numbers(const std::string& text) {
   const char *at = text.data(), *const end = at + text.size();
   while (numbers.size() < 3) {
     double number = 0;
-    const auto [stop, error] = std::from_chars(at, end, number);
+    const bool has_plus = end - at > 1 && *at == '+' && (at[1] == '.' || (at[1] >= '0' && at[1] <= '9'));
+    const auto [stop, error] = std::from_chars(at + has_plus, end, number);
     if (error != std::errc{} || !(std::abs(number) <= kMaxCoordinate_m)) return {};
     numbers.push_back(number);
     if (stop == end) return numbers;
@@ -44,6 +46,10 @@ Goal parse_goal(const std::string& text) {
   if (numbers.size() < 2 || numbers.size() > 3)
     throw UsageError(
         fmt::format("\"{}\" is no goal, expected X,Y or X,Y,HEADING in metres and radians", text));
+  if (numbers.size() == 3 && std::abs(numbers[2]) > 2 * std::numbers::pi)
+    throw UsageError(
+        fmt::format("\"{}\": expected a heading of -6.28 to 6.28 radians; {:g} degrees are {:.4g} radians",
+                    text, numbers[2], numbers[2] * std::numbers::pi / 180));
   return goal_from(numbers);
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "common/messaging/blockage_text.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -78,40 +80,18 @@ std::string remaining_text(const OrderReport& report) {
 
 }  // namespace
 
-std::string to_text(const Blockage& blockage) {
-  const std::string instead =
-      fmt::format(", goes to {:.2f},{:.2f} instead", blockage.nearest_m.x(), blockage.nearest_m.y());
-  switch (blockage.reason) {
-    case msg::BlockReason::BLOCK_OBSTACLE:
-      return fmt::format("by an obstacle at {:.2f},{:.2f}", blockage.blocker_m.x(), blockage.blocker_m.y()) +
-             instead;
-    case msg::BlockReason::BLOCK_ROBOT:
-      return fmt::format("by robot {}", blockage.blocker) + instead;
-    case msg::BlockReason::BLOCK_ZONE:
-      return fmt::format("by zone {}", blockage.blocker) + instead;
-    case msg::BlockReason::BLOCK_OCCLUDED_CORNER:
-      return fmt::format("by an occluded corner at {:.2f},{:.2f}", blockage.blocker_m.x(),
-                         blockage.blocker_m.y()) +
-             instead;
-    case msg::BlockReason::BLOCK_NONE:
-    case msg::BlockReason::BLOCK_NO_PATH:
-      break;
-  }
-  return "no path leads there" + instead;
-}
-
 std::string to_line(const SentOrder& sent) {
   std::string line = fmt::format("{}: {}", order_name(sent.order), phase_text(sent.phase));
   if (sent.phase == OrderPhase::kRefused) line += fmt::format(", {}", refusal_text(sent.refusal));
   if (sent.phase == OrderPhase::kDriving)
     line += fmt::format(" to goal {} of {}", sent.goal_index + 1, sent.order.goals.size());
-  if (sent.phase == OrderPhase::kBlocked && sent.blockage) line += " " + to_text(*sent.blockage);
+  if (sent.phase == OrderPhase::kBlocked && sent.blockage) line += ": " + to_text(*sent.blockage);
   return line;
 }
 
 std::string to_table(const std::map<RobotId, OrderReport>& reports) {
   std::string table = fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", "robot", "state", "ordered by",
-                                  "goal", "left s", "blocked");
+                                  "goal", "left s", "why");
   for (const auto& [robot, report] : reports) {
     const bool has_order = report.number != 0;
     table += fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", robot, state_text(report),

@@ -114,6 +114,28 @@ TEST_CASE("robots go on when the process that drives them is killed and started 
   WARN("after a restart of the robots' process: " << outcome(report));
 }
 
+TEST_CASE("robots come to rest before the process that drives them ends, whatever ends the run",
+          "[both-cores]") {
+  const int signal = GENERATE(SIGINT, SIGKILL);
+  CAPTURE(signal);
+  ForeignFloor floor(shipped_scenario("league/crossing"));
+  LaunchedRun& run = floor.run();
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
+  const pid_t robots = run.pid_of("robots");
+  REQUIRE(is_running(robots));
+  REQUIRE(kill(run.pid(), signal) == 0);
+  const Time begin = run.bus().now();
+  while (is_running(robots) && run.bus().now() - begin < 10s) run.bus().run_until(run.bus().now() + 1ms);
+  INFO(run.output());
+  REQUIRE_FALSE(is_running(robots));
+  CHECK(run.max_speed_mps() < 0.05);
+  CHECK(run.truth().contacts() == 0);
+  const auto is_reported = [&] { return run.report().is_object(); };
+  while (!is_reported() && run.bus().now() - begin < 20s) run.bus().run_until(run.bus().now() + 1ms);
+  REQUIRE(is_reported());
+  require_no_violations(run.report());
+}
+
 TEST_CASE("robots go on when the foreign simulator is killed and started again", "[both-cores]") {
   ForeignFloor floor(shipped_scenario("league/crossing"));
   LaunchedRun& run = floor.run();

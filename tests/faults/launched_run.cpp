@@ -13,16 +13,10 @@
 #include "deploy/monitor/audit/audit_totals.hpp"
 #include "tests/catch.hpp"
 #include "tests/sanitized.hpp"
+#include "tests/text_of.hpp"
 
 namespace sidestep {
 namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 std::filesystem::path new_folder() {
   std::string name = (std::filesystem::temp_directory_path() / "sidestep-run-XXXXXX").string();
@@ -158,6 +152,16 @@ std::map<std::string, pid_t> LaunchedRun::children() const {
     result[name] = std::stoi(line.substr(end + as_pid.size()));
   }
   return result;
+}
+
+pid_t LaunchedRun::director() const {
+  const std::string process = "/proc/" + std::to_string(pid_);
+  std::istringstream children(text_of(process + "/task/" + std::to_string(pid_) + "/children"));
+  for (pid_t child = 0; children >> child;) {
+    // It is the same program with the same arguments.
+    if (text_of("/proc/" + std::to_string(child) + "/cmdline") == text_of(process + "/cmdline")) return child;
+  }
+  return 0;
 }
 
 pid_t LaunchedRun::pid_of(const std::string& process) const {

@@ -62,6 +62,8 @@ class LaunchedRun {
   std::string scenario_file() const { return (folder_ / "scenario.yaml").string(); }
   /// The launcher's own process.
   pid_t pid() const { return pid_; }
+  /// Its child that directs and observes the run; 0 if there is none.
+  pid_t director() const;
   /// The latest process that was started with this name, e.g. "agent 3"; 0 if there is none.
   pid_t pid_of(const std::string& process) const;
   std::map<std::string, pid_t> children() const;

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <unistd.h>
 
+#include "deploy/monitor/audit/audit_totals.hpp"
 #include "deploy/simulate/building/building.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
@@ -187,6 +188,30 @@ TEST_CASE("no process outlives a killed launcher") {
   while (any_left() && Time{std::chrono::system_clock::now().time_since_epoch()} < deadline) {
   }
   CHECK_FALSE(any_left());
+}
+
+TEST_CASE("robots drive on when the process that directs their run dies, and the run is not judged") {
+  LaunchedRun run(shuttles(2, ""));
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
+  const auto children = run.children();
+  const pid_t director = run.director();
+  REQUIRE(director != 0);
+  REQUIRE(kill(director, SIGSEGV) == 0);
+  REQUIRE(run.wait_until([&] { return run.director() != director && run.director() != 0; }));
+  for (const auto& [name, pid] : children) {
+    CAPTURE(name);
+    CHECK(is_running(pid));
+  }
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  CHECK(ended == "exit code " + std::to_string(kExitNotJudged));
+  CHECK(run.printed("not judged: the process that observed the run died (signal 11 (SIGSEGV))"));
+  const auto report = run.report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == 8);
+  CHECK(report["deaths"].empty());
+  CHECK(report["director_deaths"] == std::vector<std::string>{"signal 11 (SIGSEGV)"});
+  CHECK(run.children() == children);
 }
 
 TEST_CASE(

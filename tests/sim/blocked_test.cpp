@@ -2,7 +2,9 @@
 // Goals that cannot be reached, and zones, in whole systems.
 #include "agents/navigation/zone_map.hpp"
 #include "common/collision/shapes.hpp"
+#include "common/config/scenario_loader.hpp"
 #include "common/random/rng.hpp"
+#include "deploy/simulate/system/sim_system.hpp"
 #include "tests/sim/ordered_system.hpp"
 
 namespace sidestep::blocked_test {
@@ -215,6 +217,33 @@ TEST_CASE("no robot enters a zone that was drawn before, or is faster in one tha
   WARN(arrived << " arrived, " << blocked << " blocked");
   CHECK(arrived > 80);
   CHECK(blocked > 5);
+}
+
+TEST_CASE("the report says of each robot that has not arrived why") {
+  const Scenario scenario = parse_scenario(
+      "field: {length_m: 8, width_m: 5}\nobstacles:\n"
+      "  - wall: {points_m: [[1, -1], [3, -1], [3, 1], [1, 1], [1, -1]], thickness_m: 0.1}\n"
+      "robots:\n  - {id: 0, start_m: [-3, 0], goals_m: [[2, 0]]}\n"
+      "  - {id: 1, start_m: [-3, 1], goals_m: [[3.5, 1.5]]}\n"
+      "  - {id: 2, start_m: [-3, 2], goals_m: [[3, 2]]}\n  - {id: 3, start_m: [-3, -2], goals_m: [[3, -2]]}\n"
+      "  - {id: 4, start_m: [-3.5, -1], goals_m: [[-2, -1]]}\n",
+      "closed.yaml");
+  SimSystem system(scenario, 1);
+  system.run_for(std::chrono::milliseconds(1500));
+  system.send({msg::OrderKind::ORDER_HOLD, 2, static_cast<ClientId>(Sender::kOperator),
+               static_cast<OrderNumber>(to_ns(system.now()))});
+  msg::Disturbance lift;
+  lift.robot(3);
+  lift.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_LIFT);
+  system.disturb(lift);
+  system.run_for(std::chrono::seconds(12));
+  const Report report = system.metrics().report();
+  CHECK(report.arrived == 2);
+  REQUIRE(report.not_arrived.size() == 3);
+  CHECK_THAT(report.not_arrived.at(0), StartsWith("no path leads to its goal; it goes to "));
+  CHECK(report.not_arrived.at(2) == "an order holds it");
+  CHECK(report.not_arrived.at(3) == "it is off the floor");
+  CHECK_THAT(summary(report), ContainsSubstring("robot 0 has not arrived: no path leads to its goal; "));
 }
 
 }  // namespace sidestep::blocked_test

@@ -85,6 +85,7 @@ void DdsBus::add_drops(DropCounters& drops) const {
   const TransportCounts& transport = impl_->session->participant.counts();
   drops.count(DropReason::kInjectedLoss, std::nullopt, transport.impaired);
   drops.count(DropReason::kQueueFull, std::nullopt, transport.overflowed);
+  drops.count(DropReason::kMalformedDatagram, std::nullopt, transport.malformed);
   drops.count(DropReason::kForgottenPeer, std::nullopt, transport.forgotten);
   if (const Gate* const gate = impl_->session->participant.gate()) {
     drops.count(DropReason::kUnknownParticipant, std::nullopt, gate->unknown());

@@ -11,8 +11,12 @@
 
 namespace sidestep {
 
+/// The ports of higher domains would be above 65535 (RTPS 2.2, 9.6.1.1). This one has room for 62 processes
+/// on a machine.
+inline constexpr int kMaxDomain = 232;
+
 struct DdsSettings {
-  int domain = 0;                        ///< 0 .. 99
+  int domain = 0;                        ///< 0 .. kMaxDomain
   std::string interface = "127.0.0.1";   ///< address of the only interface to use; "all": every one
   std::string participant = "sidestep";  ///< name announced to the domain
   bool faults = false;                   ///< arriving messages can be impaired, see DdsBus::impair()

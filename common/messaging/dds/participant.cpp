@@ -29,7 +29,6 @@ namespace dds = fast_dds::dds;
 using namespace fast_dds::dds;
 using fast_dds::Duration_t;
 
-constexpr int kMaxDomain = 99;                 ///< port numbers of higher domains overlap with others
 constexpr std::uint32_t kMutationTries = 250;  ///< limits the number of participants on one host
 const Duration_t kAnnouncementPeriod{1, 0};
 constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< requested; the system may grant less

@@ -11,6 +11,7 @@
 #include "deploy/fault/plan/test_end.hpp"
 #include "deploy/fault/play/launched_faults.hpp"
 #include "deploy/fault/play/run_end.hpp"
+#include "deploy/launch/process_group.hpp"
 #include "deploy/launch/process_keys.hpp"
 
 namespace sidestep {
@@ -100,7 +101,8 @@ RunOutcome run_over_dds(const FaultTest& test, const LaunchOptions& options) {
   const RunHosts hosts(hosts_of(test, options), test.scenario);
   const RunOptions run = run_options(test, options, hosts);
   const std::string log_file = std::filesystem::path(run.report_file).replace_extension(".log").string();
-  Launcher launcher(run, test.scenario, hosts.placement(), hosts.network(), log_file);
+  ProcessGroup processes(log_file);
+  Launcher launcher(run, test.scenario, hosts.placement(), hosts.network(), processes);
   RunOutcome outcome = LaunchedTestRun(test, hosts, run, launcher).run();
   outcome.log_file = log_file;
   return outcome;

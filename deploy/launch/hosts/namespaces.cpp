@@ -64,7 +64,7 @@ NamespaceNetwork::~NamespaceNetwork() { remove(); }
 std::string NamespaceNetwork::bridge() const { return full_name(kBridgeLabel); }
 
 std::string NamespaceNetwork::full_name(const std::string& label) const {
-  return namespace_name(getpid(), label);
+  return namespace_name(launcher_, label);
 }
 
 void NamespaceNetwork::create(const Hosts& hosts) {

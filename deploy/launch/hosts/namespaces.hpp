@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <sys/types.h>
+#include <unistd.h>
 #include <vector>
 
 #include "deploy/launch/hosts/hosts_file.hpp"
@@ -44,6 +45,7 @@ class NamespaceNetwork {
   void connect(const HostSpec& host, const std::string& cable, int prefix_length);
   void remove();
 
+  const pid_t launcher_ = getpid();  ///< also in a process that it forks
   std::vector<std::string> created_;
 };
 

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "common/file/write_file.hpp"
@@ -84,6 +85,9 @@ Json audit_json(const AuditTotals& audit) {
 
 /// Why the run did not pass.
 std::string reason_of(const Report& report) {
+  if (report.verdict() == AuditVerdict::kNotJudged && !report.director_deaths.empty())
+    return fmt::format("not judged: the process that observed the run died ({}), another one took its place",
+                       fmt::join(report.director_deaths, ", "));
   if (report.verdict() == AuditVerdict::kNotJudged) return "not judged: " + shortfall(*report.audit);
   return report.failure_reason();
 }
@@ -153,6 +157,7 @@ std::uint64_t Report::unexcused_crashes() const {
 
 AuditVerdict Report::verdict() const {
   if (!failure_reason().empty()) return AuditVerdict::kFailed;
+  if (!director_deaths.empty()) return AuditVerdict::kNotJudged;
   return audit ? audit->verdict() : AuditVerdict::kPassed;
 }
 
@@ -195,6 +200,8 @@ std::string to_json(const Report& r) {
   json["arrival_s"] = Json::object();
   for (const auto& [robot, arrival_s] : r.arrival_s)
     json["arrival_s"][std::to_string(robot)] = rounded(arrival_s);
+  json["not_arrived"] = Json::object();
+  for (const auto& [robot, why] : r.not_arrived) json["not_arrived"][std::to_string(robot)] = why;
   json["proposals"] = r.proposals;
   json["grants"] = r.grants;
   json["denials"] = r.denials;
@@ -218,6 +225,7 @@ std::string to_json(const Report& r) {
                               {"at_s", rounded(death.at_s)},
                               {"restarted", death.restarted}});
   }
+  json["director_deaths"] = r.director_deaths;
   json["epochs"] = Json::array();
   for (const EpochRecord& epoch : r.epochs) {
     json["epochs"].push_back({{"coordinator", epoch.coordinator},
@@ -276,6 +284,12 @@ std::string summary(const Report& r) {
         "robot share {:.2f} m/s\n",
         r.crashes, r.crashes_while_moving, r.max_crash_speed_mps, r.max_robot_crash_speed_mps);
   }
+  constexpr std::size_t kShownRobots = 10;
+  std::size_t shown = 0;
+  for (const auto& [robot, why] : r.not_arrived) {
+    if (++shown <= kShownRobots) text += fmt::format("robot {} has not arrived: {}\n", robot, why);
+  }
+  if (shown > kShownRobots) text += fmt::format("... and {} others\n", shown - kShownRobots);
   for (const RobotId robot : r.quarantined)
     text += fmt::format("robot {} was quarantined: it executed a version that it was never granted\n", robot);
   for (const RobotId robot : r.displaced)

@@ -54,6 +54,7 @@ struct Report {
   std::optional<double> mean_arrival_s;            ///< of the robots that arrived
   std::optional<double> straight_line_time_ratio;  ///< mean of arrival time / straight_line_time_s()
   std::map<RobotId, std::optional<double>> arrival_s;
+  std::map<RobotId, std::string> not_arrived;  ///< why, of those that have not
   std::uint64_t proposals = 0;
   std::uint64_t grants = 0;
   std::uint64_t denials = 0;
@@ -76,6 +77,8 @@ struct Report {
   DurationHistogram plan;
   DurationHistogram search;
   std::vector<Death> deaths;
+  /// Why processes that directed and observed the run have died. Nobody judges what happened until then.
+  std::vector<std::string> director_deaths;
   std::vector<EpochRecord> epochs;  ///< in the order of their first heartbeats
   /// Processes that work by other rules, and what differs; empty differences: not known.
   std::map<std::string, std::vector<RuleDifference>> mismatches;
@@ -95,7 +98,8 @@ struct Report {
   /// Why the run failed, in one line. Empty if it did not fail: it was not aborted, no robot touched anything
   /// without excuse, none moved in a crash, no rule was broken, and all robots arrived if they had to.
   [[nodiscard]] std::string failure_reason() const;
-  /// A run that did not fail passed only if its audit covered enough to judge it, or there was no audit.
+  /// A run that did not fail passed only if its audit covered enough to judge it, or there was no audit, and
+  /// nobody who observed it has died.
   [[nodiscard]] AuditVerdict verdict() const;
 };
 

@@ -9,6 +9,7 @@
 #include "common/messaging/drop_codec.hpp"
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/negotiation_codec.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/robot_notices.hpp"
 #include "deploy/monitor/time_range.hpp"
@@ -185,6 +186,12 @@ void RunMetrics::on_status(const msg::AgentStatus& status) {
   robot->fencing_statuses = 0;
 }
 
+void RunMetrics::on_order_status(const msg::OrderStatus& status) {
+  RobotRecord* const robot = find(status.robot());
+  const auto report = decode(status);
+  if (robot && report) robot->blockage = report->blockage;
+}
+
 void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
   if (!is_valid_time(state.header().stamp_ns())) {
     ++dropped_messages_;
@@ -322,6 +329,8 @@ void listen(Bus& bus, RunMetrics& metrics) {
   bus.subscribe<msg::WorldState>(topics::kWorld, [&metrics](const auto& world) { metrics.on_world(world); });
   bus.subscribe<msg::AgentStatus>(topics::kStatus,
                                   [&metrics](const auto& status) { metrics.on_status(status); });
+  bus.subscribe<msg::OrderStatus>(topics::kOrderStatus,
+                                  [&metrics](const auto& status) { metrics.on_order_status(status); });
   bus.subscribe<msg::CoordinatorState>(topics::kCoordinator,
                                        [&metrics](const auto& state) { metrics.on_coordinator(state); });
   bus.subscribe<msg::Counters>(topics::kCounters,

@@ -12,10 +12,12 @@
 #include "common/messaging/bus.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/protocol/drop_reasons.hpp"
+#include "common/protocol/order.hpp"
 #include "deploy/monitor/audit/auditor.hpp"
 #include "deploy/monitor/metrics/report.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
+#include "idl/order.hpp"
 
 namespace sidestep {
 
@@ -46,6 +48,7 @@ class RunMetrics {
   /// Not used once ground truth has been received.
   void on_world(const msg::WorldState& world);
   void on_status(const msg::AgentStatus& status);
+  void on_order_status(const msg::OrderStatus& status);
   void on_coordinator(const msg::CoordinatorState& state);
   void on_counters(const msg::Counters& counters);
   void on_death(const std::string& process, const std::string& reason, Time at, bool restarted);
@@ -104,6 +107,7 @@ class RunMetrics {
     std::vector<msg::AgentStatus> lives;  ///< the last status of each incarnation of its agent, in order
     Incarnation authoritative = 0;        ///< the incarnation whose status counts
     int fencing_statuses = 0;             ///< from other incarnations since its last status
+    std::optional<Blockage> blockage;     ///< by the latest status of its order
 
     /// The status that counts; nullptr: none yet. It is the most recently received one, but an incarnation
     /// that is still fencing counts only if no other one reports. The highest incarnation would be wrong: it
@@ -121,6 +125,8 @@ class RunMetrics {
              Time at);
   void record_epoch(const msg::CoordinatorState& state);
   bool has_arrived(const RobotRecord& robot) const;
+  /// Why a robot has not arrived, as a clause.
+  std::string hindrance(const RobotRecord& robot) const;
   double distance_to_go_m(const RobotRecord& robot) const;
   void add_ground_truth(Report& report) const;
   void add_arrivals(Report& report) const;

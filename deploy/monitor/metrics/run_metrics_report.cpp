@@ -2,7 +2,9 @@
 // Summaries of the collected metrics: progress rows and the report.
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
+#include "common/messaging/blockage_text.hpp"
 #include "common/messaging/histogram_codec.hpp"
 #include "common/messaging/process_names.hpp"
 #include "deploy/monitor/metrics/run_metrics.hpp"
@@ -66,12 +68,41 @@ void RunMetrics::add_ground_truth(Report& report) const {
     report.robot_time_s = std::max(0.0, to_seconds(*seen_at() - *granting_since_));
 }
 
+std::string RunMetrics::hindrance(const RobotRecord& robot) const {
+  if (!robot.status()) return "its agent was not heard";
+  switch (robot.status()->agent_state()) {
+    case msg::AgentState::AGENT_FENCING:
+      return "it does not answer its agent";
+    case msg::AgentState::AGENT_REGISTERING:
+      return "no coordinator has registered it";
+    case msg::AgentState::AGENT_WAITING:
+      return "its agent waits for other robots, vision or a coordinator";
+    case msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND:
+      return "clocks differ by more than the safety budget allows";
+    case msg::AgentState::AGENT_ABSENT:
+      return "it is off the floor";
+    case msg::AgentState::AGENT_HELD:
+      return "an order holds it";
+    case msg::AgentState::AGENT_WITHOUT_ORDER:
+      return "its order was cancelled";
+    case msg::AgentState::AGENT_ARRIVED:
+      return fmt::format("it is {:.2f} m from its last goal, although its agent takes it for arrived",
+                         distance_to_go_m(robot));
+    case msg::AgentState::AGENT_DRIVING:
+      break;
+  }
+  if (robot.blockage) return to_text(*robot.blockage);
+  return fmt::format("it was under way, {:.2f} m from its last goal", distance_to_go_m(robot));
+}
+
 void RunMetrics::add_arrivals(Report& report) const {
   report.arrived = arrived();
   double latest_s = 0, total_s = 0, ratio_sum = 0;
   int ratios = 0;
   for (const RobotRecord& robot : robots_) {
     auto& arrival_s = report.arrival_s[robot.spec->id];
+    if (!has_arrived(robot) && !robot.spec->goals.empty())
+      report.not_arrived[robot.spec->id] = hindrance(robot);
     if (!has_arrived(robot) || !granting_since_) continue;
     arrival_s = std::max(0.0, to_seconds(*robot.settled_since - *granting_since_));
     latest_s = std::max(latest_s, *arrival_s);

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "common/messaging/blockage_text.hpp"
 #include "common/messaging/enumerator.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/protocol/disturbance_text.hpp"
@@ -30,18 +32,6 @@ std::string name_of_client(std::uint32_t client) {
 
 std::vector<RobotId> robots_of(std::uint32_t robot) {
   return robot < kMaxRobots ? std::vector<RobotId>{robot} : std::vector<RobotId>{};
-}
-
-const char* reason_of(msg::BlockReason reason) {
-  constexpr std::array kTexts{"nothing",
-                              "an obstacle covers its goal",
-                              "a robot stands on its goal",
-                              "a zone covers its goal",
-                              "no path leads to its goal",
-                              "somebody may step out from behind a corner"};
-  return is_enumerator(reason, msg::BlockReason::BLOCK_OCCLUDED_CORNER)
-             ? kTexts[static_cast<std::size_t>(reason)]
-             : "unknown";
 }
 
 }  // namespace
@@ -130,11 +120,12 @@ void EventWatch::on(const msg::OrderStatus& status, Time now) {
   if (has_changed(Watched::kHeld, robot, status.is_held()))
     add(Severity::kInfo, status.is_held() ? "hold" : "resume",
         fmt::format("robot {} is {}", robot, status.is_held() ? "held" : "released"), now, {robot});
-  const bool is_blocked = status.block_reason() != msg::BlockReason::BLOCK_NONE;
+  const auto report = decode(status);
+  const bool is_blocked = report && report->blockage;
   if (!has_changed(Watched::kOrder, robot, is_blocked)) return;
   is_blocked
       ? add(Severity::kWarning, "blocked",
-            fmt::format("robot {} is blocked: {}", robot, reason_of(status.block_reason())), now, {robot})
+            fmt::format("robot {} is blocked: {}", robot, to_text(*report->blockage)), now, {robot})
       : add(Severity::kInfo, "free", fmt::format("robot {} is blocked no longer", robot), now, {robot});
 }
 

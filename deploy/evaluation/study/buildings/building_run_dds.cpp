@@ -11,9 +11,10 @@
 #include "common/config/yaml_document.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/topics.hpp"
-#include "deploy/launch/free_domain.hpp"
+#include "common/messaging/dds/free_domain.hpp"
 #include "deploy/launch/hosts/run_hosts.hpp"
 #include "deploy/launch/launcher.hpp"
+#include "deploy/launch/process_group.hpp"
 #include "deploy/simulate/campaign/distance_meter.hpp"
 
 namespace sidestep {
@@ -88,7 +89,8 @@ BuildingResult run_building(const BuildingRunOverDds& run) {
   write_without_goals(run.scenario_file, options.scenario_file);
   const Scenario scenario = load_scenario(options.scenario_file);
   const RunHosts hosts(local_hosts(options.dds.interface), scenario);
-  Launcher launcher(options, scenario, hosts.placement(), hosts.network(), stem + ".log");
+  ProcessGroup processes(stem + ".log");
+  Launcher launcher(options, scenario, hosts.placement(), hosts.network(), processes);
   return DrivenRun(launcher, places, run).run(stem + ".json");
 }
 

@@ -6,6 +6,7 @@
 #include "common/file/temporary_folder.hpp"
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/motion/robot_model.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::robots_node_test {
@@ -18,11 +19,17 @@ constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 /// Bases that stay where they are.
 class IdleDriver : public Driver {
  public:
-  void send(std::span<const BaseCommand> commands) override { periods += commands.size() == 2; }
+  void send(std::span<const BaseCommand> commands) override {
+    periods += commands.size() == 2;
+    max_speed_mps = 0;
+    for (const BaseCommand& command : commands)
+      max_speed_mps = std::max(max_speed_mps, command.velocity.linear_mps.norm());
+  }
   void on_odometry(std::function<void(const OdometryReport&)> callback) override {
     report = std::move(callback);
   }
   int periods = 0;
+  double max_speed_mps = 0;  ///< of the latest commands
   std::function<void(const OdometryReport&)> report;
 };
 
@@ -39,12 +46,14 @@ struct Scene {
     }
     node.emplace(*robot_bus, scenario, roster_of(scenario), 55, DriveSettings{}, driver, memory.path());
   }
-  void command(std::size_t index, Incarnation incarnation, Epoch epoch) {
+  void command(std::size_t index, Incarnation incarnation, Epoch epoch,
+               const std::optional<Version>& version = std::nullopt) {
     Command command;
     command.robot = scenario.robots[index].id;
     command.incarnation = incarnation;
     command.epoch = epoch;
-    command.fix = PoseFix{agent_bus.now() - 20ms, Vec2(static_cast<double>(index), 0), 0};
+    if (!version) command.fix = PoseFix{agent_bus.now() - 20ms, Vec2(static_cast<double>(index), 0), 0};
+    command.version = version;
     auto message = encode(command);
     writers[index].publish(message, agent_bus.now());
   }
@@ -99,6 +108,45 @@ TEST_CASE("odometry that is dated wrongly is counted for its robot") {
   DropCounters drops;
   scene.node->count_drops(drops);
   CHECK(drops.total(DropReason::kMisdatedOdometry) == 2);
+}
+
+TEST_CASE("robots whose process must end drive their versions to the end, and take no others") {
+  Scene scene;
+  for (int i = 0; i < 60; ++i) {
+    scene.command(0, 100, 1);
+    scene.run(20ms);
+  }
+  REQUIRE_FALSE(scene.facts.empty());
+  CHECK(scene.node->come_to_rest());
+
+  Scene driving;
+  for (int i = 0; i < 60; ++i) {
+    driving.command(0, 100, 1);
+    driving.run(20ms);
+  }
+  const auto version_of = [&](const Version& base, Time start) {
+    Trajectory trajectory(start, base.trajectory.state_at(start));
+    trajectory.append(500ms, Vec2(1, 0));
+    append_stop(trajectory, 1);
+    return Version{base.robot, 100, base.number + 1, base.number, trajectory};
+  };
+  const auto fact = decode(driving.facts.back(), driving.scenario.robots[0].id, driving.network.now());
+  REQUIRE(fact);
+  const Version first = version_of(fact->executing, driving.network.now() + 150ms);
+  const Version second = version_of(first, first.trajectory.start() + 700ms);
+  driving.command(0, 100, 1, first);
+  driving.run(400ms);
+  REQUIRE(driving.driver.max_speed_mps > 0.1);
+  CHECK_FALSE(driving.node->come_to_rest());
+  driving.command(0, 100, 1, second);
+  // The base obeys after the latency.
+  while (driving.network.now() < first.trajectory.end() + DriveSettings{}.latency) {
+    CHECK_FALSE(driving.node->come_to_rest());
+    driving.run(10ms);
+  }
+  CHECK(driving.node->come_to_rest());
+  CHECK(driving.node->robot(0).side().executing().number == first.number);
+  CHECK(driving.driver.max_speed_mps < 0.01);
 }
 
 TEST_CASE("robots that restart remember whom they obey, and count what they cannot store") {

@@ -205,7 +205,7 @@ TEST_CASE("wrong settings of a client are named") {
   Settings settings;
   CHECK_THROWS_WITH(Client(settings), ContainsSubstring("name"));
   settings.name = "test";
-  settings.domain = 100;
+  settings.domain = 233;
   CHECK_THROWS_WITH(Client(settings), ContainsSubstring("domain"));
   settings.domain = 0;
   settings.interface = "1.2.3.4";

@@ -51,6 +51,17 @@ TEST_CASE("options set their variables, and the others keep their defaults") {
   CHECK_FALSE(f.report);
 }
 
+TEST_CASE("negative numbers are no options, also without the zero before the point") {
+  Fixture f;
+  std::string place;
+  f.line.root().add_option("PLACE", place);
+  CHECK(f.error_of({"-.5,0"}).empty());
+  CHECK(place == "-0.5,0");
+  CHECK(f.error_of({"--position", "-.25,-1"}).empty());
+  CHECK(f.position_m == std::vector<double>{-0.25, -1});
+  CHECK_FALSE(f.error_of({"-.x"}).empty());
+}
+
 TEST_CASE("an option with an optional value takes its default if the value is omitted") {
   const auto [arguments, expected] = GENERATE(table<std::vector<std::string>, std::string>(
       {{{"--report"}, "report.json"}, {{"--report=other.json"}, "other.json"}}));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/process_command.hpp"
 
+#include "deploy/launch/process_group.hpp"
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -160,7 +162,7 @@ TEST_CASE("over ssh the process gets its own keys, and nobody else can read them
   RevokedKeys revoked(process.keys);
   const Time now = EventLoop::now();
   CHECK_FALSE(revoked.changed(now));
-  keys.store().revoke({Role::kAgent, 4, 4}, keys.now());
+  keys.revoke({Role::kAgent, 4, 4});
   CHECK_FALSE(revoked.changed(now));
   const auto list = revoked.changed(now + std::chrono::seconds(2));
   REQUIRE(list);

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <fstream>
 #include <poll.h>
-#include <sstream>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/catch.hpp"
+#include "tests/text_of.hpp"
 
 // glibc 2.36 declares the functions of this header without C linkage.
 extern "C" {
@@ -62,13 +62,6 @@ void wait_for_line(ProcessGroup& group, const std::string& name, const std::stri
     group.poll(10ms);
   }
   FAIL(name + " did not print " + line);
-}
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 }  // namespace

@@ -11,8 +11,11 @@ TEST_CASE("a goal is a place, with or without a heading") {
   CHECK(parse_goal("1.2,-0.4").position_m == Vec2(1.2, -0.4));
   CHECK_FALSE(parse_goal("1.2,-0.4").heading_rad);
   CHECK(parse_goal("-1,2,1.5").heading_rad == 1.5);
+  CHECK(parse_goal("-.5,+1.0").position_m == Vec2(-0.5, 1));
+  CHECK(parse_goal("+.5,1e-1,-6.28").position_m == Vec2(0.5, 0.1));
+  CHECK_THROWS_WITH(parse_goal("1,2,90"), ContainsSubstring("90 degrees are 1.571 radians"));
   for (const char* text : {"", "1", "1,", "1,2,", "1,2,3,4", "1,2,3,", "a,b", "1;2", "nan,1", "1,inf",
-                           "1e9,0", "1,2 ", ",1,2"}) {
+                           "1e9,0", "1,2 ", ",1,2", "+-1,2", "++1,2", "+,1", "1,2,-7"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_goal(text), UsageError);
   }

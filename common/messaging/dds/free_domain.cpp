@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/messaging/dds/free_domain.hpp"
+
+#include <fcntl.h>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace sidestep {
+namespace {
+
+/// The UDP ports on which processes of this network namespace listen.
+std::set<unsigned> open_ports() {
+  std::ifstream file("/proc/net/udp");
+  std::string line;
+  std::getline(file, line);
+  std::set<unsigned> result;
+  while (std::getline(file, line)) {
+    // "  sl  local_address", the latter as 0100007F:1CE8
+    std::istringstream words(line);
+    std::string slot, local;
+    words >> slot >> local;
+    if (const auto colon = local.find(':'); colon != std::string::npos)
+      result.insert(static_cast<unsigned>(std::stoul(local.substr(colon + 1), nullptr, 16)));
+  }
+  return result;
+}
+
+/// RTPS 2.2, 9.6.1.1.
+bool is_used(int domain, const std::set<unsigned>& ports) {
+  constexpr unsigned kFirstPort = 7400, kPorts = 250;
+  const unsigned first = kFirstPort + kPorts * static_cast<unsigned>(domain);
+  const auto found = ports.lower_bound(first);
+  return found != ports.end() && *found < first + kPorts;
+}
+
+}  // namespace
+
+FreeDomain::FreeDomain() {
+  const std::set<unsigned> ports = open_ports();
+  for (number_ = 10; number_ < 90; ++number_) {
+    if (is_used(number_, ports)) continue;
+    const std::string path = "/tmp/sidestep-domain-" + std::to_string(number_);
+    lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+    if (lock_ >= 0) close(lock_);
+  }
+  throw std::runtime_error("no DDS domain from 10 to 89 is free on this machine");
+}
+
+FreeDomain::~FreeDomain() { close(lock_); }
+
+}  // namespace sidestep
