@@ -15,6 +15,7 @@ namespace {
 
 constexpr Range kPlace_m{-1000, 1000}, kSize_m{0.001, 1000};
 constexpr std::size_t kMaxCorners = 1000;
+constexpr std::size_t kMaxPieces = 10'000;  // of all walls, and other obstacles
 
 Vec2 point(YamlMap& map, const std::string& key) {
   Vec2 value(0, 0);
@@ -139,6 +140,8 @@ std::vector<Shape> read_obstacles(YamlMap& map, std::size_t max_count) {
   for (std::size_t i = 0; i < elements.size(); ++i) {
     YamlMap inner(elements[i], location.of(elements[i], fmt::format("obstacles[{}]", i)));
     read_obstacle(inner, shapes);
+    if (shapes.size() > kMaxPieces)
+      location.fail(fmt::format("the walls have more than {} pieces", kMaxPieces));
   }
   return shapes;
 }

@@ -2,9 +2,13 @@
 #include "common/config/yaml_document.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <fmt/format.h>
+#include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 #include <yaml-cpp/eventhandler.h>
 
 #include "common/config/config_error.hpp"
@@ -13,22 +17,59 @@
 namespace sidestep {
 namespace {
 
-/// Records the line on which the last document began.
-class DocumentLine : public YAML::EventHandler {
+constexpr std::size_t kMaxValues = 400'000;
+
+/// Records the line on which the last document began, and counts values: each use of an anchor as often as
+/// what it stands for has values. yaml-cpp takes about half a kilobyte for each.
+class FirstReading : public YAML::EventHandler {
  public:
   int line = 1;
 
+  explicit FirstReading(const std::string& file_name) : file_name_(file_name) {}
+
   void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add_value(mark, anchor); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(mark, values_of_[anchor]); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                const std::string&) override {
+    add_value(mark, anchor);
   }
-  void OnMapEnd() override {}
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    begin(mark, anchor);
+  }
+  void OnSequenceEnd() override { end(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    begin(mark, anchor);
+  }
+  void OnMapEnd() override { end(); }
+
+ private:
+  void add(const YAML::Mark& mark, std::size_t values) {
+    values_ += values;
+    if (values_ > kMaxValues)
+      throw ConfigError(file_name_, mark.line + 1, fmt::format("more than {} values", kMaxValues));
+  }
+  void add_value(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    add(mark, 1);
+    values_of_[anchor] = 1;
+  }
+  void begin(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    open_.emplace_back(anchor, values_);
+    add(mark, 1);
+  }
+  void end() {
+    const auto [anchor, before] = open_.back();
+    open_.pop_back();
+    values_of_[anchor] = values_ - before;
+  }
+
+  const std::string& file_name_;
+  std::size_t values_ = 0;
+  std::vector<std::pair<YAML::anchor_t, std::size_t>> open_;  // collections, and the values before each
+  std::map<YAML::anchor_t, std::size_t> values_of_;           // by anchor; 0 stands for none
 };
 
 }  // namespace
@@ -49,7 +90,7 @@ YAML::Node parse_yaml(const std::string& text, const std::string& file_name, con
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
-    DocumentLine document;
+    FirstReading document(file_name);
     if (!parser.HandleNextDocument(document))
       throw ConfigError(file_name, 1, "the file is empty, expected " + expected);
     if (parser.HandleNextDocument(document)) {

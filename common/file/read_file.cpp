@@ -10,13 +10,17 @@
 
 namespace sidestep {
 
-std::string read_file(const std::string& path, std::size_t max_bytes) {
+void require_regular_file(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (error) throw std::runtime_error(error.message());
   if (fs::is_directory(status)) throw std::runtime_error("a directory");
   if (!fs::is_regular_file(status)) throw std::runtime_error("not a regular file");
+}
+
+std::string read_file(const std::string& path, std::size_t max_bytes) {
+  require_regular_file(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(std::strerror(errno));
   // The file may grow meanwhile, and those of /proc have no size.

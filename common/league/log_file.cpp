@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "common/file/read_file.hpp"
+
 namespace sidestep::league {
 namespace {
 
@@ -40,13 +42,14 @@ bool is_known(std::int32_t type) {
 }
 
 std::unique_ptr<std::istream> opened(const std::string& path) {
-  auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
-  // A directory can be opened, but not read.
-  if (!*file || (file->peek(), file->bad())) {
-    throw std::runtime_error(fmt::format("{}: cannot read the file: {}", path, std::strerror(errno)));
+  try {
+    require_regular_file(path);
+    auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
+    if (!*file) throw std::runtime_error(std::strerror(errno));
+    return file;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: cannot read the file: {}", path, error.what()));
   }
-  file->clear();
-  return file;
 }
 
 }  // namespace

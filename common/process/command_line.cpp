@@ -52,7 +52,13 @@ ValueCheck in_range(double min, double max) {
           [range = CLI::Range(min, max)](const std::string& text) { return range(text); }};
 }
 
-ValueCheck positive() { return from_library(CLI::PositiveNumber); }
+ValueCheck positive() {
+  constexpr double kLimit = 1e9;
+  const auto problem = [range = CLI::Range(1 / kLimit, kLimit)](const std::string& text) {
+    return range(text).empty() ? "" : text + " is not a number above 0, up to 1e9";
+  };
+  return {"POSITIVE", problem};
+}
 
 ValueCheck non_negative() { return from_library(CLI::NonNegativeNumber); }
 

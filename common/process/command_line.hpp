@@ -27,6 +27,7 @@ struct ValueCheck {
   std::function<std::string(const std::string&)> problem;  ///< what is wrong with a value; empty if valid
 };
 [[nodiscard]] ValueCheck in_range(double min, double max);
+/// Above 0, and a duration of so many seconds or a rate of so many a second can be stated: from 1e-9 to 1e9.
 [[nodiscard]] ValueCheck positive();
 [[nodiscard]] ValueCheck non_negative();
 [[nodiscard]] ValueCheck one_of(std::vector<std::string> values);

@@ -81,7 +81,7 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
           .excludes(recording)
           .excludes(svg);
   command.add_option("--jobs", campaign.jobs, "parallel processes for --seeds [number of cores]")
-      .check(positive())
+      .check(in_range(1, 256))
       .needs(seeds);
   command
       .add_option("--results", campaign.results_file,

@@ -121,7 +121,7 @@ void add_plan_command(const CliCommand& root, std::function<int()>& action) {
       .check(non_negative())
       .show_default();
   command.add_option("--ms", options->milliseconds, "time limit of the planner, milliseconds")
-      .check(positive())
+      .check(in_range(0.001, 3.6e6))
       .show_default();
   command.on_parsed([&action, options] { action = [options] { return plan(*options); }; });
 }

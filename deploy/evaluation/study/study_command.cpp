@@ -50,7 +50,7 @@ void add_clutter_study(const CliCommand& study, std::function<int()>& action) {
       .comma_separated()
       .check(one_of(driving_planners()));
   clutter.add_option("--jobs", options->jobs, "number of parallel processes")
-      .check(positive())
+      .check(in_range(1, 256))
       .show_default();
   clutter.on_parsed([&action, options, planners] {
     action = [options, planners] { return study_clutter(*options, *planners); };
@@ -76,7 +76,7 @@ void add_buildings_study(const CliCommand& study, std::function<int()>& action) 
       .check(positive())
       .show_default();
   buildings.add_option("--jobs", options->study.jobs, "number of parallel processes")
-      .check(positive())
+      .check(in_range(1, 256))
       .show_default();
   buildings.on_parsed([&action, options] { action = [options] { return study_buildings(*options); }; });
 }
@@ -87,7 +87,7 @@ void add_sight_study(const CliCommand& study, const std::string& name, const std
   const CliCommand command = add_study(study, name, description, *options);
   command.add_option("--cases", options->cases, "number of random cases").check(positive()).show_default();
   command.add_option("--jobs", options->jobs, "number of parallel processes")
-      .check(positive())
+      .check(in_range(1, 256))
       .show_default();
   command.on_parsed([&action, options, run] { action = [options, run] { return run(*options); }; });
 }
@@ -102,7 +102,9 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand safety =
       add_study(study, "safety",
                 "The safety search: traversals with and without it, margins against noise, time", *options);
-  safety.add_option("--jobs", options->jobs, "number of parallel processes").check(positive()).show_default();
+  safety.add_option("--jobs", options->jobs, "number of parallel processes")
+      .check(in_range(1, 256))
+      .show_default();
   safety.on_parsed([&action, options] { action = [options] { return study_safety(*options); }; });
   const CliCommand planning = add_study(
       study, "planning",

@@ -56,9 +56,9 @@ void add_bag_command(const CliCommand& root, std::function<int()>& action) {
   cut.add_option("FILE", options->file, "recording").required();
   cut.add_option("--out", options->out, "recording to write").required();
   cut.add_option("--from", options->cut.from_s, "begin, in seconds after the first message")
-      .check(non_negative());
+      .check(in_range(0, 1e9));
   cut.add_option("--to", options->cut.to_s, "end, in seconds after the first message [the recording's]")
-      .check(non_negative());
+      .check(in_range(0, 1e9));
   cut.add_option("--topics", options->topics, "only these, e.g. truth,feedback/3 [all]").comma_separated();
   cut.on_parsed([options, &action] {
     require_other_file({options->file}, options->out);

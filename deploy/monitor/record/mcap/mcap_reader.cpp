@@ -10,6 +10,8 @@
 #include <utility>
 #include <zstd.h>
 
+#include "common/file/read_file.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -18,15 +20,17 @@ using Bytes = std::span<const std::uint8_t>;
 
 }  // namespace
 
-McapReader::McapReader(const std::string& path) : file_(std::fopen(path.c_str(), "rb")) {
-  std::error_code error;
-  if (file_ && std::filesystem::is_directory(path, error)) {
-    file_.reset();
-    errno = EISDIR;
+McapReader::McapReader(const std::string& path) {
+  try {
+    require_regular_file(path);
+    file_.reset(std::fopen(path.c_str(), "rb"));
+    if (!file_) throw std::runtime_error(std::strerror(errno));
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(fmt::format("{}: cannot be read: {}", path, error.what()));
   }
-  if (!file_) throw std::invalid_argument(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
   if (!std::ranges::equal(read(kMcapMagic.size()), kMcapMagic))
     throw std::invalid_argument(path + ": is not an MCAP file");
+  std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error) file_bytes_ = size;
 }
@@ -88,18 +92,19 @@ void McapReader::check_end(Bytes data_end, std::uint32_t sum) {
   // The summary. Its checksum is the last field of the footer, which ends the file together with the magic.
   constexpr std::size_t kEnd = 4 + kMcapMagic.size();
   McapBytes rest;
+  std::uint32_t sum_of_summary = 0;
   for (;;) {
     const Bytes some = read(1 << 20);
     if (some.empty()) break;
     rest.insert(rest.end(), some.begin(), some.end());
-    if (rest.size() > kMaxRecordSize) return fail("the summary is too large");
+    const std::size_t summary = rest.size() - std::min(rest.size(), kEnd);
+    sum_of_summary = mcap_checksum(Bytes(rest).first(summary), sum_of_summary);
+    rest.erase(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(summary));
   }
   if (rest.size() < kEnd || !std::ranges::equal(Bytes(rest).last(kMcapMagic.size()), kMcapMagic))
     return fail("the file was not finished");
-  const Bytes summary = Bytes(rest).first(rest.size() - kEnd);
-  const auto sum_of_summary = McapDecoder(Bytes(rest).subspan(summary.size())).number<std::uint32_t>();
-  if (sum_of_summary != 0 && sum_of_summary != mcap_checksum(summary))
-    fail("the checksum of the summary is wrong");
+  const auto stated = McapDecoder(rest).number<std::uint32_t>();
+  if (stated != 0 && stated != sum_of_summary) fail("the checksum of the summary is wrong");
 }
 
 bool McapReader::decompress(Bytes compressed, std::uint64_t size) {
@@ -246,7 +251,15 @@ McapRecord McapReader::attachment_of(Bytes content) {
   return attachment;
 }
 
+bool McapReader::may_keep(Bytes content) {
+  constexpr std::size_t kMaxKept = 32 << 20;
+  kept_bytes_ += content.size();
+  if (kept_bytes_ > kMaxKept) fail(fmt::format("schemas and channels take more than {} bytes", kMaxKept));
+  return kept_bytes_ <= kMaxKept;
+}
+
 void McapReader::learn_schema(Bytes content) {
+  if (!may_keep(content)) return;
   McapDecoder decoder(content);
   const auto id = decoder.number<std::uint16_t>();
   McapSchema schema{decoder.text(), decoder.text(), decoder.text()};
@@ -257,6 +270,7 @@ void McapReader::learn_schema(Bytes content) {
 }
 
 void McapReader::learn_channel(Bytes content) {
+  if (!may_keep(content)) return;
   McapDecoder decoder(content);
   const auto id = decoder.number<std::uint16_t>();
   McapChannel channel;

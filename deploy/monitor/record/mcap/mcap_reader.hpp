@@ -18,7 +18,7 @@ using McapRecord = std::variant<std::monostate, McapMessage, McapAttachment, Mca
 /// all whole records before the cut are returned, also those of a chunk that is cut off.
 class McapReader {
  public:
-  static constexpr std::uint64_t kMaxRecordSize = 256 << 20;
+  static constexpr std::uint64_t kMaxRecordSize = 64 << 20;
 
   /// Throws std::runtime_error when the file cannot be read or is not an MCAP file.
   explicit McapReader(const std::string& path);
@@ -60,6 +60,8 @@ class McapReader {
   McapRecord record_of(const Frame& frame);
   McapRecord message_of(std::span<const std::uint8_t> content);
   McapRecord attachment_of(std::span<const std::uint8_t> content);
+  /// Whether what is kept until the end of the file has not become too large.
+  bool may_keep(std::span<const std::uint8_t> content);
   void learn_schema(std::span<const std::uint8_t> content);
   void learn_channel(std::span<const std::uint8_t> content);
   void check_end(std::span<const std::uint8_t> data_end, std::uint32_t sum);
@@ -76,6 +78,7 @@ class McapReader {
   bool is_sought_ = false;
   std::uint64_t chunk_offset_ = 0;
   std::string damage_;
+  std::size_t kept_bytes_ = 0;  // of schemas and channels, also of those that were replaced
   std::map<std::uint16_t, McapSchema> schemas_;
   std::map<std::uint16_t, McapChannel> channels_;
 };

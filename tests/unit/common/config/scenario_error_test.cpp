@@ -298,6 +298,27 @@ TEST_CASE("text that is not a single YAML document is rejected with its line") {
   check_rejected(std::string(100000, '['), 1, "not YAML");
 }
 
+TEST_CASE("a file of more values than memory is meant for is rejected, also where anchors multiply them") {
+  std::string many = kRobot + "obstacles: [";
+  for (int i = 0; i < 400'000; ++i) many += "0,";
+  check_rejected(many + "]\n", 2, "more than 400000 values");
+  std::string laughs = "a0: &a0 [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]\n";
+  for (int i = 1; i < 30; ++i) {
+    laughs += fmt::format("a{}: &a{} [", i, i);
+    for (int k = 0; k < 10; ++k) laughs += fmt::format("*a{},", i - 1);
+    laughs += "]\n";
+  }
+  check_rejected(laughs, 6, "more than 400000 values");
+  std::string scalars = kRobot + "x: &x 1\ny: [";
+  for (int i = 0; i < 400'000; ++i) scalars += "*x,";
+  check_rejected(scalars + "]\n", 3, "more than 400000 values");
+  std::string walls = kRobot + "obstacles:\n  - wall: &w {thickness_m: 0.1, points_m: [";
+  for (int i = 0; i < 900; ++i) walls += fmt::format("[{}, {}],", i % 2, 3 + i % 3);
+  walls += "]}\n";
+  for (int i = 0; i < 12; ++i) walls += "  - wall: *w\n";
+  check_rejected(walls, 3, "the walls have more than 10000 pieces");
+}
+
 TEST_CASE("files that cannot be read are rejected") {
   const auto load_error = [](const std::string& path) -> std::string {
     try {

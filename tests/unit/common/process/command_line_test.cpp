@@ -92,6 +92,29 @@ TEST_CASE("a refused value is reported with its option") {
   CHECK_THAT(f.error_of(arguments), ContainsSubstring(option));
 }
 
+TEST_CASE("what has to be positive is neither so large nor so small that it cannot be a duration") {
+  const auto [text, is_valid] = GENERATE(table<std::string, bool>({{"1e-9", true},
+                                                                   {"0.5", true},
+                                                                   {"1e9", true},
+                                                                   {"1.1e9", false},
+                                                                   {"1e308", false},
+                                                                   {"1e999", false},
+                                                                   {"1e-10", false},
+                                                                   {"1e-320", false},
+                                                                   {"0", false},
+                                                                   {"-1", false},
+                                                                   {"nan", false}}));
+  CAPTURE(text);
+  CommandLine line("A program under test.", "sidestep-test");
+  double seconds = 1;
+  line.root().add_option("--seconds", seconds).check(positive());
+  if (is_valid) {
+    CHECK_NOTHROW(line.parse({"--seconds", text}));
+  } else {
+    CHECK_THROWS_WITH(line.parse({"--seconds", text}), ContainsSubstring("--seconds"));
+  }
+}
+
 TEST_CASE("options that need or exclude each other are checked") {
   CHECK_THAT(Fixture().error_of({"--verbose"}), ContainsSubstring("--mode"));
   CHECK_THAT(Fixture().error_of({"--speed", "1", "--position", "0,0"}), ContainsSubstring("--speed"));

@@ -166,11 +166,27 @@ TEST_CASE("sizes that an MCAP file only claims take no memory") {
   const std::string file = folder.file("test.mcap");
   const std::string magic(kMcapMagic.begin(), kMcapMagic.end());
   const std::string huge("\x06\xff\xff\xff\xff\xff\xff\xff\x7f", 9),
-      large("\x06\x00\x00\x00\x0f\x00\x00\x00\x00", 9);
+      large("\x06\x00\x00\x00\x03\x00\x00\x00\x00", 9);
   write(file, magic + huge);
   CHECK_THAT(read(file).damage, ContainsSubstring("claims a size of"));
   write(file, magic + large);
   CHECK_THAT(read(file).damage, ContainsSubstring("middle of a record"));
+}
+
+TEST_CASE("schemas and channels fill no memory, however many and large they are") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("test.mcap");
+  // One schema, again and again: number 7, without a name and an encoding, a text of a megabyte.
+  const std::string text(1 << 20, 'x');
+  const std::string schema = std::string("\x03\x0e\x00\x10\x00\x00\x00\x00\x00", 9) +
+                             std::string("\x07\x00", 2) + std::string(8, '\0') +
+                             std::string("\x00\x00\x10\x00", 4) + text;
+  std::string bytes(kMcapMagic.begin(), kMcapMagic.end());
+  for (int i = 0; i < 31; ++i) bytes += schema;
+  write(file, bytes);
+  CHECK_THAT(read(file).damage, ContainsSubstring("was not finished"));
+  write(file, bytes + schema + schema);
+  CHECK_THAT(read(file).damage, ContainsSubstring("schemas and channels take more than"));
 }
 
 TEST_CASE("a file that is not an MCAP file is refused with its name") {
@@ -179,7 +195,8 @@ TEST_CASE("a file that is not an MCAP file is refused with its name") {
   write(file, "MCAP");
   CHECK_THROWS_WITH(McapReader(file), ContainsSubstring(file + ": is not an MCAP file"));
   CHECK_THROWS_WITH(McapReader("/nowhere/at/all"), ContainsSubstring("cannot be read: No such file"));
-  CHECK_THROWS_WITH(McapReader("/tmp"), ContainsSubstring("Is a directory"));
+  CHECK_THROWS_WITH(McapReader("/tmp"), ContainsSubstring("a directory"));
+  CHECK_THROWS_WITH(McapReader("/dev/zero"), ContainsSubstring("not a regular file"));
   CHECK_THROWS_WITH(McapWriter("/nowhere/at/all"), ContainsSubstring("cannot be written"));
   McapWriter full("/dev/full");
   CHECK_THROWS_WITH(full.close(), ContainsSubstring("some writes failed"));
