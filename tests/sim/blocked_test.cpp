@@ -5,6 +5,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/random/rng.hpp"
 #include "deploy/simulate/system/sim_system.hpp"
+#include "tests/sim/disturbance.hpp"
 #include "tests/sim/ordered_system.hpp"
 
 namespace sidestep::blocked_test {
@@ -232,9 +233,7 @@ TEST_CASE("the report says of each robot that has not arrived why") {
   system.run_for(std::chrono::milliseconds(1500));
   system.send({msg::OrderKind::ORDER_HOLD, 2, static_cast<ClientId>(Sender::kOperator),
                static_cast<OrderNumber>(to_ns(system.now()))});
-  msg::Disturbance lift;
-  lift.robot(3);
-  lift.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_LIFT);
+  auto lift = disturbance(3, msg::DisturbanceKind::DISTURBANCE_LIFT);
   system.disturb(lift);
   system.run_for(std::chrono::seconds(12));
   const Report report = system.metrics().report();

@@ -199,7 +199,7 @@ const std::vector<Cause> kCauses{
      }},
     {DropReason::kMalformedPlacement, "agent 0",
      [](Stranger& s, SimSystem&) {
-       msg::Disturbance place;
+       auto place = from<msg::Disturbance>(Sender::kOperator);
        place.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PLACE);
        place.x_m(kNan);
        s.send(topics::kDisturbance, place);
@@ -360,7 +360,7 @@ const std::vector<Cause> kCauses{
      [](Stranger& s, SimSystem&) { s.send(topics::kCommand, with_version(s, 1, 50ms)); }},
     {DropReason::kRefusedDisturbance, "simulator",
      [](Stranger& s, SimSystem&) {
-       msg::Disturbance push;
+       auto push = from<msg::Disturbance>(Sender::kOperator);
        push.robot(99);
        s.send(topics::kDisturbance, push);
      }},

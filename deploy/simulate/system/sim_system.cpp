@@ -124,6 +124,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
   });
   observer_bus_.subscribe<msg::AgentStatus>(topics::kStatus,
                                             [this](const auto& status) { metrics_.on_status(status); });
+  observer_bus_.subscribe<msg::OrderStatus>(topics::kOrderStatus,
+                                            [this](const auto& status) { metrics_.on_order_status(status); });
   observer_bus_.subscribe<msg::CoordinatorState>(
       topics::kCoordinator, [this](const auto& state) { metrics_.on_coordinator(state); });
   observer_bus_.subscribe<msg::Counters>(topics::kCounters,
