@@ -161,7 +161,8 @@ bool copy_without_timestamp(Bytes datagram, Datagram& copy) {
   // The body is the encrypted submessage after its size.
   if (!has(body, kEncryptedBodySubmessage) || size_at(body) != kPlainTimestampSize + 4) return false;
   const std::size_t postfix = next(body);
-  if (!has(postfix, kEncryptedPostfixSubmessage) || !has(next(postfix), kEncryptedPrefixSubmessage)) return false;
+  if (!has(postfix, kEncryptedPostfixSubmessage) || !has(next(postfix), kEncryptedPrefixSubmessage))
+    return false;
   copy.assign(datagram.begin(), datagram.begin() + static_cast<std::ptrdiff_t>(begin));
   append(copy, datagram.subspan(next(postfix)));
   return true;

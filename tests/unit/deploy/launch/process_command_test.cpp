@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/process_command.hpp"
 
-#include "deploy/launch/process_group.hpp"
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +11,7 @@
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "deploy/launch/hosts/command.hpp"
+#include "deploy/launch/process_group.hpp"
 #include "deploy/launch/revoked_keys.hpp"
 #include "tests/catch.hpp"
 #include "tests/test_keys.hpp"
