@@ -82,7 +82,7 @@ void AgentNode::subscribe() {
 }
 
 void AgentNode::on_feedback(const msg::Feedback& message) {
-  const auto feedback = decode(message, robot_, robot_now());
+  const auto feedback = decode(message, robot_, bus_.now());
   if (!accept(feedback, DropReason::kMalformedFeedback)) return;
   measure_robot_clock(*feedback);
   const Epoch last_epoch = agent_.epoch();
@@ -124,18 +124,18 @@ void AgentNode::on_obstacles(const msg::ObstacleList& message) {
 }
 
 void AgentNode::on_scan(const msg::LaserScan& message) {
-  const auto scan = scans_->decode(message, robot_now());
+  const auto scan = scans_->decode(message, bus_.now());
   if (accept(scan, DropReason::kMalformedScan))
     agent_.on_scan(*scan, bus_.now() + clocks_.max_robot_offset(bus_.now()));
 }
 
 void AgentNode::on_page(const msg::LedgerPage& message) {
-  const auto page = ReceivedPage::decode(message, robot_now(), bus_.attachment(&message));
+  const auto page = ReceivedPage::decode(message, bus_.now(), bus_.attachment(&message));
   if (accept(page, DropReason::kMalformedLedgerPage)) agent_.on_page(*page);
 }
 
 void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
-  const auto heartbeat = decode(message, robot_now());
+  const auto heartbeat = decode(message, bus_.now());
   if (!accept(heartbeat, DropReason::kMalformedCoordinatorState)) return;
   const Epoch last_epoch = agent_.epoch();
   const bool could_propose = agent_.may_propose(robot_now());

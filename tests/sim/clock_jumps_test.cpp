@@ -142,4 +142,33 @@ TEST_CASE("a robot whose clock goes back drives again once the clock is right") 
   CHECK(system.metrics().report().audit->violations == 0);
 }
 
+TEST_CASE("an agent whose clock was ahead hears its robot again although epochs are nearly an hour ahead") {
+  // What it hears decides how it corrects its clock, so what it may hear must not depend on that.
+  const double ahead_s = GENERATE(10.0, 500.0, 3400.0);
+  CAPTURE(ahead_s);
+  SimSystem system(shuttles(3, 2), 1, {}, kBegin);
+  MotionWatch motion(system);
+  system.run_for(std::chrono::seconds(1));
+  // The coordinator that begins an epoch meanwhile numbers it by this clock.
+  system.set_clock("coordinator", std::chrono::seconds(3400));
+  system.kill("coordinator 1");
+  system.kill("coordinator");
+  system.restart("coordinator");
+  system.run_for(std::chrono::seconds(3));
+  system.set_clock("coordinator", Duration{0});
+  system.run_for(std::chrono::seconds(3));
+  const Report before = system.metrics().report();
+  system.set_clock("agent 1", from_seconds(ahead_s));
+  system.run_for(std::chrono::seconds(1));
+  system.set_clock("agent 1", Duration{0});
+  motion.begin();
+  system.run_for(kMaxRecovery);
+  REQUIRE(before.epochs.back().epoch > static_cast<Epoch>(to_ns(system.now() + std::chrono::seconds(3300))));
+  for (const RobotId robot : {0u, 1u, 2u}) {
+    INFO("robot " << robot);
+    CHECK(motion.first_motion_s(robot));
+  }
+  CHECK(system.metrics().report().audit->violations == 0);
+}
+
 }  // namespace sidestep::clock_jumps_test
