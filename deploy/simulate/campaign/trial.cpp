@@ -22,6 +22,8 @@ namespace {
 constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
 // This long after the last fault, all processes must work again.
 constexpr Duration kRecoveryTime = std::chrono::seconds(2);
+/// A robot waits for less, e.g. after its own stop, unless it is stuck.
+constexpr Duration kLongestWait = std::chrono::seconds(3);
 // With more ghosts, some are always taken for obstacles that come nearer, and robots on a small floor stay
 // put.
 constexpr double kMaxGhostObstacles = 0.02;
@@ -37,14 +39,17 @@ struct UnexpectedStates {
   std::vector<RobotId> not_absent;        ///< off the floor, but the agent does not report it
 };
 
+bool is_driving(const RobotProgress& row) {
+  return row.agent_state == msg::AgentState::AGENT_DRIVING ||
+         row.agent_state == msg::AgentState::AGENT_ARRIVED;
+}
+
 UnexpectedStates find_unexpected_states(const std::vector<RobotProgress>& progress, const FaultPlan& plan) {
   UnexpectedStates unexpected;
   for (const RobotProgress& row : progress) {
     const auto end = plan.ends.find(row.robot);
     if (end == plan.ends.end()) {
-      const bool is_driving = row.agent_state == msg::AgentState::AGENT_DRIVING ||
-                              row.agent_state == msg::AgentState::AGENT_ARRIVED;
-      if (!is_driving) unexpected.not_driving.push_back(row.robot);
+      if (!is_driving(row)) unexpected.not_driving.push_back(row.robot);
     } else if (end->second == RobotEnd::kClockOutOfBound || end->second == RobotEnd::kClockLeftBound) {
       if (row.agent_state != msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND)
         unexpected.undetected_clock.push_back(row.robot);
@@ -199,12 +204,19 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   });
   if (hooks.on_start) hooks.on_start(system);
   FaultPlayer player(system, trial.scenario, trial.plan);
+  player.run_until(trial.duration - std::min(trial.duration, kLongestWait));
+  const std::vector<RobotProgress> earlier = system.metrics().progress();
   player.run_until(trial.duration);
   if (hooks.on_end) hooks.on_end();
   const Report final_report = system.metrics().report();
   copy_metrics(final_report, meter, result);
   result.is_audited = !system.was_second_simulator_believed();
-  add_failures(trial, system.metrics().progress(), system.metrics().all_arrived(), final_report, result);
+  std::vector<RobotProgress> progress = system.metrics().progress();
+  for (std::size_t i = 0; i < progress.size(); ++i) {
+    if (!trial.plan.ends.contains(progress[i].robot) && is_driving(earlier[i]))
+      progress[i].agent_state = earlier[i].agent_state;
+  }
+  add_failures(trial, progress, system.metrics().all_arrived(), final_report, result);
   std::ranges::copy(player.order_failures(), std::back_inserter(result.failures));
   if (report) {
     *report = final_report;
