@@ -357,9 +357,10 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   CHECK(run.children() == processes);
   const int carried_out = shuttle.drive();
   keyed.check_unharmed();
-  CHECK(run.report()["deaths"].empty());
+  const nlohmann::json report = run.report();
+  CHECK(report["deaths"].empty());
   std::uint64_t dropped = 0;
-  for (const auto& [process, counts] : run.report()["counters"].items())
+  for (const auto& [process, counts] : report["counters"].items())
     dropped += counts.value("malformed_datagram", std::uint64_t{0});
   CHECK(dropped > 0);
   WARN(captured.size() << " datagrams captured, " << replayed << " replayed, " << changed << " altered, "
