@@ -21,7 +21,8 @@ inline std::vector<std::uint8_t> participant_datagram(const ParticipantId& id,
   const std::size_t padded = (user_data.size() + 3) / 4 * 4;
   append(id);
   append(std::array<std::uint8_t, 2>{0x15, 5});
-  append_16(0);  // up to the end
+  const std::size_t body = result.size() + 2;
+  append_16(0);  // its size, see below
   append(std::array<std::uint8_t, 20>{0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0});
   append(std::array<std::uint8_t, 8>{0, 3, 0, 0, 0x15, 0, 4, 0});  // a list; the protocol's version:
   append(std::array<std::uint8_t, 4>{2, 2, 0, 0});
@@ -35,6 +36,9 @@ inline std::vector<std::uint8_t> participant_datagram(const ParticipantId& id,
   append(user_data);
   result.resize(result.size() + padded - user_data.size());
   append(std::array<std::uint8_t, 4>{1, 0, 0, 0});
+  const std::size_t size = result.size() - body;
+  result[body - 2] = static_cast<std::uint8_t>(size);
+  result[body - 1] = static_cast<std::uint8_t>(size >> 8);
   return result;
 }
 

@@ -161,8 +161,10 @@ TEST_CASE("an agent whose clock was ahead hears its robot again although epochs 
   system.set_clock("agent 1", from_seconds(ahead_s));
   system.run_for(std::chrono::seconds(1));
   system.set_clock("agent 1", Duration{0});
-  motion.begin();
+  // What still moves ends meanwhile.
   system.run_for(kMaxRecovery);
+  motion.begin();
+  system.run_for(std::chrono::seconds(2));
   REQUIRE(before.epochs.back().epoch > static_cast<Epoch>(to_ns(system.now() + std::chrono::seconds(3300))));
   for (const RobotId robot : {0u, 1u, 2u}) {
     INFO("robot " << robot);
