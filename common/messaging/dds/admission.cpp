@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace sidestep {
 namespace {
@@ -95,13 +96,47 @@ Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const
     found->second.last_heard = now;
     return Refusal::kNone;
   }
-  const auto same =
-      std::ranges::count_if(participants_, [&](const auto& p) { return p.second.known == &known; });
-  if (static_cast<std::size_t>(same) >= kMaxPerCertificate || participants_.size() >= kMaxParticipants)
-    return Refusal::kTooMany;
+  const auto displaced = displaced_.find(id);
+  if (displaced != displaced_.end() && now < displaced->second.until) return Refusal::kTooMany;
   if (!known.unproven.admit(now)) return Refusal::kTooMany;
+  if (!make_room(known, now)) {
+    known.unproven.give_back();
+    return Refusal::kTooMany;
+  }
   participants_[id] = {&known, now, now};
   return Refusal::kNone;
+}
+
+bool Admission::make_room(const Known& known, Time now) {
+  const auto has_certificate = [&known](const auto& p) { return p.second.known == &known; };
+  const auto same = static_cast<std::size_t>(std::ranges::count_if(participants_, has_certificate));
+  const bool is_certificate_full = same >= kMaxPerCertificate;
+  if (!is_certificate_full && participants_.size() < kMaxParticipants) return true;
+  auto oldest = participants_.end();
+  for (auto entry = participants_.begin(); entry != participants_.end(); ++entry) {
+    const Participant& participant = entry->second;
+    if (is_certificate_full && participant.known != &known) continue;
+    if (participant.is_proven || entry->first == self_id_ || now - participant.admitted < kMaxUnproven)
+      continue;
+    if (oldest == participants_.end() || participant.admitted < oldest->second.admitted) oldest = entry;
+  }
+  if (oldest == participants_.end()) return false;
+  displace(oldest->first, now);
+  participants_.erase(oldest);
+  return true;
+}
+
+void Admission::displace(const ParticipantId& id, Time now) {
+  displaced_since_call_.push_back(id);
+  const auto found = displaced_.find(id);
+  if (found != displaced_.end()) {
+    const Duration wait = std::min(2 * (found->second.until - found->second.since), kMaxWait);
+    found->second = {now, now + wait};
+    return;
+  }
+  if (displaced_.size() >= kMaxParticipants)
+    displaced_.erase(std::ranges::min_element(displaced_, {}, [](const auto& d) { return d.second.since; }));
+  displaced_[id] = {now, now + kFirstWait};
 }
 
 bool Admission::admits(const ParticipantId& id, Time now) {
@@ -120,15 +155,16 @@ void Admission::on_authenticated(const ParticipantId& id) {
   const auto found = participants_.find(id);
   if (found == participants_.end() || found->second.is_proven) return;
   found->second.is_proven = true;
-  found->second.unproven_since.reset();
+  displaced_.erase(id);
   found->second.known->unproven.give_back();
 }
 
 std::vector<Identity> Admission::newly_unproven(Time now) {
   std::vector<Identity> result;
   for (auto& [id, participant] : participants_) {
-    if (!participant.unproven_since || now - *participant.unproven_since < kMaxUnproven) continue;
-    participant.unproven_since.reset();
+    if (participant.is_proven || participant.is_reported || now - participant.admitted < kMaxUnproven)
+      continue;
+    participant.is_reported = true;
     // One that has ended meanwhile may have been too brief.
     if (id == self_id_ || now - participant.last_heard > kMaxUnproven / 2) continue;
     result.push_back(participant.known->identity);
@@ -137,7 +173,7 @@ std::vector<Identity> Admission::newly_unproven(Time now) {
 }
 
 std::vector<ParticipantId> Admission::newly_refused(Time now) {
-  std::vector<ParticipantId> result;
+  std::vector<ParticipantId> result = std::exchange(displaced_since_call_, {});
   for (const auto& [id, participant] : participants_) {
     if (now - participant.last_heard > kForgetAfter || check_now(*participant.known, now) != Refusal::kNone)
       result.push_back(id);

@@ -30,8 +30,10 @@ std::vector<std::uint8_t> credentials(const Certificate& certificate, const std:
 /// accepts. An attacker can repeat the announcement of another, and then gets no further than authentication.
 /// So the participants with one certificate are limited, and new ones are admitted at a low rate while they
 /// do not prove to be genuine: Fast DDS keeps about a hundred bytes of each, for as long as the process
-/// lives. Participants that exchange no messages, as agents among each other, are not admitted either: among
-/// many robots, most of the time at the start would go into their handshakes.
+/// lives. Where there is no place left, a new one displaces one that did not prove to be genuine in time, and
+/// that one waits before it is admitted again, twice as long each time. Participants that exchange no
+/// messages, as agents among each other, are not admitted either: among many robots, most of the time at the
+/// start would go into their handshakes.
 class Admission {
  public:
   static constexpr std::size_t kMaxPerCertificate = 24;
@@ -42,6 +44,8 @@ class Admission {
   static constexpr Duration kForgetAfter{10'000'000'000};
   /// Fast DDS has shown within this time that a genuine participant is one.
   static constexpr Duration kMaxUnproven{8'000'000'000};
+  /// A displaced participant waits so long before it is admitted again, the first time and at most.
+  static constexpr Duration kFirstWait{60'000'000'000}, kMaxWait{3'600'000'000'000};
   /// Signatures that are checked: a burst, and then so many a second.
   static constexpr int kMaxChecks = 200, kChecksPerSecond = 50;
 
@@ -84,8 +88,8 @@ class Admission {
   [[nodiscard]] std::vector<Identity> newly_unproven(Time now);
   /// The serial numbers of revoked certificates.
   void set_revoked(std::set<std::string> serials) { revoked_ = std::move(serials); }
-  /// Participants that are no longer admitted, because they are silent, or their certificate has expired or
-  /// is revoked. Fast DDS must forget them.
+  /// Participants that are no longer admitted, because they are silent or were displaced, or their
+  /// certificate has expired or is revoked. Fast DDS must forget them.
   [[nodiscard]] std::vector<ParticipantId> newly_refused(Time now);
 
   /// The refusal in plain words: "agent 3 at 10.0.0.7, whose key is revoked".
@@ -103,9 +107,11 @@ class Admission {
   };
   struct Participant {
     Known* known = nullptr;
-    Time last_heard;
-    std::optional<Time> unproven_since;  ///< nullopt: proven, or reported
-    bool is_proven = false;
+    Time admitted, last_heard;
+    bool is_proven = false, is_reported = false;
+  };
+  struct Displaced {
+    Time since, until;  ///< not admitted again before `until`
   };
 
   /// Forgets the certificate that was announced longest ago, unless a participant has it.
@@ -113,6 +119,10 @@ class Admission {
   /// The certificate, if the authority has issued it; otherwise says why not.
   Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
   Refusal admit(const ParticipantId& id, Known& known, const std::string& version, Time now);
+  /// Makes sure that one more participant with this certificate has a place. False if nobody can be
+  /// displaced.
+  bool make_room(const Known& known, Time now);
+  void displace(const ParticipantId& id, Time now);
   Refusal check_now(const Known& known, Time now) const;
   bool is_in_use(const Known& known) const;
 
@@ -123,6 +133,8 @@ class Admission {
   std::set<std::string> revoked_;
   std::map<std::string, Known> known_;  ///< by certificate (DER); only those of the authority
   std::map<ParticipantId, Participant> participants_;
+  std::map<ParticipantId, Displaced> displaced_;     ///< at most kMaxParticipants; the oldest is forgotten
+  std::vector<ParticipantId> displaced_since_call_;  ///< of newly_refused()
   RateLimit checks_{kMaxChecks, std::chrono::milliseconds(1000 / kChecksPerSecond)};
 };
 

@@ -172,6 +172,94 @@ TEST_CASE("participants that prove nothing are admitted at a low rate, and genui
   CHECK(admitted <= Admission::kMaxPerCertificate + 60 * kMinutes / 5 + 1);
 }
 
+TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
+  Fixture f;
+  const Certificate robot = f.issue("agent 3"), idle = f.issue("agent 4");
+  const int strangers = GENERATE(24, 40, 400), attacked_for_s = GENERATE(0, 600);
+  CAPTURE(strangers, attacked_for_s);
+  // Everybody announces itself once a second; the strangers come first, and never stop.
+  const auto strangers_announce = [&] {
+    int admitted = 0;
+    for (int i = 0; i < strangers; ++i)
+      admitted += f.announce(id_with(robot, static_cast<std::uint16_t>(i)), robot) == Refusal::kNone;
+    return admitted;
+  };
+  // One that is genuine stays, whatever the strangers do.
+  const ParticipantId twin = id_with(robot, 50'000), restarted = id_with(robot, 50'001);
+  REQUIRE(f.announce(twin, robot) == Refusal::kNone);
+  f.admission.on_authenticated(twin);
+  f.now += 1h / 2;
+  for (int second = 0; second <= attacked_for_s; ++second, f.now += 1s) {
+    REQUIRE(f.admission.admits(twin, f.now));
+    // One may be displaced after it was heard.
+    REQUIRE(strangers_announce() <= static_cast<int>(Admission::kMaxPerCertificate) + 1);
+    static_cast<void>(f.admission.newly_refused(f.now));
+  }
+  int waited_s = 0;
+  for (; f.announce(restarted, robot) != Refusal::kNone; ++waited_s, f.now += 1s) {
+    REQUIRE(waited_s < 5 * strangers);
+    REQUIRE(f.admission.admits(twin, f.now));
+    strangers_announce();
+    static_cast<void>(f.admission.newly_refused(f.now));
+  }
+  INFO("waited " << waited_s << " s");
+  // At worst each stranger had a turn meanwhile, one every kUnprovenPeriod.
+  CHECK(waited_s <= (strangers <= 40 ? 20 : 5 * strangers));
+}
+
+TEST_CASE("places taken with many certificates are freed for a genuine one of another") {
+  Fixture f;
+  std::vector<Certificate> stolen;
+  for (std::size_t i = 0; i * Admission::kMaxPerCertificate < Admission::kMaxParticipants; ++i)
+    stolen.push_back(f.issue(("agent " + std::to_string(10 + i)).c_str()));
+  const auto strangers_announce = [&] {
+    for (const Certificate& certificate : stolen)
+      for (std::uint16_t i = 0; i < Admission::kMaxPerCertificate; ++i)
+        static_cast<void>(f.announce(id_with(certificate, i), certificate));
+  };
+  f.now += 10s;
+  strangers_announce();
+  const Certificate robot = f.issue("agent 3");
+  CHECK(f.announce(id_with(robot), robot) == Refusal::kTooMany);
+  f.now += Admission::kMaxUnproven;
+  strangers_announce();
+  CHECK(f.announce(id_with(robot), robot) == Refusal::kNone);
+  CHECK(f.admission.newly_refused(f.now).size() >= 1);
+}
+
+TEST_CASE("a participant that was displaced waits longer each time, and not after it proved to be genuine") {
+  Fixture f;
+  const Certificate robot = f.issue("agent 3", 24h);
+  const ParticipantId slow = id_with(robot, 60'000);
+  std::uint16_t next = 0;
+  const auto displace = [&] {
+    while (f.admission.identity_of(slow)) {
+      f.now += 1s;
+      static_cast<void>(f.announce(id_with(robot, next++), robot));
+    }
+  };
+  const auto wait = [&] {
+    const Time since = f.now;
+    while (f.announce(slow, robot) != Refusal::kNone) f.now += 1s;
+    return f.now - since;
+  };
+  REQUIRE(wait() == 0s);
+  displace();
+  CHECK(f.admission.newly_refused(f.now).front() == slow);
+  const Duration first = wait();
+  CHECK(first >= Admission::kFirstWait);
+  CHECK(first <= Admission::kFirstWait + Admission::kUnprovenPeriod);
+  displace();
+  const Duration second = wait();
+  CHECK(second >= 2 * Admission::kFirstWait);
+  CHECK(second <= 2 * Admission::kFirstWait + Admission::kUnprovenPeriod);
+  f.admission.on_authenticated(slow);
+  for (int i = 0; i < 100; ++i, f.now += 1s) {
+    REQUIRE(f.admission.admits(slow, f.now));
+    static_cast<void>(f.announce(id_with(robot, next++), robot));
+  }
+}
+
 TEST_CASE("checks of signatures are limited, and known certificates need none") {
   Fixture f;
   const Certificate known = f.issue("agent 3");
