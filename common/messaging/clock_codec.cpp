@@ -31,6 +31,8 @@ std::optional<ClockAnswer> decode(const msg::ClockReading& message) {
     return std::nullopt;
   if (ahead_ns > to_ns(kMaxTime) || ahead_ns < -to_ns(kMaxTime)) return std::nullopt;
   if (!(bound_s >= 0 && bound_s <= kMaxClockBound_s)) return std::nullopt;
+  const std::string place(message.place().begin(), message.place().end());
+  const std::size_t end = place.find('\n');
   return ClockAnswer{message.process(),
                      message.header().incarnation(),
                      message.client(),
@@ -39,11 +41,17 @@ std::optional<ClockAnswer> decode(const msg::ClockReading& message) {
                      time_from_ns(answered_ns),
                      Duration{ahead_ns},
                      bound_s,
-                     printable_host({message.host().begin(), message.host().end()})};
+                     printable_name(place.substr(0, end)),
+                     printable_name(end == std::string::npos ? std::string() : place.substr(end + 1))};
 }
 
-std::string printable_host(std::string name) {
-  if (name.size() > msg::MAX_HOST_NAME) name.resize(msg::MAX_HOST_NAME);
+std::vector<std::uint8_t> encode_place(const std::string& host, const std::string& scenario) {
+  const std::string place = printable_name(host) + '\n' + printable_name(scenario);
+  return {place.begin(), place.end()};
+}
+
+std::string printable_name(std::string name) {
+  if (name.size() > msg::MAX_PLACE_NAME) name.resize(msg::MAX_PLACE_NAME);
   std::ranges::replace_if(
       name, [](char c) { return c <= ' ' || c > '~'; }, '?');
   return name;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/motion/version.hpp"
 #include "idl/clock.hpp"
@@ -18,14 +19,17 @@ struct ClockAnswer {
   Time probe_received, answered;  ///< by the process's clock
   Duration host_ahead{0};         ///< the host's clock - the process's
   double clock_bound_s = 0;
-  std::string host;  ///< printable ASCII
+  std::string host, scenario;  ///< printable ASCII
 };
 
 /// nullopt unless the message is of an agent, a coordinator, vision, the simulator or the referee, and every
 /// value is within its bounds. The process's clock may be arbitrarily wrong.
 [[nodiscard]] std::optional<ClockAnswer> decode(const msg::ClockReading& message);
 
+/// ClockReading.place.
+[[nodiscard]] std::vector<std::uint8_t> encode_place(const std::string& host, const std::string& scenario);
+
 /// Replaces whatever is not printable ASCII, and cuts the name to the bound of the message.
-[[nodiscard]] std::string printable_host(std::string name);
+[[nodiscard]] std::string printable_name(std::string name);
 
 }  // namespace sidestep

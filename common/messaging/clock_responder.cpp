@@ -7,14 +7,13 @@
 
 namespace sidestep {
 
-ClockResponder::ClockResponder(Bus& bus, Identity identity, std::function<Duration()> host_ahead)
+ClockResponder::ClockResponder(Bus& bus, const Identity& identity, std::function<Duration()> host_ahead)
     : bus_(bus), host_ahead_(std::move(host_ahead)), writer_(bus.advertise(topics::kClockReading)) {
   reading_.process(identity.process);
   reading_.header().sender(identity.process);
   reading_.header().incarnation(identity.incarnation);
   reading_.clock_bound_s(identity.clock_bound_s);
-  const std::string host = printable_host(std::move(identity.host));
-  reading_.host().assign(host.begin(), host.end());
+  reading_.place(encode_place(identity.host, identity.scenario));
   bus_.subscribe(topics::kClockProbe, [this](const msg::ClockProbe& probe) { answer(probe); });
 }
 

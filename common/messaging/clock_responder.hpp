@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// Answers `sidestep clock`: when its probe arrived, and when the answer was sent, by this process's clock.
+/// Answers a clock probe: when its probe arrived, and when the answer was sent, by this process's clock.
 /// Several commands at the same time share the rate of answers; probes beyond it are ignored, so that nobody
 /// can occupy the process with them.
 class ClockResponder {
@@ -19,14 +19,14 @@ class ClockResponder {
     std::uint32_t process = 0;
     Incarnation incarnation = 0;
     double clock_bound_s = 0;
-    std::string host;
+    std::string host, scenario;
   };
   /// Answers at once, and one per kPeriod in the long run.
   static constexpr int kBurst = 20;
   static constexpr Duration kPeriod{10'000'000};
 
   /// `host_ahead` reads how far the host's clock is ahead of the process's.
-  ClockResponder(Bus& bus, Identity identity, std::function<Duration()> host_ahead);
+  ClockResponder(Bus& bus, const Identity& identity, std::function<Duration()> host_ahead);
   ClockResponder(const ClockResponder&) = delete;
   ClockResponder& operator=(const ClockResponder&) = delete;
 

@@ -171,7 +171,7 @@ inline constexpr Topic<msg::ClockProbe> kClockProbe{
      message_type<msg::ClockProbe>("sidestep::msg::ClockProbe")}};
 inline constexpr Topic<msg::ClockReading> kClockReading{
     {"clock_reading", kParts, kWatchers, Qos::kState, false, false,
-     message_type<msg::ClockReading>("sidestep::msg::ClockReading", msg::MAX_HOST_NAME)}};
+     message_type<msg::ClockReading>("sidestep::msg::ClockReading", msg::MAX_PLACE)}};
 /// For audit and metrics only.
 inline constexpr Topic<msg::GroundTruth> kTruth{
     {"truth", Role::kSimulator, Role::kJudge, Qos::kState, false, true,

@@ -81,7 +81,8 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
     bus.stop();
   });
   const RunningNodes running = program.start(bus, scenario, incarnation);
-  const ClockResponder responder(bus, {process, incarnation, scenario.clock_bound_s, host_name()},
+  const ClockResponder responder(bus,
+                                 {process, incarnation, scenario.clock_bound_s, host_name(), scenario.name},
                                  DdsBus::host_clock_ahead);
   bool adopts = false;
   const auto adopt = [&] {

@@ -11,6 +11,7 @@
 #include "common/messaging/process_names.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/process/stop_signals.hpp"
+#include "deploy/launch/other_run.hpp"
 #include "deploy/launch/process_command.hpp"
 #include "deploy/launch/process_group.hpp"
 #include "deploy/launch/process_keys.hpp"
@@ -23,7 +24,6 @@ using namespace std::chrono_literals;
 constexpr Duration kPollPeriod = 20ms;      // maximum delay before a death is noticed
 constexpr Duration kStartInterval = 100ms;  // simultaneous starts would stall DDS discovery
 constexpr Duration kStartupTimeout = 20s;   // since the last start
-constexpr Duration kListeningTime = 500ms;  // for another run in the domain, before anything is started
 constexpr Duration kSettlingTime = 500ms;   // after all arrivals, for the final status messages
 constexpr Duration kStuckTimeout = 2s;      // since the last death
 constexpr auto kTerminationTimeout = 3000ms;
@@ -45,13 +45,13 @@ DdsSettings seeing_all(DdsSettings dds) {
 }  // namespace
 
 Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
-                   const NamespaceNetwork* network, Processes& processes, std::vector<std::string> deaths)
+                   const NamespaceNetwork* network, Processes& processes, Predecessors before)
     : options_(options),
       scenario_(scenario),
       placement_(placement),
       network_(network),
       children_(processes),
-      deaths_(std::move(deaths)),
+      before_(std::move(before)),
       revoked_keys_(key_folder_of_process(options, "vision", scenario)),
       bus_(seeing_all(options.dds)),
       rules_(bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario),
@@ -80,8 +80,8 @@ Report Launcher::run() {
     is_interrupted_ = true;
     bus_.stop();
   });
-  if (deaths_.empty()) require_free_domain();
-  const Time begin = bus_.now();
+  if (before_.deaths.empty()) require_free_domain(options_.dds);
+  began_ = bus_.now();
   try {
     work();
   } catch (const std::exception& error) {
@@ -94,11 +94,11 @@ Report Launcher::run() {
   report.seed = options_.floor.seed;
   report.abort_reason = abort_reason_;
   report.must_arrive = !metrics_.awaits_orders();
-  report.duration_s = to_seconds(bus_.now() - begin);
+  report.duration_s = to_seconds(bus_.now() - began_ + before_.age);
   report.fast_dds = fast_dds_version();
-  if (ready_at_) report.startup_s = to_seconds(*ready_at_ - begin);
+  if (ready_at_) report.startup_s = to_seconds(*ready_at_ - began_);
   report.processes = children_.resource_use();
-  report.director_deaths = deaths_;
+  report.director_deaths = before_.deaths;
   if (recording_) {
     recording_->add_report(bus_.now(), to_json(report));
     recording_->close();
@@ -125,20 +125,6 @@ void Launcher::work() {
     print_new_epochs();
     if (!options_.is_quiet) display_.update(metrics_, bus_.now());
   }
-}
-
-void Launcher::require_free_domain() {
-  bus_.observe<msg::CoordinatorState>(topics::kCoordinator, 0, [this](const msg::CoordinatorState& state) {
-    if (processes_.empty()) other_run_ = state.header();
-  });
-  bus_.run_until(bus_.now() + kListeningTime);
-  if (other_run_)
-    // Incarnations are readings of the clock at the start of a process.
-    throw std::invalid_argument(fmt::format(
-        "DDS domain {} is in use: another run works in it, whose {} has been running since {}; end "
-        "that run, or choose another --domain or --domain auto",
-        options_.dds.domain, process_name(other_run_->sender()),
-        date_text(time_from_ns(static_cast<std::int64_t>(other_run_->incarnation())))));
 }
 
 void Launcher::print(const std::string& line, LogLevel level) {
@@ -182,7 +168,7 @@ void Launcher::start(const std::string& name, const std::string& program, bool i
 void Launcher::start(const ProcessSpec& process, const HostSpec& host) {
   const pid_t pid = children_.start(child(process, host));
   processes_[process.name] = process;
-  print(fmt::format("{} {} as pid {}{}", deaths_.empty() ? "started" : "goes on:", process.name, pid,
+  print(fmt::format("{} {} as pid {}{}", before_.deaths.empty() ? "started" : "goes on:", process.name, pid,
                     options_.hosts_file.empty() ? "" : " on host " + host.name));
 }
 
@@ -338,13 +324,17 @@ bool Launcher::is_drive_over() {
 
   const double limit_s = options_.seconds.value_or(awaits_orders ? std::numeric_limits<double>::infinity()
                                                                  : scenario_.time_limit_s);
-  if (to_seconds(now - *metrics_.granting_since()) > limit_s) {
+  if (to_seconds(now - drive_began()) > limit_s) {
     if (awaits_orders) return true;
     abort_reason_ = fmt::format("time limit of {} s", limit_s);
   } else if (is_stuck(now)) {
     abort_reason_ = fmt::format("{} died", fmt::join(dead_, ", "));
   }
   return !abort_reason_.empty();
+}
+
+Time Launcher::drive_began() const {
+  return before_.deaths.empty() ? *metrics_.granting_since() : began_ - before_.age;
 }
 
 bool Launcher::is_stuck(Time now) const {

@@ -36,13 +36,19 @@ struct RunDirector {
   std::function<bool()> act;
 };
 
+/// Earlier launchers of a run; see keep_processes().
+struct Predecessors {
+  std::vector<std::string> deaths;  ///< why they have died
+  Duration age{0};                  ///< since the first began
+};
+
 /// Starts the processes of one run, monitors them until the run is over, and stops them.
 class Launcher {
  public:
   /// All arguments must outlive the launcher. `network` is null unless the hosts' namespaces were created for
-  /// this run. `deaths`: why earlier launchers of the run have died, see keep_processes().
+  /// this run.
   Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
-           const NamespaceNetwork* network, Processes& processes, std::vector<std::string> deaths = {});
+           const NamespaceNetwork* network, Processes& processes, Predecessors before = {});
 
   /// The director decides when the run is over, instead of arrivals, deaths and the time limit.
   void follow(RunDirector director) { director_ = std::move(director); }
@@ -75,8 +81,6 @@ class Launcher {
   void send_revoked_keys();
   Time next_poll();
   void handle(const ChildEvent& event);
-  /// Throws std::invalid_argument if a coordinator is heard although nothing was started.
-  void require_free_domain();
   /// Starts the process that shows the run in the browser.
   void start_monitor();
   /// Until the run is over.
@@ -87,6 +91,8 @@ class Launcher {
   bool is_startup_over();
   bool is_drive_over();
   std::string startup_failure() const;
+  /// When this launcher, or the first one before it, saw the coordinator grant.
+  Time drive_began() const;
   /// Whether nothing moves any more and dead processes keep the remaining robots from arriving.
   bool is_stuck(Time now) const;
   bool are_all_coordinators_dead() const;
@@ -96,11 +102,10 @@ class Launcher {
   const Placement& placement_;
   const NamespaceNetwork* network_;
   Processes& children_;
-  const std::vector<std::string> deaths_;         ///< of earlier launchers of the run
+  const Predecessors before_;
   std::map<std::string, ProcessSpec> processes_;  ///< by name
   RevokedKeys revoked_keys_;
   RunDirector director_;
-  std::optional<msg::Header> other_run_;  // of a process that was heard before any was started
   DdsBus bus_;
   RulesExchange rules_;
   RunMetrics metrics_;
@@ -112,6 +117,7 @@ class Launcher {
   std::atomic<bool> is_interrupted_{false};
   bool is_ready_ = false;
   std::optional<Time> ready_at_;
+  Time began_{};
   std::size_t agents_started_ = 0;
   Time last_start_{};
   Time last_death_{};

@@ -35,8 +35,8 @@ using std::chrono::steady_clock;
 
 constexpr int kDirectorSocket = 3;  // in the director
 constexpr auto kTerminationTimeout = 3000ms;
-constexpr auto kRepeatedStop = 1000ms;  // a director that begins does not hear signals yet
-constexpr auto kPause = 500ms;          // before the next director
+constexpr auto kRepeatedStop = 1000ms;                // a director that begins does not hear signals yet
+constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // before the next director; twice as long after each
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
 [[noreturn]] void fail(const char* what) {
@@ -297,6 +297,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
   Keeper keeper(group);
   std::vector<std::string> deaths;
   std::optional<int> code;
+  auto pause = kPause;
   std::optional<steady_clock::time_point> asked_at;
   while (!code) {
     const Director director = start_director(work, deaths);
@@ -321,7 +322,8 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     fmt::print(stderr, "the process that directs the run died: {}\n", reason);
     deaths.push_back(reason);
     if (!asked_at && group.running() > 0) {
-      keeper.poll_for(kPause);
+      keeper.poll_for(pause);
+      pause = std::min(2 * pause, kMaxPause);
       continue;
     }
     (void)group.terminate(kTerminationTimeout);

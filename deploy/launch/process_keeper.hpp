@@ -20,9 +20,10 @@ struct DirectorWork {
 };
 
 /// Runs the work in a director, which speaks with the network, while this process, which does not, keeps the
-/// processes in the group. So they go on if the director dies by a signal; another one then takes its place.
-/// When a director ends, those that are left are ended too. SIGINT and SIGTERM are passed on to the director.
-/// If this process dies, the director is asked to end, and finds that all processes have ended.
+/// processes in the group. So they go on if the director dies by a signal; another one then takes its place,
+/// after a pause that doubles with each, up to a minute. When a director ends, those that are left are ended
+/// too. SIGINT and SIGTERM are passed on to the director. If this process dies, the director is asked to end,
+/// and finds that all processes have ended.
 ///
 /// Returns the exit code of the director, 1 if it was lost. Call it before this process starts threads.
 /// Throws std::runtime_error if no process can be created.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/run.hpp"
 
+#include <chrono>
 #include <filesystem>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -58,12 +59,14 @@ int run(const RunOptions& given) {
     fmt::print("\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);
     return exit_code(report.verdict());
   };
+  const auto began = std::chrono::steady_clock::now();
   DirectorWork work;
   work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
     return run_guarded("sidestep run", [&] {
       if (!deaths.empty() && !options.recording_file.empty())
         options.recording_file = numbered(options.recording_file, deaths.size() + 1);
-      return finish(Launcher(options, scenario, hosts.placement(), hosts.network(), processes, deaths).run());
+      const Predecessors before{deaths, std::chrono::steady_clock::now() - began};
+      return finish(Launcher(options, scenario, hosts.placement(), hosts.network(), processes, before).run());
     });
   };
   work.on_lost = [&](const std::string& reason) {

@@ -214,6 +214,20 @@ TEST_CASE("robots drive on when the process that directs their run dies, and the
   CHECK(run.children() == children);
 }
 
+TEST_CASE("the time limit of a run counts from its start, also when the process that directs it has died") {
+  constexpr double kLimit_s = 12;
+  LaunchedRun run(shuttles(40, ""), {"--seconds", "12"});
+  REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
+  REQUIRE(kill(run.director(), SIGKILL) == 0);
+  CHECK(run.wait_for_end() == "exit code 1");
+  INFO(run.output());
+  const auto report = run.report();
+  require_no_violations(report);
+  CHECK(run.printed("failed: time limit of 12 s"));
+  CHECK(report["wall_clock"]["duration_s"] > kLimit_s);
+  CHECK(report["wall_clock"]["duration_s"] < kLimit_s + 2);
+}
+
 TEST_CASE(
     "a failed start names the process and the reason, and an invalid scenario is refused before anything "
     "starts") {

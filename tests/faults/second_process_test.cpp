@@ -2,6 +2,7 @@
 // Second processes of kinds that must be alone, over DDS.
 #include <csignal>
 
+#include "common/process/host_name.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 
@@ -44,7 +45,7 @@ TEST_CASE("a second vision in the domain of a run ends, and the robots drive on 
   check_ends(run, "sidestep-vision", "vision");
 }
 
-TEST_CASE("a second run in one domain is refused before it starts a process") {
+TEST_CASE("a second run in one domain is refused before it starts a process, and told of the first") {
   LaunchedRun run(shuttles(4, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   std::vector<std::string> arguments{"run", run.scenario_file()};
@@ -52,7 +53,7 @@ TEST_CASE("a second run in one domain is refused before it starts a process") {
   run.start("second", "sidestep", arguments);
   REQUIRE(run.wait_until([&] { return run.exit_reason("second").has_value(); }));
   CHECK(run.exit_reason("second") == "exit code 2");
-  CHECK(run.printed("another run works in it"));
+  CHECK(run.printed("another run of shuttles on host " + host_name() + " works in it"));
   const std::string ended = run.wait_for_end();
   INFO(run.output());
   CHECK(ended == "exit code 0");

@@ -42,14 +42,15 @@ bool is_used(int domain, const std::set<unsigned>& ports) {
 
 FreeDomain::FreeDomain() {
   const std::set<unsigned> ports = open_ports();
-  for (number_ = 10; number_ < 90; ++number_) {
+  // Those below 10 are what people choose; from 101 on, Linux gives the ports to other programs.
+  for (number_ = 10; number_ <= 100; ++number_) {
     if (is_used(number_, ports)) continue;
     const std::string path = "/tmp/sidestep-domain-" + std::to_string(number_);
     lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
     if (lock_ >= 0) close(lock_);
   }
-  throw std::runtime_error("no DDS domain from 10 to 89 is free on this machine");
+  throw std::runtime_error("no DDS domain from 10 to 100 is free on this machine");
 }
 
 FreeDomain::~FreeDomain() { close(lock_); }

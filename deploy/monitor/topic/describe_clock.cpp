@@ -16,7 +16,7 @@ Json describe(const msg::ClockReading& m) {
           {"probe_received_ns", m.probe_received_ns()},
           {"host_ahead_ns", m.host_ahead_ns()},
           {"clock_bound_s", m.clock_bound_s()},
-          {"host", std::string(m.host().begin(), m.host().end())}};
+          {"place", std::string(m.place().begin(), m.place().end())}};
 }
 
 }  // namespace sidestep

@@ -12,7 +12,7 @@ namespace sidestep::clock_codec_test {
 
 constexpr std::int64_t kNow_ns = 1'700'000'000'000'000'000;
 
-msg::ClockReading reading_of(const std::string& host = "robot-7") {
+msg::ClockReading reading_of(const std::string& host = "robot-7", const std::string& scenario = "") {
   msg::ClockReading message;
   message.process(7);
   message.header().sender(7);
@@ -23,7 +23,9 @@ msg::ClockReading reading_of(const std::string& host = "robot-7") {
   message.probe_received_ns(kNow_ns);
   message.host_ahead_ns(-3);
   message.clock_bound_s(0.0005);
-  message.host().assign(host.begin(), host.end());
+  message.place().assign(host.begin(), host.end());
+  message.place().push_back('\n');
+  message.place().insert(message.place().end(), scenario.begin(), scenario.end());
   return message;
 }
 
@@ -77,10 +79,21 @@ TEST_CASE("a reading with any hostile value is refused") {
   }
 }
 
-TEST_CASE("the name of a host cannot contain escape sequences") {
-  CHECK(decode(reading_of("a\x1b[2Jb\n\x80 c"))->host == "a?[2Jb???c");
+TEST_CASE("the names of a host and a scenario cannot contain escape sequences") {
+  CHECK(decode(reading_of("a\x1b[2Jb\r\x80 c"))->host == "a?[2Jb???c");
   CHECK(decode(reading_of(""))->host.empty());
-  CHECK(printable_host(std::string(300, 'x')).size() == msg::MAX_HOST_NAME);
+  CHECK(decode(reading_of("",
+                          "a\x1b\x01"
+                          "b"))
+            ->scenario == "a??b");
+  CHECK(decode(reading_of(""))->scenario.empty());
+  msg::ClockReading reading = reading_of();
+  reading.place({'a', 'b'});
+  CHECK(decode(reading)->host == "ab");
+  CHECK(decode(reading)->scenario.empty());
+  const std::string longest(300, 'x');
+  CHECK(encode_place(longest, longest).size() == msg::MAX_PLACE);
+  CHECK(printable_name(std::string(300, 'x')).size() == msg::MAX_PLACE_NAME);
 }
 
 }  // namespace sidestep::clock_codec_test

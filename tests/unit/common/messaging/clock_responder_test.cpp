@@ -11,10 +11,11 @@ namespace sidestep::clock_responder_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a process answers a probe with its own clock, its host's and the clock bound") {
+TEST_CASE("a process answers a probe with its clock, its host's, and what it works for") {
   SimNetwork network(1, time_from_ns(1'700'000'000'000'000'000), NetworkSpec{});
   SimBus client(network), process(network, {network.new_process(), {2s, 0, {}}});
-  const ClockResponder responder(process, {5, 77, 0.0005, "robot-5"}, [] { return Duration(-2s); });
+  const ClockResponder responder(process, {5, 77, 0.0005, "robot-5", "crossing"},
+                                 [] { return Duration(-2s); });
   std::vector<ClockAnswer> answers;
   std::vector<Time> received;
   client.subscribe(topics::kClockReading, [&](const msg::ClockReading& message) {
@@ -38,12 +39,14 @@ TEST_CASE("a process answers a probe with its own clock, its host's and the cloc
   CHECK(answers[0].host_ahead == Duration(-2s));
   CHECK(answers[0].clock_bound_s == 0.0005);
   CHECK(answers[0].host == "robot-5");
+  CHECK(answers[0].scenario == "crossing");
 }
 
 TEST_CASE("however many probes arrive, a process answers at a bounded rate") {
   SimNetwork network(1, time_from_ns(1'700'000'000'000'000'000), NetworkSpec{});
   SimBus client(network), process(network);
-  const ClockResponder responder(process, {5, 77, 0.0005, "robot-5"}, [] { return Duration(0s); });
+  const ClockResponder responder(process, {5, 77, 0.0005, "robot-5", "crossing"},
+                                 [] { return Duration(0s); });
   int answers = 0;
   client.subscribe(topics::kClockReading, [&](const msg::ClockReading&) { ++answers; });
   auto writer = client.advertise(topics::kClockProbe);

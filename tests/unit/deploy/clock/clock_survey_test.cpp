@@ -18,8 +18,8 @@ struct Scene {
 
   /// A probe and its answer, by a clock that is so far ahead; both messages take `delay`.
   void ask(std::uint32_t process, Duration ahead, Duration delay = 100us, Incarnation incarnation = 1) {
-    ClockAnswer answer{process, incarnation, kClient, now, now + delay + ahead, now + delay + ahead,
-                       0s,      0.0005,      "host"};
+    ClockAnswer answer{process, incarnation, kClient, now,       now + delay + ahead, now + delay + ahead,
+                       0s,      0.0005,      "host",  "scenario"};
     survey.on_probe(now);
     now += 2 * delay;
     survey.on_answer(answer, now);
@@ -83,7 +83,7 @@ TEST_CASE("clocks agree if each is measured and none is proven to be beyond the 
 TEST_CASE("answers to others, to probes that were never sent, and of earlier runs do not count") {
   Scene scene;
   const auto answer = [&](std::uint32_t client, Time sent) {
-    return ClockAnswer{3, 1, client, sent, scene.now, scene.now, 0s, 0.0005, "host"};
+    return ClockAnswer{3, 1, client, sent, scene.now, scene.now, 0s, 0.0005, "host", "scenario"};
   };
   scene.survey.on_probe(scene.now);
   scene.survey.on_answer(answer(kClient + 1, scene.now), scene.now + 1ms);
