@@ -8,12 +8,15 @@
 #include <openssl/x509v3.h>
 #include <stdexcept>
 
+#include "common/file/read_permission.hpp"
+
 namespace sidestep {
 namespace {
 
 using File = std::unique_ptr<BIO, decltype(&BIO_free_all)>;
 
 File open_file(const std::string& path) {
+  require_read_permission(path);
   File file(BIO_new_file(path.c_str(), "r"), BIO_free_all);
   if (!file) throw std::invalid_argument("cannot read " + path);
   return file;
@@ -102,18 +105,25 @@ std::vector<std::uint8_t> Certificate::der() const {
   return result;
 }
 
-std::set<std::string> load_revoked_serials(const std::string& path, const Certificate& authority) {
+RevocationList load_revocation_list(const std::string& path, const Certificate& authority) {
   const File file = open_file(path);
   const std::unique_ptr<X509_CRL, decltype(&X509_CRL_free)> list(
       PEM_read_bio_X509_CRL(file.get(), nullptr, nullptr, nullptr), X509_CRL_free);
   if (!list) throw std::invalid_argument(path + ": expected a list of revoked certificates (PEM)");
   if (X509_CRL_verify(list.get(), X509_get0_pubkey(authority.x509())) != 1)
     throw std::invalid_argument(path + ": another authority has signed this list of revoked certificates");
-  std::set<std::string> result;
+  RevocationList result;
   const STACK_OF(X509_REVOKED)* const revoked = X509_CRL_get_REVOKED(list.get());
   for (int i = 0; i < sk_X509_REVOKED_num(revoked); ++i)
-    result.insert(hexadecimal(X509_REVOKED_get0_serialNumber(sk_X509_REVOKED_value(revoked, i))));
+    result.serials.insert(hexadecimal(X509_REVOKED_get0_serialNumber(sk_X509_REVOKED_value(revoked, i))));
+  const ASN1_TIME* const until = X509_CRL_get0_nextUpdate(list.get());
+  result.validity = {to_time(X509_CRL_get0_lastUpdate(list.get())),
+                     until == nullptr ? Time::max() : to_time(until)};
   return result;
+}
+
+std::set<std::string> load_revoked_serials(const std::string& path, const Certificate& authority) {
+  return load_revocation_list(path, authority).serials;
 }
 
 }  // namespace sidestep

@@ -24,6 +24,11 @@ using CertifiedPrefix = std::array<std::uint8_t, 6>;
 /// The organisation in the subjects of our certificates.
 inline constexpr const char* kOrganisation = "Sidestep";
 
+/// From when until when something may be used.
+struct Validity {
+  Time from, until;
+};
+
 /// An X.509 certificate.
 class Certificate {
  public:
@@ -43,6 +48,7 @@ class Certificate {
   std::string serial() const;  ///< hexadecimal
   Time not_before() const;
   Time not_after() const;
+  Validity validity() const { return {not_before(), not_after()}; }
   CertifiedPrefix prefix() const;
   std::vector<std::uint8_t> der() const;
   x509_st* x509() const { return x509_.get(); }
@@ -51,8 +57,17 @@ class Certificate {
   std::shared_ptr<x509_st> x509_;
 };
 
-/// The serial numbers of the certificates that an authority has revoked (a CRL file, RFC 5280). Throws
-/// std::invalid_argument with the file and what is wrong, e.g. that another authority has signed it.
+/// Which certificates an authority has revoked (a CRL, RFC 5280).
+struct RevocationList {
+  std::set<std::string> serials;
+  Validity validity;
+};
+
+/// Reads a list of revoked certificates from a PEM file. Throws std::invalid_argument with the file and what
+/// is wrong, e.g. that another authority has signed it.
+RevocationList load_revocation_list(const std::string& path, const Certificate& authority);
+
+/// The serial numbers of a list that load_revocation_list() reads; throws as it does.
 std::set<std::string> load_revoked_serials(const std::string& path, const Certificate& authority);
 
 }  // namespace sidestep

@@ -9,14 +9,20 @@
 #include <openssl/x509.h>
 #include <stdexcept>
 
+#include "common/file/read_permission.hpp"
+#include "common/keys/signed_document.hpp"
+
 namespace sidestep {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kIssueAgain = "`sidestep keys issue` makes a new one";
+
 void require_files(const std::string& path) {
   std::error_code none;
   for (const char* name : key_files::kAll) {
+    require_read_permission(path + "/" + name);
     if (!fs::exists(path + "/" + name, none))
       throw std::invalid_argument(fmt::format(
           "--keys: expected a folder that `sidestep keys issue` has written, but {}/{} does not exist", path,
@@ -37,6 +43,35 @@ void require_own_private_key(const std::string& file, const Certificate& certifi
     throw std::invalid_argument(file + ": this private key is not that of the certificate beside it");
 }
 
+/// The clock may still be set, so that a key which is not valid yet is no wrong usage: whoever restarts the
+/// process tries again.
+void require_valid(const std::string& what, const Validity& validity, Time now,
+                   const char* remedy = "make new keys in another folder") {
+  if (now > validity.until)
+    throw std::invalid_argument(fmt::format("{} expired on {}; {}", what, date_text(validity.until), remedy));
+  if (now < validity.from)
+    throw std::runtime_error(
+        fmt::format("{} is not valid before {}, but this host's clock says {}; is the clock right?", what,
+                    date_text(validity.from), date_text(now)));
+}
+
+/// Fast DDS refuses authorities, lists of revoked keys and permissions too, without saying why.
+void require_valid_documents(const KeyFolder& keys, const RevocationList& revoked, Time now) {
+  const auto what = [&](const char* file, const std::string& text) { return keys.file(file) + ": " + text; };
+  require_valid(what(key_files::kIdentityAuthority, "this authority"), keys.authority.validity(), now);
+  require_valid(what(key_files::kRevoked, "this list of revoked keys"), revoked.validity, now);
+  const Certificate authority = Certificate::load(keys.file(key_files::kPermissionsAuthority));
+  require_valid(what(key_files::kPermissionsAuthority, "this authority"), authority.validity(), now);
+  (void)load_signed_document(keys.file(key_files::kGovernance), authority);
+  const std::string permissions = load_signed_document(keys.file(key_files::kPermissions), authority);
+  const auto validity = permissions_validity(permissions, keys.certificate.subject());
+  if (!validity)
+    throw std::invalid_argument(
+        what(key_files::kPermissions, "expected the permissions of " + to_text(keys.identity)));
+  require_valid(what(key_files::kPermissions, "the permissions of " + to_text(keys.identity)), *validity, now,
+                kIssueAgain);
+}
+
 }  // namespace
 
 std::string utc_text(Time time, const char* format) {
@@ -53,10 +88,12 @@ std::string date_text(Time time) { return utc_text(time, "%Y-%m-%d %H:%M UTC"); 
 std::string key_folder_of(const std::string& store, const Identity& identity) {
   std::error_code none;
   const std::string enclaves = store + "/enclaves";
+  require_read_permission(enclaves);
   if (!fs::is_directory(enclaves, none))
     throw std::invalid_argument(fmt::format(
         "--keys: expected a folder that `sidestep keys init` has made, but {} does not exist", enclaves));
   const std::string exact = enclaves + "/" + folder_name(identity);
+  require_read_permission(exact);
   if (fs::is_directory(exact, none)) return exact;
   for (const auto& entry : fs::directory_iterator(enclaves, none)) {
     std::string name = entry.path().filename().string();
@@ -72,6 +109,7 @@ std::string key_folder_of(const std::string& store, const Identity& identity) {
 
 std::string own_key_folder(const std::string& path, const Identity& identity) {
   std::error_code none;
+  require_read_permission(path);
   return fs::is_directory(path + "/enclaves", none) ? key_folder_of(path, identity) : path;
 }
 
@@ -90,18 +128,15 @@ KeyFolder load_key_folder(const std::string& path, Time now) {
   if (!certificate.is_issued_by(authority))
     throw std::invalid_argument(fmt::format("{}: another authority has issued it than {}", where,
                                             file(key_files::kIdentityAuthority)));
-  if (now > certificate.not_after())
-    throw std::invalid_argument(
-        fmt::format("{}: the key of {} expired on {}; `sidestep keys issue` makes a new one", where,
-                    to_text(*identity), date_text(certificate.not_after())));
-  if (now < certificate.not_before())
-    throw std::invalid_argument(
-        fmt::format("{}: the key of {} is not valid before {}; is this host's clock right?", where,
-                    to_text(*identity), date_text(certificate.not_before())));
-  if (load_revoked_serials(file(key_files::kRevoked), authority).count(certificate.serial()) > 0)
+  require_valid(fmt::format("{}: the key of {}", where, to_text(*identity)), certificate.validity(), now,
+                kIssueAgain);
+  const KeyFolder keys{fs::absolute(path).lexically_normal().string(), *identity, certificate, authority};
+  const RevocationList revoked = load_revocation_list(file(key_files::kRevoked), authority);
+  if (revoked.serials.contains(certificate.serial()))
     throw std::invalid_argument(fmt::format("{}: the key of {} is revoked", where, to_text(*identity)));
   require_own_private_key(file(key_files::kPrivateKey), certificate);
-  return {fs::absolute(path).lexically_normal().string(), *identity, certificate, authority};
+  require_valid_documents(keys, revoked, now);
+  return keys;
 }
 
 }  // namespace sidestep

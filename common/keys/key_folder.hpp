@@ -35,8 +35,10 @@ struct KeyFolder {
 };
 
 /// Loads the keys of one identity and checks all that the identity itself can check of them. Throws
-/// std::invalid_argument that says what is wrong: a file is missing, the certificate has expired or is
-/// revoked, the private key is another's, or other users may read it.
+/// std::invalid_argument that says what is wrong: a file is missing or this user may not read it, the
+/// certificate has expired or is revoked, the private key is another's, other users may read it, or another
+/// authority has signed a document. Throws std::runtime_error if a part is not valid yet: the host's clock
+/// may not be set yet.
 [[nodiscard]] KeyFolder load_key_folder(const std::string& path, Time now);
 
 /// The folder with the keys of an identity, in one that `sidestep keys init` has made; of robots, one whose

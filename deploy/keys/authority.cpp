@@ -13,6 +13,8 @@
 #include <openssl/x509v3.h>
 #include <stdexcept>
 
+#include "common/file/read_permission.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -83,6 +85,7 @@ Certificate make_certificate(X509_NAME* subject, const PrivateKey& key, const X5
 }
 
 PrivateKey load_private_key(const std::string& path) {
+  require_read_permission(path);
   const Bio file(BIO_new_file(path.c_str(), "r"), BIO_free_all);
   if (!file) throw std::invalid_argument("cannot read " + path);
   PrivateKey key(PEM_read_bio_PrivateKey(file.get(), nullptr, nullptr, nullptr), EVP_PKEY_free);

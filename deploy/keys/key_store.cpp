@@ -10,6 +10,7 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "common/file/read_permission.hpp"
 #include "common/file/write_file.hpp"
 #include "common/keys/key_folder.hpp"
 #include "deploy/keys/permissions_text.hpp"
@@ -95,6 +96,7 @@ void KeyStore::create(const std::string& folder, Time now, Time until) {
 }
 
 KeyStore::KeyStore(const std::string& folder) : folder_(folder) {
+  require_read_permission(private_file(kIdentityKey));
   std::error_code error;
   const bool exists = fs::exists(private_file(kIdentityKey), error);
   if (error)

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "common/config/yaml_document.hpp"
+#include "common/file/read_permission.hpp"
 #include "common/keys/key_folder.hpp"
 #include "deploy/launch/hosts/command.hpp"
 #include "deploy/launch/process_group.hpp"
@@ -118,6 +119,7 @@ std::string file_input(const std::string& name, const std::string& content) {
 }
 
 std::string read_key_file(const std::string& folder, const char* name) {
+  require_read_permission(folder + "/" + name);
   std::ifstream file(folder + "/" + name);
   if (!file) throw std::runtime_error(fmt::format("cannot read {}/{}", folder, name));
   return {std::istreambuf_iterator<char>(file), {}};

@@ -5,7 +5,10 @@
 #include <fmt/format.h>
 
 #include "common/file/write_file.hpp"
+#include "deploy/keys/permissions_text.hpp"
+#include "tests/as_nobody.hpp"
 #include "tests/catch.hpp"
+#include "tests/needs_root.hpp"
 #include "tests/test_keys.hpp"
 
 namespace sidestep::key_folder_test {
@@ -39,9 +42,6 @@ TEST_CASE("what is wrong with keys is said in plain words") {
   SECTION("expired") {
     CHECK_THAT(problem_of(folder, keys.now() + hours(2)),
                ContainsSubstring("the key of agent 3 expired on " + date_text(keys.now() + hours(1))));
-  }
-  SECTION("not valid yet") {
-    CHECK_THAT(problem_of(folder, keys.now() - hours(1)), ContainsSubstring("is this host's clock right?"));
   }
   SECTION("revoked") {
     const TemporaryFolder copy;
@@ -84,6 +84,117 @@ TEST_CASE("what is wrong with keys is said in plain words") {
   SECTION("no folder") {
     CHECK_THAT(problem_of(folder + "-none", keys.now()), ContainsSubstring("does not exist"));
   }
+}
+
+/// Keys of agent 3 of which one file is replaced by `text`.
+std::string with_file(const TestKeys& keys, const char* name, const std::string& text) {
+  const std::string folder = keys.folder_of("agent 3");
+  fs::remove(folder + "/" + name);  // perhaps a link to a file of all
+  write_file(folder + "/" + name, text);
+  return folder;
+}
+
+Authority authority_of(const TestKeys& keys, const std::string& name) {
+  return Authority(keys.folder() + "/public/" + name + ".cert.pem",
+                   keys.folder() + "/private/" + name + ".key.pem");
+}
+
+std::string permissions_of(const TestKeys& keys, Time from, Time until) {
+  const Identity identity{Role::kAgent, 3, 3};
+  return authority_of(keys, "permissions_ca")
+      .sign(permissions_text(identity, "CN=agent 3,O=Sidestep", from, until));
+}
+
+TEST_CASE("keys that are not valid yet are no wrong usage, because the clock may still be set") {
+  const TestKeys keys({"agent", "3"});
+  const Time now = keys.now(), before = now - hours(1), later = now + hours(1);
+  const auto check = [&](const std::string& folder, Time time, const std::string& what) {
+    CHECK_THROWS_AS(load_key_folder(folder, time), std::runtime_error);
+    CHECK_THROWS_WITH(load_key_folder(folder, time),
+                      ContainsSubstring(what) && ContainsSubstring("is not valid before") &&
+                          ContainsSubstring("this host's clock says " + date_text(time)));
+  };
+  SECTION("the key") { check(keys.folder_of("agent 3"), before, "cert.pem: the key of agent 3"); }
+  SECTION("the list of revoked keys") {
+    const std::string list = authority_of(keys, "identity_ca").revocation_list({}, later, later + hours(1));
+    check(with_file(keys, key_files::kRevoked, list), now, "crl.pem: this list of revoked keys");
+  }
+  SECTION("the permissions") {
+    const std::string permissions = permissions_of(keys, later, later + hours(1));
+    check(with_file(keys, key_files::kPermissions, permissions), now,
+          "permissions.p7s: the permissions of agent 3");
+  }
+  SECTION("the authorities") {
+    const Authority identities("identity authority", later, later + hours(1));
+    const auto key = make_private_key();
+    with_file(keys, key_files::kIdentityAuthority, to_pem(identities.certificate()));
+    with_file(keys, key_files::kRevoked, identities.revocation_list({}, now, later));
+    with_file(keys, key_files::kCertificate, to_pem(identities.issue({Role::kAgent, 3, 3}, key, now, later)));
+    const std::string file = with_file(keys, key_files::kPrivateKey, to_pem(key)) + "/key.pem";
+    fs::permissions(file, fs::perms(0600));
+    check(keys.folder_of("agent 3"), now, "identity_ca.cert.pem: this authority");
+  }
+}
+
+TEST_CASE("what Fast DDS would refuse without a reason is named") {
+  const TestKeys keys({"agent", "3-4"}), others({"agent", "3"});
+  const Time now = keys.now(), earlier = now - hours(2);
+  SECTION("a list of revoked keys that has expired") {
+    const std::string list = authority_of(keys, "identity_ca").revocation_list({}, earlier, now - hours(1));
+    CHECK_THAT(problem_of(with_file(keys, key_files::kRevoked, list), now),
+               ContainsSubstring("crl.pem: this list of revoked keys expired on"));
+  }
+  SECTION("permissions that have expired") {
+    const std::string permissions = permissions_of(keys, earlier, now - hours(1));
+    CHECK_THAT(problem_of(with_file(keys, key_files::kPermissions, permissions), now),
+               ContainsSubstring("permissions.p7s: the permissions of agent 3 expired on"));
+  }
+  SECTION("permissions of another") {
+    const std::string folder = keys.folder_of("agent 3");
+    fs::copy_file(keys.folder_of("agent 4") + "/permissions.p7s", folder + "/permissions.p7s",
+                  fs::copy_options::overwrite_existing);
+    CHECK_THAT(problem_of(folder, now), ContainsSubstring("expected the permissions of agent 3"));
+  }
+  SECTION("documents that another authority has signed") {
+    const char* const name = GENERATE(key_files::kPermissions, key_files::kGovernance);
+    const std::string folder = keys.folder_of("agent 3");
+    fs::remove(folder + "/" + name);
+    fs::copy_file(others.folder_of("agent 3") + "/" + name, folder + "/" + name);
+    CHECK_THAT(problem_of(folder, now),
+               ContainsSubstring(std::string(name) + ": the permissions authority beside it has not signed"));
+  }
+  SECTION("documents that are not signed") {
+    CHECK_THAT(problem_of(with_file(keys, key_files::kPermissions, "nonsense"), now),
+               ContainsSubstring("permissions.p7s: expected a signed document"));
+  }
+}
+
+TEST_CASE("a user without permission is told so, with the file, the user and the owner") {
+  SIDESTEP_NEEDS_ROOT();
+  const TestKeys keys({"agent", "3"});
+  const std::string folder = keys.folder_of("agent 3");
+  const auto open = [](const std::string& path) { fs::permissions(path, fs::perms(0755)); };
+  open(fs::path(keys.folder()).parent_path());
+  const auto problem = [&](const std::string& path) {
+    return as_nobody([&] {
+      try {
+        return problem_of(own_key_folder(path, {Role::kAgent, 3, 3}), keys.now());
+      } catch (const std::invalid_argument& error) {
+        return std::string(error.what());
+      }
+    });
+  };
+  const std::string enclaves = keys.folder() + "/enclaves";
+  CHECK(problem(keys.folder()) ==
+        "user nobody may not read " + enclaves + ": " + enclaves + " belongs to root and has mode 0700");
+  open(enclaves);
+  CHECK(problem(keys.folder()) ==
+        "user nobody may not read " + folder + ": " + folder + " belongs to root and has mode 0700");
+  open(folder);
+  const std::string key = folder + "/key.pem";
+  CHECK(problem(keys.folder()) ==
+        "user nobody may not read " + key + ": " + key + " belongs to root and has mode 0600");
+  CHECK(problem(folder) == problem(keys.folder()));
 }
 
 TEST_CASE("a process takes its own keys from a folder with those of several") {

@@ -7,6 +7,7 @@
 
 #include "common/process/command_line.hpp"
 #include "tests/catch.hpp"
+#include "tests/test_keys.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep::process_test {
@@ -83,6 +84,22 @@ TEST_CASE("an exception at start is printed on stderr, and the exit code is 1") 
   const Outcome no_interface = run(test_program(), arguments);
   CHECK(no_interface.exit_code == kExitFailure);
   CHECK_THAT(no_interface.err, ContainsSubstring("192.0.2.1"));
+}
+
+TEST_CASE("a process whose keys are not valid yet exits with 1, so that a service manager starts it again") {
+  const auto run_with = [](const TestKeys& keys) {
+    std::vector<std::string> arguments = good_arguments();
+    arguments.insert(arguments.end(), {"--keys", keys.folder()});
+    return run(test_program(), arguments);
+  };
+  const Time now = DdsBus::clock();
+  const Outcome early = run_with(TestKeys({"agent", "1"}, now + std::chrono::hours(1)));
+  CHECK(early.exit_code == kExitFailure);
+  CHECK_THAT(early.err, ContainsSubstring("the key of agent 1 is not valid before") &&
+                            ContainsSubstring("is the clock right?"));
+  const Outcome late = run_with(TestKeys({"agent", "1"}, now - std::chrono::hours(2)));
+  CHECK(late.exit_code == kExitUsage);
+  CHECK_THAT(late.err, ContainsSubstring("the key of agent 1 expired on"));
 }
 
 TEST_CASE("an option without a value has its default, and an option that is not given has none") {

@@ -5,8 +5,11 @@
 
 #include "common/file/temporary_folder.hpp"
 #include "common/keys/key_folder.hpp"
+#include "common/messaging/dds/bus.hpp"
 #include "common/process/command_line.hpp"
+#include "tests/as_nobody.hpp"
 #include "tests/catch.hpp"
+#include "tests/needs_root.hpp"
 
 namespace sidestep::keys_command_test {
 
@@ -72,8 +75,33 @@ TEST_CASE("wrong uses are explained") {
   CHECK_THAT(run({"keys", "revoke", "--keys", keys}), ContainsSubstring("expected identities"));
   for (const char* days : {"-1", "0", "nan"})
     CHECK_THAT(run({"keys", "issue", "vision", "--days", days, "--keys", keys}), ContainsSubstring("--days"));
-  CHECK_THAT(run({"keys", "init", temporary.file("other"), "--days", "0"}), ContainsSubstring("--days"));
+  CHECK_THAT(run({"keys", "init", temporary.file("other"), "--days", "0"}),
+             ContainsSubstring("--days") && ContainsSubstring("not in range 1.0") &&
+                 ContainsSubstring("to 36500.0"));
+  CHECK_FALSE(fs::exists(temporary.file("other")));
   CHECK_FALSE(run({"keys"}).empty());
+}
+
+TEST_CASE("what is issued or revoked now counts on hosts whose clocks are ten minutes behind") {
+  const TemporaryFolder temporary;
+  const std::string keys = temporary.file("keys"), agent = keys + "/enclaves/agent-3";
+  const Time behind = DdsBus::clock() - std::chrono::minutes(9);
+  REQUIRE(run({"keys", "init", keys}).empty());
+  REQUIRE(run({"keys", "issue", "agent", "3-4", "--keys", keys}).empty());
+  REQUIRE(run({"keys", "revoke", "agent", "4", "--keys", keys}).empty());
+  CHECK_NOTHROW(load_key_folder(agent, behind));
+}
+
+TEST_CASE("a user who may not read the authorities' keys is told so") {
+  SIDESTEP_NEEDS_ROOT();
+  const TemporaryFolder temporary;
+  const std::string keys = temporary.file("keys"), closed = keys + "/private";
+  REQUIRE(run({"keys", "init", keys}).empty());
+  fs::permissions(temporary.path(), fs::perms(0755));
+  CHECK(as_nobody([&] {
+          return run({"keys", "issue", "vision", "--keys", keys});
+        }) == "user nobody may not read " + closed + "/identity_ca.key.pem: " + closed +
+                  " belongs to root and has mode 0700");
 }
 
 }  // namespace sidestep::keys_command_test

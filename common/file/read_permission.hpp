@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace sidestep {
+
+/// Why the user of this process has no permission to read a file or folder: "user sidestep may not read PATH:
+/// FOLDER belongs to root and has mode 0700". nullopt if permissions do not keep it from reading, e.g.
+/// because nothing is there. Follows links.
+[[nodiscard]] std::optional<std::string> denied_read(const std::string& path);
+
+/// Throws std::invalid_argument with the text of denied_read(), if there is one.
+void require_read_permission(const std::string& path);
+
+}  // namespace sidestep

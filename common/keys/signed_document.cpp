@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/keys/signed_document.hpp"
+
+#include <ctime>
+#include <iomanip>
+#include <openssl/pem.h>
+#include <openssl/pkcs7.h>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/file/read_permission.hpp"
+
+namespace sidestep {
+namespace {
+
+using File = std::unique_ptr<BIO, decltype(&BIO_free_all)>;
+using Stack = std::unique_ptr<STACK_OF(X509), void (*)(STACK_OF(X509)*)>;
+
+/// The text between the first <name> and its end, from a position on.
+std::optional<std::string> element(const std::string& xml, const std::string& name, std::size_t from) {
+  const std::string open = "<" + name + ">";
+  const auto begin = xml.find(open, from);
+  const auto end = xml.find("</" + name + ">", from);
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return std::nullopt;
+  return xml.substr(begin + open.size(), end - begin - open.size());
+}
+
+/// Of the form 2026-11-28T03:00:00. Fast DDS takes it for a time of this host's time zone, so we do too.
+std::optional<Time> parse_time(const std::string& text) {
+  std::tm parts{};
+  std::istringstream stream(text);
+  stream >> std::get_time(&parts, "%Y-%m-%dT%H:%M:%S");
+  if (!stream) return std::nullopt;
+  return Time{} + std::chrono::seconds(std::mktime(&parts));
+}
+
+}  // namespace
+
+std::string load_signed_document(const std::string& path, const Certificate& authority) {
+  require_read_permission(path);
+  const File file(BIO_new_file(path.c_str(), "r"), BIO_free_all), text(BIO_new(BIO_s_mem()), BIO_free_all);
+  BIO* detached = nullptr;
+  const std::unique_ptr<PKCS7, decltype(&PKCS7_free)> signature(
+      file ? SMIME_read_PKCS7(file.get(), &detached) : nullptr, PKCS7_free);
+  const File document(detached, BIO_free_all);
+  if (!signature || !document) throw std::invalid_argument(path + ": expected a signed document (S/MIME)");
+  const Stack signers(sk_X509_new_null(), [](STACK_OF(X509) * stack) { sk_X509_free(stack); });
+  sk_X509_push(signers.get(), authority.x509());
+  constexpr int kFlags = PKCS7_TEXT | PKCS7_NOINTERN | PKCS7_NOVERIFY;  // by the authority's key alone
+  if (PKCS7_verify(signature.get(), signers.get(), nullptr, document.get(), text.get(), kFlags) != 1)
+    throw std::invalid_argument(path + ": the permissions authority beside it has not signed this document");
+  char* data = nullptr;
+  const long size = BIO_get_mem_data(text.get(), &data);
+  return {data, static_cast<std::size_t>(size)};
+}
+
+std::optional<Validity> permissions_validity(const std::string& permissions, const std::string& subject) {
+  const auto grant = permissions.find("<subject_name>" + subject + "</subject_name>");
+  if (grant == std::string::npos) return std::nullopt;
+  const auto from = element(permissions, "not_before", grant),
+             until = element(permissions, "not_after", grant);
+  const auto from_time = from ? parse_time(*from) : std::nullopt;
+  const auto until_time = until ? parse_time(*until) : std::nullopt;
+  if (!from_time || !until_time) return std::nullopt;
+  return Validity{*from_time, *until_time};
+}
+
+}  // namespace sidestep
