@@ -25,6 +25,10 @@ constexpr const char* kPermissionsKey = "permissions_ca.key.pem";
 /// Copies of all certificates that have been issued: public/issued/SERIAL.pem.
 constexpr const char* kIssued = "issued";
 
+/// Fast DDS takes the times of permissions for times of the host's time zone. That of the certificate beside
+/// them is UTC, and limits how long they are used.
+constexpr std::chrono::hours kTimeZones(24);
+
 /// A file that only this user may read. It is never readable by others, not even for a moment.
 void write_private_file(const std::string& path, const std::string& text) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -128,7 +132,8 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
     link_public_file(folder, name);
   write_file(public_file(fmt::format("{}/{}.pem", kIssued, certificate.serial())), to_pem(certificate));
   write_file(folder + "/" + key_files::kPermissions,
-             permissions.sign(permissions_text(identity, certificate.subject(), now, until)));
+             permissions.sign(
+                 permissions_text(identity, certificate.subject(), now - kTimeZones, until + kTimeZones)));
   fs::remove(folder + "/" + key_files::kPrivateKey);
   write_private_file(folder + "/" + key_files::kPrivateKey, to_pem(key));
   write_file(folder + "/" + key_files::kCertificate, to_pem(certificate));

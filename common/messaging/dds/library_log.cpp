@@ -2,11 +2,14 @@
 #include "common/messaging/dds/library_log.hpp"
 
 #include <fastdds/dds/log/Log.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/log/log.hpp"
 #include "common/messaging/dds/event_loop.hpp"
@@ -17,10 +20,21 @@ namespace {
 
 using eprosima::fastdds::dds::Log;
 
+constexpr std::size_t kKeptErrors = 4;
+
+std::mutex errors_mutex;
+std::vector<std::string> errors;  ///< the first ones since they were taken
+
+void keep_error(const Log::Entry& entry) {
+  const std::lock_guard lock(errors_mutex);
+  if (errors.size() < kKeptErrors) errors.push_back(entry.message);
+}
+
 /// Fast DDS calls it by one thread.
 class LibraryLog : public eprosima::fastdds::dds::LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {
+    if (entry.kind == Log::Kind::Error) keep_error(entry);
     const std::string category = entry.context.category == nullptr ? "" : entry.context.category;
     const std::string function = entry.context.function == nullptr ? "" : entry.context.function;
     Source& source = sources_[category + " " + function];
@@ -51,6 +65,12 @@ void log_library() {
     Log::ClearConsumers();
     Log::RegisterConsumer(std::make_unique<LibraryLog>());
   });
+}
+
+std::string take_library_errors() {
+  Log::Flush();
+  const std::lock_guard lock(errors_mutex);
+  return fmt::format("{}", fmt::join(std::exchange(errors, {}), "; "));
 }
 
 }  // namespace sidestep

@@ -197,14 +197,17 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   log_library();
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   fast_dds::disable_intraprocess_delivery();
+  (void)take_library_errors();  // those of other participants
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
       static_cast<DomainId_t>(settings.domain),
       participant_qos(settings, impairment_, counts_, keys_, gate_, shared_memory_bytes), listener_,
       StatusMask::none());
   if (participant_ == nullptr) {
-    throw std::runtime_error(fmt::format("DDS failed to create a participant in domain {} on interface {}{}",
-                                         settings.domain, settings.interface,
-                                         keys_ ? " with the keys in " + keys_->path : ""));
+    const std::string reason = take_library_errors();
+    throw std::runtime_error(
+        fmt::format("DDS failed to create a participant in domain {} on interface {}{}: {}", settings.domain,
+                    settings.interface, keys_ ? " with the keys in " + keys_->path : "",
+                    reason.empty() ? "it does not say why" : "Fast DDS says: " + reason));
   }
   if (gate_) gate_->set_self(id_of(participant_->guid().guidPrefix));
   publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
