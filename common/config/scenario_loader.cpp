@@ -2,6 +2,7 @@
 #include "common/config/scenario_loader.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
 #include <numbers>
@@ -12,6 +13,7 @@
 #include "common/config/scenario_robots.hpp"
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
+#include "common/file/utf8.hpp"
 #include "common/messaging/senders.hpp"
 #include "idl/laser.hpp"
 #include "idl/vision.hpp"
@@ -23,21 +25,38 @@ constexpr const char* kExpected = "a scenario";
 constexpr Range kProbability{0, 1};
 constexpr std::size_t kMaxNameLength = 64;
 
-bool is_name(const std::string& name) {
-  const auto is_allowed = [](unsigned char c) {
-    return c < 128 && (std::isalnum(c) || c == '-' || c == '_' || c == '.');
-  };
-  return !name.empty() && name.size() <= kMaxNameLength && name[0] != '.' &&
-         std::all_of(name.begin(), name.end(), is_allowed);
+/// The text as a name of reports and their files: letters and digits of any language, '-', '_' and '.', but
+/// not '.' in front. Each other character becomes '_', and what follows after kMaxNameLength is left out.
+std::string as_name(const std::string& text) {
+  constexpr unsigned char kFirstC1Control = 0x80, kLastC1Control = 0x9f;
+  std::string name;
+  std::size_t characters = 0;
+  for (std::size_t at = 0; at < text.size() && characters < kMaxNameLength; ++characters) {
+    const std::size_t length = utf8_length(text, at);
+    const auto first = static_cast<unsigned char>(text[at]);
+    const auto second = static_cast<unsigned char>(length > 1 ? text[at + 1] : 0);
+    const bool is_control =
+        length == 2 && first == 0xc2 && second >= kFirstC1Control && second <= kLastC1Control;
+    const bool is_allowed =
+        length > 1 ? !is_control
+                   : std::isalnum(first) || first == '-' || first == '_' || (first == '.' && at > 0);
+    name += is_allowed ? text.substr(at, length) : "_";
+    at += std::max<std::size_t>(length, 1);
+  }
+  return name;
 }
 
 void read_name(YamlMap& map, const std::string& file, Scenario& scenario) {
   const YAML::Node node = map.find("name");
-  scenario.name = node.IsDefined() ? text_from(node, map.location_of("name"))
-                                   : std::filesystem::path(file).stem().string();
-  if (is_name(scenario.name)) return;
-  if (node.IsDefined()) map.location_of("name").fail("expected 1 to 64 letters, digits, '-', '_' or '.'");
-  scenario.name = "scenario";
+  if (!node.IsDefined()) {
+    const std::string stem = as_name(std::filesystem::path(file).stem().string());
+    scenario.name = stem.empty() ? "scenario" : stem;
+    return;
+  }
+  scenario.name = text_from(node, map.location_of("name"));
+  if (scenario.name.empty() || as_name(scenario.name) != scenario.name)
+    map.location_of("name").fail(fmt::format(
+        "expected 1 to {} letters, digits, '-', '_' or '.', and no '.' in front", kMaxNameLength));
 }
 
 void read_field_and_limits(YamlMap& map, Scenario& scenario) {

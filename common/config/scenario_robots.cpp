@@ -13,7 +13,6 @@ namespace sidestep {
 namespace {
 
 constexpr Range kCoordinate_m{-1000, 1000};
-constexpr Range kAngle_rad{-2 * std::numbers::pi, 2 * std::numbers::pi};
 constexpr Range kRobotId{0, kMaxRobots - 1};
 constexpr Range kClockOffset_ms{-60000, 60000};
 constexpr std::size_t kMaxGoals = 10000;
@@ -37,7 +36,7 @@ PlacedRobot read_robot(const YAML::Node& node, const YamlLocation& location) {
   map.require("start_m");
   placed.lines.start = map.location_of("start_m").line;
   map.read("start_m", kCoordinate_m, robot.start_m);
-  map.read("heading_rad", kAngle_rad, robot.start_heading_rad);
+  map.read_heading("heading_rad", robot.start_heading_rad);
   map.read_ms("clock_offset_ms", kClockOffset_ms, robot.clock_offset);
   map.read("absent", robot.is_absent);
   map.read("planner", kDrivingPlanners, robot.planner);
@@ -50,7 +49,7 @@ PlacedRobot read_robot(const YAML::Node& node, const YamlLocation& location) {
     const YamlLocation goal_location = goals.of(element, goals.what);
     const auto numbers = numbers_from(element, goal_location, 2, 3, kCoordinate_m);
     Goal goal{{numbers[0], numbers[1]}, std::nullopt};
-    if (numbers.size() == 3) goal.heading_rad = number_from(element[2], goal_location, kAngle_rad);
+    if (numbers.size() == 3) goal.heading_rad = heading_from(element[2], goal_location);
     robot.goals.push_back(goal);
     placed.lines.goals.push_back(goal_location.line);
   }

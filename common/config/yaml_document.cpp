@@ -12,6 +12,7 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include "common/config/config_error.hpp"
+#include "common/config/yaml_merge.hpp"
 #include "common/file/read_file.hpp"
 
 namespace sidestep {
@@ -20,19 +21,26 @@ namespace {
 constexpr std::size_t kMaxValues = 400'000;
 
 /// Records the line on which the last document began, and counts values: each use of an anchor as often as
-/// what it stands for has values. yaml-cpp takes about half a kilobyte for each.
+/// what it stands for has values, so merged ones too. yaml-cpp takes about half a kilobyte for each.
 class FirstReading : public YAML::EventHandler {
  public:
   int line = 1;
+  bool has_merge_key = false;  ///< perhaps: some text is "<<"
 
   explicit FirstReading(const std::string& file_name) : file_name_(file_name) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add_value(mark, anchor); }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override { add(mark, values_of_[anchor]); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto is_it = [anchor](const auto& collection) { return collection.first == anchor; };
+    if (std::ranges::any_of(open_, is_it))
+      throw ConfigError(file_name_, mark.line + 1, "an anchor is used within what it stands for");
+    add(mark, values_of_[anchor]);
+  }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
-                const std::string&) override {
+                const std::string& text) override {
+    has_merge_key |= text == "<<";
     add_value(mark, anchor);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
@@ -72,6 +80,23 @@ class FirstReading : public YAML::EventHandler {
   std::map<YAML::anchor_t, std::size_t> values_of_;           // by anchor; 0 stands for none
 };
 
+/// Whether the line, from 1, is indented by a tab. yaml-cpp names various consequences of that, but not the
+/// cause.
+bool is_indented_by_tab(const std::string& text, int line) {
+  std::istringstream stream(text);
+  std::string content;
+  for (int i = 0; i < line; ++i)
+    if (!std::getline(stream, content)) return false;
+  const std::size_t indentation = std::min(content.find_first_not_of(" \t"), content.size());
+  return content.substr(0, indentation).find('\t') != std::string::npos;
+}
+
+/// yaml-cpp's reason on this line, from 1, or the cause of it.
+std::string reason_of(const YAML::Exception& error, const std::string& text, int line) {
+  return is_indented_by_tab(text, line) ? "a tab indents this line, expected spaces"
+                                        : "not YAML: " + error.msg;
+}
+
 }  // namespace
 
 std::string read_yaml_file(const std::string& path, const std::string& expected) {
@@ -97,9 +122,12 @@ YAML::Node parse_yaml(const std::string& text, const std::string& file_name, con
       throw ConfigError(file_name, document.line,
                         "a second YAML document begins here, expected a single document");
     }
-    return YAML::Load(text);
+    const YAML::Node root = YAML::Load(text);
+    if (document.has_merge_key) apply_merge_keys(root, file_name);
+    return root;
   } catch (const YAML::Exception& error) {
-    throw ConfigError(file_name, std::max(1, error.mark.line + 1), "not YAML: " + error.msg);
+    const int line = std::max(1, error.mark.line + 1);
+    throw ConfigError(file_name, line, reason_of(error, text, line));
   }
 }
 

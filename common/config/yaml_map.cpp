@@ -5,9 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <set>
 
 #include "common/config/config_error.hpp"
+#include "common/config/heading.hpp"
 #include "common/config/yaml_document.hpp"
 
 namespace sidestep {
@@ -17,7 +19,7 @@ std::string described(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Scalar: {
       const std::string text = node.Scalar().substr(0, 40);
-      return "\"" + text + "\"";
+      return "\"" + text + (node.Tag() == "!" ? "\" in quotes" : "\"");
     }
     case YAML::NodeType::Sequence:
       return "a list";
@@ -31,7 +33,7 @@ std::string described(const YAML::Node& node) {
   return "nothing";
 }
 
-std::string described(Range range) { return fmt::format("{} to {}", range.low, range.high); }
+std::string described(Range range) { return fmt::format("{:.10g} to {:.10g}", range.low, range.high); }
 
 /// A number is a plain scalar: "3" in quotes or with a tag is text.
 template <typename Number>
@@ -63,6 +65,15 @@ double number_from(const YAML::Node& node, const YamlLocation& location, Range r
     location.fail(fmt::format("expected {}, got {}", described(range), value));
   }
   return value;
+}
+
+double heading_from(const YAML::Node& node, const YamlLocation& location) {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  double value_rad = 0;
+  if (!parse_plain(node, value_rad)) location.fail("expected a heading in radians, got " + described(node));
+  value_rad = number_from(node, location, {-kMax, kMax});
+  if (const std::string problem = heading_problem(value_rad); !problem.empty()) location.fail(problem);
+  return value_rad;
 }
 
 long integer_from(const YAML::Node& node, const YamlLocation& location, Range range) {
@@ -176,6 +187,11 @@ void YamlMap::read(const std::string& key, bool& value) {
     location_of(key).fail("expected true or false, got " + described(node));
   }
   value = node.Scalar() == "true";
+}
+
+void YamlMap::read_heading(const std::string& key, double& value_rad) {
+  const YAML::Node node = find(key);
+  if (node.IsDefined()) value_rad = heading_from(node, location_of(key));
 }
 
 void YamlMap::read_ms(const std::string& key, Range range_ms, Duration& value) {

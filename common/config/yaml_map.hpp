@@ -35,6 +35,8 @@ struct Range {
 /// A finite number.
 [[nodiscard]] double number_from(const YAML::Node& node, const YamlLocation& location, Range range);
 [[nodiscard]] long integer_from(const YAML::Node& node, const YamlLocation& location, Range range);
+/// A heading in radians, within a whole turn.
+[[nodiscard]] double heading_from(const YAML::Node& node, const YamlLocation& location);
 /// Plain or quoted text.
 [[nodiscard]] std::string text_from(const YAML::Node& node, const YamlLocation& location);
 /// A list of min_count to max_count numbers.
@@ -57,6 +59,8 @@ class YamlMap {
   void read(const std::string& key, std::span<const std::string_view> names, std::string& value);
   /// true or false.
   void read(const std::string& key, bool& value);
+  /// A heading in radians, within a whole turn.
+  void read_heading(const std::string& key, double& value_rad);
   /// For keys that end in _ms.
   void read_ms(const std::string& key, Range range_ms, Duration& value);
   /// The value of a key; undefined if the key is missing.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/order/goal_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
+#include <system_error>
 
+#include "common/config/heading.hpp"
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
 #include "common/messaging/version_codec.hpp"
@@ -16,7 +18,7 @@ namespace {
 
 constexpr Range kCoordinate{-kMaxCoordinate_m, kMaxCoordinate_m};
 
-/// Reads a comma-separated list of up to three coordinates; empty if the text is anything else.
+/// Reads a comma-separated list of up to three numbers; empty if the text is anything else.
 std::vector<double> parse_numbers(const std::string& text) {
   std::vector<double> numbers;
   const char *at = text.data(), *const end = at + text.size();
@@ -24,7 +26,7 @@ std::vector<double> parse_numbers(const std::string& text) {
     double number = 0;
     const bool has_plus = end - at > 1 && *at == '+' && (at[1] == '.' || (at[1] >= '0' && at[1] <= '9'));
     const auto [stop, error] = std::from_chars(at + has_plus, end, number);
-    if (error != std::errc{} || !(std::abs(number) <= kMaxCoordinate_m)) return {};
+    if (error != std::errc{} || !std::isfinite(number)) return {};
     numbers.push_back(number);
     if (stop == end) return numbers;
     if (*stop != ',') return {};
@@ -39,6 +41,19 @@ Goal goal_from(const std::vector<double>& numbers) {
   return goal;
 }
 
+Goal goal_from(const YAML::Node& node, const YamlLocation& location) {
+  Goal goal = goal_from(numbers_from(node, location, 2, 3, kCoordinate));
+  if (goal.heading_rad) goal.heading_rad = heading_from(node[2], location);
+  return goal;
+}
+
+/// Throws UsageError if a coordinate is too large.
+void require_near(const std::string& text, const std::vector<double>& numbers) {
+  if (std::max(std::abs(numbers[0]), std::abs(numbers[1])) > kMaxCoordinate_m)
+    throw UsageError(fmt::format("\"{}\": expected coordinates from {:g} to {:g} m", text, -kMaxCoordinate_m,
+                                 kMaxCoordinate_m));
+}
+
 }  // namespace
 
 Goal parse_goal(const std::string& text) {
@@ -46,10 +61,11 @@ Goal parse_goal(const std::string& text) {
   if (numbers.size() < 2 || numbers.size() > 3)
     throw UsageError(
         fmt::format("\"{}\" is no goal, expected X,Y or X,Y,HEADING in metres and radians", text));
-  if (numbers.size() == 3 && std::abs(numbers[2]) > 2 * std::numbers::pi)
-    throw UsageError(
-        fmt::format("\"{}\": expected a heading of -6.28 to 6.28 radians; {:g} degrees are {:.4g} radians",
-                    text, numbers[2], numbers[2] * std::numbers::pi / 180));
+  require_near(text, numbers);
+  if (numbers.size() == 3) {
+    if (const std::string problem = heading_problem(numbers[2]); !problem.empty())
+      throw UsageError(fmt::format("\"{}\": {}", text, problem));
+  }
   return goal_from(numbers);
 }
 
@@ -57,6 +73,7 @@ Vec2 parse_corner(const std::string& text) {
   const auto numbers = parse_numbers(text);
   if (numbers.size() != 2)
     throw UsageError(fmt::format("\"{}\" is no corner of a zone, expected X,Y in metres", text));
+  require_near(text, numbers);
   return {numbers[0], numbers[1]};
 }
 
@@ -82,8 +99,7 @@ GoalLists parse_goal_lists(const std::string& text, const std::string& file_name
     if (lists.contains(robot)) of_robot.fail("given twice");
     std::vector<Goal>& goals = lists[robot];
     for (const YAML::Node& element : list_from(entry.second, of_robot, msg::MAX_ORDER_POSES))
-      goals.push_back(
-          goal_from(numbers_from(element, of_robot.of(element, of_robot.what), 2, 3, kCoordinate)));
+      goals.push_back(goal_from(element, of_robot.of(element, of_robot.what)));
     if (goals.empty()) of_robot.fail("expected at least one goal");
   }
   if (lists.empty()) location.fail("expected at least one robot");

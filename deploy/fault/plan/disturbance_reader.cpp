@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 
 #include "deploy/fault/plan/plan_names.hpp"
 #include "simulator/world/disturbance_codec.hpp"
@@ -35,7 +34,6 @@ constexpr std::array<DisturbanceKey, 14> kDisturbanceKeys{{{"push", Kind::DISTUR
 // As the options of `sidestep fault`, or narrower where the simulator takes less.
 constexpr Range kPush_mps{-10, 10};
 constexpr Range kSightError_m{-10, 10};
-constexpr Range kHeading_rad{-2 * std::numbers::pi, 2 * std::numbers::pi};
 constexpr Range kOffset_ms{-1e6, 1e6};
 constexpr Range kPlace_m{-1000, 1000};
 constexpr Range kSeconds{0.001, 3600};
@@ -85,11 +83,11 @@ RobotDisturbance read_disturbance(YamlMap& map, const std::string& key, const Sc
       map.read("grip", {0, 1}, disturbance.grip);
       break;
     case Kind::DISTURBANCE_BLOCK:
-      map.read("heading_rad", kHeading_rad, disturbance.heading_rad);
+      map.read_heading("heading_rad", disturbance.heading_rad);
       break;
     case Kind::DISTURBANCE_PLACE:
       read_place(map, "at_m", disturbance, scenario);
-      map.read("heading_rad", kHeading_rad, disturbance.heading_rad);
+      map.read_heading("heading_rad", disturbance.heading_rad);
       break;
     case Kind::DISTURBANCE_CLOCK:
       require(map, "offset_ms");

@@ -2,32 +2,13 @@
 #include "deploy/fault/plan/junit.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "common/file/utf8.hpp"
+
 namespace sidestep {
 namespace {
-
-/// Length of the UTF-8 sequence (RFC 3629) at this position if XML 1.0 may contain its character, else 0.
-std::size_t character_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return at + i < text.size() ? static_cast<unsigned char>(text[at + i]) : 0U;
-  };
-  const unsigned first = byte(0);
-  if (first < 0x80) return first >= 0x20 || first == '\t' || first == '\n' || first == '\r' ? 1 : 0;
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  std::uint32_t code = first & (0xffU >> (length + 1));
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-    code = code << 6 | (byte(i) & 0x3f);
-  }
-  constexpr std::uint32_t kShortest[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-  const bool is_valid = first >= 0xc2 && first < 0xf5 && code >= kShortest[length] && code <= 0x10ffff &&
-                        !is_surrogate && code != 0xfffe && code != 0xffff;
-  return is_valid ? length : 0;
-}
 
 std::string test_case(const TestResult& result) {
   const std::string name = fmt::format("{}, seed {}", result.file, result.seed);
@@ -47,7 +28,7 @@ std::string test_case(const TestResult& result) {
 std::string xml_escaped(const std::string& text) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = character_length(text, at);
+    const std::size_t length = utf8_length(text, at);
     const std::string character = length == 0 ? "?" : text.substr(at, length);
     at += std::max<std::size_t>(length, 1);
     if (character == "&")

@@ -158,7 +158,8 @@ TEST_CASE("numbers that are out of range, infinite or NaN are rejected with thei
                  "expected 0 to 1023, got 1024");
   check_rejected("robots:\n- {id: -1, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2,
                  "expected 0 to 1023, got -1");
-  check_rejected("robots:\n- {id: 1, start_m: [0, 0], goals_m: [[1, 0, 9]]}\n", 2, "expected -6.28");
+  check_rejected("robots:\n- {id: 1, start_m: [0, 0], goals_m: [[1, 0, 9]]}\n", 2,
+                 "9 degrees are 0.1571 radians");
 }
 
 TEST_CASE("missing robots, ids, starts and goals are rejected") {

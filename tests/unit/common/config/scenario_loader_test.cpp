@@ -175,6 +175,21 @@ robots:
   CHECK(find_robot(s, 8) == nullptr);
 }
 
+TEST_CASE("a scenario without a name has that of its file, in any language") {
+  const auto [file, name] = GENERATE(table<std::string, std::string>({
+      {"dir/lone.yaml", "lone"},
+      {"dir/\xe4\xba\xa4\xe5\xb7\xae-\xc3\xa4.yaml", "\xe4\xba\xa4\xe5\xb7\xae-\xc3\xa4"},
+      {"hall 2 (old).yaml", "hall_2__old_"},
+      {".hidden.yaml", "_hidden"},
+      {"a\xff\x1b[K\xc2\x9b.yaml", "a___K_"},
+      {std::string(80, 'x') + ".yaml", std::string(64, 'x')},
+      {"", "scenario"},
+  }));
+  CAPTURE(file);
+  CHECK(parse_scenario(kRobot, file).name == name);
+  CHECK(parse_scenario("name: " + name + "\n" + kRobot, "other.yaml").name == name);
+}
+
 TEST_CASE("missing keys leave the defaults") {
   const Scenario given = parse_scenario(kRobot, "dir/lone.yaml"), defaults;
   CHECK(given.name == "lone");

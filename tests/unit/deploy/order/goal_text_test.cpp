@@ -14,6 +14,7 @@ TEST_CASE("a goal is a place, with or without a heading") {
   CHECK(parse_goal("-.5,+1.0").position_m == Vec2(-0.5, 1));
   CHECK(parse_goal("+.5,1e-1,-6.28").position_m == Vec2(0.5, 0.1));
   CHECK_THROWS_WITH(parse_goal("1,2,90"), ContainsSubstring("90 degrees are 1.571 radians"));
+  CHECK_THROWS_WITH(parse_goal("1e9,0"), ContainsSubstring("expected coordinates from -"));
   for (const char* text : {"", "1", "1,", "1,2,", "1,2,3,4", "1,2,3,", "a,b", "1;2", "nan,1", "1,inf",
                            "1e9,0", "1,2 ", ",1,2", "+-1,2", "++1,2", "+,1", "1,2,-7"}) {
     CAPTURE(text);
@@ -53,6 +54,9 @@ TEST_CASE("a file gives goals to several robots, and what is wrong in it is name
       {"x: [[1, 2]]\n", "goals.yaml:1: "},
       {"1024: [[1, 2]]\n", "goals.yaml:1: "},
       {"3: [[1, .nan]]\n", "goals.yaml:1: "},
+      {"3:\n  - [1, 2, 90]\n",
+       "goals.yaml:2: robot 3: expected a heading of -6.28 to 6.28 radians, got 90; 90 degrees are 1.571 "
+       "radians"},
   };
   for (const auto& [text, expected] : cases) {
     INFO(text);

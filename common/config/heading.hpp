@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace sidestep {
+
+/// What is wrong with a heading in radians that a person has given: it is beyond a whole turn, so it may be
+/// meant in degrees. Empty: nothing.
+[[nodiscard]] std::string heading_problem(double heading_rad);
+
+}  // namespace sidestep

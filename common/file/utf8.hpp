@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace sidestep {
+
+/// Length in bytes of the UTF-8 sequence (RFC 3629) that begins at `at`, which must be below the text's size.
+/// 0: there is none, or it is a control character other than tab, newline and carriage return, or one of the
+/// non-characters that XML 1.0 excludes.
+[[nodiscard]] std::size_t utf8_length(std::string_view text, std::size_t at);
+
+}  // namespace sidestep

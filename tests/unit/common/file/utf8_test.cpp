@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/file/utf8.hpp"
+
+#include <string>
+
+#include "tests/catch.hpp"
+
+namespace sidestep::utf8_test {
+
+TEST_CASE("valid sequences have their length, and all others none") {
+  const auto [text, length] = GENERATE(table<std::string, std::size_t>({
+      {"a", 1},
+      {"\t", 1},
+      {"\x1b", 0},
+      {std::string(1, '\0'), 0},
+      {"\xc3\xa4", 2},
+      {"\xe4\xba\xa4", 3},
+      {"\xf0\x9f\xa4\x96", 4},
+      {"\xc3", 0},              // ends too early
+      {"\xa4", 0},              // a continuation
+      {"\xc0\x80", 0},          // longer than necessary
+      {"\xed\xa0\x80", 0},      // a surrogate
+      {"\xef\xbf\xbf", 0},      // a non-character
+      {"\xf4\x90\x80\x80", 0},  // beyond Unicode
+      {"\xff", 0},
+  }));
+  CAPTURE(text);
+  CHECK(utf8_length(text, 0) == length);
+  CHECK(utf8_length("ab" + text, 2) == length);
+}
+
+}  // namespace sidestep::utf8_test
