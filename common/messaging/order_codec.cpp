@@ -11,7 +11,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMinTolerance_m = 0.001, kMaxTolerance_m = 10;
 constexpr double kMaxHeading_rad = 100;
 constexpr double kMaxRemaining_s = 1e9;
 

@@ -17,6 +17,8 @@ inline constexpr std::uint32_t kMaxOrderPages = 512;
 inline constexpr std::size_t kMaxZoneCorners = 16;
 /// Codecs refuse lower speed limits: a robot would hardly move.
 inline constexpr double kMinSpeedLimit_mps = 0.01;
+/// Codecs refuse other distances that count as arrival.
+inline constexpr double kMinTolerance_m = 0.001, kMaxTolerance_m = 10;
 
 /// A page of the orders that a process remembers; see OrderMemory in idl/order.idl.
 struct OrderPage {

@@ -4,6 +4,8 @@
 #include <charconv>
 #include <string_view>
 
+#include "common/motion/version.hpp"
+
 namespace sidestep {
 
 std::vector<TopicInfo> all_topics() {
@@ -19,7 +21,8 @@ std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::st
   const std::string_view digits = std::string_view(channel).substr(prefix.size());
   std::uint32_t robot = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), robot);
-  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  if (error != std::errc() || end != digits.data() + digits.size() || robot >= kMaxRobots)
+    return std::nullopt;
   return robot;
 }
 

@@ -3,9 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fmt/format.h>
+#include <limits>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 
@@ -18,29 +21,78 @@ ValueCheck from_library(const CLI::Validator& validator) {
   return {validator.get_description(), [validator](const std::string& text) { return validator(text); }};
 }
 
-template <typename Value>
-constexpr bool is_real_number =
-    std::is_same_v<Value, double> || std::is_same_v<Value, std::optional<double>> ||
-    std::is_same_v<Value, std::vector<double>>;
-
-/// The library's checks of ranges let NaN through.
-CLI::Validator finite() {
-  const auto problem = [](const std::string& text) {
-    double value = 0;
-    const bool is_finite = !CLI::detail::lexical_cast(text, value) || std::isfinite(value);
-    return is_finite ? "" : text + " is not a finite number";
-  };
-  return CLI::Validator(problem, "");
+/// Quoted for a message; a long value is cut.
+std::string in_quotes(const std::string& text) {
+  constexpr std::size_t kMaxLength = 60;
+  return fmt::format("\"{}\"", text.size() > kMaxLength ? text.substr(0, kMaxLength) + "..." : text);
 }
 
-/// Turns the project's exception into the library's, which adds the option's name.
+/// The number that is all of the text, in decimal notation; "+" in front is allowed, NaN and infinity are
+/// not.
+template <typename Number>
+std::optional<Number> parsed(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  if constexpr (std::is_floating_point_v<Number>) {
+    if (!std::isfinite(number)) return std::nullopt;
+  }
+  return number;
+}
+
+/// The type of one value of an option.
+template <typename Value>
+struct Element {
+  using Type = Value;
+};
+template <typename Value>
+struct Element<std::optional<Value>> {
+  using Type = Value;
+};
+template <typename Value>
+struct Element<std::vector<Value>> {
+  using Type = Value;
+};
+
+/// What the library would read differently than people mean it is refused, or written as the library reads
+/// it: it takes 010 for 8, numbers that are too large for the largest, and an empty text for none.
+template <typename Number>
+std::string normalise_number(std::string& text) {
+  const auto number = parsed<Number>(text);
+  if (number && std::is_floating_point_v<Number>) {
+    if (text.starts_with('+')) text.erase(0, 1);
+    return "";
+  }
+  if (number) {
+    text = std::to_string(*number);
+    return "";
+  }
+  if constexpr (std::is_floating_point_v<Number>) return "expected a finite number, got " + in_quotes(text);
+  return fmt::format("expected a whole number from {} to {}, got {}", std::numeric_limits<Number>::min(),
+                     std::numeric_limits<Number>::max(), in_quotes(text));
+}
+
+template <typename Type>
+CLI::Validator type_check() {
+  if constexpr (std::is_arithmetic_v<Type>) {
+    return CLI::Validator([](std::string& text) { return normalise_number<Type>(text); }, "");
+  } else {
+    // A script's unset variable must not count as an option that is not given.
+    return CLI::Validator(
+        [](std::string& text) { return text.empty() ? "expected some text, got \"\"" : ""; }, "");
+  }
+}
+
+/// Turns the project's exception into the library's, with the option's name in front if there is one.
 template <typename Callback>
-auto translated(Callback callback) {
-  return [callback = std::move(callback)](const auto&... arguments) {
+auto translated(const std::string& option, Callback callback) {
+  return [option, callback = std::move(callback)](const auto&... arguments) {
     try {
       callback(arguments...);
     } catch (const UsageError& error) {
-      throw CLI::ValidationError(error.what());
+      throw option.empty() ? CLI::ValidationError(error.what()) : CLI::ValidationError(option, error.what());
     }
   };
 }
@@ -48,19 +100,28 @@ auto translated(Callback callback) {
 }  // namespace
 
 ValueCheck in_range(double min, double max) {
-  return {fmt::format("in [{}, {}]", min, max),
-          [range = CLI::Range(min, max)](const std::string& text) { return range(text); }};
+  const std::string description = fmt::format("in [{:.10g}, {:.10g}]", min, max);
+  return {description, [=](const std::string& text) {
+            const auto number = parsed<double>(text);
+            if (number && *number >= min && *number <= max) return std::string();
+            return fmt::format("expected a number {}, got {}", description, in_quotes(text));
+          }};
 }
 
 ValueCheck positive() {
-  constexpr double kLimit = 1e9;
-  const auto problem = [range = CLI::Range(1 / kLimit, kLimit)](const std::string& text) {
-    return range(text).empty() ? "" : text + " is not a number above 0, up to 1e9";
-  };
-  return {"POSITIVE", problem};
+  return {"POSITIVE", [](const std::string& text) {
+            const auto number = parsed<double>(text);
+            if (number && *number >= 1e-9 && *number <= 1e9) return std::string();
+            return "expected a number from 1e-9 to 1e9, got " + in_quotes(text);
+          }};
 }
 
-ValueCheck non_negative() { return from_library(CLI::NonNegativeNumber); }
+ValueCheck non_negative() {
+  return {"NONNEGATIVE", [](const std::string& text) {
+            const auto number = parsed<double>(text);
+            return number && *number < 0 ? "expected at least 0, got " + in_quotes(text) : std::string();
+          }};
+}
 
 ValueCheck one_of(std::vector<std::string> values) { return from_library(CLI::IsMember(std::move(values))); }
 
@@ -69,9 +130,17 @@ Option Option::required() const {
   return *this;
 }
 
+// In front of the check of the type, because it names the limits.
 Option Option::check(const ValueCheck& check) const {
-  option_->check(CLI::Validator([problem = check.problem](std::string& text) { return problem(text); },
-                                check.description));
+  const bool is_whole =
+      option_->get_type_name().starts_with("INT") || option_->get_type_name().starts_with("UINT");
+  const bool has_limits = check.description.starts_with("in [");
+  const auto problem = [=](std::string& text) {
+    if (is_whole && has_limits && parsed<double>(text) && !parsed<std::int64_t>(text))
+      return fmt::format("expected a whole number {}, got {}", check.description, in_quotes(text));
+    return check.problem(text);
+  };
+  option_->transform(CLI::Validator(problem, check.description));
   return *this;
 }
 
@@ -123,7 +192,7 @@ void CliCommand::add_version(const std::string& text) const { app_->set_version_
 template <typename Value>
 Option CliCommand::add_option(const std::string& name, Value& value, const std::string& description) const {
   CLI::Option& option = *app_->add_option(name, value, description);
-  if constexpr (is_real_number<Value>) option.check(finite());
+  option.transform(type_check<typename Element<Value>::Type>());
   return Option(option);
 }
 
@@ -151,7 +220,8 @@ Option CliCommand::add_flag(const std::string& name, bool& value, const std::str
 
 Option CliCommand::add_option(const std::string& name, std::function<void(const std::string&)> take,
                               const std::string& description) const {
-  return Option(*app_->add_option_function<std::string>(name, translated(std::move(take)), description));
+  return Option(
+      *app_->add_option_function<std::string>(name, translated(name, std::move(take)), description));
 }
 
 Option CliCommand::add_optional_value(const std::string& name, std::optional<std::string>& value,
@@ -170,13 +240,32 @@ Option CliCommand::add_optional_value(const std::string& name, std::optional<std
 Option CliCommand::option(const std::string& name) const { return Option(*app_->get_option(name)); }
 
 void CliCommand::on_parsed(std::function<void()> callback) const {
-  app_->callback(translated(std::move(callback)));
+  app_->callback(translated("", std::move(callback)));
 }
 
 CommandLine::CommandLine(const std::string& description, const std::string& program_name)
     : app_(std::make_unique<CLI::App>(description, program_name)) {}
 
 CommandLine::~CommandLine() = default;
+
+namespace {
+
+/// Names the word that stands where a command is expected; the library only says that a command is missing.
+std::optional<CLI::ParseError> unknown_command(const CLI::App& root) {
+  const CLI::App* app = &root;
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  const std::vector<std::string> rest = app->remaining();
+  if (app->get_require_subcommand_min() == 0 || rest.empty() || rest.front().starts_with("-"))
+    return std::nullopt;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app->get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return CLI::ParseError(
+      fmt::format("{} is no command, expected one of: {}", in_quotes(rest.front()), fmt::join(names, ", ")),
+      CLI::ExitCodes::ExtrasError);
+}
+
+}  // namespace
 
 /// As the library wants them. It takes "-.5" for an option, but not "-0.5".
 std::vector<std::string> CommandLine::reversed(std::vector<std::string> arguments) {
@@ -192,7 +281,8 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
   try {
     app_->parse(reversed({argv + 1, argv + argc}));
   } catch (const CLI::ParseError& error) {
-    return app_->exit(error) == 0 ? 0 : kExitUsage;
+    const auto problem = unknown_command(*app_);
+    return app_->exit(problem ? *problem : error) == 0 ? 0 : kExitUsage;
   }
   return std::nullopt;
 }
@@ -201,6 +291,7 @@ void CommandLine::parse(std::vector<std::string> arguments) {
   try {
     app_->parse(reversed(std::move(arguments)));
   } catch (const CLI::ParseError& error) {
+    if (const auto problem = unknown_command(*app_)) throw UsageError(problem->what());
     throw UsageError(error.what());
   }
 }

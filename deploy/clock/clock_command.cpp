@@ -116,7 +116,7 @@ void add_clock_command(const CliCommand& root, std::function<int()>& action) {
       [options](const std::string& name) {
         options->reference = process_id(name);
         options->reference_name = name;
-        if (!options->reference) throw UsageError("--from: no process has the name '" + name + "'");
+        if (!options->reference) throw UsageError("no process has the name '" + name + "'");
       },
       "process from whose clock offsets are shown, e.g. coordinator; default: this machine");
   command.add_flag("--once", options->once, "print the table once, and end");

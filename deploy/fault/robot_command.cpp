@@ -4,9 +4,10 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
-#include <numbers>
+#include <string>
 #include <vector>
 
+#include "common/config/heading.hpp"
 #include "common/motion/version.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -85,7 +86,12 @@ void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
                             double max, const char* description) {
     command.add_option(name, pair, description).required().comma_separated(2).check(in_range(-max, max));
   };
-  const ValueCheck angle = in_range(-2 * std::numbers::pi, 2 * std::numbers::pi);
+  const ValueCheck angle{
+      "in [-6.28, 6.28]", [](const std::string& text) {
+        const bool is_number = in_range(-1e9, 1e9).problem(text).empty();
+        return is_number ? heading_problem(std::stod(text))
+                         : fmt::format("expected a heading of -6.28 to 6.28 radians, got \"{}\"", text);
+      }};
 
   const CliCommand push = add("push", "Changes a robot's velocity instantly", Kind::DISTURBANCE_PUSH);
   add_pair(push, "--velocity", options->velocity_mps, 20, "velocity change X,Y in m/s");

@@ -13,6 +13,7 @@
 #include "common/client/order_client.hpp"
 #include "common/config/yaml_document.hpp"
 #include "common/messaging/dds/bus.hpp"
+#include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
@@ -170,9 +171,10 @@ void add_go(const CliCommand& root, std::function<int()>& action) {
   const auto goals = command.add_option("GOAL", options->goals, "X,Y[,HEADING] in metres and radians");
   const auto file = command.add_option("--file", options->file,
                                        "YAML file with lines such as \"3: [[1.2, -0.4], [0, 0, 1.57]]\"");
-  command.add_option("--speed", options->speed_limit_mps, "speed limit on the way, m/s").check(positive());
+  command.add_option("--speed", options->speed_limit_mps, "speed limit on the way, m/s")
+      .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));
   command.add_option("--tolerance", options->tolerance_m, "distance from a goal that counts as arrival, m")
-      .check(positive());
+      .check(in_range(kMinTolerance_m, kMaxTolerance_m));
   command.add_flag("--wait", options->waits, "wait until all have arrived");
   command.on_parsed([=, &action] {
     if (file.is_given() == robot.is_given()) throw UsageError("expected either ROBOT and GOAL, or --file");

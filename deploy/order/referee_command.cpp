@@ -41,7 +41,8 @@ league::RefereeCommand parse_command(const std::string& text) {
 Vec2 parse_place(const std::string& text) {
   const Vec2 place_m = parse_corner(text);
   if (place_m.cwiseAbs().maxCoeff() <= league::kMaxPosition_m) return place_m;
-  throw UsageError(fmt::format("--place {}: expected at most {} m", text, league::kMaxPosition_m));
+  throw UsageError(fmt::format("\"{}\": expected coordinates from {} to {} m", text, -league::kMaxPosition_m,
+                               league::kMaxPosition_m));
 }
 
 int play(PlayedReferee& referee) {

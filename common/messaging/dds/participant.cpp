@@ -37,13 +37,13 @@ constexpr int kMaxInstances = 2048;  ///< keys per endpoint; beyond that, idle o
 
 Duration_t milliseconds(std::uint32_t ms) { return Duration_t(0, ms * 1'000'000); }
 
-/// Throws std::runtime_error.
+/// Throws std::invalid_argument.
 fast_dds::rtps::Locator_t locator_at(const std::string& address) {
   fast_dds::rtps::Locator_t locator;
   locator.kind = LOCATOR_KIND_UDPv4;
   locator.port = 0;  // Fast DDS fills in the ports of all participants
   if (inet_pton(AF_INET, address.c_str(), locator.address + 12) != 1)
-    throw std::runtime_error(fmt::format("peers: expected IPv4 addresses, got '{}'", address));
+    throw std::invalid_argument(fmt::format("--peers: expected IPv4 addresses, got '{}'", address));
   return locator;
 }
 
@@ -63,15 +63,15 @@ std::string own_addresses() {
 
 void check(const DdsSettings& settings) {
   if (settings.domain < 0 || settings.domain > kMaxDomain) {
-    throw std::runtime_error(fmt::format("domain: expected 0..{}, got {}", kMaxDomain, settings.domain));
+    throw std::invalid_argument(fmt::format("--domain: expected 0..{}, got {}", kMaxDomain, settings.domain));
   }
   if (settings.interface == "all") return;
   // With an address of another machine, Fast DDS would have no interface and report no error.
   const std::string own = own_addresses();
   if (settings.interface.empty() ||
       (" " + own + " ").find(" " + settings.interface + " ") == std::string::npos) {
-    throw std::runtime_error(fmt::format(
-        "interface: expected 'all' or an address of this machine ({}), got '{}'", own, settings.interface));
+    throw std::invalid_argument(fmt::format(
+        "--interface: expected 'all' or an address of this machine ({}), got '{}'", own, settings.interface));
   }
 }
 

@@ -115,7 +115,7 @@ void add_plan_command(const CliCommand& root, std::function<int()>& action) {
       "--svg", options->picture_file,
       "draw the world, the tree, the cache, the path and a local method's band into this file");
   command.add_option("--query", options->query, "number of the world's query, from 0")
-      .check(non_negative())
+      .check(in_range(0, 99'999))
       .show_default();
   command.add_option("--seed", options->seed, "seed of everything random")
       .check(non_negative())

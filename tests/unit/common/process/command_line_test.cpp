@@ -92,6 +92,56 @@ TEST_CASE("a refused value is reported with its option") {
   CHECK_THAT(f.error_of(arguments), ContainsSubstring(option));
 }
 
+TEST_CASE("a refused value is named with what is permitted") {
+  const auto [arguments, expected] = GENERATE(table<std::vector<std::string>, std::string>({
+      {{"--speed", "5.1"}, "--speed: expected a number in [0, 5], got \"5.1\""},
+      {{"--speed", "fast"}, "--speed: expected a number in [0, 5], got \"fast\""},
+      {{"--speed", "0x1"}, "--speed: expected a number in [0, 5], got \"0x1\""},
+      {{"--speed", ""}, "--speed: expected a number in [0, 5], got \"\""},
+      {{"--count", "0"}, "--count: expected a number from 1e-9 to 1e9, got \"0\""},
+      {{"--count", "1.5"}, "--count: expected a whole number from -2147483648 to 2147483647, got \"1.5\""},
+      {{"--port", "1.5"}, "--port: expected a whole number in [0, 65535], got \"1.5\""},
+      {{"--port", "65536"}, "--port: expected a number in [0, 65535], got \"65536\""},
+      {{"--robots", "1,-2"}, "--robots: expected a whole number from 0 to 4294967295, got \"-2\""},
+      {{"--position", "1,inf"}, "--position: expected a finite number, got \"inf\""},
+      {{"--folder", ""}, "--folder: expected some text, got \"\""},
+      {{"--seed", "99999999999999999999"},
+       "--seed: expected a whole number from 0 to 18446744073709551615, got \"99999999999999999999\""},
+  }));
+  CAPTURE(arguments);
+  Fixture f;
+  std::uint32_t port = 0;
+  std::uint64_t seed = 0;
+  std::string folder;
+  f.line.root().add_option("--port", port).check(in_range(0, 65535));
+  f.line.root().add_option("--seed", seed);
+  f.line.root().add_option("--folder", folder);
+  CHECK(f.error_of(arguments) == expected);
+}
+
+TEST_CASE("a number is decimal, also with a zero or a plus in front") {
+  Fixture f;
+  std::uint64_t seed = 0;
+  f.line.root().add_option("--seed", seed);
+  REQUIRE(f.error_of({"--seed", "010", "--count", "+7", "--position", "+.5,1e-1"}).empty());
+  CHECK(seed == 10);
+  CHECK(f.count == 7);
+  CHECK(f.position_m == std::vector<double>{0.5, 0.1});
+  CHECK_FALSE(Fixture().error_of({"--count", "0x10"}).empty());
+}
+
+TEST_CASE("a word that is no command is named, and the commands are listed") {
+  CommandLine line("A program under test.", "sidestep-test");
+  line.root().require_subcommand();
+  const CliCommand outer = line.root().add_subcommand("outer", "Has commands");
+  line.root().add_subcommand("other", "Has none");
+  outer.require_subcommand();
+  outer.add_subcommand("inner", "Works");
+  CHECK_THROWS_WITH(line.parse({"oter"}), "\"oter\" is no command, expected one of: outer, other");
+  CHECK_THROWS_WITH(line.parse({"outer", "iner"}), "\"iner\" is no command, expected one of: inner");
+  CHECK_THROWS_WITH(line.parse({"outer"}), ContainsSubstring("subcommand is required"));
+}
+
 TEST_CASE("what has to be positive is neither so large nor so small that it cannot be a duration") {
   const auto [text, is_valid] = GENERATE(table<std::string, bool>({{"1e-9", true},
                                                                    {"0.5", true},
