@@ -99,9 +99,10 @@ RobotMemory::RobotMemory(const std::string& folder, RobotId robot)
     : folder_(folder), path_(fmt::format("{}/robot-{}.memory", folder, robot)) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder, error))
-    throw std::runtime_error(
-        fmt::format("{}: cannot create this folder for the robots' memories: {}", folder, error.message()));
+  std::error_code none;
+  if (!std::filesystem::is_directory(folder, none))
+    throw std::runtime_error(fmt::format("{}: cannot create this folder for the robots' memories: {}", folder,
+                                         error ? error.message() : "it is not a folder"));
   lock_.emplace(path_ + ".lock");
   if (std::filesystem::exists(path_, error))
     state_ = MemoryReader(path_).read();

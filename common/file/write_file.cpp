@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -24,6 +25,13 @@ bool write(const std::string& path, const std::string& text) {
   return static_cast<bool>(file);
 }
 
+/// Opening a pipe for writing waits for a reader, and a signal does not end a process that handles it.
+void require_reader(const std::string& pipe) {
+  const int descriptor = open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) fail(pipe, errno == ENXIO ? "nobody reads this pipe" : std::strerror(errno));
+  close(descriptor);
+}
+
 }  // namespace
 
 void write_file(const std::string& path, const std::string& text) {
@@ -31,6 +39,7 @@ void write_file(const std::string& path, const std::string& text) {
   if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
     std::filesystem::create_directories(folder, error);
   const auto type = std::filesystem::symlink_status(path, error).type();
+  if (std::filesystem::is_fifo(path, error)) require_reader(path);
   if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::not_found) {
     if (!write(path, text)) fail(path, std::strerror(errno));
     return;

@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "common/file/read_file.hpp"
 #include "common/image/colour_space.hpp"
 
 namespace sidestep {
@@ -32,7 +33,11 @@ cv::Mat3b bgr_of(const ImageView& image) {
 }
 
 Image read_picture(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw std::invalid_argument(path + ": no such file");
+  try {
+    require_regular_file(path);
+  } catch (const std::runtime_error& error) {
+    throw std::invalid_argument(path + ": " + error.what());
+  }
   cv::Mat bgr;
   try {
     bgr = cv::imread(path, cv::IMREAD_COLOR);

@@ -22,11 +22,12 @@ constexpr const char* kIssueAgain = "`sidestep keys issue` makes a new one";
 void require_files(const std::string& path) {
   std::error_code none;
   for (const char* name : key_files::kAll) {
-    require_read_permission(path + "/" + name);
-    if (!fs::exists(path + "/" + name, none))
-      throw std::invalid_argument(fmt::format(
-          "--keys: expected a folder that `sidestep keys issue` has written, but {}/{} does not exist", path,
-          name));
+    const std::string file = path + "/" + name;
+    require_read_permission(file);
+    if (fs::is_regular_file(file, none)) continue;
+    throw std::invalid_argument(
+        fmt::format("--keys: expected a folder that `sidestep keys issue` has written, but {} {}", file,
+                    fs::exists(file, none) ? "is not a regular file" : "does not exist"));
   }
 }
 

@@ -48,7 +48,7 @@ std::unique_ptr<std::istream> opened(const std::string& path) {
     if (!*file) throw std::runtime_error(std::strerror(errno));
     return file;
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: cannot read the file: {}", path, error.what()));
+    throw std::invalid_argument(fmt::format("{}: cannot read the file: {}", path, error.what()));
   }
 }
 

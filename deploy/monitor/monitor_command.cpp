@@ -281,7 +281,10 @@ int monitor_recording(const MonitorOptions& options) {
     monitor.events().add({0, at, Severity::kInfo, kind, text});
   });
   std::atomic<bool> is_stopped = false;
-  const StopSignals stop_signals([&is_stopped] { is_stopped = true; });
+  const StopSignals stop_signals([&] {
+    is_stopped = true;
+    bus.stop();
+  });
   PlaybackResult result;
   Time next_snapshot{}, next_update{};
   bool is_over = false;

@@ -177,7 +177,6 @@ std::string to_text(const BagInfo& info) {
     text += fmt::format("{:{}}  {:{}}  {:>9}  {:>8}  {:>8.1f}\n", topic, topic_width, channel.type,
                         type_width, channel.messages, rate, static_cast<double>(channel.bytes) * 1e-3);
   }
-  if (!info.damage.empty()) text += "damaged: " + info.damage + "\n";
   return text;
 }
 

@@ -48,7 +48,7 @@ void add_bag_command(const CliCommand& root, std::function<int()>& action) {
     action = [options] {
       const BagInfo content = bag_info(options->file);
       fmt::print("{}", to_text(content));
-      return content.damage.empty() ? 0 : kExitFailure;
+      return exit_code_for(content.damage);
     };
   });
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
@@ -53,8 +54,11 @@ class PlaybackBus : public Bus {
   void on_event(std::function<void(Time, const std::string& kind, const std::string& text)> callback) {
     on_event_ = std::move(callback);
   }
-  /// For callbacks: no further message is delivered.
-  void stop() { is_stopped_ = true; }
+  /// No further message is delivered. Callbacks and signal handlers may call it.
+  void stop() {
+    is_stopped_ = true;
+    reader_.stop();
+  }
 
  protected:
   /// Discards everything that is written.
@@ -77,7 +81,7 @@ class PlaybackBus : public Bus {
   std::vector<McapMetadata> early_events_;  ///< before the first message
   RecordingHeader header_;
   Time now_{};
-  bool is_stopped_ = false;
+  std::atomic<bool> is_stopped_ = false;
   std::vector<TopicInfo> topics_ = all_topics();
   std::map<std::uint16_t, const TopicInfo*> topic_of_channel_;
   std::map<std::string, std::vector<std::function<void(const void*)>>> readers_;

@@ -49,6 +49,7 @@ class Replay {
   int run() {
     const StopSignals stop_signals([this] {
       is_stopped_ = true;
+      playback_.stop();
       listener_.stop();
       bus_.stop();
     });

@@ -21,11 +21,13 @@ bool measure(Bus& bus, const std::string& channel, SenderMeter& meter) {
 
 int measure_delay(const TopicOptions& options) {
   SenderMeter meter;
+  bool is_damaged = false;
   if (!options.recording_file.empty()) {
     PlaybackBus bus(options.recording_file);
     if (!measure(bus, options.topic, meter)) return kExitFailure;
     const PlaybackResult result = bus.play();
     print_damage(options.recording_file, result.damage);
+    is_damaged = !result.damage.empty();
   } else {
     DdsBus bus(options.dds);
     if (!measure(bus, options.topic, meter)) return kExitFailure;
@@ -36,7 +38,7 @@ int measure_delay(const TopicOptions& options) {
       bus.run();
   }
   fmt::print("{}", meter.table());
-  return 0;
+  return is_damaged ? kExitFailure : 0;
 }
 
 }  // namespace sidestep

@@ -32,7 +32,7 @@ int echo_recording(const TopicOptions& options, MessagePrinter& printer) {
   if (!print_channel(bus, options.topic, printer, [&bus] { bus.stop(); })) return kExitFailure;
   const PlaybackResult result = bus.play();
   print_damage(options.recording_file, result.damage);
-  return printer.printed() > 0 ? 0 : kExitFailure;
+  return printer.printed() > 0 && result.damage.empty() ? 0 : kExitFailure;
 }
 
 /// The type of a foreign topic. Throws IdlError if the file does not have it.

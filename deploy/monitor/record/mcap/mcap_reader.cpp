@@ -94,6 +94,7 @@ void McapReader::check_end(Bytes data_end, std::uint32_t sum) {
   McapBytes rest;
   std::uint32_t sum_of_summary = 0;
   for (;;) {
+    if (*is_stopped_) return;
     const Bytes some = read(1 << 20);
     if (some.empty()) break;
     rest.insert(rest.end(), some.begin(), some.end());
@@ -123,6 +124,16 @@ bool McapReader::decompress(Bytes compressed, std::uint64_t size) {
   return true;
 }
 
+std::string McapReader::chunk_problem(const McapDecoder& decoder, std::uint64_t size,
+                                      std::uint64_t stored_size, const std::string& compression) const {
+  if (!decoder.is_ok() || (!is_cut_ && stored_size != decoder.left().size())) return "a chunk is damaged";
+  if (size > kMaxRecordSize)
+    return fmt::format("a chunk claims to hold {} bytes, more than the {} that are read", size,
+                       kMaxRecordSize);
+  if (!compression.empty() && compression != "zstd") return "a chunk is compressed by other means than zstd";
+  return "";
+}
+
 bool McapReader::open_chunk(Bytes content) {
   McapDecoder decoder(content);
   decoder.raw(8 + 8);  // first and last time
@@ -130,9 +141,9 @@ bool McapReader::open_chunk(Bytes content) {
   const auto sum = decoder.number<std::uint32_t>();
   const std::string compression = decoder.text();
   const auto stored_size = decoder.number<std::uint64_t>();
-  if (!decoder.is_ok() || size > kMaxRecordSize || (!is_cut_ && stored_size != decoder.left().size()) ||
-      (!compression.empty() && compression != "zstd")) {
-    fail("a chunk is damaged, or compressed by other means than zstd");
+  const std::string problem = chunk_problem(decoder, size, stored_size, compression);
+  if (!problem.empty()) {
+    fail(problem);
     return false;
   }
   if (compression.empty())
@@ -178,7 +189,7 @@ double McapReader::progress() const {
 }
 
 McapRecord McapReader::next() {
-  for (;;) {
+  while (!*is_stopped_) {
     Frame frame;
     if (!read_chunk_frame(frame)) {
       if (is_at_end_ || !read_frame(frame)) return {};
@@ -191,6 +202,7 @@ McapRecord McapReader::next() {
     if (!std::holds_alternative<std::monostate>(record)) return record;
     if (is_at_end_ && records_.left().empty()) return {};
   }
+  return {};
 }
 
 McapRecord McapReader::record_of(const Frame& frame) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -25,6 +26,9 @@ class McapReader {
 
   /// Messages in the order of the file. After the end of the data, all that follows is checked, too.
   [[nodiscard]] McapRecord next();
+  /// Ends reading soon: next() returns the end. Signal handlers and other threads may call it while next()
+  /// passes over gigabytes that hold no message.
+  void stop() { *is_stopped_ = true; }
   /// The share of the file that has been read, 0 to 1.
   double progress() const;
   /// Where the chunk of the last record begins in the file; 0: in no chunk yet.
@@ -53,6 +57,9 @@ class McapReader {
   std::span<const std::uint8_t> read(std::size_t size);
   /// False: at the end of the file, or damaged.
   bool read_frame(Frame& frame);
+  /// Why a chunk cannot be opened, given its header; empty: it can. `decoder` has read the header.
+  std::string chunk_problem(const McapDecoder& decoder, std::uint64_t size, std::uint64_t stored_size,
+                            const std::string& compression) const;
   bool open_chunk(std::span<const std::uint8_t> content);
   bool decompress(std::span<const std::uint8_t> compressed, std::uint64_t size);
   /// The next record of the open chunk. False: the chunk has ended.
@@ -76,6 +83,7 @@ class McapReader {
   bool is_cut_ = false;      // the open chunk is the last that there is
   bool is_at_end_ = false;
   bool is_sought_ = false;
+  std::unique_ptr<std::atomic<bool>> is_stopped_ = std::make_unique<std::atomic<bool>>(false);
   std::uint64_t chunk_offset_ = 0;
   std::string damage_;
   std::size_t kept_bytes_ = 0;  // of schemas and channels, also of those that were replaced

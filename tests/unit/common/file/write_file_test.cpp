@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/file/write_file.hpp"
 
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/file/temporary_folder.hpp"
 #include "tests/catch.hpp"
@@ -44,6 +47,20 @@ TEST_CASE("a file that cannot be written is reported with the reason, and nothin
                     ContainsSubstring("cannot write ") && ContainsSubstring("directory"));
   CHECK_THROWS_WITH(write_file("", "text"), ContainsSubstring("cannot write"));
   CHECK(count_files(folder) == 1);
+}
+
+TEST_CASE("a pipe that nobody reads is reported, and keeps nobody waiting") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(write_file(pipe, "text"), "cannot write " + pipe + ": nobody reads this pipe");
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  REQUIRE(reader >= 0);
+  write_file(pipe, "text");
+  char read_back[5] = {};
+  CHECK(read(reader, read_back, sizeof read_back) == 4);
+  CHECK(std::string(read_back) == "text");
+  close(reader);
 }
 
 TEST_CASE("a full disk is reported") {

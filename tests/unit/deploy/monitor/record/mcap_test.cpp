@@ -171,6 +171,11 @@ TEST_CASE("sizes that an MCAP file only claims take no memory") {
   CHECK_THAT(read(file).damage, ContainsSubstring("claims a size of"));
   write(file, magic + large);
   CHECK_THAT(read(file).damage, ContainsSubstring("middle of a record"));
+  // A chunk of 200 MB when it is decompressed, of which the file holds none.
+  const std::string chunk = std::string("\x06\x28\0\0\0\0\0\0\0", 9) + std::string(16, '\0') +
+                            std::string("\x00\x00\x80\x0c\0\0\0\0", 8) + std::string(16, '\0');
+  write(file, magic + chunk);
+  CHECK(read(file).damage == "a chunk claims to hold 209715200 bytes, more than the 67108864 that are read");
 }
 
 TEST_CASE("schemas and channels fill no memory, however many and large they are") {
