@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/vision_service.hpp"
 
+#include <fmt/format.h>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 
@@ -15,6 +20,18 @@ FrameSource source_of(const Scenario& scenario, const VisionOptions& options) {
 std::vector<std::uint32_t> configured_cameras(const Scenario& scenario, const VisionOptions& options) {
   const bool are_given = options.is_league_source && !options.league_cameras.empty();
   return are_given ? options.league_cameras : cameras_of(scenario.vision);
+}
+
+/// A file that nobody reads would be taken for one that is in use. Throws std::invalid_argument.
+void require_none(const ImageOptions& options) {
+  const std::pair<const char*, const std::string&> files[] = {{"--colours", options.colours_file},
+                                                              {"--cameras", options.cameras_file},
+                                                              {"--layout", options.layout_file}};
+  for (const auto& [name, file] : files)
+    if (!file.empty())
+      throw std::invalid_argument(fmt::format(
+          "{} {}: no images arrive, expected a scenario with the key vision.images and not --source ssl",
+          name, file));
 }
 
 }  // namespace
@@ -46,6 +63,7 @@ void add_league_options(const CliCommand& app, VisionOptions& options) {
 VisionService::VisionService(DdsBus& bus, const Scenario& scenario, Incarnation incarnation,
                              const VisionOptions& options)
     : node_(bus, scenario, incarnation, source_of(scenario, options), configured_cameras(scenario, options)) {
+  if (options.is_league_source || !scenario.vision.images) require_none(options.images);
   if (options.is_league_source) {
     league_.emplace(bus, scenario, LeagueAddress{options.league_vision, options.league_interface}, node_);
   } else if (scenario.vision.images) {

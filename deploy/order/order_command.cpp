@@ -155,11 +155,8 @@ Options add_command(const CliCommand& command) {
 }
 
 void add_client_option(const CliCommand& command, const Options& options) {
-  // A script's unset variable must not become the operator.
-  command
-      .add_option("--client", options->client,
-                  "send as this client instead of the operator, whose orders come first")
-      .check([](const std::string& name) { return std::string(name.empty() ? "expected a name" : ""); });
+  command.add_option("--client", options->client,
+                     "send as this client instead of the operator, whose orders come first");
 }
 
 void add_go(const CliCommand& root, std::function<int()>& action) {

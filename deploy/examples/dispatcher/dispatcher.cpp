@@ -152,12 +152,13 @@ int main(int argc, char** argv) {
   if (argc < 3) return usage();
   char* end = nullptr;
   const long domain = std::strtol(argv[1], &end, 10);
-  if (*argv[1] == '\0' || *end != '\0' || domain < 0 || domain > 99) return usage();
+  if (*argv[1] == '\0' || *end != '\0' || domain < 0 || domain > 232) return usage();
   std::vector<Goal> places;
   for (int i = 2; i < argc; ++i) {
     Goal place;
     int length = 0;
-    if (std::sscanf(argv[i], "%lf,%lf%n", &place.x_m, &place.y_m, &length) != 2 || argv[i][length] != '\0')
+    if (std::sscanf(argv[i], "%lf,%lf%n", &place.x_m, &place.y_m, &length) != 2 || argv[i][length] != '\0' ||
+        !std::isfinite(place.x_m) || !std::isfinite(place.y_m))
       return usage();
     places.push_back(place);
   }

@@ -2,6 +2,7 @@
 // Sends a robot to and fro between places.
 //   sidestep-patrol DOMAIN ROBOT ROUNDS X,Y X,Y...
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -59,12 +60,13 @@ int patrol(int domain, RobotId robot, long rounds, const std::vector<Goal>& plac
 int main(int argc, char** argv) {
   if (argc < 6) return usage();
   const long domain = number_from(argv[1]), robot = number_from(argv[2]), rounds = number_from(argv[3]);
-  if (domain < 0 || domain > 99 || robot < 0 || robot > 1023 || rounds < 0) return usage();
+  if (domain < 0 || domain > 232 || robot < 0 || robot > 1023 || rounds < 0) return usage();
   std::vector<Goal> places;
   for (int i = 4; i < argc; ++i) {
     Goal place;
     int length = 0;
-    if (std::sscanf(argv[i], "%lf,%lf%n", &place.x_m, &place.y_m, &length) != 2 || argv[i][length] != '\0')
+    if (std::sscanf(argv[i], "%lf,%lf%n", &place.x_m, &place.y_m, &length) != 2 || argv[i][length] != '\0' ||
+        !std::isfinite(place.x_m) || !std::isfinite(place.y_m))
       return usage();
     places.push_back(place);
   }

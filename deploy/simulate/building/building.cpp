@@ -76,6 +76,12 @@ std::string scenario_text(const BuildingOptions& options, const Scenario& scenar
 }  // namespace
 
 void write_building(const BuildingOptions& options) {
+  // First, because the building takes seconds.
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (!std::filesystem::is_directory(options.folder))
+    throw std::runtime_error(fmt::format("cannot create the folder {}: {}", options.folder,
+                                         error ? error.message() : "it is not a folder"));
   Scenario scenario;
   const double side_m = options.cells * options.resolution_m;
   scenario.field = {side_m, side_m};
@@ -87,7 +93,6 @@ void write_building(const BuildingOptions& options) {
   scenario.map = std::make_shared<const FloorMap>(map);
   require_room(scenario, options.robots);
   const std::string text = scenario_text(options, scenario);
-  std::filesystem::create_directories(options.folder);
   const std::filesystem::path folder(options.folder);
   write_occupancy_map(map, (folder / "map").string());
   write_file((folder / "scenario.yaml").string(), text);

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <sys/stat.h>
+
+#include "common/file/temporary_folder.hpp"
+#include "tests/arguments/program_run.hpp"
+#include "tests/arguments/table.hpp"
+#include "tests/catch.hpp"
+#include "tests/sanitized.hpp"
+#include "tests/test_domain.hpp"
+
+namespace sidestep::arguments {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+const std::string kSource = SIDESTEP_SOURCE_DIR;
+
+/// Runs rows, and keeps the greatest figures.
+class Runner {
+ public:
+  Runner() : placeholders_(prepare()), table_(read_table(kSource + "/tests/arguments/table.txt")) {}
+  ~Runner() {
+    fmt::print("{} command lines; at most {:.2f} s of processor time: {}\nat most {:.0f} MB: {}\n", rows_,
+               slowest_s_, slowest_, largest_mb_, largest_);
+  }
+
+  const std::vector<Section>& table() const { return table_; }
+  const Placeholders& placeholders() const { return placeholders_; }
+  std::string file(const std::string& name) const { return folder_.file(name); }
+
+  void check(const Row& row) {
+    const std::string line = fmt::format("{}", fmt::join(row.command, " ")).substr(0, 300);
+    const ProgramRun run = run_program(row.command, folder_.path(), kPatience, SIGKILL);
+    INFO(line << "\n" << run.errors.substr(0, 1000));
+    CHECK(run.exit_code == row.exit_code);
+    for (const std::string& message : row.messages) CHECK_THAT(run.errors, ContainsSubstring(message));
+    CHECK(run.processor_s < kMaxProcessor_s);
+    CHECK((kIsSanitized || run.max_mb < 300));
+    ++rows_;
+    if (run.processor_s > slowest_s_) slowest_s_ = run.processor_s, slowest_ = line;
+    if (run.max_mb > largest_mb_) largest_mb_ = run.max_mb, largest_ = line;
+  }
+
+ private:
+  static constexpr double kMaxProcessor_s = kIsSanitized ? 20 : 1;
+  static constexpr std::chrono::milliseconds kPatience = kIsSanitized ? 120s : 15s;
+
+  Placeholders prepare() const {
+    const auto write = [&](const char* name, const std::string& text) {
+      std::ofstream(folder_.file(name), std::ios::binary) << text;
+      return folder_.file(name);
+    };
+    for (const char* name : {"out", "fifo-keys"}) fs::create_directory(folder_.file(name));
+    mkfifo(folder_.file("fifo").c_str(), 0600);
+    mkfifo(folder_.file("out/fifo").c_str(), 0600);
+    fs::create_directory(folder_.file("out/fifo-keys"));
+    for (const char* name : {"cert.pem", "crl.pem", "governance.p7s", "identity_ca.cert.pem", "key.pem",
+                             "permissions.p7s", "permissions_ca.cert.pem"})
+      mkfifo(folder_.file(std::string("out/fifo-keys/") + name).c_str(), 0600);
+    const std::string keys = folder_.file("keys");
+    const ProgramRun init =
+        run_program({"sidestep", "keys", "init", keys}, folder_.path(), kPatience, SIGKILL);
+    if (init.exit_code != 0) throw std::runtime_error("keys init: " + init.errors);
+    fs::create_directory(keys + "/enclaves");
+    const std::string scenarios = kSource + "/deploy/scenarios/";
+    return {{"scenario", scenarios + "crossing.yaml"},
+            {"images", scenarios + "crossing-images.yaml"},
+            {"test", scenarios + "faults/agent-killed.yaml"},
+            {"folder", folder_.file("out")},
+            {"fifo", folder_.file("fifo")},
+            {"keys", keys},
+            {"magic", write("magic.mcap", "\x89MCAP0\r\n")},
+            {"long", std::string(5000, 'x')},
+            {"domain", std::to_string(domain_.number())}};
+  }
+
+  TemporaryFolder folder_;
+  TestDomain domain_;
+  Placeholders placeholders_;
+  std::vector<Section> table_;
+  std::size_t rows_ = 0;
+  double slowest_s_ = 0, largest_mb_ = 0;
+  std::string slowest_, largest_;
+};
+
+/// What a file of broken/ must cause, from its first line "# expected: LINE: MESSAGE".
+std::string expectation_of(const fs::path& file) {
+  constexpr std::string_view kStart = "# expected: ";
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  if (!line.starts_with(kStart)) throw std::runtime_error(file.string() + ": the first line says nothing");
+  return line.substr(kStart.size());
+}
+
+/// Rows of a command of the table for a file that it must refuse.
+Row row_for(const Runner& runner, const std::string& command, const std::string& file,
+            const std::vector<std::string>& messages) {
+  Placeholders placeholders = runner.placeholders();
+  placeholders["file"] = file;
+  return {2, messages, words_of(command, placeholders)};
+}
+
+TEST_CASE("silly values of options are refused, and the message names the option and its limits", "[slow]") {
+  Runner runner;
+  const std::vector<Row> rows = option_rows(runner.table(), runner.placeholders());
+  REQUIRE(rows.size() > 1000);
+  for (const Row& row : rows) runner.check(row);
+}
+
+TEST_CASE("files that are none are refused by all commands that read some, and the message names them",
+          "[slow]") {
+  Runner runner;
+  const std::pair<std::string, const char*> files[] = {{runner.file("missing"), ": "},
+                                                       {runner.file("out"), "a directory"},
+                                                       {runner.file("fifo"), "not a regular file"},
+                                                       {"/dev/zero", "not a regular file"}};
+  for (const std::string& command : commands_of(runner.table(), "unreadable")) {
+    for (const auto& [file, reason] : files) runner.check(row_for(runner, command, file, {file, reason}));
+    runner.check(row_for(runner, command, "", {"expected some text"}));
+  }
+}
+
+TEST_CASE("broken YAML is refused by all commands that read YAML, with file, line and reason", "[slow]") {
+  Runner runner;
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto& entry : fs::directory_iterator(kSource + "/tests/arguments/broken"))
+    files.emplace_back(entry.path().string(), expectation_of(entry.path()));
+  const auto add = [&](const char* name, const std::string& text, const char* expected) {
+    std::ofstream(runner.file(name), std::ios::binary) << text;
+    files.emplace_back(runner.file(name), expected);
+  };
+  add("deep.yaml", std::string(100'000, '['), "1: not YAML");
+  add("binary.yaml",
+      std::string("\x7f"
+                  "ELF\x02\x01\x01\0\0\0",
+                  10) +
+          std::string(1000, '\xff'),
+      "1: ");
+  add("utf16.yaml",
+      std::string("\xff\xfe"
+                  "a\0:\0 \0[\0",
+                  10),
+      "1: not YAML");
+  add("empty.yaml", "", "1: the file is empty");
+  add("large.yaml", "a: " + std::string(16'000'001, 'x'), "1: cannot read the file (more than 16 MB)");
+  add(
+      "many.yaml",
+      "a: [" +
+          [] {
+            std::string values;
+            for (int i = 0; i < 400'001; ++i) values += "1,";
+            return values;
+          }() +
+          "]",
+      "1: more than 400000 values");
+  add("long-key.yaml", std::string(100'000, 'k') + ": 1\n", "1: ");
+  REQUIRE(files.size() > 15);
+  for (const std::string& command : commands_of(runner.table(), "yaml"))
+    for (const auto& [file, expected] : files)
+      runner.check(row_for(runner, command, file, {file + ":" + expected}));
+}
+
+TEST_CASE("options that do not exist and words too many are refused and named", "[slow]") {
+  Runner runner;
+  for (const std::string& command : commands_of(runner.table(), "unknown")) {
+    for (const std::string extra :
+         {"--no-such-option", "--no-such-option=3", "-Z", "too-many-words", "\xf0\x9f\xa4\x96"}) {
+      Row row = row_for(runner, command, "", {extra});
+      // What takes many words is refused for another reason.
+      row.command.push_back(extra);
+      runner.check(row);
+    }
+  }
+}
+
+TEST_CASE("wrong command lines are refused with their reason", "[slow]") {
+  Runner runner;
+  const std::vector<Row> rows = single_rows(runner.table(), runner.placeholders());
+  REQUIRE(rows.size() > 150);
+  for (const Row& row : rows) runner.check(row);
+}
+
+}  // namespace sidestep::arguments

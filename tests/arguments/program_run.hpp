@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sidestep::arguments {
+
+/// What became of a program.
+struct ProgramRun {
+  int exit_code = 0;   ///< -N: ended by signal N
+  std::string errors;  ///< what it has printed on stderr
+  double processor_s = 0;
+  double wall_s = 0;
+  double max_mb = 0;  ///< most memory that was resident at once
+};
+
+/// Runs a program that is built beside this one, in `folder`, without input, and waits for its end. After
+/// `patience` it gets `signal`, and after as much again SIGKILL.
+[[nodiscard]] ProgramRun run_program(const std::vector<std::string>& command, const std::string& folder,
+                                     std::chrono::milliseconds patience, int signal);
+
+}  // namespace sidestep::arguments
