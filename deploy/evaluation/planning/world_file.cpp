@@ -17,10 +17,16 @@ constexpr const char* kExpected = "a world";
 constexpr Range kCoordinate_m{-1000, 1000};
 constexpr std::size_t kMaxObstacles = 100'000, kMaxQueries = 100'000;
 
-Vec2 point(YamlMap& map, const std::string& key) {
+/// A place of the robot, all of whose disc is on the field.
+Vec2 place_m(YamlMap& map, const std::string& key, const PlanWorld& world) {
+  constexpr double kRounding_m = 1e-9;
   Vec2 value(0, 0);
   map.require(key);
   map.read(key, kCoordinate_m, value);
+  if (!world.field.contains(value, world.radius_m - kRounding_m))
+    map.location_of(key).fail(
+        fmt::format("expected |x| <= {:g} and |y| <= {:g}, so that the robot is on the field",
+                    world.field.length_m / 2 - world.radius_m, world.field.width_m / 2 - world.radius_m));
   return value;
 }
 
@@ -28,7 +34,7 @@ void read_queries(YamlMap& map, PlanWorld& world) {
   const YamlLocation location = map.location_of("queries");
   for (const YAML::Node& element : list_from(map.require("queries"), location, kMaxQueries)) {
     YamlMap inner(element, location.of(element, fmt::format("queries[{}]", world.queries.size())));
-    world.queries.push_back({point(inner, "start_m"), point(inner, "goal_m")});
+    world.queries.push_back({place_m(inner, "start_m", world), place_m(inner, "goal_m", world)});
     inner.finish();
   }
   if (world.queries.empty()) location.fail("expected at least one query");

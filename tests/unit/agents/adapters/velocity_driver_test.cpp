@@ -75,15 +75,17 @@ TEST_CASE("odometry with numbers that are none is dropped and counted") {
   Scene scene;
   const auto bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e9);
-  ros::Odometry place = scene.odometry(), turn = scene.odometry();
+  ros::Odometry place = scene.odometry(), turn = scene.odometry(), none = scene.odometry();
   place.position[1] = bad;
   turn.orientation[2] = bad;
+  none.orientation = {0, 0, 0, 0};  // of a message whose orientation nobody has set
   scene.report(place);
   scene.report(turn);
+  scene.report(none);
   CHECK(scene.reports.empty());
   DropCounters drops;
   scene.driver.count_drops(drops);
-  CHECK(drops.total(DropReason::kMalformedOdometry) == 2);
+  CHECK(drops.total(DropReason::kMalformedOdometry) == 3);
 }
 
 }  // namespace sidestep::velocity_driver_test

@@ -57,6 +57,30 @@ TEST_CASE("feedback says whether the ball is at the dribbler, and a kick moves i
   CHECK(world.ball()->state().velocity_mps.x() > 2.5);
 }
 
+TEST_CASE("a teleport moves the robot of its own team, and commands for numbers that nobody has move none") {
+  Scenario scenario = one_robot();
+  scenario.robots.emplace_back();
+  scenario.robots.back().id = 20;
+  scenario.robots.back().team = Team::kYellow;
+  scenario.robots.back().start_m = {-1, -1};
+  BaseWorld world(scenario, 0, {}, kBegin);
+  LeagueCommands commands(world, false);
+  league::RobotTeleport robot;
+  robot.team = Team::kYellow;
+  robot.number = 4;
+  robot.x_m = 1, robot.y_m = 2, robot.heading_rad = 3;
+  league::SimulatorCommand teleport;
+  teleport.robots.push_back(robot);
+  std::optional<double> speed;
+  CHECK(commands.on_control(teleport, speed).errors.empty());
+  CHECK(world.bodies()[0].position_m() == Vec2(0, 0));
+  CHECK(world.bodies()[1].position_m() == Vec2(1, 2));
+  for (const std::uint32_t number : {11U, 200U, 4294967295U})
+    CHECK(commands.on_team(Team::kYellow, command(number, league::RobotMove::Kind::kLocal), kBegin)
+              .errors[0]
+              .code == "UNKNOWN_ROBOT");
+}
+
 TEST_CASE("robots and the ball are teleported, and incomplete teleports are refused") {
   BaseWorld world(one_robot(), 0, {}, kBegin);
   LeagueCommands commands(world, false);

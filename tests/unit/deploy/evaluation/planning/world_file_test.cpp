@@ -51,6 +51,10 @@ TEST_CASE("errors in a world file are reported with their line") {
   check_refused("radius_m: 0.1\n", 1, "queries");
   check_refused("queries: []\n", 1, "at least one query");
   check_refused(kQuery + "radius: 0.1\n", 2, "radius");
+  check_refused("queries:\n  - start_m: [0, 0]\n    goal_m: [20, 0]\n", 3,
+                "queries[0].goal_m: expected |x| <= 4.9 and |y| <= 4.9, so that the robot is on the field");
+  check_refused("field: {length_m: 2, width_m: 2}\nqueries: [{start_m: [0, -0.95], goal_m: [0, 0]}]\n", 2,
+                "queries[0].start_m: expected |x|");
   check_refused(kQuery + "radius_m: -1\n", 2, "radius_m");
   check_refused(kQuery + "obstacles:\n  - ball: {}\n", 3, "ball");
   check_refused(kQuery + "obstacles:\n  - {}\n", 3, "expected one of circle");
