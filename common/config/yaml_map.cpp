@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <set>
 
 #include "common/config/config_error.hpp"
@@ -68,10 +67,8 @@ double number_from(const YAML::Node& node, const YamlLocation& location, Range r
 }
 
 double heading_from(const YAML::Node& node, const YamlLocation& location) {
-  constexpr double kMax = std::numeric_limits<double>::max();
   double value_rad = 0;
   if (!parse_plain(node, value_rad)) location.fail("expected a heading in radians, got " + described(node));
-  value_rad = number_from(node, location, {-kMax, kMax});
   if (const std::string problem = heading_problem(value_rad); !problem.empty()) location.fail(problem);
   return value_rad;
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "common/config/heading.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/protocol/disturbance_text.hpp"
@@ -67,6 +68,14 @@ double number_from(const Json& json, const std::string& name, double min, double
   return value;
 }
 
+double heading_from(const Json& json, const std::string& name) {
+  if (!json.is_number()) throw BodyError(fmt::format("{}: expected radians, got {}", name, json.dump()));
+  const auto heading_rad = json.get<double>();
+  if (const std::string problem = heading_problem(heading_rad); !problem.empty())
+    throw BodyError(fmt::format("{}: {}", name, problem));
+  return heading_rad;
+}
+
 double number_in(const Json& body, const char* key, double min, double max, std::optional<double> otherwise) {
   if (body.contains(key)) return number_from(body[key], key, min, max);
   if (!otherwise) throw BodyError(fmt::format("{}: is missing", key));
@@ -78,7 +87,7 @@ void require_known_keys(const Json& body, std::initializer_list<std::string_view
     if (std::ranges::find(known, key) == known.end()) throw BodyError(fmt::format("{}: is unknown", key));
 }
 
-/// A list of points of `min` to `max` numbers each.
+/// A list of points: two coordinates each, and a heading if `max_numbers` is 3.
 std::vector<std::vector<double>> points_in(const Json& body, const char* key, std::size_t max_points,
                                            std::size_t max_numbers) {
   const Json list = body.value(key, Json());
@@ -91,9 +100,11 @@ std::vector<std::vector<double>> points_in(const Json& body, const char* key, st
       throw BodyError(
           fmt::format("{}: expected a list of 2{} numbers", name, max_numbers > 2 ? " or 3" : ""));
     std::vector<double>& point = points.emplace_back();
-    for (std::size_t k = 0; k < list[i].size(); ++k)
-      point.push_back(
-          number_from(list[i][k], fmt::format("{}[{}]", name, k), -kMaxCoordinate_m, kMaxCoordinate_m));
+    for (std::size_t k = 0; k < list[i].size(); ++k) {
+      const std::string of_number = fmt::format("{}[{}]", name, k);
+      point.push_back(k == 2 ? heading_from(list[i][k], of_number)
+                             : number_from(list[i][k], of_number, -kMaxCoordinate_m, kMaxCoordinate_m));
+    }
   }
   return points;
 }
@@ -122,7 +133,7 @@ msg::Disturbance disturbance_from(RobotId robot, const Json& body) {
   disturbance.grip(number_in(body, "grip", 0, 1, required(*kind == Kind::DISTURBANCE_SLIP)));
   disturbance.x_m(number_in(body, "x_m", -1000, 1000, required(is_place)));
   disturbance.y_m(number_in(body, "y_m", -1000, 1000, required(is_place)));
-  disturbance.heading_rad(number_in(body, "heading_rad", -7, 7, 0.0));
+  if (body.contains("heading_rad")) disturbance.heading_rad(heading_from(body["heading_rad"], "heading_rad"));
   disturbance.duration_ns(std::llround(number_in(body, "seconds", 0.001, 3600, 1.0) * 1e9));
   return disturbance;
 }

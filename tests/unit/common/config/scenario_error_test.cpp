@@ -160,6 +160,14 @@ TEST_CASE("numbers that are out of range, infinite or NaN are rejected with thei
                  "expected 0 to 1023, got -1");
   check_rejected("robots:\n- {id: 1, start_m: [0, 0], goals_m: [[1, 0, 9]]}\n", 2,
                  "9 degrees are 0.1571 radians");
+  check_rejected(
+      "robots:\n- {id: 1, start_m: [0, 0], heading_rad: -180}\n", 2,
+      "heading_rad: expected a heading of -6.28 to 6.28 radians, got -180; -180 degrees are -3.142");
+  check_rejected("robots:\n- {id: 1, start_m: [0, 0], heading_rad: inf}\n", 2,
+                 "expected a heading of -6.28 to 6.28 radians, got inf");
+  check_rejected("robots:\n- {id: 1, start_m: [0, 0], heading_rad: east}\n", 2,
+                 "expected a heading in radians, got \"east\"");
+  check_rejected(kRobot + "margin_m: \"0.1\"\n", 2, "expected a number from 0 to 1, got \"0.1\" in quotes");
 }
 
 TEST_CASE("missing robots, ids, starts and goals are rejected") {

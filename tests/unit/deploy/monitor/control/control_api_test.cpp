@@ -120,6 +120,10 @@ TEST_CASE("bodies and paths that are wrong are refused with what is wrong") {
   CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0], [1, "x"]]})") ==
         "goals[1][1]: expected a number from -10000 to 10000, got \"x\"");
   CHECK(error("/api/robots/3/order", R"({"goals": [[0, 1e9]]})").starts_with("goals[0][1]"));
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0, 90]]})") ==
+        "goals[0][2]: expected a heading of -6.28 to 6.28 radians, got 90; 90 degrees are 1.571 radians");
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0, "x"]]})") ==
+        "goals[0][2]: expected radians, got \"x\"");
   CHECK(error("/api/robots/3/order", R"({"goal": [[0, 0]]})") == "goal: is unknown");
   CHECK(error("/api/robots/x/order", R"({"goals": [[0, 0]]})") == "there is no robot x");
   CHECK(error("/api/robots/-1/order", R"({"goals": [[0, 0]]})") == "there is no robot -1");
