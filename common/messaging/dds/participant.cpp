@@ -68,11 +68,14 @@ void check(const DdsSettings& settings) {
   if (settings.interface == "all") return;
   // With an address of another machine, Fast DDS would have no interface and report no error.
   const std::string own = own_addresses();
-  if (settings.interface.empty() ||
-      (" " + own + " ").find(" " + settings.interface + " ") == std::string::npos) {
-    throw std::invalid_argument(fmt::format(
-        "--interface: expected 'all' or an address of this machine ({}), got '{}'", own, settings.interface));
-  }
+  if (!settings.interface.empty() &&
+      (" " + own + " ").find(" " + settings.interface + " ") != std::string::npos)
+    return;
+  const std::string problem = fmt::format(
+      "--interface: expected 'all' or an address of this machine ({}), got '{}'", own, settings.interface);
+  in_addr address{};
+  if (inet_pton(AF_INET, settings.interface.c_str(), &address) != 1) throw std::invalid_argument(problem);
+  throw std::runtime_error(problem);  // the interface may come later, and a service tries again
 }
 
 ParticipantId id_of(const fast_dds::rtps::GuidPrefix_t& prefix) {

@@ -71,7 +71,7 @@ TEST_CASE("a program prints its safety budget at start") {
                  "within 0.5 ms at 2 m/s\n"));
 }
 
-TEST_CASE("an exception at start is printed on stderr, and an interface that does not exist is wrong usage") {
+TEST_CASE("an exception at start is printed on stderr, and the exit code is 1") {
   Program program = test_program();
   program.start = [](DdsBus&, const Scenario&, Incarnation) -> RunningNodes {
     throw std::runtime_error("no such robot");
@@ -82,8 +82,12 @@ TEST_CASE("an exception at start is printed on stderr, and an interface that doe
   std::vector<std::string> arguments = good_arguments();
   arguments.insert(arguments.end(), {"--interface", "192.0.2.1"});
   const Outcome no_interface = run(test_program(), arguments);
-  CHECK(no_interface.exit_code == kExitUsage);
+  CHECK(no_interface.exit_code == kExitFailure);
   CHECK_THAT(no_interface.err, ContainsSubstring("192.0.2.1"));
+  arguments.back() = "eth0";  // will never be an address
+  const Outcome no_address = run(test_program(), arguments);
+  CHECK(no_address.exit_code == kExitUsage);
+  CHECK_THAT(no_address.err, ContainsSubstring("got 'eth0'"));
 }
 
 TEST_CASE("a process whose keys are not valid yet exits with 1, so that a service manager starts it again") {
