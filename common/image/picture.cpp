@@ -1,17 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/image/picture.hpp"
 
-#include <filesystem>
+#include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "common/file/read_file.hpp"
 #include "common/image/colour_space.hpp"
+#include "common/image/picture_size.hpp"
 
 namespace sidestep {
 namespace {
 
 cv::Vec3b bgr(const Rgb& colour) { return {colour.b, colour.g, colour.r}; }
+
+/// Empty if OpenCV cannot decode them.
+cv::Mat decoded(const std::string& bytes) {
+  try {
+    const cv::Mat file(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    return cv::imdecode(file, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    return {};  // OpenCV's message names its own source file
+  }
+}
 
 }  // namespace
 
@@ -33,18 +45,21 @@ cv::Mat3b bgr_of(const ImageView& image) {
 }
 
 Image read_picture(const std::string& path) {
+  std::string bytes;
   try {
-    require_regular_file(path);
+    bytes = read_file(path, kMaxPictureBytes);
   } catch (const std::runtime_error& error) {
-    throw std::invalid_argument(path + ": " + error.what());
+    throw std::invalid_argument(fmt::format("{}: cannot be read: {}", path, error.what()));
   }
-  cv::Mat bgr;
-  try {
-    bgr = cv::imread(path, cv::IMREAD_COLOR);
-  } catch (const cv::Exception&) {
-    // Reported below, because OpenCV's message names its own source file.
-  }
-  if (bgr.empty()) throw std::invalid_argument(path + ": expected an image, such as a PNG file");
+  // OpenCV allocates what the header states, whatever the file holds.
+  const std::optional<PictureSize> size = stated_size(bytes);
+  if (!size) throw std::invalid_argument(path + ": expected a picture in PNG, JPEG or PNM");
+  if (size->width_px > kMaxPicturePixels || size->height_px > kMaxPicturePixels ||
+      size->width_px * size->height_px > kMaxPicturePixels)
+    throw std::invalid_argument(fmt::format("{}: a picture of {} x {} pixels, expected at most {} pixels",
+                                            path, size->width_px, size->height_px, kMaxPicturePixels));
+  const cv::Mat bgr = decoded(bytes);
+  if (bgr.empty()) throw std::invalid_argument(path + ": the picture is damaged");
   Image image(PixelFormat::kRgb, bgr.cols, bgr.rows);
   for (int y = 0; y < bgr.rows; ++y) {
     std::uint8_t* out = image.row(y);

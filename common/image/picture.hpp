@@ -11,8 +11,13 @@ namespace sidestep {
 /// A copy of an image for OpenCV.
 cv::Mat3b bgr_of(const ImageView& image);
 
-/// Reads a PNG file, or any other format that OpenCV supports, as kRgb. Throws std::invalid_argument
-/// ("PATH: ...") if there is no such file or it holds no image.
+/// As many as the largest camera image of a scenario has.
+inline constexpr std::size_t kMaxPicturePixels = 4096 * 4096;
+inline constexpr std::size_t kMaxPictureBytes = 64'000'000;
+
+/// Reads a picture in PNG, JPEG or PNM as kRgb. Throws std::invalid_argument ("PATH: ...") if there is no
+/// such file, it holds no such picture, or more than kMaxPicturePixels or kMaxPictureBytes. The size that its
+/// header states is checked before memory is allocated for it.
 Image read_picture(const std::string& path);
 
 /// Throws std::runtime_error if the file cannot be written.
