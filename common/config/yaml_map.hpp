@@ -37,7 +37,7 @@ struct Range {
 [[nodiscard]] long integer_from(const YAML::Node& node, const YamlLocation& location, Range range);
 /// A heading in radians, within a whole turn.
 [[nodiscard]] double heading_from(const YAML::Node& node, const YamlLocation& location);
-/// Plain or quoted text.
+/// Plain or quoted text, without zero bytes.
 [[nodiscard]] std::string text_from(const YAML::Node& node, const YamlLocation& location);
 /// A list of min_count to max_count numbers.
 std::vector<double> numbers_from(const YAML::Node& node, const YamlLocation& location, std::size_t min_count,

@@ -138,6 +138,7 @@ TEST_CASE("values of a wrong type are rejected with their line") {
   check_rejected("? [a, b]\n: 3\n", 1, "expected a key");
   check_rejected("- 1\n- 2\n", 1, "expected a mapping");
   check_rejected(kRobot + "name: [a]\n", 2, "expected text");
+  check_rejected(kRobot + "map: \"hall.yaml\\0.png\"\n", 2, "expected text without zero bytes");
   check_rejected(kRobot + "name: ../../x\n", 2, "letters, digits");
 }
 
