@@ -263,7 +263,13 @@ class Parser {
       fail(fmt::format("a message of this type has {} values, more than {}", type.values, kMaxValues));
   }
 
+  /// A message of no bytes would have any number of elements that hold nothing.
+  void check_element(const IdlType& element) const {
+    if (element.values == 0) fail("a list of elements that hold nothing");
+  }
+
   IdlTypePtr array_of(IdlTypePtr element, std::uint32_t size) const {
+    check_element(*element);
     IdlType type;
     type.kind = Kind::kArray;
     type.element = std::move(element);
@@ -316,7 +322,7 @@ class Parser {
     if (++nesting_ > kMaxNesting) fail("an expression is nested too deeply");
     std::int64_t result = 0;
     if (take_if("-")) {
-      result = -parse_factor();
+      if (__builtin_sub_overflow(std::int64_t{0}, parse_factor(), &result)) fail("a number is too large");
     } else if (take_if("(")) {
       result = parse_number();
       expect(")");
@@ -386,6 +392,7 @@ class Parser {
     type.kind = Kind::kSequence;
     expect("<");
     type.element = parse_type();
+    check_element(*type.element);
     if (take_if(",")) type.bound = positive(parse_number());
     expect(">");
     type.depth = 1 + type.element->depth;

@@ -107,7 +107,12 @@ TEST_CASE("wrong IDL is refused with the file, the line and the reason") {
   check("struct A { sequence<long, -1> x; };", "1: expected a positive number, got -1");
   check("struct A { long x[N]; };", "1: expected a whole number or the name of a constant, got 'N'");
   check("const long N = 9223372036854775807 + 1;", "1: a number is too large");
+  check("const long N = -9223372036854775807 - 1; const long M = -N;", "1: a number is too large");
   check("struct A : B { long x; };", "1: there is no struct 'B'");
+  // A message of no bytes would have any number of them.
+  check("struct E {}; struct A { E x[9000000]; };", "1: a list of elements that hold nothing");
+  check("struct E {}; struct F { E e; }; struct A { sequence<F> x; };",
+        "1: a list of elements that hold nothing");
   check("/* no end", "1: a comment does not end");
   check("struct 3 { long x; };", "1: expected a name, got '3'");
   check("enum E { @value(-1) A };", "1: an enumerator's value does not fit 31 bits");
