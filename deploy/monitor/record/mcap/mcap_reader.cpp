@@ -18,6 +18,12 @@ namespace {
 using Kind = McapRecordKind;
 using Bytes = std::span<const std::uint8_t>;
 
+/// What callers keep of others may be a thousand times larger than the file, if a compressed chunk holds
+/// them.
+bool is_for_chunks(Kind kind) {
+  return kind == Kind::kSchema || kind == Kind::kChannel || kind == Kind::kMessage;
+}
+
 }  // namespace
 
 McapReader::McapReader(const std::string& path) {
@@ -161,10 +167,13 @@ bool McapReader::open_chunk(Bytes content) {
 }
 
 bool McapReader::read_chunk_frame(Frame& frame) {
-  if (records_.left().empty()) return false;
-  frame.kind = static_cast<Kind>(records_.number<std::uint8_t>());
-  frame.content = records_.raw(records_.number<std::uint64_t>());
-  if (records_.is_ok()) return true;
+  while (!records_.left().empty()) {
+    frame.kind = static_cast<Kind>(records_.number<std::uint8_t>());
+    frame.content = records_.raw(records_.number<std::uint64_t>());
+    if (!records_.is_ok()) break;
+    if (is_for_chunks(frame.kind)) return true;
+  }
+  if (records_.is_ok()) return false;
   fail("a record in a chunk is damaged");
   records_ = McapDecoder({});
   return false;

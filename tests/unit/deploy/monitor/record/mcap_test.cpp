@@ -194,6 +194,43 @@ TEST_CASE("schemas and channels fill no memory, however many and large they are"
   CHECK_THAT(read(file).damage, ContainsSubstring("schemas and channels take more than"));
 }
 
+TEST_CASE("metadata and attachments in a chunk are passed over: a small chunk may hold millions of them") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("test.mcap");
+  McapBytes records, bytes(kMcapMagic.begin(), kMcapMagic.end());
+  McapEncoder inside(records), outside(bytes);
+  const auto add_both = [](McapEncoder& encoder, const char* name) {
+    encoder.record(McapRecordKind::kMetadata, [&] {
+      encoder.text(name);
+      encoder.texts({{"key", "value"}});
+    });
+    encoder.record(McapRecordKind::kAttachment, [&] {
+      encoder.number(std::uint64_t{0});
+      encoder.number(std::uint64_t{0});
+      encoder.text(name);
+      encoder.text("");
+      encoder.number(std::uint64_t{0});
+      encoder.number(std::uint32_t{0});
+    });
+  };
+  add_both(inside, "inside");
+  outside.record(McapRecordKind::kChunk, [&] {
+    outside.number(std::uint64_t{0});
+    outside.number(std::uint64_t{0});
+    outside.number(std::uint64_t{records.size()});
+    outside.number(std::uint32_t{0});
+    outside.text("");
+    outside.number(std::uint64_t{records.size()});
+    outside.raw(records);
+  });
+  add_both(outside, "outside");
+  write(file, {bytes.begin(), bytes.end()});
+  const Contents found = read(file);
+  CHECK(found.metadata == std::vector<std::string>{"outside:key=value"});
+  CHECK(found.attachments == std::vector<std::string>{"outside::"});
+  CHECK(found.damage == "the file was not finished");
+}
+
 TEST_CASE("a file that is not an MCAP file is refused with its name") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
