@@ -28,6 +28,7 @@
 #include "deploy/monitor/page/page_files.hpp"
 #include "deploy/monitor/planning/planning_scene.hpp"
 #include "deploy/monitor/record/playback_bus.hpp"
+#include "deploy/monitor/server/viewer_json.hpp"
 #include "deploy/monitor/server/web_server.hpp"
 #include "deploy/monitor/view/monitor.hpp"
 #include "deploy/monitor/view/recorded_messages.hpp"
@@ -127,7 +128,7 @@ class MonitorServer {
 
   /// False: the message makes no sense.
   bool plan(WebSocket& socket, const std::string& message) {
-    if (!planning_[&socket].apply(nlohmann::json::parse(message, nullptr, false))) return false;
+    if (!planning_[&socket].apply(parse_viewer_json(message))) return false;
     send_plan(socket);
     return true;
   }

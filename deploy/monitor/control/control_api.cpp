@@ -12,6 +12,7 @@
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/protocol/disturbance_text.hpp"
+#include "deploy/monitor/server/viewer_json.hpp"
 
 namespace sidestep {
 namespace {
@@ -55,8 +56,10 @@ std::optional<Number> parse_number(const std::string& text) {
 }
 
 Json parse_body(const std::string& body) {
-  Json json = Json::parse(body, nullptr, false);
-  if (!json.is_object()) throw BodyError("the body: expected a JSON object");
+  Json json = parse_viewer_json(body);
+  if (!json.is_object())
+    throw BodyError(
+        fmt::format("the body: expected a JSON object, nested no deeper than {} times", kMaxViewerJsonDepth));
   return json;
 }
 

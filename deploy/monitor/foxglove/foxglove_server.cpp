@@ -7,6 +7,7 @@
 
 #include "common/messaging/message_schema.hpp"
 #include "deploy/monitor/foxglove/foxglove_scene.hpp"
+#include "deploy/monitor/server/viewer_json.hpp"
 
 namespace sidestep {
 namespace {
@@ -89,7 +90,7 @@ bool FoxgloveServer::subscribe(Client& client, const Json& subscriptions) {
 }
 
 bool FoxgloveServer::on_message(WebSocket& socket, const std::string& message) {
-  const Json json = Json::parse(message, nullptr, false);
+  const Json json = parse_viewer_json(message);
   const auto client = clients_.find(&socket);
   if (!json.is_object() || client == clients_.end()) return false;
   const Json op = json.value("op", Json());

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/shared_rules.hpp"
+#include "deploy/monitor/server/viewer_json.hpp"
 #include "deploy/monitor/topic/describe.hpp"
 #include "deploy/monitor/view/floor_frame.hpp"
 #include "deploy/monitor/view/panels.hpp"
@@ -249,7 +250,7 @@ void Monitor::send_inspections() {
 }
 
 bool Monitor::on_message(WebSocket& socket, const std::string& message, Time clock) {
-  const Json json = Json::parse(message, nullptr, false);
+  const Json json = parse_viewer_json(message);
   const auto found = viewers_.find(&socket);
   if (!json.is_object() || found == viewers_.end()) return false;
   Viewer& viewer = found->second;

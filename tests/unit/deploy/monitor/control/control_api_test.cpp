@@ -114,7 +114,11 @@ TEST_CASE("bodies and paths that are wrong are refused with what is wrong") {
     CHECK(answer.status >= 400);
     return Json::parse(answer.body).value("error", "");
   };
-  CHECK(error("/api/robots/3/order", "") == "the body: expected a JSON object");
+  CHECK(error("/api/robots/3/order", "") ==
+        "the body: expected a JSON object, nested no deeper than 16 times");
+  const std::string nested = std::string(32'000, '[') + std::string(32'000, ']');
+  CHECK(error("/api/robots/3/order", R"({"goals": [[1, )" + nested + "]]}") ==
+        "the body: expected a JSON object, nested no deeper than 16 times");
   CHECK(error("/api/robots/3/order", "{}") == "goals: expected a list of 1 to 64 points");
   CHECK(error("/api/robots/3/order", R"({"goals": [[1]]})") == "goals[0]: expected a list of 2 or 3 numbers");
   CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0], [1, "x"]]})") ==

@@ -124,6 +124,13 @@ TEST_CASE("viewers see robots where they are, what they execute and what panels 
     CHECK(topics.contains(topic));
 }
 
+TEST_CASE("a viewer whose JSON is nested deeply is disconnected") {
+  MonitoredRun run(false);
+  const std::string nested = std::string(32'000, '[') + std::string(32'000, ']');
+  CHECK_FALSE(run.send(R"({"op":"inspect","channel":)" + nested + "}"));
+  CHECK_FALSE(run.send(R"({"op":)" + nested + "}"));
+}
+
 TEST_CASE("the lamp says that the promise is kept, and names the smallest clearance") {
   MonitoredRun run;
   run.system.run_for(6s);
