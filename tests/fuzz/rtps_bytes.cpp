@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/fuzz/rtps_bytes.hpp"
+
+#include "common/messaging/dds/datagram_format.hpp"
+
+namespace sidestep::fuzz::rtps {
+namespace {
+
+/// Appends numbers of 2 and 4 bytes, zeros and bytes.
+class Body {
+ public:
+  Body& u16(std::size_t value) { return number(value, 2); }
+  Body& u32(std::size_t value) { return number(value, 4); }
+  /// High half, low half.
+  Body& sequence_number(std::size_t value) { return u32(0).u32(value); }
+  Body& zeros(std::size_t count) {
+    bytes_.resize(bytes_.size() + count);
+    return *this;
+  }
+  Body& raw(View bytes) {
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    return *this;
+  }
+  const Bytes& bytes() const { return bytes_; }
+
+ private:
+  Body& number(std::size_t value, int size) {
+    for (int i = 0; i < size; ++i) bytes_.push_back(static_cast<std::uint8_t>(value >> 8 * i));
+    return *this;
+  }
+  Bytes bytes_;
+};
+
+Bytes submessage(std::uint8_t kind, const Body& body, std::uint8_t flags = kLittleEndianFlag) {
+  const Bytes head{kind, flags};
+  return Body().raw(head).u16(body.bytes().size()).raw(body.bytes()).bytes();
+}
+
+constexpr std::size_t kParticipantReader = 0xc7000100, kParticipantWriter = 0xc2000100;
+
+Body data_header(std::size_t reader, std::size_t writer) {
+  constexpr std::size_t kBytesToInlineQos = 16;
+  return Body().u16(0).u16(kBytesToInlineQos).u32(reader).u32(writer).sequence_number(7);
+}
+
+}  // namespace
+
+Bytes datagram(const ParticipantId& sender, std::initializer_list<Bytes> submessages) {
+  const Bytes head{'R', 'T', 'P', 'S', 2, 2, 1, 15};
+  Body result = Body().raw(head).raw(sender);
+  for (const Bytes& bytes : submessages) result.raw(bytes);
+  return result.bytes();
+}
+
+Bytes timestamp() { return submessage(kTimestampSubmessage, Body().u32(1'800'000'000).u32(0)); }
+Bytes destination() { return submessage(kDestinationSubmessage, Body().zeros(12)); }
+
+Bytes data() {
+  constexpr std::uint8_t kHasPayload = 4;
+  return submessage(kDataSubmessage, data_header(0, 0x03000001).u32(0x100).zeros(24),
+                    kLittleEndianFlag | kHasPayload);
+}
+
+Bytes announcement(const ParticipantId& participant, const Bytes& user_data) {
+  constexpr std::uint8_t kHasPayload = 4;
+  constexpr std::size_t kLittleEndianList = 0x0300, kGuid = 0x50, kUserData = 0x2c, kEnd = 1;
+  const std::size_t padding = (4 - user_data.size() % 4) % 4;
+  Body body = data_header(kParticipantReader, kParticipantWriter).u32(kLittleEndianList);
+  body.u16(kGuid).u16(16).raw(participant).u32(0xc1010000);
+  body.u16(kUserData).u16(4 + user_data.size() + padding).u32(user_data.size()).raw(user_data).zeros(padding);
+  return submessage(kDataSubmessage, body.u16(kEnd).u16(0), kLittleEndianFlag | kHasPayload);
+}
+
+Bytes fragment(std::uint32_t first, std::uint16_t count, std::size_t size) {
+  Body body = Body().u16(0).u16(28).zeros(8).sequence_number(7);
+  return submessage(kDataPartSubmessage, body.u32(first).u16(count).u16(40).u32(100).zeros(size));
+}
+
+Bytes acknowledgement(std::uint32_t bits, std::size_t words) {
+  return submessage(kAckNackSubmessage, Body().zeros(8).sequence_number(1).u32(bits).zeros(4 * words).u32(1));
+}
+Bytes gap() {
+  return submessage(kGapSubmessage, Body().zeros(8).sequence_number(3).sequence_number(4).u32(0));
+}
+Bytes heartbeat() {
+  return submessage(kHeartbeatSubmessage, Body().zeros(8).sequence_number(1).sequence_number(7).u32(1));
+}
+Bytes heartbeat_of_fragments() {
+  return submessage(kHeartbeatPartsSubmessage, Body().zeros(8).sequence_number(7).u32(3).u32(1));
+}
+Bytes missing_fragments() {
+  return submessage(kNackPartsSubmessage, Body().zeros(8).sequence_number(7).u32(1).u32(3).zeros(4).u32(1));
+}
+
+Bytes encrypted(std::uint32_t stated, std::size_t present) {
+  const Bytes size{static_cast<std::uint8_t>(stated >> 24), static_cast<std::uint8_t>(stated >> 16),
+                   static_cast<std::uint8_t>(stated >> 8), static_cast<std::uint8_t>(stated)};
+  return Body()
+      .raw(submessage(kEncryptedPrefixSubmessage, Body().zeros(20)))
+      .raw(submessage(kEncryptedBodySubmessage, Body().raw(size).zeros(present)))
+      .raw(submessage(kEncryptedPostfixSubmessage, Body().zeros(20)))
+      .bytes();
+}
+
+Bytes statistics() { return submessage(kStatisticsSubmessage, Body().zeros(56)); }
+
+}  // namespace sidestep::fuzz::rtps
