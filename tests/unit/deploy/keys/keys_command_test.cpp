@@ -76,8 +76,7 @@ TEST_CASE("wrong uses are explained") {
   for (const char* days : {"-1", "0", "nan"})
     CHECK_THAT(run({"keys", "issue", "vision", "--days", days, "--keys", keys}), ContainsSubstring("--days"));
   CHECK_THAT(run({"keys", "init", temporary.file("other"), "--days", "0"}),
-             ContainsSubstring("--days") && ContainsSubstring("not in range 1.0") &&
-                 ContainsSubstring("to 36500.0"));
+             ContainsSubstring("--days: expected a number in [1, 36500]"));
   CHECK_FALSE(fs::exists(temporary.file("other")));
   CHECK_FALSE(run({"keys"}).empty());
 }
