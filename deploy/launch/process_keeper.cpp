@@ -161,7 +161,13 @@ class Keeper {
   explicit Keeper(ProcessGroup& group) : group_(group) {}
 
   /// A new director hears again of those that have died for good.
-  void begin() { events_ = ended_; }
+  void begin() {
+    events_ = ended_;
+    is_ending_ = false;
+  }
+  /// Whether the director has asked to end the processes. A signal could then end it before its report is
+  /// written.
+  bool is_ending() const { return is_ending_; }
 
   void poll(std::span<const int> descriptors) { add(group_.poll(200ms, descriptors)); }
   void poll_for(ProcessGroup::Milliseconds duration) {
@@ -212,6 +218,7 @@ class Keeper {
     } else if (what == "input") {
       group_.add_input(request.at("name"), request.at("more"));
     } else if (what == "terminate") {
+      is_ending_ = true;
       return group_.terminate(ProcessGroup::Milliseconds(request.at("timeout_ms").get<int>()));
     } else if (what == "last_lines") {
       return group_.last_lines(request.at("name"));
@@ -228,6 +235,7 @@ class Keeper {
   }
 
   ProcessGroup& group_;
+  bool is_ending_ = false;
   std::map<std::string, pid_t> pids_;
   std::vector<ChildEvent> events_;  // which the director has not heard of
   std::vector<ChildEvent> ended_;   // the last one of each process that has died for good
@@ -241,6 +249,7 @@ struct Director {
 [[noreturn]] void direct(int socket, pid_t parent, const DirectorWork& work,
                          const std::vector<std::string>& deaths) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
+  setpgid(0, 0);  // Ctrl-C comes from the parent only
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
   if (getppid() != parent) std::_Exit(kExitFailure);  // it died before the lines above
@@ -310,7 +319,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
       if (is_readable(director.socket)) has_ended = !keeper.serve(director.socket);
       has_ended = has_ended || is_readable(director.pidfd);
       const auto now = steady_clock::now();
-      if (is_readable(stop) && (!asked_at || now - *asked_at > kRepeatedStop)) {
+      if (is_readable(stop) && !keeper.is_ending() && (!asked_at || now - *asked_at > kRepeatedStop)) {
         asked_at = now;
         kill(director.pid, SIGTERM);
       }

@@ -145,6 +145,26 @@ TEST_CASE("a director that is asked to end may do its work, and one that dies th
   CHECK(other.group.running() == 0);
 }
 
+TEST_CASE("a director that ends its processes is not asked to end again, and may write its report") {
+  Fixture f;
+  const pid_t self = getpid();
+  const auto ends_slowly = [&](Processes& processes, const Deaths&) {
+    obey_sigterm();
+    // Takes longer than the keeping process waits before it asks again.
+    (void)processes.start(
+        shell("agent", "trap 'sleep 1.5; exit 0' TERM; echo ready; while :; do sleep 0.01; done"));
+    wait_for([&] { return !processes.last_lines("agent").empty(); });
+    kill(self, SIGINT);
+    wait_for([] { return is_asked_to_end != 0; });
+    signal(SIGTERM, SIG_DFL);
+    const bool has_ended = processes.terminate(5s).empty();
+    (void)processes.poll(0ms);  // so that the keeping process has gone on meanwhile
+    return has_ended ? 3 : 4;
+  };
+  CHECK(f.keep(ends_slowly) == 3);
+  CHECK(f.lost.empty());
+}
+
 TEST_CASE("a director that dies before it has started anything is not started again") {
   Fixture f;
   CHECK(f.keep([](Processes&, const Deaths&) -> int { std::abort(); }) == 1);
