@@ -91,7 +91,7 @@ class Launcher {
   bool is_startup_over();
   bool is_drive_over();
   std::string startup_failure() const;
-  /// When this launcher, or the first one before it, saw the coordinator grant.
+  /// When the coordinator granted first, or, if another launcher came before this one, when the first began.
   Time drive_began() const;
   /// Whether nothing moves any more and dead processes keep the remaining robots from arriving.
   bool is_stuck(Time now) const;

@@ -44,8 +44,9 @@ class Admission {
   static constexpr Duration kForgetAfter{10'000'000'000};
   /// Fast DDS has shown within this time that a genuine participant is one.
   static constexpr Duration kMaxUnproven{8'000'000'000};
-  /// A displaced participant waits so long before it is admitted again, the first time and at most.
-  static constexpr Duration kFirstWait{60'000'000'000}, kMaxWait{3'600'000'000'000};
+  /// A displaced participant waits so long before it is admitted again, the first time and at most. The first
+  /// wait is short, because a genuine one may be slow on a busy machine.
+  static constexpr Duration kFirstWait{10'000'000'000}, kMaxWait{3'600'000'000'000};
   /// Signatures that are checked: a burst, and then so many a second.
   static constexpr int kMaxChecks = 200, kChecksPerSecond = 50;
 
