@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/keys/certificate.hpp"
 
+#include <algorithm>
 #include <ctime>
 #include <fmt/format.h>
 #include <openssl/evp.h>
@@ -64,6 +65,15 @@ bool Certificate::is_issued_by(const Certificate& authority) const {
          X509_verify(x509_.get(), X509_get0_pubkey(authority.x509())) == 1;
 }
 
+bool Certificate::has_signed(std::span<const std::uint8_t> bytes,
+                             std::span<const std::uint8_t> signature) const {
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+  EVP_PKEY* const key = X509_get0_pubkey(x509_.get());
+  return context && key != nullptr &&
+         EVP_DigestVerifyInit(context.get(), nullptr, EVP_sha256(), nullptr, key) == 1 &&
+         EVP_DigestVerify(context.get(), signature.data(), signature.size(), bytes.data(), bytes.size()) == 1;
+}
+
 std::optional<Identity> Certificate::identity() const {
   const X509_NAME* const name = X509_get_subject_name(x509_.get());
   if (X509_NAME_entry_count(name) != 2 || part_of(name, NID_organizationName) != kOrganisation)
@@ -95,6 +105,22 @@ CertifiedPrefix Certificate::prefix() const {
     result[i] = static_cast<std::uint8_t>(carried << 7 | hash[i] >> 1);
     carried = hash[i] & 1;
   }
+  return result;
+}
+
+std::array<std::uint8_t, 12> Certificate::guid_prefix(const std::array<std::uint8_t, 12>& candidate) const {
+  // What is hashed is the whole GUID, with the id of the entity that stands for a participant.
+  std::array<std::uint8_t, 16> guid{};
+  std::ranges::copy(candidate, guid.begin());
+  guid[14] = 1;
+  guid[15] = 0xc1;
+  std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+  unsigned size = 0;
+  EVP_Digest(guid.data(), guid.size(), hash.data(), &size, EVP_sha256(), nullptr);
+  const CertifiedPrefix certified = prefix();
+  std::array<std::uint8_t, 12> result{};
+  const auto rest = std::ranges::copy(certified, result.begin()).out;
+  std::copy_n(hash.begin(), result.end() - rest, rest);
   return result;
 }
 

@@ -17,7 +17,7 @@ struct x509_st;
 
 namespace sidestep {
 
-/// The first bytes of the GUIDs of a participant with a certificate: DDS Security 1.1, 9.3.3, derives them
+/// The first bytes of the GUID of a participant with a certificate: DDS Security 1.1, 9.3.3, derives them
 /// from the certificate's subject, and participants check those of each other.
 using CertifiedPrefix = std::array<std::uint8_t, 6>;
 
@@ -41,6 +41,9 @@ class Certificate {
 
   /// Whether the authority has signed it.
   [[nodiscard]] bool is_issued_by(const Certificate& authority) const;
+  /// Whether the owner of the certificate's private key has signed these bytes, see sign().
+  [[nodiscard]] bool has_signed(std::span<const std::uint8_t> bytes,
+                                std::span<const std::uint8_t> signature) const;
   /// nullopt: its subject is not one of ours.
   std::optional<Identity> identity() const;
   /// In RFC 2253 order: "CN=agent 3,O=Sidestep".
@@ -50,6 +53,9 @@ class Certificate {
   Time not_after() const;
   Validity validity() const { return {not_before(), not_after()}; }
   CertifiedPrefix prefix() const;
+  /// The prefix of the GUID that a participant with this certificate has, if `candidate` is what it would
+  /// have without.
+  std::array<std::uint8_t, 12> guid_prefix(const std::array<std::uint8_t, 12>& candidate) const;
   std::vector<std::uint8_t> der() const;
   x509_st* x509() const { return x509_.get(); }
 

@@ -4,12 +4,11 @@
 #include <ctime>
 #include <filesystem>
 #include <fmt/format.h>
-#include <openssl/evp.h>
-#include <openssl/pem.h>
 #include <openssl/x509.h>
 #include <stdexcept>
 
 #include "common/file/read_permission.hpp"
+#include "common/keys/private_key.hpp"
 #include "common/keys/signed_document.hpp"
 
 namespace sidestep {
@@ -36,11 +35,7 @@ void require_own_private_key(const std::string& file, const Certificate& certifi
   if ((fs::status(file).permissions() & kOthers) != fs::perms::none)
     throw std::invalid_argument(
         fmt::format("{}: other users may read or change this private key; chmod 600 {}", file, file));
-  const std::unique_ptr<BIO, decltype(&BIO_free_all)> bio(BIO_new_file(file.c_str(), "r"), BIO_free_all);
-  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
-      bio ? PEM_read_bio_PrivateKey(bio.get(), nullptr, nullptr, nullptr) : nullptr, EVP_PKEY_free);
-  if (!key) throw std::invalid_argument(file + ": expected a private key (PEM) without a passphrase");
-  if (X509_check_private_key(certificate.x509(), key.get()) != 1)
+  if (X509_check_private_key(certificate.x509(), load_private_key(file).get()) != 1)
     throw std::invalid_argument(file + ": this private key is not that of the certificate beside it");
 }
 

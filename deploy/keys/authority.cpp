@@ -13,8 +13,6 @@
 #include <openssl/x509v3.h>
 #include <stdexcept>
 
-#include "common/file/read_permission.hpp"
-
 namespace sidestep {
 namespace {
 
@@ -82,15 +80,6 @@ Certificate make_certificate(X509_NAME* subject, const PrivateKey& key, const X5
                 is_authority ? "critical,keyCertSign,cRLSign,digitalSignature" : "critical,digitalSignature");
   require(X509_sign(x509.get(), authority_key.get(), EVP_sha256()) > 0);
   return Certificate(x509);
-}
-
-PrivateKey load_private_key(const std::string& path) {
-  require_read_permission(path);
-  const Bio file(BIO_new_file(path.c_str(), "r"), BIO_free_all);
-  if (!file) throw std::invalid_argument("cannot read " + path);
-  PrivateKey key(PEM_read_bio_PrivateKey(file.get(), nullptr, nullptr, nullptr), EVP_PKEY_free);
-  if (!key) throw std::invalid_argument(path + ": expected a private key (PEM) without a passphrase");
-  return key;
 }
 
 }  // namespace

@@ -6,12 +6,9 @@
 #include <string>
 
 #include "common/keys/certificate.hpp"
-
-struct evp_pkey_st;
+#include "common/keys/private_key.hpp"
 
 namespace sidestep {
-
-using PrivateKey = std::shared_ptr<evp_pkey_st>;
 
 /// A new private key on the curve P-256.
 [[nodiscard]] PrivateKey make_private_key();

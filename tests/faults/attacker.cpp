@@ -5,6 +5,7 @@
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <map>
+#include <random>
 #include <stdexcept>
 
 #include "common/keys/key_folder.hpp"
@@ -39,13 +40,15 @@ Attacker::Attacker(const AttackerSettings& settings) : impl_(std::make_unique<Im
   udp->interfaceWhiteList = {"127.0.0.1"};
   qos.transport().user_transports.push_back(udp);
   qos.wire_protocol().builtin.mutation_tries = 500;
-  if (settings.prefix) {
-    auto& prefix = qos.wire_protocol().prefix.value;
-    std::ranges::copy(*settings.prefix, prefix);
-    for (std::size_t i = settings.prefix->size(); i < std::size(prefix); ++i)
-      prefix[i] = static_cast<fast_dds::rtps::octet>(i + 1);
+  if (settings.announced) {
+    ParticipantId id;
+    std::random_device random;
+    for (std::uint8_t& byte : id) byte = static_cast<std::uint8_t>(random());
+    if (settings.prefix) std::ranges::copy(*settings.prefix, id.begin());
+    std::ranges::copy(id, qos.wire_protocol().prefix.value);
+    if (settings.keys) id = Certificate::load(settings.keys->certificate).guid_prefix(id);
+    qos.user_data().setValue(settings.announced(id));
   }
-  qos.user_data().setValue(settings.announced);
   if (settings.keys) {
     auto& properties = qos.properties().properties();
     const auto set = [&](const std::string& name, const std::string& value) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/keys/certificate.hpp"
+#include "common/messaging/dds/presence.hpp"
 #include "common/messaging/topics.hpp"
 
 namespace sidestep {
@@ -22,9 +24,10 @@ struct AttackerKeys {
 
 struct AttackerSettings {
   int domain = 0;
-  std::optional<AttackerKeys> keys{};       ///< nullopt: no security
-  std::vector<std::uint8_t> announced{};    ///< its user data
-  std::optional<CertifiedPrefix> prefix{};  ///< with which its GUID begins; nullopt: Fast DDS's choice
+  std::optional<AttackerKeys> keys{};  ///< nullopt: no security
+  /// Its user data, by its id.
+  std::function<std::vector<std::uint8_t>(const ParticipantId&)> announced{};
+  std::optional<CertifiedPrefix> prefix{};  ///< with which its id begins; nullopt: Fast DDS's choice
 };
 
 /// A participant of Fast DDS that checks nothing and is checked by nobody but its own library.

@@ -13,6 +13,7 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/admission.hpp"
+#include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/attacker.hpp"
@@ -33,7 +34,7 @@ inline std::unique_ptr<TestKeys> keys_for(const std::string& scenario) {
 
 /// Three robots that stand until somebody orders them to drive.
 inline constexpr const char* kThreeWaitingRobots =
-    "name: waiting\nfield: {length_m: 6, width_m: 5}\ntime_limit_s: 600\nrobots:\n"
+    "name: waiting\nfield: {length_m: 6, width_m: 5}\ntime_limit_s: 3600\nrobots:\n"
     "  - {id: 0, start_m: [-2, -1]}\n  - {id: 1, start_m: [-2, 0]}\n  - {id: 2, start_m: [-2, 1]}\n";
 
 inline std::vector<std::string> all_identities() {
@@ -61,8 +62,12 @@ struct KeyedRun {
   }
   /// A participant that knows these keys, and announces them as our processes do.
   AttackerSettings with_keys(const std::string& folder) const {
-    const Certificate certificate = Certificate::load(folder + "/" + key_files::kCertificate);
-    return {domain(), AttackerKeys::of(folder), credentials(certificate, fast_dds_version())};
+    const auto announced = [folder](const ParticipantId& id) {
+      return credentials(Certificate::load(folder + "/" + key_files::kCertificate),
+                         load_private_key(folder + "/" + key_files::kPrivateKey), fast_dds_version(), id,
+                         EventLoop::now());
+    };
+    return {domain(), AttackerKeys::of(folder), announced};
   }
   int domain() const { return std::stoi(run.dds_arguments()[1]); }
 

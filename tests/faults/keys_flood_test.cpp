@@ -16,6 +16,7 @@ using std::chrono::seconds;
 
 constexpr int kPerSecond = 10'000;
 constexpr double kStanding_mps = 0.05;
+constexpr std::uint8_t kFormerProcesses = 100;
 /// A process that kept what it is sent would grow by more in the shortest flood.
 constexpr double kMaxGrowth_mb = 6;
 
@@ -24,10 +25,15 @@ class Strangers {
  public:
   Strangers(const KeyedRun& keyed, std::uint64_t seed) : rng_(seed), domain_(keyed.domain()) {
     const TestKeys others({"agent", "0"});
-    foreign_ = keyed.with_keys(others.folder_of("agent 0")).announced;
+    foreign_ = keyed.with_keys(others.folder_of("agent 0")).announced({});
     for (const char* identity : {"agent 0", "coordinator 0", "vision", "simulator"}) {
       const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of(identity));
-      genuine_.emplace_back(Certificate::load(genuine.keys->certificate).prefix(), genuine.announced);
+      const Certificate certificate = Certificate::load(genuine.keys->certificate);
+      // Those of former processes, too.
+      for (std::uint8_t i = 0; i < kFormerProcesses; ++i) {
+        const ParticipantId id = certificate.guid_prefix({i});
+        genuine_.emplace_back(id, genuine.announced(id));
+      }
     }
   }
 
@@ -35,23 +41,26 @@ class Strangers {
     const std::uint16_t port = ports[rng_.below(ports.size())];
     ParticipantId id{};
     for (std::uint8_t& byte : id) byte = random_byte();
-    const auto& [prefix, announced] = genuine_[rng_.below(genuine_.size())];
-    switch (rng_.below(6)) {
+    const auto& [former, announced] = genuine_[rng_.below(genuine_.size())];
+    const auto prefix = std::span(former).first<6>();
+    switch (rng_.below(7)) {
       case 0:
         return sender_.announce(domain_, participant_datagram(id, random_bytes(rng_.below(600))));
       case 1:
         return sender_.announce(domain_, participant_datagram(id, foreign_));
       case 2:
+        return sender_.announce(domain_, participant_datagram(former, announced));
+      case 3:
         std::ranges::copy(prefix, id.begin());
         return sender_.announce(domain_, participant_datagram(id, announced));
-      case 3: {
+      case 4: {
         std::ranges::copy(prefix, id.begin());
         std::vector<std::uint8_t> datagram = participant_datagram(id, announced);
         for (std::uint64_t i = rng_.below(20); i > 0; --i)
           datagram[20 + rng_.below(datagram.size() - 20)] = random_byte();
         return sender_.send(port, datagram);
       }
-      case 4: {
+      case 5: {
         std::vector<std::uint8_t> datagram{'R', 'T', 'P', 'S', 2, 2, 1, 15};
         std::ranges::copy(prefix, id.begin());
         datagram.insert(datagram.end(), id.begin(), id.end());
@@ -76,7 +85,7 @@ class Strangers {
   int domain_;
   DatagramSender sender_;
   std::vector<std::uint8_t> foreign_;
-  std::vector<std::pair<CertifiedPrefix, std::vector<std::uint8_t>>> genuine_;
+  std::vector<std::pair<ParticipantId, std::vector<std::uint8_t>>> genuine_;
 };
 
 void check_flood(Duration duration) {

@@ -8,22 +8,45 @@
 namespace sidestep {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kMark{'S', 'k', 'y', '1'};
+constexpr std::array<std::uint8_t, 4> kMark{'S', 'k', 'y', '2'};
 constexpr std::size_t kMaxKnown = 4096;
 
-struct Announced {
-  std::string version;
-  std::span<const std::uint8_t> certificate;
-};
+/// Appends a part of at most 255 bytes, after its size.
+void append_part(std::vector<std::uint8_t>& bytes, std::span<const std::uint8_t> part) {
+  bytes.push_back(static_cast<std::uint8_t>(part.size()));
+  bytes.insert(bytes.end(), part.begin(), part.end());
+}
 
-std::optional<Announced> parse(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kMark.size() + 1 || !std::equal(kMark.begin(), kMark.end(), bytes.begin()))
-    return std::nullopt;
-  const std::size_t size = bytes[kMark.size()];
-  bytes = bytes.subspan(kMark.size() + 1);
-  if (bytes.size() < size) return std::nullopt;
-  return Announced{std::string(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)),
-                   bytes.subspan(size)};
+/// Takes such a part from the front.
+std::optional<std::span<const std::uint8_t>> take_part(std::span<const std::uint8_t>& bytes) {
+  if (bytes.empty() || bytes.size() - 1 < bytes[0]) return std::nullopt;
+  const std::span<const std::uint8_t> part = bytes.subspan(1, bytes[0]);
+  bytes = bytes.subspan(1 + part.size());
+  return part;
+}
+
+/// What the owner of a private key signs: which participant has started when. The mark keeps it apart from
+/// whatever else the key signs.
+std::vector<std::uint8_t> signed_part(const ParticipantId& id, std::span<const std::uint8_t> start) {
+  std::vector<std::uint8_t> result(kMark.size() + id.size() + start.size());
+  auto end = std::ranges::copy(kMark, result.begin()).out;
+  end = std::ranges::copy(id, end).out;
+  std::ranges::copy(start, end);
+  return result;
+}
+
+/// In little-endian order.
+std::array<std::uint8_t, 8> bytes_of(Time time) {
+  std::array<std::uint8_t, 8> result{};
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(to_ns(time)) >> 8 * i);
+  return result;
+}
+
+Time time_of(std::span<const std::uint8_t> bytes) {
+  std::uint64_t ns = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) ns |= std::uint64_t{bytes[i]} << 8 * i;
+  return time_from_ns(static_cast<std::int64_t>(ns));
 }
 
 /// Those of equal first numbers understand each other.
@@ -35,6 +58,7 @@ const char* reason_text(Admission::Refusal refusal) {
     case Refusal::kNone:
     case Refusal::kNotNeeded:
     case Refusal::kOtherPrefix:
+    case Refusal::kOtherSignature:
       return "";
     case Refusal::kNoCredentials:
       return " that announces no key: start it with --keys";
@@ -53,7 +77,7 @@ const char* reason_text(Admission::Refusal refusal) {
     case Refusal::kTooMany:
       return ", because too many participants have the same key";
     case Refusal::kTooFast:
-      return ", because too many certificates are announced at once";
+      return ", because too many processes announce themselves at once";
   }
   return "";
 }
@@ -64,10 +88,29 @@ bool has_prefix(const ParticipantId& id, const CertifiedPrefix& prefix) {
 
 }  // namespace
 
-std::vector<std::uint8_t> credentials(const Certificate& certificate, const std::string& version) {
+/// What credentials() has put together.
+struct Admission::Announced {
+  std::string version;
+  std::span<const std::uint8_t> start, signature, certificate;
+
+  static std::optional<Announced> parse(std::span<const std::uint8_t> bytes) {
+    if (bytes.size() < kMark.size() || !std::ranges::equal(kMark, bytes.first(kMark.size())))
+      return std::nullopt;
+    bytes = bytes.subspan(kMark.size());
+    const auto version = take_part(bytes), start = version ? take_part(bytes) : std::nullopt,
+               signature = start ? take_part(bytes) : std::nullopt;
+    if (!signature || start->size() != sizeof(std::int64_t)) return std::nullopt;
+    return Announced{std::string(version->begin(), version->end()), *start, *signature, bytes};
+  }
+};
+
+std::vector<std::uint8_t> credentials(const Certificate& certificate, const PrivateKey& key,
+                                      const std::string& version, const ParticipantId& id, Time started) {
   std::vector<std::uint8_t> result(kMark.begin(), kMark.end());
-  result.push_back(static_cast<std::uint8_t>(version.size()));
-  result.insert(result.end(), version.begin(), version.end());
+  const auto start = bytes_of(started);
+  append_part(result, std::vector<std::uint8_t>(version.begin(), version.end()));
+  append_part(result, start);
+  append_part(result, sign(key, signed_part(id, start)));
   const std::vector<std::uint8_t> der = certificate.der();
   result.insert(result.end(), der.begin(), der.end());
   return result;
@@ -78,36 +121,43 @@ Admission::Admission(Identity self, Certificate authority, std::string version)
 
 Admission::Decision Admission::on_announcement(const ParticipantId& id,
                                                std::span<const std::uint8_t> announced, Time now) {
-  const auto parsed = parse(announced);
+  const auto parsed = Announced::parse(announced);
   if (!parsed) return {Refusal::kNoCredentials};
   Refusal refusal = Refusal::kNone;
   Known* const known = find_known(parsed->certificate, now, refusal);
   if (!known) return {refusal};
-  return {admit(id, *known, parsed->version, now), to_text(known->identity)};
+  return {admit(id, *known, *parsed, now), to_text(known->identity)};
 }
 
-Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const std::string& version,
+Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const Announced& announced,
                                     Time now) {
   if (!has_prefix(id, known.prefix)) return Refusal::kOtherPrefix;
   if (const Refusal refusal = check_now(known, now); refusal != Refusal::kNone) return refusal;
   if (!known.is_needed) return Refusal::kNotNeeded;
-  if (first_number(version) != first_number(version_)) return Refusal::kOtherVersion;
+  if (first_number(announced.version) != first_number(version_)) return Refusal::kOtherVersion;
   if (const auto found = participants_.find(id); found != participants_.end()) {
     found->second.last_heard = now;
     return Refusal::kNone;
   }
   const auto displaced = displaced_.find(id);
   if (displaced != displaced_.end() && now < displaced->second.until) return Refusal::kTooMany;
-  if (!known.unproven.admit(now)) return Refusal::kTooMany;
-  if (!make_room(known, now)) {
-    known.unproven.give_back();
-    return Refusal::kTooMany;
-  }
-  participants_[id] = {&known, now, now};
+  const Time start = time_of(announced.start);
+  const bool is_latest = start > known.latest_start;
+  if (!is_latest && !known.unproven.admit(now)) return Refusal::kTooMany;
+  const auto refuse = [&](Refusal refusal) {
+    if (!is_latest) known.unproven.give_back();
+    return refusal;
+  };
+  if (!checks_.admit(now)) return refuse(Refusal::kTooFast);
+  if (!known.certificate.has_signed(signed_part(id, announced.start), announced.signature))
+    return refuse(Refusal::kOtherSignature);
+  if (!make_room(known, is_latest ? Duration{} : kMaxUnproven, now)) return refuse(Refusal::kTooMany);
+  known.latest_start = std::max(known.latest_start, start);
+  participants_[id] = {&known, now, now, is_latest};
   return Refusal::kNone;
 }
 
-bool Admission::make_room(const Known& known, Time now) {
+bool Admission::make_room(const Known& known, Duration min_age, Time now) {
   const auto has_certificate = [&known](const auto& p) { return p.second.known == &known; };
   const auto same = static_cast<std::size_t>(std::ranges::count_if(participants_, has_certificate));
   const bool is_certificate_full = same >= kMaxPerCertificate;
@@ -116,8 +166,7 @@ bool Admission::make_room(const Known& known, Time now) {
   for (auto entry = participants_.begin(); entry != participants_.end(); ++entry) {
     const Participant& participant = entry->second;
     if (is_certificate_full && participant.known != &known) continue;
-    if (participant.is_proven || entry->first == self_id_ || now - participant.admitted < kMaxUnproven)
-      continue;
+    if (participant.is_proven || entry->first == self_id_ || now - participant.admitted < min_age) continue;
     if (oldest == participants_.end() || participant.admitted < oldest->second.admitted) oldest = entry;
   }
   if (oldest == participants_.end()) return false;
@@ -156,7 +205,7 @@ void Admission::on_authenticated(const ParticipantId& id) {
   if (found == participants_.end() || found->second.is_proven) return;
   found->second.is_proven = true;
   displaced_.erase(id);
-  found->second.known->unproven.give_back();
+  if (!found->second.was_latest) found->second.known->unproven.give_back();
 }
 
 std::vector<Identity> Admission::newly_unproven(Time now) {
@@ -201,6 +250,7 @@ Admission::Known* Admission::find_known(std::span<const std::uint8_t> der, Time 
   if (known_.size() >= kMaxKnown) forget_oldest();
   if (known_.size() >= kMaxKnown) return refuse(Refusal::kTooMany);
   Known found{*identity,
+              *certificate,
               certificate->serial(),
               certificate->prefix(),
               *identity == self_ || exchange_messages(*identity, self_),
@@ -229,7 +279,8 @@ Admission::Refusal Admission::check_now(const Known& known, Time now) const {
 }
 
 std::string Admission::describe(const Decision& decision, const std::string& address) {
-  const bool is_impostor = decision.refusal == Refusal::kOtherPrefix;
+  const bool is_impostor =
+      decision.refusal == Refusal::kOtherPrefix || decision.refusal == Refusal::kOtherSignature;
   const std::string who = decision.who.empty() || is_impostor ? "a process" : decision.who;
   return who + " at " + address +
          (is_impostor ? " that announces the certificate of " + decision.who : reason_text(decision.refusal));

@@ -11,15 +11,17 @@
 #include <vector>
 
 #include "common/keys/certificate.hpp"
+#include "common/keys/private_key.hpp"
 #include "common/messaging/dds/presence.hpp"
 #include "common/time/rate_limit.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {
 
-/// What a participant with keys announces of itself, as its user data: the version of Fast DDS, and the
-/// certificate.
-std::vector<std::uint8_t> credentials(const Certificate& certificate, const std::string& version);
+/// What a participant with keys announces of itself, as its user data: the version of Fast DDS, when it
+/// started, the certificate, and a signature of its private key, which makes it true of this id only.
+std::vector<std::uint8_t> credentials(const Certificate& certificate, const PrivateKey& key,
+                                      const std::string& version, const ParticipantId& id, Time started);
 
 /// Decides which participants a process with keys listens to, and knows who they are.
 ///
@@ -27,13 +29,15 @@ std::vector<std::uint8_t> credentials(const Certificate& certificate, const std:
 /// and reads the list of revoked keys only at its start. Participants therefore announce their certificate.
 /// The prefix of a participant's GUID depends on the certificate, and Fast DDS checks that the owner of the
 /// GUID has the certificate's private key. What is decided here is therefore true of all that Fast DDS
-/// accepts. An attacker can repeat the announcement of another, and then gets no further than authentication.
-/// So the participants with one certificate are limited, and new ones are admitted at a low rate while they
-/// do not prove to be genuine: Fast DDS keeps about a hundred bytes of each, for as long as the process
-/// lives. Where there is no place left, a new one displaces one that did not prove to be genuine in time, and
-/// that one waits before it is admitted again, twice as long each time. Participants that exchange no
-/// messages, as agents among each other, are not admitted either: among many robots, most of the time at the
-/// start would go into their handshakes.
+/// accepts. An attacker cannot sign an announcement, but can repeat what another has announced, and then gets
+/// no further than authentication. So the participants with one certificate are limited, and those that are
+/// not the latest to start are admitted at a low rate while they do not prove to be genuine: Fast DDS keeps
+/// about a hundred bytes of each, for as long as the process lives. Where there is no place left, a new one
+/// displaces one that did not prove to be genuine in time, and that one waits before it is admitted again,
+/// twice as long each time. Nobody but the owner of the private key can announce a later start, so that a
+/// genuine process which restarts does not wait. Participants that exchange no messages, as agents among each
+/// other, are not admitted either: among many robots, most of the time at the start would go into their
+/// handshakes.
 class Admission {
  public:
   static constexpr std::size_t kMaxPerCertificate = 24;
@@ -47,8 +51,8 @@ class Admission {
   /// A displaced participant waits so long before it is admitted again, the first time and at most. The first
   /// wait is short, because a genuine one may be slow on a busy machine.
   static constexpr Duration kFirstWait{10'000'000'000}, kMaxWait{3'600'000'000'000};
-  /// Signatures that are checked: a burst, and then so many a second.
-  static constexpr int kMaxChecks = 200, kChecksPerSecond = 50;
+  /// Certificates and announcements whose signatures are checked: a burst, and then so many a second.
+  static constexpr int kMaxChecks = 400, kChecksPerSecond = 400;
 
   enum class Refusal : std::uint8_t {
     kNone,
@@ -59,6 +63,7 @@ class Admission {
     kOtherAuthority,
     kUnknownSubject,
     kOtherPrefix,
+    kOtherSignature,
     kNotValidNow,
     kRevoked,
     kTooMany,
@@ -97,18 +102,22 @@ class Admission {
   static std::string describe(const Decision& decision, const std::string& address);
 
  private:
+  struct Announced;
   struct Known {
     Identity identity;
+    Certificate certificate;
     std::string serial;
     CertifiedPrefix prefix;
     bool is_needed;
     Time not_before, not_after;
     RateLimit unproven{kMaxPerCertificate, kUnprovenPeriod};
-    Time announced{};  ///< last
+    Time announced{};     ///< last
+    Time latest_start{};  ///< of those that were admitted
   };
   struct Participant {
     Known* known = nullptr;
     Time admitted, last_heard;
+    bool was_latest = false;  ///< it took no place of Known::unproven
     bool is_proven = false, is_reported = false;
   };
   struct Displaced {
@@ -119,10 +128,10 @@ class Admission {
   void forget_oldest();
   /// The certificate, if the authority has issued it; otherwise says why not.
   Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
-  Refusal admit(const ParticipantId& id, Known& known, const std::string& version, Time now);
-  /// Makes sure that one more participant with this certificate has a place. False if nobody can be
-  /// displaced.
-  bool make_room(const Known& known, Time now);
+  Refusal admit(const ParticipantId& id, Known& known, const Announced& announced, Time now);
+  /// Makes sure that one more participant with this certificate has a place, by displacing one of those that
+  /// were admitted longer than `min_age` ago and are not proven. False if there is none.
+  bool make_room(const Known& known, Duration min_age, Time now);
   void displace(const ParticipantId& id, Time now);
   Refusal check_now(const Known& known, Time now) const;
   bool is_in_use(const Known& known) const;
@@ -136,7 +145,7 @@ class Admission {
   std::map<ParticipantId, Participant> participants_;
   std::map<ParticipantId, Displaced> displaced_;     ///< at most kMaxParticipants; the oldest is forgotten
   std::vector<ParticipantId> displaced_since_call_;  ///< of newly_refused()
-  RateLimit checks_{kMaxChecks, std::chrono::milliseconds(1000 / kChecksPerSecond)};
+  RateLimit checks_{kMaxChecks, std::chrono::microseconds(1'000'000 / kChecksPerSecond)};
 };
 
 }  // namespace sidestep

@@ -10,9 +10,11 @@
 #include <ifaddrs.h>
 #include <mutex>
 #include <netinet/in.h>
+#include <random>
 #include <sstream>
 #include <stdexcept>
 
+#include "common/keys/private_key.hpp"
 #include "common/log/log.hpp"
 #include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/event_loop.hpp"
@@ -88,6 +90,13 @@ class NoListener : public fast_dds::DiscoveryListener {
   void on_endpoint(const fast_dds::rtps::GUID_t&, DiscoveredEndpoint&&, EndpointChange) override {}
 };
 
+ParticipantId random_id() {
+  std::random_device random;
+  ParticipantId result;
+  for (std::uint8_t& byte : result) byte = static_cast<std::uint8_t>(random());
+  return result;
+}
+
 /// The properties of Fast DDS's security plugins (DDS Security 1.1, 9.3 to 9.5).
 void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
   auto& properties = qos.properties().properties();
@@ -109,8 +118,12 @@ void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
   set_file(access + "governance", key_files::kGovernance);
   set_file(access + "permissions", key_files::kPermissions);
   set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
-  const std::vector<std::uint8_t> announced = credentials(keys.certificate, fast_dds_version());
-  qos.user_data().setValue(announced);
+  // What is announced is signed for the id that Fast DDS makes of this candidate.
+  const ParticipantId candidate = random_id();
+  std::ranges::copy(candidate, qos.wire_protocol().prefix.value);
+  qos.user_data().setValue(credentials(keys.certificate, load_private_key(keys.file(key_files::kPrivateKey)),
+                                       fast_dds_version(), keys.certificate.guid_prefix(candidate),
+                                       EventLoop::now()));
 }
 
 DomainParticipantQos participant_qos(const DdsSettings& settings,
@@ -133,7 +146,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   }
   qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts, gate));
   if (keys) use_keys(*keys, qos);
-  // Keys bring a prefix of their own, and say who is an operator.
+  // Keys say who is an operator.
   if (settings.is_operator && !keys) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;

@@ -26,9 +26,12 @@ ParticipantId id_with(const Certificate& certificate) {
 
 struct Fixture {
   ParticipantId announce(const std::string& text) {
-    const Certificate certificate = Certificate::load(keys.folder_of(text) + "/cert.pem");
+    const std::string folder = keys.folder_of(text);
+    const Certificate certificate = Certificate::load(folder + "/cert.pem");
     const ParticipantId id = id_with(certificate);
-    CHECK(gate.passes(id, participant_datagram(id, credentials(certificate, "2.9.1")), true, kAddress));
+    const auto announced =
+        credentials(certificate, load_private_key(folder + "/key.pem"), "2.9.1", id, keys.now());
+    CHECK(gate.passes(id, participant_datagram(id, announced), true, kAddress));
     return id;
   }
 
