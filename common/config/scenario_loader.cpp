@@ -28,20 +28,16 @@ constexpr std::size_t kMaxNameLength = 64;
 /// The text as a name of reports and their files: letters and digits of any language, '-', '_' and '.', but
 /// not '.' in front. Each other character becomes '_', and what follows after kMaxNameLength is left out.
 std::string as_name(const std::string& text) {
-  constexpr unsigned char kFirstC1Control = 0x80, kLastC1Control = 0x9f;
   std::string name;
   std::size_t characters = 0;
   for (std::size_t at = 0; at < text.size() && characters < kMaxNameLength; ++characters) {
-    const std::size_t length = utf8_length(text, at);
+    const std::size_t length = printable_length(text, at);
     const auto first = static_cast<unsigned char>(text[at]);
-    const auto second = static_cast<unsigned char>(length > 1 ? text[at + 1] : 0);
-    const bool is_control =
-        length == 2 && first == 0xc2 && second >= kFirstC1Control && second <= kLastC1Control;
     const bool is_allowed =
-        length > 1 ? !is_control
-                   : std::isalnum(first) || first == '-' || first == '_' || (first == '.' && at > 0);
+        length > 1 ||
+        (length == 1 && (std::isalnum(first) || first == '-' || first == '_' || (first == '.' && at > 0)));
     name += is_allowed ? text.substr(at, length) : "_";
-    at += std::max<std::size_t>(length, 1);
+    at += std::max<std::size_t>(utf8_length(text, at), 1);
   }
   return name;
 }

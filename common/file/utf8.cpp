@@ -24,4 +24,15 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
   return is_valid ? length : 0;
 }
 
+std::size_t printable_length(std::string_view text, std::size_t at) {
+  constexpr unsigned char kDelete = 0x7f, kC1Lead = 0xc2, kFirstC1Control = 0x80, kLastC1Control = 0x9f;
+  const std::size_t length = utf8_length(text, at);
+  const auto first = static_cast<unsigned char>(text[at]);
+  if (length == 1) return first > ' ' && first != kDelete ? 1 : 0;
+  const auto second = static_cast<unsigned char>(length > 1 ? text[at + 1] : 0);
+  const bool is_control =
+      length == 2 && first == kC1Lead && second >= kFirstC1Control && second <= kLastC1Control;
+  return is_control ? 0 : length;
+}
+
 }  // namespace sidestep

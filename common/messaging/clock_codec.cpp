@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/file/utf8.hpp"
 #include "common/messaging/senders.hpp"
 
 namespace sidestep {
@@ -50,11 +51,16 @@ std::vector<std::uint8_t> encode_place(const std::string& host, const std::strin
   return {place.begin(), place.end()};
 }
 
-std::string printable_name(std::string name) {
-  if (name.size() > msg::MAX_PLACE_NAME) name.resize(msg::MAX_PLACE_NAME);
-  std::ranges::replace_if(
-      name, [](char c) { return c <= ' ' || c > '~'; }, '?');
-  return name;
+std::string printable_name(const std::string& name) {
+  std::string result;
+  for (std::size_t at = 0; at < name.size();) {
+    const std::size_t length = printable_length(name, at);
+    const std::string character = length > 0 ? name.substr(at, length) : "?";
+    if (result.size() + character.size() > msg::MAX_PLACE_NAME) break;
+    result += character;
+    at += std::max<std::size_t>(length, 1);
+  }
+  return result;
 }
 
 }  // namespace sidestep

@@ -19,7 +19,7 @@ struct ClockAnswer {
   Time probe_received, answered;  ///< by the process's clock
   Duration host_ahead{0};         ///< the host's clock - the process's
   double clock_bound_s = 0;
-  std::string host, scenario;  ///< printable ASCII
+  std::string host, scenario;  ///< printable, UTF-8
 };
 
 /// nullopt unless the message is of an agent, a coordinator, vision, the simulator or the referee, and every
@@ -29,7 +29,7 @@ struct ClockAnswer {
 /// ClockReading.place.
 [[nodiscard]] std::vector<std::uint8_t> encode_place(const std::string& host, const std::string& scenario);
 
-/// Replaces whatever is not printable ASCII, and cuts the name to the bound of the message.
-[[nodiscard]] std::string printable_name(std::string name);
+/// Replaces whatever is not printable, in any language, and cuts the name to the bound of the message.
+[[nodiscard]] std::string printable_name(const std::string& name);
 
 }  // namespace sidestep

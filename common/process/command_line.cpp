@@ -101,10 +101,20 @@ auto translated(const std::string& option, Callback callback) {
 
 ValueCheck in_range(double min, double max) {
   const std::string description = fmt::format("in [{:.10g}, {:.10g}]", min, max);
+  const auto problem = [=](const std::string& text) {
+    const auto number = parsed<double>(text);
+    if (number && *number >= min && *number <= max) return std::string();
+    return fmt::format("expected a number {}, got {}", description, in_quotes(text));
+  };
+  return {description, problem, ValueCheck::Limits{min, max}};
+}
+
+ValueCheck in_whole_range(std::int64_t min, std::int64_t max) {
+  const std::string description = fmt::format("in [{}, {}]", min, max);
   return {description, [=](const std::string& text) {
-            const auto number = parsed<double>(text);
+            const auto number = parsed<std::int64_t>(text);
             if (number && *number >= min && *number <= max) return std::string();
-            return fmt::format("expected a number {}, got {}", description, in_quotes(text));
+            return fmt::format("expected a whole number {}, got {}", description, in_quotes(text));
           }};
 }
 
@@ -132,15 +142,12 @@ Option Option::required() const {
 
 // In front of the check of the type, because it names the limits.
 Option Option::check(const ValueCheck& check) const {
-  const bool is_whole =
-      option_->get_type_name().starts_with("INT") || option_->get_type_name().starts_with("UINT");
-  const bool has_limits = check.description.starts_with("in [");
-  const auto problem = [=](std::string& text) {
-    if (is_whole && has_limits && parsed<double>(text) && !parsed<std::int64_t>(text))
-      return fmt::format("expected a whole number {}, got {}", check.description, in_quotes(text));
-    return check.problem(text);
-  };
-  option_->transform(CLI::Validator(problem, check.description));
+  ValueCheck used = check;
+  if (is_whole_ && check.limits)
+    used = in_whole_range(static_cast<std::int64_t>(check.limits->min),
+                          static_cast<std::int64_t>(check.limits->max));
+  option_->transform(CLI::Validator([problem = used.problem](std::string& text) { return problem(text); },
+                                    used.description));
   return *this;
 }
 
@@ -193,7 +200,7 @@ template <typename Value>
 Option CliCommand::add_option(const std::string& name, Value& value, const std::string& description) const {
   CLI::Option& option = *app_->add_option(name, value, description);
   option.transform(type_check<typename Element<Value>::Type>());
-  return Option(option);
+  return Option(option, std::is_integral_v<typename Element<Value>::Type>);
 }
 
 template Option CliCommand::add_option(const std::string&, std::string&, const std::string&) const;

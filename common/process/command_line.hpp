@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,8 +26,14 @@ class UsageError : public std::invalid_argument {
 struct ValueCheck {
   std::string description;                                 ///< for --help, e.g. "POSITIVE"
   std::function<std::string(const std::string&)> problem;  ///< what is wrong with a value; empty if valid
+  struct Limits {
+    double min, max;
+  };
+  std::optional<Limits> limits{};  ///< of in_range()
 };
+/// Options of a whole number use in_whole_range() instead.
 [[nodiscard]] ValueCheck in_range(double min, double max);
+[[nodiscard]] ValueCheck in_whole_range(std::int64_t min, std::int64_t max);
 /// Above 0, and a duration of so many seconds or a rate of so many a second can be stated: from 1e-9 to 1e9.
 [[nodiscard]] ValueCheck positive();
 [[nodiscard]] ValueCheck non_negative();
@@ -35,7 +42,7 @@ struct ValueCheck {
 /// Handle of one option. Valid as long as the command line that it belongs to.
 class Option {
  public:
-  explicit Option(CLI::Option& option) : option_(&option) {}
+  explicit Option(CLI::Option& option, bool is_whole = false) : option_(&option), is_whole_(is_whole) {}
 
   Option required() const;
   Option check(const ValueCheck& check) const;
@@ -51,6 +58,7 @@ class Option {
 
  private:
   CLI::Option* option_;
+  bool is_whole_;  ///< its values are whole numbers
 };
 
 /// Handle of a command or subcommand, to which options are added. Variables must outlive the parsing.

@@ -35,7 +35,9 @@ using std::chrono::steady_clock;
 
 constexpr int kDirectorSocket = 3;  // in the director
 constexpr auto kTerminationTimeout = 3000ms;
-constexpr auto kRepeatedStop = 1000ms;                // a director that begins does not hear signals yet
+constexpr auto kRepeatedStop = 1000ms;  // a director that begins does not hear signals yet
+/// A director that was asked to end, and one whose processes have ended, is killed after so long.
+constexpr auto kMaxEnding = 60'000ms, kMaxIdle = 15'000ms;
 constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // before the next director; twice as long after each
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
@@ -168,6 +170,7 @@ class Keeper {
   /// Whether the director has asked to end the processes. A signal could then end it before its report is
   /// written.
   bool is_ending() const { return is_ending_; }
+  bool has_ended_all() const { return is_ending_ && group_.running() == 0; }
 
   void poll(std::span<const int> descriptors) { add(group_.poll(200ms, descriptors)); }
   void poll_for(ProcessGroup::Milliseconds duration) {
@@ -307,11 +310,12 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
   std::vector<std::string> deaths;
   std::optional<int> code;
   auto pause = kPause;
-  std::optional<steady_clock::time_point> asked_at;
+  std::optional<steady_clock::time_point> asked_at, first_asked_at;
   while (!code) {
     const Director director = start_director(work, deaths);
     keeper.begin();
     bool has_ended = false;
+    std::optional<steady_clock::time_point> idle_since;
     while (!has_ended) {
       std::vector<int> watched{director.pidfd, director.socket};
       if (!asked_at) watched.push_back(stop);
@@ -320,8 +324,17 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
       has_ended = has_ended || is_readable(director.pidfd);
       const auto now = steady_clock::now();
       if (is_readable(stop) && !keeper.is_ending() && (!asked_at || now - *asked_at > kRepeatedStop)) {
+        if (!first_asked_at) first_asked_at = now;
         asked_at = now;
         kill(director.pid, SIGTERM);
+      }
+      if (keeper.has_ended_all() && !idle_since) idle_since = now;
+      const bool is_stuck = (first_asked_at && now - *first_asked_at > kMaxEnding) ||
+                            (idle_since && now - *idle_since > kMaxIdle);
+      if (is_stuck) {
+        group.log("the director of the run does not end and is killed");
+        kill(director.pid, SIGKILL);
+        has_ended = true;
       }
     }
     std::string reason;
@@ -330,7 +343,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     group.log("the director of the run died: " + reason);
     fmt::print(stderr, "the process that directs the run died: {}\n", reason);
     deaths.push_back(reason);
-    if (!asked_at && group.running() > 0) {
+    if (!asked_at && !keeper.is_ending() && group.running() > 0) {
       keeper.poll_for(pause);
       pause = std::min(2 * pause, kMaxPause);
       continue;

@@ -26,6 +26,12 @@ std::string numbered(const std::filesystem::path& file, std::size_t number) {
       .string();
 }
 
+bool is_newer(const std::string& file, std::filesystem::file_time_type time) {
+  std::error_code error;
+  const auto written = std::filesystem::last_write_time(file, error);
+  return !error && written > time;
+}
+
 }  // namespace
 
 int run(const RunOptions& given) {
@@ -60,6 +66,7 @@ int run(const RunOptions& given) {
     return exit_code(report.verdict());
   };
   const auto began = std::chrono::steady_clock::now();
+  const auto files_began = std::filesystem::file_time_type::clock::now();
   DirectorWork work;
   work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
     return run_guarded("sidestep run", [&] {
@@ -70,6 +77,11 @@ int run(const RunOptions& given) {
     });
   };
   work.on_lost = [&](const std::string& reason) {
+    if (is_newer(report_path, files_began)) {
+      fmt::print("\n{}: the process that directed the run died after its report: {}\nreport: {}\nlog: {}\n",
+                 scenario.name, reason, report_path, log_path);
+      return;
+    }
     Report report;
     report.program = "run";
     report.scenario = scenario.name;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/launch/run_command.hpp"
 
-#include <charconv>
 #include <fmt/format.h>
 #include <memory>
-#include <system_error>
 
 #include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
@@ -13,20 +11,10 @@
 #include "deploy/launch/run.hpp"
 
 namespace sidestep {
-
 namespace {
 
-/// What is wrong with a text as a whole number from min to max; empty: nothing.
-std::string whole_number_problem(const std::string& text, int min, int max) {
-  int number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  const bool is_valid = error == std::errc{} && stop == end && number >= min && number <= max;
-  return is_valid ? "" : fmt::format("expected a whole number in [{}, {}], got \"{}\"", min, max, text);
-}
-
 void require_port(const std::string& text) {
-  const std::string problem = whole_number_problem(text, 1, 65535);
+  const std::string problem = in_whole_range(1, 65535).problem(text);
   if (!problem.empty()) throw UsageError("--monitor: " + problem);
 }
 
@@ -56,7 +44,7 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .add_option("--domain", options->domain,
                   "DDS domain, 0 .. 232, or 'auto': one that this machine does not use")
       .check([](const std::string& text) {
-        return text == "auto" ? "" : whole_number_problem(text, 0, kMaxDomain);
+        return text == "auto" ? "" : in_whole_range(0, kMaxDomain).problem(text);
       })
       .show_default();
   add_dds_options_but_domain(command, options->dds);

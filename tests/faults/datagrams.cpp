@@ -144,7 +144,7 @@ std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::s
   const auto any_of = [&rng](const auto& values) { return values[rng.below(std::size(values))]; };
   const auto any_byte = [&rng] { return static_cast<std::uint8_t>(rng.below(256)); };
   const std::size_t start = any_of(starts);
-  switch (rng.below(6)) {
+  switch (rng.below(7)) {
     case 0:
       for (int left = 1 << rng.below(4); left > 0; --left)
         result[kHeaderSize + rng.below(result.size() - kHeaderSize)] = any_byte();
@@ -167,6 +167,13 @@ std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::s
       result[start + 3] = static_cast<std::uint8_t>(length >> 8);
       break;
     }
+    case 5:
+      // The numbers of a heartbeat, a gap or an acknowledgement, the high half first; of any magnitude.
+      if (const std::size_t at = start + 12 + 8 * rng.below(2); at + 8 <= result.size()) {
+        const std::uint64_t number = rng.bits() >> rng.below(64), halves = number >> 32 | number << 32;
+        for (std::size_t i = 0; i < 8; ++i) result[at + i] = static_cast<std::uint8_t>(halves >> 8 * i);
+      }
+      break;
     default:
       result[start] =
           any_of(std::array<std::uint8_t, 17>{0x01, 0x06, 0x07, 0x08, 0x09, 0x0c, 0x0e, 0x0f, 0x12, 0x13,

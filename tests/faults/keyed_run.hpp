@@ -82,6 +82,7 @@ struct KeyedRun {
     INFO(run.output());
     CHECK(run.report()["contacts"] == 0);
     CHECK(run.report()["audit"]["violations"] == 0);
+    CHECK_FALSE(run.printed("did not stop in time"));
   }
 
   TestKeys keys;

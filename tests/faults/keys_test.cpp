@@ -23,6 +23,7 @@
 #include "tests/faults/attacker.hpp"
 #include "tests/faults/datagrams.hpp"
 #include "tests/faults/keyed_run.hpp"
+#include "tests/faults/process_usage.hpp"
 #include "tests/needs_root.hpp"
 #include "tests/test_keys.hpp"
 
@@ -315,6 +316,18 @@ TEST_CASE("keys that are revoked during a run are refused on other hosts, too") 
   keyed.check_unharmed();
 }
 
+/// A thread that goes round in a loop takes all that it can get of a core. All robots stand.
+void check_no_thread_spins(LaunchedRun& run) {
+  constexpr double kObserved_s = 4;
+  const auto before = usage_of(run);
+  const Time begin = run.bus().now();
+  REQUIRE(run.wait_until([&] { return run.bus().now() - begin > from_seconds(kObserved_s); }));
+  for (const auto& [name, usage] : usage_of(run)) {
+    CAPTURE(name);
+    CHECK(usage.cpu_s - before.at(name).cpu_s < kObserved_s / 3);
+  }
+}
+
 /// While robots drive to and fro, repeats and alters what their processes say to each other.
 void repeat_and_alter(Duration duration, std::uint64_t seed) {
   SIDESTEP_NEEDS_ROOT();
@@ -355,6 +368,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   const std::uint64_t read = datagrams_read() - read_before;
   CHECK(read > static_cast<std::uint64_t>(replayed + changed));
   CHECK(run.children() == processes);
+  check_no_thread_spins(run);
   const int carried_out = shuttle.drive();
   keyed.check_unharmed();
   const nlohmann::json report = run.report();

@@ -66,10 +66,9 @@ bool begins(View part, View whole) { return part.data() == whole.data() && part.
 
 /// What is passed on with keys consists of nothing but submessages that are understood.
 void check_passed(View passed) {
-  static const std::set<std::uint8_t> kUnderstood{
-      kAckNackSubmessage,        kHeartbeatSubmessage,   kGapSubmessage,
-      kTimestampSubmessage,      kDestinationSubmessage, kNackPartsSubmessage,
-      kHeartbeatPartsSubmessage, kDataSubmessage,        kDataPartSubmessage};
+  static const std::set<std::uint8_t> kUnderstood{kAckNackSubmessage,     kHeartbeatSubmessage,
+                                                  kGapSubmessage,         kTimestampSubmessage,
+                                                  kDestinationSubmessage, kDataSubmessage};
   const auto submessages = submessages_of(passed);
   SIDESTEP_REQUIRE(submessages && !submessages->empty());
   for (std::size_t i = 0; i < submessages->size(); ++i) {
@@ -168,12 +167,9 @@ std::vector<Bytes> seeds() {
       datagram(agent, {destination(), data(), heartbeat()}),
       datagram(agent, {destination(), acknowledgement(33, 2)}),
       datagram(agent, {gap(), heartbeat()}),
-      datagram(agent, {fragment(1, 1, 40), heartbeat_of_fragments()}),
-      datagram(agent, {fragment(3, 1, 20), missing_fragments()}),
       datagram(agent, {destination(), encrypted_timestamp, encrypted_data}),
       datagram(agent, {encrypted_timestamp, encrypted_data, statistics()}),
       datagram(agent, {timestamp(), data(), statistics()}),
-      departure_of(agent),
   };
   using Kind = PresenceNotice::Kind;
   const std::array notices{PresenceNotice{agent, Kind::kForgotten, 7},

@@ -36,12 +36,16 @@ Bytes submessage(std::uint8_t kind, const Body& body, std::uint8_t flags = kLitt
   return Body().raw(head).u16(body.bytes().size()).raw(body.bytes()).bytes();
 }
 
-constexpr std::size_t kParticipantReader = 0xc7000100, kParticipantWriter = 0xc2000100;
+constexpr std::size_t kParticipantReader = 0xc7000100, kParticipantWriter = 0xc2000100,
+                      kEndpointWriter = 0xc2030000;
 
 Body data_header(std::size_t reader, std::size_t writer) {
   constexpr std::size_t kBytesToInlineQos = 16;
   return Body().u16(0).u16(kBytesToInlineQos).u32(reader).u32(writer).sequence_number(7);
 }
+
+/// Any reader, and the writer that announces endpoints.
+Body discovery_entities() { return Body().u32(0).u32(kEndpointWriter); }
 
 }  // namespace
 
@@ -57,7 +61,7 @@ Bytes destination() { return submessage(kDestinationSubmessage, Body().zeros(12)
 
 Bytes data() {
   constexpr std::uint8_t kHasPayload = 4;
-  return submessage(kDataSubmessage, data_header(0, 0x03000001).u32(0x100).zeros(24),
+  return submessage(kDataSubmessage, data_header(0, kEndpointWriter).u32(0x100).zeros(24),
                     kLittleEndianFlag | kHasPayload);
 }
 
@@ -71,27 +75,16 @@ Bytes announcement(const ParticipantId& participant, const Bytes& user_data) {
   return submessage(kDataSubmessage, body.u16(kEnd).u16(0), kLittleEndianFlag | kHasPayload);
 }
 
-Bytes fragment(std::uint32_t first, std::uint16_t count, std::size_t size) {
-  Body body = Body().u16(0).u16(28).zeros(8).sequence_number(7);
-  return submessage(kDataPartSubmessage, body.u32(first).u16(count).u16(40).u32(100).zeros(size));
-}
-
 Bytes acknowledgement(std::uint32_t bits, std::size_t words) {
-  return submessage(kAckNackSubmessage, Body().zeros(8).sequence_number(1).u32(bits).zeros(4 * words).u32(1));
+  return submessage(kAckNackSubmessage,
+                    discovery_entities().sequence_number(1).u32(bits).zeros(4 * words).u32(1));
 }
 Bytes gap() {
-  return submessage(kGapSubmessage, Body().zeros(8).sequence_number(3).sequence_number(4).u32(0));
+  return submessage(kGapSubmessage, discovery_entities().sequence_number(3).sequence_number(4).u32(0));
 }
 Bytes heartbeat() {
-  return submessage(kHeartbeatSubmessage, Body().zeros(8).sequence_number(1).sequence_number(7).u32(1));
+  return submessage(kHeartbeatSubmessage, discovery_entities().sequence_number(1).sequence_number(7).u32(1));
 }
-Bytes heartbeat_of_fragments() {
-  return submessage(kHeartbeatPartsSubmessage, Body().zeros(8).sequence_number(7).u32(3).u32(1));
-}
-Bytes missing_fragments() {
-  return submessage(kNackPartsSubmessage, Body().zeros(8).sequence_number(7).u32(1).u32(3).zeros(4).u32(1));
-}
-
 Bytes encrypted(std::uint32_t stated, std::size_t present) {
   const Bytes size{static_cast<std::uint8_t>(stated >> 24), static_cast<std::uint8_t>(stated >> 16),
                    static_cast<std::uint8_t>(stated >> 8), static_cast<std::uint8_t>(stated)};

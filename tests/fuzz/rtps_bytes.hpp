@@ -13,17 +13,13 @@ Bytes datagram(const ParticipantId& sender, std::initializer_list<Bytes> submess
 
 Bytes timestamp();
 Bytes destination();
-/// Of an ordinary writer, with a payload.
+/// Of the writer that announces endpoints, with a payload.
 Bytes data();
 /// Of the writer that announces participants, with the participant's GUID and user data.
 Bytes announcement(const ParticipantId& participant, const Bytes& user_data);
-/// Of a message of 100 bytes in fragments of 40: `count` of them from `first` on, of `size` bytes together.
-Bytes fragment(std::uint32_t first, std::uint16_t count, std::size_t size);
 Bytes acknowledgement(std::uint32_t bits, std::size_t words);
 Bytes gap();
 Bytes heartbeat();
-Bytes heartbeat_of_fragments();
-Bytes missing_fragments();
 /// Prefix, body and postfix of an encrypted submessage of `stated` bytes, padded to `present` bytes.
 Bytes encrypted(std::uint32_t stated, std::size_t present);
 /// What Fast DDS adds to the end of each datagram.

@@ -14,6 +14,11 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kStatisticsSize = 56;
+/// Above the numbers that a process gives to messages of discovery, which count its own endpoints. Fast DDS
+/// 2.9.1 counts from number to number up to the one that a heartbeat or a gap states, without an end.
+constexpr std::int64_t kMaxPlainNumber = 1 << 20;
+/// Writes the messages of handshakes (DDS Security 1.1, 7.4.3), as many as there have been participants.
+constexpr std::uint32_t kHandshakeWriter = 0x000201c3;
 
 /// Reads numbers from the front of bytes. Once they do not suffice, everything is 0 and is_valid() false.
 class NumberReader {
@@ -41,6 +46,23 @@ class NumberReader {
   std::int64_t sequence_number() {
     const std::uint32_t high = number(4), low = number(4);
     return static_cast<std::int64_t>(std::uint64_t{high} << 32 | low);
+  }
+  /// One that is at least `min`, and below kMaxPlainNumber.
+  std::int64_t plain_number(std::int64_t min) {
+    const std::int64_t result = sequence_number();
+    is_valid_ = is_valid_ && result >= min && result < kMaxPlainNumber;
+    return result;
+  }
+  /// Of the reader, which may be unknown, and of the writer: both serve discovery (RTPS 2.2, 9.3.1.2).
+  std::uint32_t entities_of_discovery() {
+    constexpr std::uint8_t kBuiltin = 0xc0;
+    const Bytes reader = take(4), writer = take(4);
+    if (!is_valid_) return 0;
+    const bool is_reader_unknown = std::ranges::all_of(reader, [](std::uint8_t byte) { return byte == 0; });
+    is_valid_ =
+        (is_reader_unknown || (reader[3] & kBuiltin) == kBuiltin) && (writer[3] & kBuiltin) == kBuiltin;
+    return std::uint32_t{writer[0]} << 24 | std::uint32_t{writer[1]} << 16 | std::uint32_t{writer[2]} << 8 |
+           writer[3];
   }
   /// A count of bits, at most 256, and the words that hold them.
   void skip_bitmap() {
@@ -89,25 +111,13 @@ bool is_valid_data(NumberReader& reader, std::uint8_t flags) {
   const bool has_payload = (flags & kHasPayload) != 0, has_key = (flags & kHasKey) != 0;
   reader.number(2);
   if (reader.number(2) != kBytesToInlineQos || (has_payload && has_key)) return false;
-  reader.take(8);  // reader and writer
-  if (reader.sequence_number() < 1) return false;
+  if (reader.entities_of_discovery() == kHandshakeWriter) {
+    if (reader.sequence_number() < 1) return false;
+  } else {
+    reader.plain_number(1);
+  }
   if ((flags & kHasInlineQos) != 0) reader.skip_parameters();
   return reader.is_valid() && (reader.left() > 0) == (has_payload || has_key);
-}
-
-bool is_valid_data_of_fragments(NumberReader& reader, std::uint8_t flags) {
-  constexpr std::uint8_t kHasInlineQos = 2, kHasKey = 4;
-  constexpr std::uint32_t kBytesToInlineQos = 28;
-  reader.number(2);
-  if (reader.number(2) != kBytesToInlineQos || (flags & kHasKey) != 0) return false;
-  reader.take(8);
-  if (reader.sequence_number() < 1) return false;
-  const std::uint64_t first = reader.number(4), count = reader.number(2), size = reader.number(2),
-                      total = reader.number(4);
-  if ((flags & kHasInlineQos) != 0) reader.skip_parameters();
-  if (!reader.is_valid() || first < 1 || count < 1 || size < 1 || (first - 1) * size >= total) return false;
-  const std::uint64_t present = std::min(count * size, total - (first - 1) * size);
-  return (first + count - 2) * size < total && reader.left() >= present && reader.left() < present + 4;
 }
 
 /// Numbers in the order in which they are sent, and nothing after them.
@@ -116,35 +126,21 @@ bool is_valid_content(const Submessage& submessage) {
   switch (submessage.kind) {
     case kDataSubmessage:
       return is_valid_data(reader, submessage.flags);
-    case kDataPartSubmessage:
-      return is_valid_data_of_fragments(reader, submessage.flags);
-    case kAckNackSubmessage: {
-      reader.take(8);
-      if (reader.sequence_number() < 0) return false;
+    case kAckNackSubmessage:
+      reader.entities_of_discovery();
+      reader.plain_number(0);
       reader.skip_bitmap();
       break;
-    }
-    case kGapSubmessage: {
-      reader.take(8);
-      if (reader.sequence_number() < 1 || reader.sequence_number() < 1) return false;
+    case kGapSubmessage:
+      reader.entities_of_discovery();
+      reader.plain_number(1);
+      reader.plain_number(1);
       reader.skip_bitmap();
       return reader.is_at_end();
-    }
     case kHeartbeatSubmessage: {
-      reader.take(8);
-      const std::int64_t first = reader.sequence_number(), last = reader.sequence_number();
-      if (first < 1 || last < first - 1) return false;
-      break;
-    }
-    case kNackPartsSubmessage: {
-      reader.take(8);
-      if (reader.sequence_number() < 1 || reader.number(4) < 1) return false;
-      reader.skip_bitmap();
-      break;
-    }
-    case kHeartbeatPartsSubmessage: {
-      reader.take(8);
-      if (reader.sequence_number() < 1 || reader.number(4) < 1) return false;
+      reader.entities_of_discovery();
+      const std::int64_t first = reader.plain_number(1), last = reader.plain_number(0);
+      if (last < first - 1) return false;
       break;
     }
     case kTimestampSubmessage:

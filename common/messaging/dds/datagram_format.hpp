@@ -23,8 +23,6 @@ enum SubmessageKind : std::uint8_t {
   kTimestampSubmessage = 0x09,
   kSourceSubmessage = 0x0c,
   kDestinationSubmessage = 0x0e,
-  kNackPartsSubmessage = 0x12,
-  kHeartbeatPartsSubmessage = 0x13,
   kDataSubmessage = 0x15,
   kDataPartSubmessage = 0x16,
   kEncryptedBodySubmessage = 0x30,

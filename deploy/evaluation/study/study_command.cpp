@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/evaluation/study/study_command.hpp"
 
-#include <charconv>
 #include <memory>
 
 #include "common/config/planner_names.hpp"
@@ -20,23 +19,15 @@
 namespace sidestep {
 namespace {
 
-/// Replaces CLI11's own check, which accepts -1 as a large number.
-std::string seed_number(const std::string& text) {
-  std::uint64_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  return error == std::errc() && rest == end
-             ? ""
-             : "expected an integer in 0..18446744073709551615, got \"" + text + "\"";
+void add_jobs_option(const CliCommand& command, int& jobs) {
+  command.add_option("--jobs", jobs, "number of parallel processes").check(in_range(1, 256)).show_default();
 }
-
-std::string not_empty(const std::string& text) { return text.empty() ? "must not be empty" : ""; }
 
 CliCommand add_study(const CliCommand& study, const std::string& name, const std::string& description,
                      StudyOptions& options) {
   const CliCommand command = study.add_subcommand(name, description);
-  command.add_option("--out", options.folder, "folder for the tables and plots").required().check(not_empty);
-  command.add_option("--seed", options.seed, "seed of everything random").check(seed_number).show_default();
+  command.add_option("--out", options.folder, "folder for the tables and plots").required();
+  command.add_option("--seed", options.seed, "seed of everything random").show_default();
   command.add_flag("--quick", options.is_quick, "a small version of every experiment");
   return command;
 }
@@ -49,9 +40,7 @@ void add_clutter_study(const CliCommand& study, std::function<int()>& action) {
   clutter.add_option("--planner", *planners, "planners, separated by commas [all that drive robots]")
       .comma_separated()
       .check(one_of(driving_planners()));
-  clutter.add_option("--jobs", options->jobs, "number of parallel processes")
-      .check(in_range(1, 256))
-      .show_default();
+  add_jobs_option(clutter, options->jobs);
   clutter.on_parsed([&action, options, planners] {
     action = [options, planners] { return study_clutter(*options, *planners); };
   });
@@ -75,9 +64,7 @@ void add_buildings_study(const CliCommand& study, std::function<int()>& action) 
   buildings.add_option("--trials", options->trials, "runs of each planner, with consecutive seeds")
       .check(positive())
       .show_default();
-  buildings.add_option("--jobs", options->study.jobs, "number of parallel processes")
-      .check(in_range(1, 256))
-      .show_default();
+  add_jobs_option(buildings, options->study.jobs);
   buildings.on_parsed([&action, options] { action = [options] { return study_buildings(*options); }; });
 }
 
@@ -86,9 +73,7 @@ void add_sight_study(const CliCommand& study, const std::string& name, const std
   const auto options = std::make_shared<StudyOptions>();
   const CliCommand command = add_study(study, name, description, *options);
   command.add_option("--cases", options->cases, "number of random cases").check(positive()).show_default();
-  command.add_option("--jobs", options->jobs, "number of parallel processes")
-      .check(in_range(1, 256))
-      .show_default();
+  add_jobs_option(command, options->jobs);
   command.on_parsed([&action, options, run] { action = [options, run] { return run(*options); }; });
 }
 
@@ -102,9 +87,7 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand safety =
       add_study(study, "safety",
                 "The safety search: traversals with and without it, margins against noise, time", *options);
-  safety.add_option("--jobs", options->jobs, "number of parallel processes")
-      .check(in_range(1, 256))
-      .show_default();
+  add_jobs_option(safety, options->jobs);
   safety.on_parsed([&action, options] { action = [options] { return study_safety(*options); }; });
   const CliCommand planning = add_study(
       study, "planning",

@@ -165,6 +165,19 @@ TEST_CASE("a director that ends its processes is not asked to end again, and may
   CHECK(f.lost.empty());
 }
 
+TEST_CASE("a director that hangs after it has ended its processes is killed", "[slow]") {
+  Fixture f;
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    (void)processes.start(shell("agent", "exec sleep 1000"));
+    (void)processes.terminate(5s);
+    for (;;) pause();
+    return 0;
+  });
+  CHECK(code == 1);
+  CHECK(f.lost == "signal 9 (SIGKILL)");
+  CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
+}
+
 TEST_CASE("a director that dies before it has started anything is not started again") {
   Fixture f;
   CHECK(f.keep([](Processes&, const Deaths&) -> int { std::abort(); }) == 1);

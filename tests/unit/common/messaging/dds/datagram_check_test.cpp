@@ -21,7 +21,12 @@ struct Body {
     bytes.resize(bytes.size() + count);
     return *this;
   }
-  Body& sequence_number(std::uint32_t value) { return u32(0).u32(value); }
+  Body& sequence_number(std::uint32_t value, std::uint32_t high = 0) { return u32(high).u32(value); }
+  /// Any reader, and the writer that announces endpoints unless another is given.
+  Body& entities(const Bytes& writer = {0, 0, 3, 0xc2}, const Bytes& reader = {0, 0, 0, 0}) {
+    for (const Bytes* entity : {&reader, &writer}) bytes.insert(bytes.end(), entity->begin(), entity->end());
+    return *this;
+  }
 
  private:
   Body& append(std::uint32_t value, int size) {
@@ -52,24 +57,42 @@ Bytes datagram(const std::vector<Bytes>& submessages) {
 }
 
 Body data_header(std::uint32_t to_inline_qos = 16, std::uint32_t number = 7) {
-  return Body().u16(0).u16(to_inline_qos).zeros(8).sequence_number(number);
+  return Body().u16(0).u16(to_inline_qos).entities().sequence_number(number);
 }
 Bytes data() { return submessage(0x15, data_header().zeros(12), 5); }
 Bytes data_with_qos() { return submessage(0x15, data_header().u16(0x70).u16(4).u32(3).u16(1).u16(0), 3); }
-/// Fragments `first` on of a message of 100 bytes in fragments of 40.
-Bytes fragments(std::uint32_t first, std::uint32_t count, std::size_t present, std::uint32_t total = 100) {
-  Body body = Body().u16(0).u16(28).zeros(8).sequence_number(7).u32(first).u16(count).u16(40).u32(total);
-  return submessage(0x16, body.zeros(present), 1);
-}
 Bytes acknowledgement(std::uint32_t bits, std::size_t words) {
-  return submessage(0x06, Body().zeros(8).sequence_number(0).u32(bits).zeros(4 * words).u32(1));
+  return submessage(0x06, Body().entities().sequence_number(0).u32(bits).zeros(4 * words).u32(1));
 }
 Bytes gap(std::uint32_t start, std::uint32_t bits, std::size_t words) {
   return submessage(0x08,
-                    Body().zeros(8).sequence_number(start).sequence_number(4).u32(bits).zeros(4 * words));
+                    Body().entities().sequence_number(start).sequence_number(4).u32(bits).zeros(4 * words));
 }
 Bytes heartbeat(std::uint32_t first, std::uint32_t last) {
-  return submessage(0x07, Body().zeros(8).sequence_number(first).sequence_number(last).u32(1));
+  return submessage(0x07, Body().entities().sequence_number(first).sequence_number(last).u32(1));
+}
+/// A message of discovery with this number, by this writer for this reader.
+Bytes numbered(std::uint8_t kind, std::uint32_t low, std::uint32_t high,
+               const Bytes& writer = {0, 0, 3, 0xc2}, const Bytes& reader = {0, 0, 0, 0}) {
+  const Body number = Body().entities(writer, reader).sequence_number(low, high);
+  const auto with = [&](Body rest) {
+    Body body = number;
+    body.bytes.insert(body.bytes.end(), rest.bytes.begin(), rest.bytes.end());
+    return body;
+  };
+  switch (kind) {
+    case 0x06:
+      return submessage(kind, with(Body().u32(0).u32(1)));
+    case 0x07:
+      return submessage(kind, with(Body().sequence_number(low, high).u32(1)));
+    case 0x08:
+      return submessage(kind, with(Body().sequence_number(low, high).u32(0)));
+    default: {
+      Body body = Body().u16(0).u16(16);
+      body.bytes.insert(body.bytes.end(), number.bytes.begin(), number.bytes.end());
+      return submessage(0x15, body.zeros(12), 5);
+    }
+  }
 }
 Bytes encrypted(std::uint32_t stated, std::size_t present, std::uint8_t codes = 0, std::size_t prefix = 20,
                 std::size_t postfix = 20) {
@@ -86,9 +109,6 @@ Bytes statistics(std::size_t size = 56) { return submessage(0x80, Body().zeros(s
 std::vector<Bytes> valid_submessages() {
   return {data(),
           data_with_qos(),
-          fragments(1, 1, 40),
-          fragments(2, 2, 60),
-          fragments(3, 1, 20),
           acknowledgement(0, 0),
           acknowledgement(33, 2),
           acknowledgement(256, 8),
@@ -98,8 +118,6 @@ std::vector<Bytes> valid_submessages() {
           heartbeat(3, 9),
           submessage(0x09, Body().zeros(8)),
           submessage(0x0e, Body().zeros(12)),
-          submessage(0x12, Body().zeros(8).sequence_number(3).u32(1).u32(8).zeros(4).u32(1)),
-          submessage(0x13, Body().zeros(8).sequence_number(3).u32(2).u32(1)),
           encrypted(16, 16),
           encrypted(13, 16)};
 }
@@ -155,13 +173,13 @@ TEST_CASE("submessages whose numbers contradict each other are dropped") {
        submessage(0x15, data_header().u16(0x70).u16(64).u32(3).u16(1).u16(0), 3)},
       {"a parameter of an odd size",
        submessage(0x15, data_header().u16(0x70).u16(2).u16(3).u16(1).u16(0).u16(0), 3)},
-      {"fragment 0", fragments(0, 1, 40)},
-      {"no fragment", fragments(1, 0, 40)},
-      {"a fragment beyond the last", fragments(4, 1, 20)},
-      {"more fragments than there are", fragments(3, 2, 20)},
-      {"less than a fragment", fragments(1, 1, 36)},
-      {"more than a fragment", fragments(1, 1, 44)},
-      {"fragments of nothing", fragments(1, 1, 0, 0)},
+      {"a fragment",
+       submessage(
+           0x16,
+           Body().u16(0).u16(28).entities().sequence_number(7).u32(1).u16(1).u16(40).u32(100).zeros(40))},
+      {"missing fragments",
+       submessage(0x12, Body().entities().sequence_number(3).u32(1).u32(8).zeros(4).u32(1))},
+      {"a heartbeat of fragments", submessage(0x13, Body().entities().sequence_number(3).u32(2).u32(1))},
       {"an acknowledgement of 257 messages", acknowledgement(257, 9)},
       {"an acknowledgement with too few bits", acknowledgement(33, 1)},
       {"an acknowledgement with too many bits", acknowledgement(32, 2)},
@@ -186,6 +204,32 @@ TEST_CASE("submessages whose numbers contradict each other are dropped") {
     CHECK_FALSE(passes(datagram({data(), bytes, data()})));
   }
   CHECK_FALSE(passes(datagram({})));
+}
+
+TEST_CASE("numbers are as small as those of discovery, except for those of handshakes") {
+  for (const std::uint8_t kind : {0x06, 0x07, 0x08, 0x15}) {
+    CAPTURE(int{kind});
+    CHECK(passes(datagram({numbered(kind, (1 << 20) - 1, 0)})));
+    for (const auto& [low, high] :
+         {std::pair{1u << 20, 0u}, {0u, 1u}, {5u, 0x7fffffffu}, {5u, 0xffffffffu}}) {
+      CAPTURE(low, high);
+      CHECK_FALSE(passes(datagram({numbered(kind, low, high)})));
+    }
+  }
+  const Bytes handshake{0, 2, 1, 0xc3};
+  CHECK(passes(datagram({numbered(0x15, 5, 1, handshake)})));
+  CHECK_FALSE(passes(datagram({numbered(0x15, 0, 0, handshake)})));
+  CHECK_FALSE(passes(datagram({numbered(0x07, 5, 1, handshake)})));
+}
+
+TEST_CASE("only messages of discovery are not encrypted") {
+  for (const std::uint8_t kind : {0x06, 0x07, 0x08, 0x15}) {
+    CAPTURE(int{kind});
+    CHECK(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 3, 0xc7})})));
+    CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02})})));
+    CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02}, {0, 0, 1, 0x07})})));
+    CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 1, 0x07})})));
+  }
 }
 
 TEST_CASE("what passes after random changes is a beginning of the datagram that passes again") {
