@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who remembers a hold: two robots with an agent each, which may restart, and two coordinators, of which the
 // second may be the first one restarted. Messages are lost, repeated and reordered: each may be received
-// at any time after it was sent. One client holds robot 0. See coordinator/PROTOCOL.md, "Orders".
+// at any time after it was sent. One client holds robot 0. See coordinator/ORDERS.md.
 
 #define RUNS 2
 

@@ -49,7 +49,7 @@ inline constexpr std::size_t kAuditRules = static_cast<std::size_t>(AuditRule::k
 
 struct AuditRuleInfo {
   const char* name;         ///< e.g. "clearance"
-  const char* reference;    ///< the rule's place in coordinator/PROTOCOL.md
+  const char* reference;    ///< the rule's place in coordinator/PROTOCOL.md or a page beside it
   const char* requirement;  ///< one sentence
 };
 

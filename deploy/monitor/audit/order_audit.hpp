@@ -17,7 +17,7 @@
 
 namespace sidestep {
 
-/// Judges orders (PROTOCOL.md, "Orders"), by whole memories of coordinators alone: what such a memory lists
+/// Judges orders (coordinator/ORDERS.md), by whole memories of coordinators alone: what such a memory lists
 /// stood at that moment, and what it neither lists, nor names a later order for, was forgotten. So messages
 /// that were missed leave orders unjudged, and never look like a breach.
 class OrderAudit {
