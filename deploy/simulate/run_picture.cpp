@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
+#include <limits>
 
 #include "deploy/shape_picture.hpp"
 #include "deploy/simulate/floor_picture.hpp"
@@ -12,6 +14,8 @@ namespace sidestep {
 namespace {
 
 constexpr double kOutlinePeriod_s = 0.25;
+constexpr double kFrame_s = 0.05, kPause_s = 1.5;  ///< of the animation; the pause is at its end
+constexpr double kMaxFrames = 400;
 
 /// SVG's y axis points down.
 std::string circle(const Vec2& centre_m, double radius_m, const std::string& style) {
@@ -64,7 +68,28 @@ std::string RunPicture::track(const RobotSpec& robot, const std::vector<TrackPoi
          fmt::format("<polyline points='{}' fill='none' stroke='{}' stroke-width='3'/>\n", line, colour);
 }
 
+std::string RunPicture::animation(const std::vector<TrackPoint>& points, double begin_s, double end_s) const {
+  const double frame_s = std::max(kFrame_s, (end_s - begin_s) / kMaxFrames);
+  const Vec2 drawn_at_m = points.back().position_m;
+  std::string offsets;
+  auto point = points.begin();
+  for (double at_s = begin_s; at_s < end_s + kPause_s; at_s += frame_s) {
+    while (std::next(point) != points.end() && std::next(point)->at_s <= at_s) ++point;
+    offsets += fmt::format("{:.0f},{:.0f};", kPixelsPerMetre * (point->position_m.x() - drawn_at_m.x()),
+                           kPixelsPerMetre * (drawn_at_m.y() - point->position_m.y()));
+  }
+  return fmt::format(
+      "<animateTransform attributeName='transform' type='translate' values='{}0,0' dur='{:.2f}s' "
+      "repeatCount='indefinite'/>\n",
+      offsets, end_s + kPause_s - begin_s);
+}
+
 std::string RunPicture::svg() const {
+  double begin_s = std::numeric_limits<double>::infinity(), end_s = 0;
+  for (const auto& [robot, points] : tracks_) {
+    begin_s = std::min(begin_s, points.front().at_s);
+    end_s = std::max(end_s, points.back().at_s);
+  }
   std::string svg = svg_floor(scenario_);
   for (const OpponentSpec& opponent : scenario_.opponents) svg += path_of(opponent);
   std::string ends;
@@ -72,7 +97,8 @@ std::string RunPicture::svg() const {
     const auto found = tracks_.find(robot.id);
     if (found == tracks_.end()) continue;
     svg += track(robot, found->second);
-    ends += svg_robot(scenario_, robot, found->second.back().position_m);
+    ends += "<g>" + svg_robot(scenario_, robot, found->second.back().position_m) +
+            animation(found->second, begin_s, end_s) + "</g>\n";
   }
   return svg + ends + "</svg>\n";
 }

@@ -47,11 +47,11 @@ class NumberReader {
     const std::uint32_t high = number(4), low = number(4);
     return static_cast<std::int64_t>(std::uint64_t{high} << 32 | low);
   }
-  /// One that is at least `min`, and below kMaxPlainNumber.
+  /// One that is at least `min`, and below kMaxPlainNumber; else 0.
   std::int64_t plain_number(std::int64_t min) {
     const std::int64_t result = sequence_number();
     is_valid_ = is_valid_ && result >= min && result < kMaxPlainNumber;
-    return result;
+    return is_valid_ ? result : 0;
   }
   /// Of the reader, which may be unknown, and of the writer: both serve discovery (RTPS 2.2, 9.3.1.2).
   std::uint32_t entities_of_discovery() {

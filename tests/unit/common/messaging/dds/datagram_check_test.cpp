@@ -211,7 +211,7 @@ TEST_CASE("numbers are as small as those of discovery, except for those of hands
     CAPTURE(int{kind});
     CHECK(passes(datagram({numbered(kind, (1 << 20) - 1, 0)})));
     for (const auto& [low, high] :
-         {std::pair{1u << 20, 0u}, {0u, 1u}, {5u, 0x7fffffffu}, {5u, 0xffffffffu}}) {
+         {std::pair{1u << 20, 0u}, {0u, 1u}, {5u, 0x7fffffffu}, {5u, 0xffffffffu}, {0u, 0x80000000u}}) {
       CAPTURE(low, high);
       CHECK_FALSE(passes(datagram({numbered(kind, low, high)})));
     }
