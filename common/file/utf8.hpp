@@ -11,8 +11,8 @@ namespace sidestep {
 /// non-characters that XML 1.0 excludes.
 [[nodiscard]] std::size_t utf8_length(std::string_view text, std::size_t at);
 
-/// The same for a character that can be part of a name: neither white space in ASCII nor any control
-/// character.
+/// Length in bytes of a character that can be part of a name: as utf8_length(), but 0 for ASCII white space
+/// and for any control character.
 [[nodiscard]] std::size_t printable_length(std::string_view text, std::size_t at);
 
 }  // namespace sidestep

@@ -9,19 +9,12 @@
 #include <openssl/x509v3.h>
 #include <stdexcept>
 
-#include "common/file/read_permission.hpp"
+#include "common/keys/key_file.hpp"
 
 namespace sidestep {
 namespace {
 
 using File = std::unique_ptr<BIO, decltype(&BIO_free_all)>;
-
-File open_file(const std::string& path) {
-  require_read_permission(path);
-  File file(BIO_new_file(path.c_str(), "r"), BIO_free_all);
-  if (!file) throw std::invalid_argument("cannot read " + path);
-  return file;
-}
 
 std::string hexadecimal(const ASN1_INTEGER* number) {
   std::string result;
@@ -54,7 +47,7 @@ std::optional<Certificate> Certificate::from_der(std::span<const std::uint8_t> b
 }
 
 Certificate Certificate::load(const std::string& path) {
-  const File file = open_file(path);
+  const auto file = open_key_file(path);
   std::shared_ptr<X509> x509(PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr), X509_free);
   if (!x509) throw std::invalid_argument(path + ": expected a certificate (PEM)");
   return Certificate(std::move(x509));
@@ -132,7 +125,7 @@ std::vector<std::uint8_t> Certificate::der() const {
 }
 
 RevocationList load_revocation_list(const std::string& path, const Certificate& authority) {
-  const File file = open_file(path);
+  const auto file = open_key_file(path);
   const std::unique_ptr<X509_CRL, decltype(&X509_CRL_free)> list(
       PEM_read_bio_X509_CRL(file.get(), nullptr, nullptr, nullptr), X509_CRL_free);
   if (!list) throw std::invalid_argument(path + ": expected a list of revoked certificates (PEM)");

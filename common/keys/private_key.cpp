@@ -5,14 +5,12 @@
 #include <openssl/pem.h>
 #include <stdexcept>
 
-#include "common/file/read_permission.hpp"
+#include "common/keys/key_file.hpp"
 
 namespace sidestep {
 
 PrivateKey load_private_key(const std::string& path) {
-  require_read_permission(path);
-  const std::unique_ptr<BIO, decltype(&BIO_free_all)> file(BIO_new_file(path.c_str(), "r"), BIO_free_all);
-  if (!file) throw std::invalid_argument("cannot read " + path);
+  const auto file = open_key_file(path);
   PrivateKey key(PEM_read_bio_PrivateKey(file.get(), nullptr, nullptr, nullptr), EVP_PKEY_free);
   if (!key) throw std::invalid_argument(path + ": expected a private key (PEM) without a passphrase");
   return key;

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/file/read_permission.hpp"
+#include "common/keys/key_file.hpp"
 
 namespace sidestep {
 namespace {
@@ -37,11 +37,11 @@ std::optional<Time> parse_time(const std::string& text) {
 }  // namespace
 
 std::string load_signed_document(const std::string& path, const Certificate& authority) {
-  require_read_permission(path);
-  const File file(BIO_new_file(path.c_str(), "r"), BIO_free_all), text(BIO_new(BIO_s_mem()), BIO_free_all);
+  const auto file = open_key_file(path);
+  const File text(BIO_new(BIO_s_mem()), BIO_free_all);
   BIO* detached = nullptr;
-  const std::unique_ptr<PKCS7, decltype(&PKCS7_free)> signature(
-      file ? SMIME_read_PKCS7(file.get(), &detached) : nullptr, PKCS7_free);
+  const std::unique_ptr<PKCS7, decltype(&PKCS7_free)> signature(SMIME_read_PKCS7(file.get(), &detached),
+                                                                PKCS7_free);
   const File document(detached, BIO_free_all);
   if (!signature || !document) throw std::invalid_argument(path + ": expected a signed document (S/MIME)");
   const Stack signers(sk_X509_new_null(), [](STACK_OF(X509) * stack) { sk_X509_free(stack); });

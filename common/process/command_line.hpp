@@ -31,7 +31,7 @@ struct ValueCheck {
   };
   std::optional<Limits> limits{};  ///< of in_range()
 };
-/// Options of a whole number use in_whole_range() instead.
+/// For an option of a whole number, Option::check() makes in_whole_range() of it.
 [[nodiscard]] ValueCheck in_range(double min, double max);
 [[nodiscard]] ValueCheck in_whole_range(std::int64_t min, std::int64_t max);
 /// Above 0, and a duration of so many seconds or a rate of so many a second can be stated: from 1e-9 to 1e9.

@@ -28,6 +28,8 @@ constexpr const char* kIssued = "issued";
 /// Fast DDS takes the times of permissions for times of the host's time zone. That of the certificate beside
 /// them is UTC, and limits how long they are used.
 constexpr std::chrono::hours kTimeZones(24);
+/// A handshake sends them in one datagram, with the certificate and what the participant announces.
+constexpr std::size_t kMaxPermissions = 58'000;
 
 /// A file that only this user may read. It is never readable by others, not even for a moment.
 void write_private_file(const std::string& path, const std::string& text) {
@@ -124,6 +126,13 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
                     date_text(authorities_expire())));
   const PrivateKey key = make_private_key();
   const Certificate certificate = identities.issue(identity, key, now, until);
+  const std::string signed_permissions = permissions.sign(
+      permissions_text(identity, certificate.subject(), now - kTimeZones, until + kTimeZones));
+  if (signed_permissions.size() > kMaxPermissions)
+    throw std::invalid_argument(fmt::format(
+        "{}: too many robots for one key: its permissions take {} bytes, and a handshake has room for "
+        "{}; issue several keys of fewer robots",
+        to_text(identity), signed_permissions.size(), kMaxPermissions));
   const std::string folder = folder_ + "/enclaves/" + folder_name(identity);
   fs::create_directories(folder);
   fs::permissions(folder, fs::perms::owner_all);
@@ -131,9 +140,7 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
                            key_files::kRevoked, key_files::kGovernance})
     link_public_file(folder, name);
   write_file(public_file(fmt::format("{}/{}.pem", kIssued, certificate.serial())), to_pem(certificate));
-  write_file(folder + "/" + key_files::kPermissions,
-             permissions.sign(
-                 permissions_text(identity, certificate.subject(), now - kTimeZones, until + kTimeZones)));
+  write_file(folder + "/" + key_files::kPermissions, signed_permissions);
   fs::remove(folder + "/" + key_files::kPrivateKey);
   write_private_file(folder + "/" + key_files::kPrivateKey, to_pem(key));
   write_file(folder + "/" + key_files::kCertificate, to_pem(certificate));

@@ -60,12 +60,13 @@ struct KeyedRun {
       arguments.insert(arguments.end(), {"--keys", keys.folder()});
     return run.command(arguments);
   }
-  /// A participant that knows these keys, and announces them as our processes do.
-  AttackerSettings with_keys(const std::string& folder) const {
-    const auto announced = [folder](const ParticipantId& id) {
+  /// A participant that knows these keys, and announces them as our processes do: one that has started so
+  /// long ago.
+  AttackerSettings with_keys(const std::string& folder, Duration age = {}) const {
+    const auto announced = [folder, age](const ParticipantId& id) {
       return credentials(Certificate::load(folder + "/" + key_files::kCertificate),
                          load_private_key(folder + "/" + key_files::kPrivateKey), fast_dds_version(), id,
-                         EventLoop::now());
+                         EventLoop::now() - age);
     };
     return {domain(), AttackerKeys::of(folder), announced};
   }

@@ -17,6 +17,7 @@ using std::chrono::seconds;
 constexpr int kPerSecond = 10'000;
 constexpr double kStanding_mps = 0.05;
 constexpr std::uint8_t kFormerProcesses = 100;
+constexpr Duration kFormerAge = std::chrono::minutes(10);
 /// A process that kept what it is sent would grow by more in the shortest flood.
 constexpr double kMaxGrowth_mb = 6;
 
@@ -27,7 +28,7 @@ class Strangers {
     const TestKeys others({"agent", "0"});
     foreign_ = keyed.with_keys(others.folder_of("agent 0")).announced({});
     for (const char* identity : {"agent 0", "coordinator 0", "vision", "simulator"}) {
-      const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of(identity));
+      const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of(identity), kFormerAge);
       const Certificate certificate = Certificate::load(genuine.keys->certificate);
       // Those of former processes, too.
       for (std::uint8_t i = 0; i < kFormerProcesses; ++i) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
+#include <stdexcept>
 #include <utility>
 
 namespace sidestep {
@@ -13,6 +15,10 @@ constexpr std::size_t kMaxKnown = 4096;
 
 /// Appends a part of at most 255 bytes, after its size.
 void append_part(std::vector<std::uint8_t>& bytes, std::span<const std::uint8_t> part) {
+  if (part.size() > 255)
+    throw std::invalid_argument(
+        fmt::format("keys: expected a signature of at most 255 bytes, got {}: use a key on the curve P-256",
+                    part.size()));
   bytes.push_back(static_cast<std::uint8_t>(part.size()));
   bytes.insert(bytes.end(), part.begin(), part.end());
 }
@@ -142,7 +148,8 @@ Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const
   const auto displaced = displaced_.find(id);
   if (displaced != displaced_.end() && now < displaced->second.until) return Refusal::kTooMany;
   const Time start = time_of(announced.start);
-  const bool is_latest = start > known.latest_start;
+  // The latest one may have been silent for a while.
+  const bool is_latest = start >= known.latest_start && start < now + kMaxAhead;
   if (!is_latest && !known.unproven.admit(now)) return Refusal::kTooMany;
   const auto refuse = [&](Refusal refusal) {
     if (!is_latest) known.unproven.give_back();
@@ -151,23 +158,25 @@ Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const
   if (!checks_.admit(now)) return refuse(Refusal::kTooFast);
   if (!known.certificate.has_signed(signed_part(id, announced.start), announced.signature))
     return refuse(Refusal::kOtherSignature);
-  if (!make_room(known, is_latest ? Duration{} : kMaxUnproven, now)) return refuse(Refusal::kTooMany);
-  known.latest_start = std::max(known.latest_start, start);
-  participants_[id] = {&known, now, now, is_latest};
+  if (!make_room(known, is_latest, now)) return refuse(Refusal::kTooMany);
+  if (is_latest) known.latest_start = start;
+  participants_[id] = {&known, now, now, start, is_latest};
   return Refusal::kNone;
 }
 
-bool Admission::make_room(const Known& known, Duration min_age, Time now) {
+bool Admission::make_room(const Known& known, bool is_latest, Time now) {
   const auto has_certificate = [&known](const auto& p) { return p.second.known == &known; };
   const auto same = static_cast<std::size_t>(std::ranges::count_if(participants_, has_certificate));
   const bool is_certificate_full = same >= kMaxPerCertificate;
   if (!is_certificate_full && participants_.size() < kMaxParticipants) return true;
-  auto oldest = participants_.end();
+  auto oldest = participants_.end();  // by its start
   for (auto entry = participants_.begin(); entry != participants_.end(); ++entry) {
     const Participant& participant = entry->second;
     if (is_certificate_full && participant.known != &known) continue;
-    if (participant.is_proven || entry->first == self_id_ || now - participant.admitted < min_age) continue;
-    if (oldest == participants_.end() || participant.admitted < oldest->second.admitted) oldest = entry;
+    if (participant.is_proven || entry->first == self_id_) continue;
+    const bool is_old = now - participant.admitted >= kMaxUnproven;
+    if (!is_old && !(is_latest && participant.known == &known)) continue;
+    if (oldest == participants_.end() || participant.start < oldest->second.start) oldest = entry;
   }
   if (oldest == participants_.end()) return false;
   displace(oldest->first, now);

@@ -48,6 +48,9 @@ class Admission {
   static constexpr Duration kForgetAfter{10'000'000'000};
   /// Fast DDS has shown within this time that a genuine participant is one.
   static constexpr Duration kMaxUnproven{8'000'000'000};
+  /// A start that is farther ahead is not the latest: a wrong clock has dated it, and it would remain the
+  /// latest for as long.
+  static constexpr Duration kMaxAhead{600'000'000'000};
   /// A displaced participant waits so long before it is admitted again, the first time and at most. The first
   /// wait is short, because a genuine one may be slow on a busy machine.
   static constexpr Duration kFirstWait{10'000'000'000}, kMaxWait{3'600'000'000'000};
@@ -112,11 +115,11 @@ class Admission {
     Time not_before, not_after;
     RateLimit unproven{kMaxPerCertificate, kUnprovenPeriod};
     Time announced{};     ///< last
-    Time latest_start{};  ///< of those that were admitted
+    Time latest_start{};  ///< of those that were admitted, unless it was ahead of the clock
   };
   struct Participant {
     Known* known = nullptr;
-    Time admitted, last_heard;
+    Time admitted, last_heard, start;
     bool was_latest = false;  ///< it took no place of Known::unproven
     bool is_proven = false, is_reported = false;
   };
@@ -129,9 +132,10 @@ class Admission {
   /// The certificate, if the authority has issued it; otherwise says why not.
   Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
   Refusal admit(const ParticipantId& id, Known& known, const Announced& announced, Time now);
-  /// Makes sure that one more participant with this certificate has a place, by displacing one of those that
-  /// were admitted longer than `min_age` ago and are not proven. False if there is none.
-  bool make_room(const Known& known, Duration min_age, Time now);
+  /// Makes sure that one more participant with this certificate has a place. Displaces one that did not prove
+  /// to be genuine in time, or for the latest of a certificate any earlier one of the same certificate that
+  /// has not proved it yet. False if there is none.
+  bool make_room(const Known& known, bool is_latest, Time now);
   void displace(const ParticipantId& id, Time now);
   Refusal check_now(const Known& known, Time now) const;
   bool is_in_use(const Known& known) const;

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "common/messaging/dds/datagram_format.hpp"
+#include "common/messaging/dds/handshake_check.hpp"
+#include "common/messaging/dds/number_reader.hpp"
 
 namespace sidestep {
 namespace {
@@ -15,78 +18,31 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kStatisticsSize = 56;
 /// Above the numbers that a process gives to messages of discovery, which count its own endpoints. Fast DDS
-/// 2.9.1 counts from number to number up to the one that a heartbeat or a gap states, without an end.
-constexpr std::int64_t kMaxPlainNumber = 1 << 20;
-/// Writes the messages of handshakes (DDS Security 1.1, 7.4.3), as many as there have been participants.
-constexpr std::uint32_t kHandshakeWriter = 0x000201c3;
+/// 2.9.1 visits each number below the one that a heartbeat or a gap states.
+constexpr std::int64_t kMaxPlainNumber = 1 << 15;
+/// Of announcements of participants, of their writers, their readers and their liveliness
+/// (RTPS 2.2, 9.3.1.2). Others of the library, as that of keys for messages, write encrypted messages only.
+constexpr std::array<std::uint32_t, 4> kDiscoveryWriters{0x000100c2, 0x000003c2, 0x000004c2, 0x000200c2};
+constexpr std::array<std::uint32_t, 4> kDiscoveryReaders{0x000100c7, 0x000003c7, 0x000004c7, 0x000200c7};
+/// Of the messages of handshakes (DDS Security 1.1, 7.4.3), as many as there have been participants.
+constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x000201c4;
 
-/// Reads numbers from the front of bytes. Once they do not suffice, everything is 0 and is_valid() false.
-class NumberReader {
- public:
-  NumberReader(Bytes bytes, bool is_little_endian) : left_(bytes), is_little_endian_(is_little_endian) {}
+/// Takes the ids of reader and writer from the front. Returns whether they belong together: those of
+/// discovery, or with `is_handshake` those of handshakes. The reader may be unknown.
+bool take_entities(NumberReader& reader, bool& is_handshake) {
+  const std::uint32_t to = reader.identifier(), from = reader.identifier();
+  if (!reader.is_valid()) return false;
+  is_handshake = from == kHandshakeWriter;
+  if (is_handshake) return to == 0 || to == kHandshakeReader;
+  const auto writer = std::ranges::find(kDiscoveryWriters, from);
+  if (writer == kDiscoveryWriters.end()) return false;
+  return to == 0 || to == kDiscoveryReaders[static_cast<std::size_t>(writer - kDiscoveryWriters.begin())];
+}
 
-  bool is_valid() const { return is_valid_; }
-  bool is_at_end() const { return is_valid_ && left_.empty(); }
-  std::size_t left() const { return left_.size(); }
-
-  Bytes take(std::size_t count) {
-    is_valid_ = is_valid_ && count <= left_.size();
-    const Bytes taken = left_.first(is_valid_ ? count : 0);
-    left_ = left_.subspan(taken.size());
-    return taken;
-  }
-  std::uint32_t number(std::size_t size) {
-    std::uint32_t result = 0;
-    const Bytes bytes = take(size);
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-      result = result << 8 | bytes[is_little_endian_ ? bytes.size() - 1 - i : i];
-    return result;
-  }
-  /// High half, low half.
-  std::int64_t sequence_number() {
-    const std::uint32_t high = number(4), low = number(4);
-    return static_cast<std::int64_t>(std::uint64_t{high} << 32 | low);
-  }
-  /// One that is at least `min`, and below kMaxPlainNumber; else 0.
-  std::int64_t plain_number(std::int64_t min) {
-    const std::int64_t result = sequence_number();
-    is_valid_ = is_valid_ && result >= min && result < kMaxPlainNumber;
-    return is_valid_ ? result : 0;
-  }
-  /// Of the reader, which may be unknown, and of the writer: both serve discovery (RTPS 2.2, 9.3.1.2).
-  std::uint32_t entities_of_discovery() {
-    constexpr std::uint8_t kBuiltin = 0xc0;
-    const Bytes reader = take(4), writer = take(4);
-    if (!is_valid_) return 0;
-    const bool is_reader_unknown = std::ranges::all_of(reader, [](std::uint8_t byte) { return byte == 0; });
-    is_valid_ =
-        (is_reader_unknown || (reader[3] & kBuiltin) == kBuiltin) && (writer[3] & kBuiltin) == kBuiltin;
-    return std::uint32_t{writer[0]} << 24 | std::uint32_t{writer[1]} << 16 | std::uint32_t{writer[2]} << 8 |
-           writer[3];
-  }
-  /// A count of bits, at most 256, and the words that hold them.
-  void skip_bitmap() {
-    constexpr std::uint32_t kMaxBits = 256;
-    const std::uint32_t bits = number(4);
-    is_valid_ = is_valid_ && bits <= kMaxBits;
-    take((bits + 31) / 32 * 4);
-  }
-  /// Parameters until the one that ends the list (RTPS 2.2, 9.4.2.11).
-  void skip_parameters() {
-    constexpr std::uint32_t kEnd = 1;
-    while (is_valid_) {
-      const std::uint32_t id = number(2), size = number(2);
-      if (id == kEnd) return;
-      is_valid_ = is_valid_ && size % 4 == 0;
-      take(size);
-    }
-  }
-
- private:
-  Bytes left_;
-  bool is_little_endian_;
-  bool is_valid_ = true;
-};
+bool take_discovery_entities(NumberReader& reader) {
+  bool is_handshake = false;
+  return take_entities(reader, is_handshake) && !is_handshake;
+}
 
 struct Submessage {
   std::uint8_t kind = 0, flags = 0;
@@ -111,13 +67,12 @@ bool is_valid_data(NumberReader& reader, std::uint8_t flags) {
   const bool has_payload = (flags & kHasPayload) != 0, has_key = (flags & kHasKey) != 0;
   reader.number(2);
   if (reader.number(2) != kBytesToInlineQos || (has_payload && has_key)) return false;
-  if (reader.entities_of_discovery() == kHandshakeWriter) {
-    if (reader.sequence_number() < 1) return false;
-  } else {
-    reader.plain_number(1);
-  }
+  bool is_handshake = false;
+  if (!take_entities(reader, is_handshake)) return false;
+  reader.sequence_number(1, is_handshake ? std::numeric_limits<std::int64_t>::max() : kMaxPlainNumber);
   if ((flags & kHasInlineQos) != 0) reader.skip_parameters();
-  return reader.is_valid() && (reader.left() > 0) == (has_payload || has_key);
+  if (!reader.is_valid() || (reader.left() > 0) != (has_payload || has_key)) return false;
+  return !is_handshake || (has_payload && is_handshake_message(reader.take(reader.left())));
 }
 
 /// Numbers in the order in which they are sent, and nothing after them.
@@ -127,19 +82,20 @@ bool is_valid_content(const Submessage& submessage) {
     case kDataSubmessage:
       return is_valid_data(reader, submessage.flags);
     case kAckNackSubmessage:
-      reader.entities_of_discovery();
-      reader.plain_number(0);
+      if (!take_discovery_entities(reader)) return false;
+      reader.sequence_number(0, kMaxPlainNumber);
       reader.skip_bitmap();
       break;
     case kGapSubmessage:
-      reader.entities_of_discovery();
-      reader.plain_number(1);
-      reader.plain_number(1);
+      if (!take_discovery_entities(reader)) return false;
+      reader.sequence_number(1, kMaxPlainNumber);
+      reader.sequence_number(1, kMaxPlainNumber);
       reader.skip_bitmap();
       return reader.is_at_end();
     case kHeartbeatSubmessage: {
-      reader.entities_of_discovery();
-      const std::int64_t first = reader.plain_number(1), last = reader.plain_number(0);
+      if (!take_discovery_entities(reader)) return false;
+      const std::int64_t first = reader.sequence_number(1, kMaxPlainNumber),
+                         last = reader.sequence_number(0, kMaxPlainNumber);
       if (last < first - 1) return false;
       break;
     }

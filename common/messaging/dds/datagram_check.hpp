@@ -12,7 +12,8 @@ namespace sidestep {
 /// Passes only submessages that processes with keys send, with the lengths, counts and numbers that these
 /// have (RTPS 2.2, 9.4.5; DDS Security 1.1, 7.3.6 and 9.5.2): encrypted ones, and those of discovery. Fast
 /// DDS 2.9.1 asserts that statistics are last, decrypts as many bytes as a datagram says, beyond its end, and
-/// counts up to any number that a heartbeat states.
+/// visits every
+/// number up to the one that a heartbeat or a gap states.
 [[nodiscard]] std::span<const std::uint8_t> checked_datagram(std::span<const std::uint8_t> datagram);
 
 /// As checked_datagram() for a network without keys, on which other software may speak too: submessages that

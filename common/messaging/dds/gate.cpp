@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/gate.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -22,9 +23,10 @@ constexpr Duration kReportPeriod = std::chrono::seconds(10);
 Gate::Gate(const KeyFolder& keys, const std::string& version)
     : revoked_file_(keys.file(key_files::kRevoked)),
       authority_(keys.authority),
+      revoked_(load_revoked_serials(revoked_file_, authority_)),
       admission_(keys.identity, keys.authority, version),
       reports_(kMaxReported, kReportPeriod) {
-  admission_.set_revoked(load_revoked_serials(revoked_file_, authority_));
+  admission_.set_revoked(revoked_);
   std::error_code none;
   revoked_at_ = std::filesystem::last_write_time(revoked_file_, none);
 }
@@ -43,7 +45,10 @@ bool Gate::passes(const ParticipantId& sender, std::span<const std::uint8_t> dat
       const std::lock_guard lock(mutex_);
       const Admission::Decision decision = admission_.on_announcement(sender, announcement->user_data, now);
       if (decision.refusal == Admission::Refusal::kNone) return true;
-      if (decision.refusal == Admission::Refusal::kNotNeeded) return false;
+      // Whoever announces itself when many do is heard a second later.
+      if (decision.refusal == Admission::Refusal::kNotNeeded ||
+          decision.refusal == Admission::Refusal::kTooFast)
+        return false;
       ++refused_;
       report("refuses " + Admission::describe(decision, fmt::format("{}", fmt::join(address, "."))));
       return false;
@@ -104,7 +109,12 @@ void Gate::read_revoked() {
   if (error || changed_at == revoked_at_) return;
   revoked_at_ = changed_at;
   try {
-    admission_.set_revoked(load_revoked_serials(revoked_file_, authority_));
+    const std::set<std::string> listed = load_revoked_serials(revoked_file_, authority_);
+    if (!std::ranges::includes(listed, revoked_))
+      log(LogLevel::kWarning,
+          fmt::format("keys: {} lacks keys that were revoked; they stay revoked", revoked_file_));
+    revoked_.insert(listed.begin(), listed.end());
+    admission_.set_revoked(revoked_);
     log(LogLevel::kInfo, "read the list of revoked keys again");
   } catch (const std::invalid_argument& problem) {
     log(LogLevel::kError, fmt::format("{}; the former list still counts", problem.what()));

@@ -205,6 +205,13 @@ TEST_CASE(
 
 TEST_CASE("the same for ten thousand rounds", "[.long][slow]") { interleave(10'000, 72); }
 
+TEST_CASE("a key for more robots than a handshake can carry is refused, and nothing is written") {
+  TestKeys keys({});
+  keys.issue({Role::kRobot, 0, 399});
+  CHECK_THROWS_WITH(keys.issue({Role::kRobot, 0, 1023}), ContainsSubstring("too many robots for one key"));
+  CHECK_FALSE(fs::exists(keys.folder() + "/enclaves/robot-0-1023"));
+}
+
 TEST_CASE("no key outlives the authorities") {
   TestKeys keys({});
   const std::string folder = keys.issue({Role::kVision}, hours(1000));

@@ -2,7 +2,9 @@
 #include "common/messaging/dds/admission.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "common/random/rng.hpp"
@@ -39,14 +41,17 @@ struct Fixture {
   }
   /// What the owner of the certificate's key announces. The signature is made once for each id.
   const std::vector<std::uint8_t>& announced(const ParticipantId& id, const Certificate& certificate,
-                                             const std::string& version = kVersion, Time started = kBegin) {
+                                             const std::string& version = kVersion,
+                                             std::optional<Time> given_start = std::nullopt) {
+    // Of two participants the one with the higher number has started earlier, unless the test says otherwise.
+    const Time started = given_start.value_or(kBegin - Duration((id[10] << 8 | id[11]) * 1'000));
     const std::string serial = certificate.serial();
     auto& result = announcements[{id, serial, version, started}];
     if (result.empty()) result = credentials(certificate, keys.at(serial), version, id, started);
     return result;
   }
   Refusal announce(const ParticipantId& id, const Certificate& certificate,
-                   const std::string& version = kVersion, Time started = kBegin) {
+                   const std::string& version = kVersion, std::optional<Time> started = std::nullopt) {
     return admission.on_announcement(id, announced(id, certificate, version, started), now).refusal;
   }
 
@@ -277,6 +282,52 @@ TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
   CHECK(waited_s <= (is_clock_right ? 0 : strangers <= 40 ? 20 : 5 * strangers));
 }
 
+TEST_CASE("a process that was not heard for a while waits for none that was announced again") {
+  Fixture f;
+  const Certificate robot = f.issue("agent 3", 24h);
+  const ParticipantId genuine = id_with(robot, 50'000);
+  const Time started = kBegin + 1s;
+  REQUIRE(f.announce(genuine, robot, kVersion, started) == Refusal::kNone);
+  f.admission.on_authenticated(genuine);
+  const auto others_announce = [&] {
+    for (std::uint16_t i = 0; i < 400; ++i) static_cast<void>(f.announce(id_with(robot, i), robot));
+  };
+  bool was_forgotten = false;
+  for (int second = 0; second < 60; ++second, f.now += 1s) {
+    others_announce();
+    for (const ParticipantId& id : f.admission.newly_refused(f.now))
+      was_forgotten = was_forgotten || id == genuine;
+  }
+  REQUIRE(was_forgotten);
+  CHECK(f.announce(genuine, robot, kVersion, started) == Refusal::kNone);
+}
+
+TEST_CASE("when many processes with one key start at once, the latest ones have places") {
+  Fixture f;
+  const Certificate op = f.issue("operator");
+  const auto start = [&](std::uint16_t i) { return kBegin + i * Duration(10ms); };
+  for (std::uint16_t i = 0; i < 40; ++i, f.now += 10ms) {
+    REQUIRE(f.announce(id_with(op, i), op, kVersion, start(i)) == Refusal::kNone);
+    REQUIRE(f.admission.admits(id_with(op, i), f.now));
+  }
+  for (std::uint16_t i = 0; i < 40; ++i) {
+    CAPTURE(i);
+    CHECK(f.admission.admits(id_with(op, i), f.now) == (i >= 40 - Admission::kMaxPerCertificate));
+  }
+}
+
+TEST_CASE("a start that a wrong clock dates ahead is not the latest") {
+  Fixture f;
+  const Certificate robot = f.issue("agent 3", 24h);
+  REQUIRE(f.announce(id_with(robot, 1), robot, kVersion, kBegin + 365 * 24h) == Refusal::kNone);
+  f.now += 30min;
+  for (std::uint16_t i = 2; i < 100; ++i) static_cast<void>(f.announce(id_with(robot, i), robot));
+  CHECK(f.announce(id_with(robot, 200), robot, kVersion, f.now) == Refusal::kNone);
+  // Times that no clock shows do no harm either.
+  for (const auto ns : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()})
+    CHECK(f.announce(id_with(robot, 300), robot, kVersion, time_from_ns(ns)) == Refusal::kTooMany);
+}
+
 TEST_CASE("places taken with many certificates are freed for a genuine one of another") {
   Fixture f;
   std::vector<Certificate> stolen;
@@ -290,13 +341,9 @@ TEST_CASE("places taken with many certificates are freed for a genuine one of an
   f.now += 10s;
   strangers_announce();
   const Certificate robot = f.issue("agent 3");
-  CHECK(f.announce(id_with(robot, 1), robot) == Refusal::kNone);
-  CHECK(f.admission.newly_refused(f.now).size() == 1);
-  // One that has started before that one waits until others had their time.
-  const ParticipantId earlier = id_with(robot, 2);
-  CHECK(f.announce(earlier, robot, kVersion, kBegin - 1s) == Refusal::kTooMany);
+  CHECK(f.announce(id_with(robot), robot) == Refusal::kTooMany);
   f.now += Admission::kMaxUnproven - 4s;
-  CHECK(f.announce(earlier, robot, kVersion, kBegin - 1s) == Refusal::kNone);
+  CHECK(f.announce(id_with(robot), robot) == Refusal::kNone);
   CHECK(f.admission.newly_refused(f.now).size() == 1);
 }
 

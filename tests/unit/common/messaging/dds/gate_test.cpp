@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <sys/stat.h>
 
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/datagram.hpp"
@@ -12,6 +13,7 @@
 #include "tests/catch.hpp"
 #include "tests/participant_datagram.hpp"
 #include "tests/test_keys.hpp"
+#include "tests/text_of.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
 
 namespace sidestep::gate_test {
@@ -94,6 +96,25 @@ TEST_CASE("the list of revoked keys is read again when it changes, and a broken 
   CHECK(log.has("the former list still counts"));
   CHECK_FALSE(f.gate.passes(agent, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
   CHECK(f.gate.passes(viewer, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
+}
+
+TEST_CASE("a list that is older than the last one takes no revocation back, and a pipe does not block") {
+  Fixture f;
+  const CaptureStderr log;
+  const ParticipantId agent = f.announce("agent 3");
+  const std::string file = f.keys.folder() + "/public/crl.pem", older = text_of(file);
+  f.keys.revoke({Role::kAgent, 3, 3});
+  std::filesystem::last_write_time(file, std::filesystem::last_write_time(file) + std::chrono::seconds(1));
+  CHECK(f.gate.newly_refused() == std::vector{agent});
+  write_file(file, older);
+  std::filesystem::last_write_time(file, std::filesystem::last_write_time(file) + std::chrono::seconds(2));
+  CHECK(f.gate.newly_refused().empty());
+  CHECK(log.has("lacks keys that were revoked; they stay revoked"));
+  CHECK_FALSE(f.gate.passes(agent, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
+  std::filesystem::remove(file);
+  REQUIRE(mkfifo(file.c_str(), 0600) == 0);
+  CHECK(f.gate.newly_refused().empty());
+  CHECK(log.has("the former list still counts"));
 }
 
 TEST_CASE("whom the library refuses is named") {
