@@ -258,7 +258,7 @@ std::string to_json(const Report& r) {
                                  {"max_memory_mb", rounded(use.max_memory_mb)}};
     }
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string summary(const Report& r) {
