@@ -17,6 +17,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
+
 // glibc 2.36 declares the functions of this header without C linkage.
 extern "C" {
 #include <sys/pidfd.h>
@@ -138,10 +140,7 @@ ProcessGroup::~ProcessGroup() {
   std::fclose(log_);
 }
 
-void ProcessGroup::log(const std::string& line) {
-  fmt::print(log_, "{}\n", line);
-  std::fflush(log_);
-}
+void ProcessGroup::log(const std::string& line) { print_to(log_, "{}\n", line); }
 
 pid_t ProcessGroup::start(const ChildSpec& spec) {
   if (spec.argv.empty() || access(spec.argv[0].c_str(), X_OK) != 0) {

@@ -18,6 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
 #include "common/process/stop_signals.hpp"
 
@@ -341,7 +342,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     code = end_of(director, reason);
     if (code) break;
     group.log("the director of the run died: " + reason);
-    fmt::print(stderr, "the process that directs the run died: {}\n", reason);
+    print_to(stderr, "the process that directs the run died: {}\n", reason);
     deaths.push_back(reason);
     if (!asked_at && !keeper.is_ending() && group.running() > 0) {
       keeper.poll_for(pause);

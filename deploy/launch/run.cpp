@@ -2,11 +2,13 @@
 #include "deploy/launch/run.hpp"
 
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fmt/format.h>
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "common/messaging/dds/free_domain.hpp"
 #include "common/process/process.hpp"
@@ -35,15 +37,16 @@ bool is_newer(const std::string& file, std::filesystem::file_time_type time) {
 }  // namespace
 
 int run(const RunOptions& given) {
+  // Whoever reads the output may leave; the run goes on to its end and its report.
+  std::signal(SIGPIPE, SIG_IGN);
   RunOptions options = given;
   std::optional<FreeDomain> free_domain;
   options.dds.domain = given.domain == "auto" ? free_domain.emplace().number() : std::stoi(given.domain);
   const Scenario scenario = load_scenario(options.scenario_file);
-  fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
-  if (scenario.map && !scenario.map->notice().empty()) fmt::print(stderr, "{}\n", scenario.map->notice());
+  print_to(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
+  if (scenario.map && !scenario.map->notice().empty()) print_to(stderr, "{}\n", scenario.map->notice());
   if (scenario.has_test_keys)
-    fmt::print(stderr, "faults and expectations in {} apply to `sidestep test` only\n",
-               options.scenario_file);
+    print_to(stderr, "faults and expectations in {} apply to `sidestep test` only\n", options.scenario_file);
   const RunHosts hosts(
       options.hosts_file.empty() ? local_hosts(options.dds.interface) : load_hosts(options.hosts_file),
       scenario, !options.floor.driver.empty());
@@ -62,7 +65,7 @@ int run(const RunOptions& given) {
   ProcessGroup group(log_path);
   const auto finish = [&](const Report& report) {
     write_report(report, report_path);
-    fmt::print("\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);
+    print_to(stdout, "\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);
     return exit_code(report.verdict());
   };
   const auto began = std::chrono::steady_clock::now();
@@ -78,8 +81,9 @@ int run(const RunOptions& given) {
   };
   work.on_lost = [&](const std::string& reason) {
     if (is_newer(report_path, files_began)) {
-      fmt::print("\n{}: the process that directed the run died after its report: {}\nreport: {}\nlog: {}\n",
-                 scenario.name, reason, report_path, log_path);
+      print_to(stdout,
+               "\n{}: the process that directed the run died after its report: {}\nreport: {}\nlog: {}\n",
+               scenario.name, reason, report_path, log_path);
       return;
     }
     Report report;

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
 #include "deploy/launch/hosts/command.hpp"
 
 namespace sidestep {
@@ -99,7 +100,7 @@ void NamespaceNetwork::remove() {
     try {
       ip({"netns", "del", name});
     } catch (const std::exception& error) {
-      fmt::print(stderr, "sidestep: {}\n", error.what());
+      print_to(stderr, "sidestep: {}\n", error.what());
     }
   }
   created_.clear();

@@ -7,6 +7,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -92,14 +94,13 @@ std::string progress_table(const RunMetrics& metrics, Time now, int max_rows) {
 ProgressDisplay::ProgressDisplay() : is_terminal_(isatty(STDOUT_FILENO) == 1) {}
 
 void ProgressDisplay::erase_table() {
-  if (drawn_lines_ > 0) fmt::print("\x1b[{}A\x1b[J", drawn_lines_);
+  if (drawn_lines_ > 0) print_to(stdout, "\x1b[{}A\x1b[J", drawn_lines_);
   drawn_lines_ = 0;
 }
 
 void ProgressDisplay::print(const std::string& line) {
   erase_table();
-  fmt::print("{}\n", line);
-  std::fflush(stdout);
+  print_to(stdout, "{}\n", line);
   if (is_terminal_) next_ = Time{};
 }
 
@@ -110,12 +111,11 @@ void ProgressDisplay::update(const RunMetrics& metrics, Time now) {
     erase_table();
     const std::string table = progress_table(metrics, now, terminal_rows() - 4);
     drawn_lines_ = static_cast<int>(std::count(table.begin(), table.end(), '\n'));
-    fmt::print("{}", table);
+    print_to(stdout, "{}", table);
   } else {
     next_ = now + kLinePeriod;
-    fmt::print("{}\n", progress_line(metrics, now));
+    print_to(stdout, "{}\n", progress_line(metrics, now));
   }
-  std::fflush(stdout);
 }
 
 }  // namespace sidestep

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <string>
+#include <utility>
+
+namespace sidestep {
+
+/// Writes the text to a stream at once. If that fails, because nobody reads any more or the disk is full, the
+/// text is lost: unlike fmt::print(), this does not throw, so that no work ends for want of a reader. The
+/// process must ignore SIGPIPE to outlive the reader of a pipe.
+void write_text(std::FILE* stream, const std::string& text) noexcept;
+
+/// Formats the text, and writes it as write_text() does.
+template <typename... Values>
+void print_to(std::FILE* stream, fmt::format_string<Values...> format, Values&&... values) {
+  write_text(stream, fmt::format(format, std::forward<Values>(values)...));
+}
+
+/// Opens /dev/null as each of stdin, stdout and stderr that is closed. Otherwise the next file or socket that
+/// the process opens gets its number, and what is printed goes there. Call it before any is opened.
+void open_closed_streams() noexcept;
+
+}  // namespace sidestep

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <csignal>
+#include <filesystem>
+
+#include "common/file/temporary_folder.hpp"
+#include "tests/arguments/program_run.hpp"
+#include "tests/catch.hpp"
+#include "tests/sanitized.hpp"
+#include "tests/test_domain.hpp"
+#include "tests/text_of.hpp"
+
+namespace sidestep::output_test {
+namespace {
+
+using arguments::ProgramRun;
+using arguments::run_program;
+using namespace std::chrono_literals;
+
+const std::string kScenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+constexpr auto kPatience = kIsSanitized ? 240s : 60s;
+
+/// Runs a command of bash, in which "$0" is the program; its exit code is that of the first program in a
+/// pipe.
+ProgramRun run_in_shell(const std::string& command, const TemporaryFolder& folder) {
+  const std::string program =
+      (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sidestep").string();
+  return run_program({"/bin/bash", "-c", command + "; exit ${PIPESTATUS[0]}", program}, folder.path(),
+                     kPatience, SIGKILL);
+}
+
+struct RunFixture {
+  std::string command(const std::string& more) const {
+    return "\"$0\" run " + kScenario + " --seconds 1 --domain " + std::to_string(domain.number()) + " " +
+           more;
+  }
+  std::string text(const std::string& name) const { return text_of(folder.file(name)); }
+
+  TemporaryFolder folder;
+  TestDomain domain;
+};
+
+}  // namespace
+
+TEST_CASE("a run goes on to its end and its report when nobody reads its output any more") {
+  const RunFixture f;
+  const std::string output =
+      GENERATE("2>err | head -1", "2>&1 | head -1", ">/dev/full 2>/dev/full", ">&- 2>&-");
+  const ProgramRun run = run_in_shell(f.command("--report r.json " + output), f.folder);
+  CAPTURE(output, run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(f.text("r.json"), ContainsSubstring("\"failure\": \"time limit of 1 s") &&
+                                   ContainsSubstring("\"director_deaths\": []"));
+  CHECK_THAT(f.text("r.log"), !ContainsSubstring("SIGPIPE"));
+}
+
+TEST_CASE("a simulated run ends as always if stderr is closed or on a full disk") {
+  const TemporaryFolder folder;
+  const std::string output = GENERATE("2>&-", "2>/dev/full", "<&- >&- 2>&-");
+  const ProgramRun run = run_in_shell("\"$0\" simulate " + kScenario + " --report r.json " + output, folder);
+  CAPTURE(output);
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(text_of(folder.file("r.json")), ContainsSubstring("\"passed\": true"));
+  CHECK(run_in_shell("\"$0\" simulate /nowhere.yaml " + output, folder).exit_code == 2);
+  CHECK(run_in_shell("\"$0\" simulate --nonsense " + output, folder).exit_code == 2);
+}
+
+}  // namespace sidestep::output_test
