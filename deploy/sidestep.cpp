@@ -5,6 +5,7 @@
 #include <string_view>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "deploy/clock/clock_command.hpp"
@@ -36,11 +37,12 @@ namespace {
 int exec_evaluation(char** argv) {
   const std::string program = sidestep::sibling_program_path("sidestep-evaluation");
   if (!std::filesystem::exists(program)) {
-    fmt::print(stderr, "sidestep: {} does not exist; `deploy/build --development` builds it\n", program);
+    sidestep::print_to(stderr, "sidestep: {} does not exist; `deploy/build --development` builds it\n",
+                       program);
     return sidestep::kExitFailure;
   }
   execv(program.c_str(), argv);
-  fmt::print(stderr, "sidestep: cannot start {}\n", program);
+  sidestep::print_to(stderr, "sidestep: cannot start {}\n", program);
   return sidestep::kExitFailure;
 }
 

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
 
 namespace sidestep {
@@ -251,7 +252,10 @@ void CliCommand::on_parsed(std::function<void()> callback) const {
 }
 
 CommandLine::CommandLine(const std::string& description, const std::string& program_name)
-    : app_(std::make_unique<CLI::App>(description, program_name)) {}
+    : app_(std::make_unique<CLI::App>(description, program_name)) {
+  // Here, because each program begins with its command line.
+  open_closed_streams();
+}
 
 CommandLine::~CommandLine() = default;
 

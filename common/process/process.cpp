@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/log_option.hpp"
@@ -61,7 +62,7 @@ void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings) {
 
 int run_guarded(const std::string& name, const std::function<int()>& work) {
   return run_reporting(work,
-                       [&](const std::string& problem) { fmt::print(stderr, "{}: {}\n", name, problem); });
+                       [&](const std::string& problem) { print_to(stderr, "{}: {}\n", name, problem); });
 }
 
 int run_process(int argc, char** argv, const Program& program) {

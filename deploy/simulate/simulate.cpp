@@ -8,6 +8,7 @@
 
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/command_line.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
@@ -35,10 +36,10 @@ class ProgressLine {
   void update(const SimSystem& system) {
     if (!is_terminal_ || steady_clock::now() < next_) return;
     next_ = steady_clock::now() + kDisplayPeriod;
-    fmt::print(stderr, "\r\x1b[K{}", progress_line(system.metrics(), system.now()));
+    print_to(stderr, "\r\x1b[K{}", progress_line(system.metrics(), system.now()));
   }
   ~ProgressLine() {
-    if (is_terminal_) fmt::print(stderr, "\r\x1b[K");
+    if (is_terminal_) print_to(stderr, "\r\x1b[K");
   }
 
  private:
@@ -135,8 +136,9 @@ int finish(const SimulateOptions& options, Report& report, SimRecorder& recorder
   write_report(report, path);
   recorder.close(report);
   if (!options.picture_file.empty()) write_file(options.picture_file, picture());
-  fmt::print("{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario, options.seed,
-             summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
+  print_to(stdout, "{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario,
+           options.seed, summary(report),
+           report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
   return exit_code(report.verdict());
 }
 
@@ -154,8 +156,8 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
   if (!options.scenario_file.empty()) scenario = scenario_of(options);
   const Duration duration = options.seconds ? from_seconds(*options.seconds) : CampaignOptions{}.duration;
   const Trial trial = sample_trial(options.seed, duration, scenario, has_faults);
-  fmt::print("commit {}\n{}\n", kBuildCommit, trial.summary());
-  for (const std::string& line : to_lines(trial.plan)) fmt::print("  {}\n", line);
+  print_to(stdout, "commit {}\n{}\n", kBuildCommit, trial.summary());
+  for (const std::string& line : to_lines(trial.plan)) print_to(stdout, "  {}\n", line);
   RunPicture picture(trial.scenario);
   Report report;
   SimRecorder recorder(options);
@@ -175,11 +177,10 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
 
 int simulate(const SimulateOptions& options) {
   const Scenario scenario = scenario_of(options);
-  fmt::print(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
-  if (scenario.map && !scenario.map->notice().empty()) fmt::print(stderr, "{}\n", scenario.map->notice());
+  print_to(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
+  if (scenario.map && !scenario.map->notice().empty()) print_to(stderr, "{}\n", scenario.map->notice());
   if (scenario.has_test_keys)
-    fmt::print(stderr, "faults and expectations in {} apply to `sidestep test` only\n",
-               options.scenario_file);
+    print_to(stderr, "faults and expectations in {} apply to `sidestep test` only\n", options.scenario_file);
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
   log_events_of(system, options.log_level);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "deploy/simulate/campaign/build_commit.hpp"
 #include "deploy/simulate/campaign/campaign_summary.hpp"
@@ -39,7 +40,7 @@ class CampaignProgress {
     next_ = now + (is_terminal_ ? steady_clock::duration(kTerminalPeriod) : kLinePeriod);
     const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
     const double hours = summary.robot_hours();
-    fmt::print(
+    print_to(
         stderr,
         "{}{} of {} seeds, {:.2f} robot-hours, {:.0f} robot-seconds per second, {} contacts, {} failed{}",
         is_terminal_ ? "\r\x1b[K" : "", summary.seeds(), seeds_, hours,
@@ -48,7 +49,7 @@ class CampaignProgress {
   }
   /// Clears the line before other output.
   void clear() const {
-    if (is_terminal_) fmt::print(stderr, "\r\x1b[K");
+    if (is_terminal_) print_to(stderr, "\r\x1b[K");
   }
 
  private:
@@ -67,13 +68,12 @@ std::string replay_command(const CampaignOptions& options, std::uint64_t seed) {
 
 void print_failure(const CampaignOptions& options, const std::optional<Scenario>& scenario,
                    const TrialResult& result) {
-  fmt::print("seed {} failed at commit {}\n", result.seed, kBuildCommit);
-  for (const std::string& failure : result.failures) fmt::print("  {}\n", failure);
+  print_to(stdout, "seed {} failed at commit {}\n", result.seed, kBuildCommit);
+  for (const std::string& failure : result.failures) print_to(stdout, "  {}\n", failure);
   const Trial trial = sample_trial(result.seed, options.duration, scenario, options.has_faults);
-  fmt::print("  scene: {}\n", trial.summary());
-  for (const std::string& line : to_lines(trial.plan)) fmt::print("    {}\n", line);
-  fmt::print("  repeat with: {}\n", replay_command(options, result.seed));
-  std::fflush(stdout);
+  print_to(stdout, "  scene: {}\n", trial.summary());
+  for (const std::string& line : to_lines(trial.plan)) print_to(stdout, "    {}\n", line);
+  print_to(stdout, "  repeat with: {}\n", replay_command(options, result.seed));
 }
 
 /// Adds the results in the results file to the summary and returns the remaining seeds.
@@ -90,7 +90,7 @@ std::vector<std::uint64_t> remaining_seeds(const CampaignOptions& options,
       if (result.seed < options.first_seed || result.seed > options.last_seed) continue;
       if (done.insert(result.seed).second) summary.add(result);
     }
-    if (!done.empty()) fmt::print("{}: resuming after {} seeds\n", options.results_file, done.size());
+    if (!done.empty()) print_to(stdout, "{}: resuming after {} seeds\n", options.results_file, done.size());
   }
   std::vector<std::uint64_t> remaining;
   for (std::uint64_t seed = options.first_seed;; ++seed) {
@@ -106,9 +106,8 @@ int run_campaign(const CampaignOptions& options) {
   if (!options.scenario_file.empty()) scenario = load_scenario(options.scenario_file);
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto begin = steady_clock::now();
-  fmt::print("seeds {}..{}, {:g} s each, at commit {}\n", options.first_seed, options.last_seed,
-             to_seconds(options.duration), kBuildCommit);
-  std::fflush(stdout);
+  print_to(stdout, "seeds {}..{}, {:g} s each, at commit {}\n", options.first_seed, options.last_seed,
+           to_seconds(options.duration), kBuildCommit);
   CampaignSummary summary;
   std::optional<ResultsFile> results;
   const std::vector<std::uint64_t> remaining = remaining_seeds(options, results, summary);
@@ -133,9 +132,9 @@ int run_campaign(const CampaignOptions& options) {
       });
   pool.run(remaining);
   progress.clear();
-  fmt::print("{}{:.1f} s\n{}\n", summary.text(),
-             std::chrono::duration<double>(steady_clock::now() - begin).count(),
-             summary.failed() == 0 ? "passed" : "failed");
+  print_to(stdout, "{}{:.1f} s\n{}\n", summary.text(),
+           std::chrono::duration<double>(steady_clock::now() - begin).count(),
+           summary.failed() == 0 ? "passed" : "failed");
   if (!options.report_file.empty()) write_file(options.report_file, summary.json());
   return summary.failed() == 0 ? 0 : 1;
 }

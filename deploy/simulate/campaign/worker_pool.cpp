@@ -12,6 +12,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include "common/file/console.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -49,7 +51,7 @@ bool write_all(int fd, const void* data, std::size_t size) {
       if (!write_all(lines, line.data(), line.size())) break;
     }
   } catch (const std::exception& error) {
-    fmt::print(stderr, "job {}: {}\n", job, error.what());
+    print_to(stderr, "job {}: {}\n", job, error.what());
     _exit(1);
   }
   _exit(0);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
 #include "common/log/log.hpp"
 
 namespace sidestep {
@@ -12,7 +13,7 @@ void log_events_of(SimSystem& system, LogLevel level) {
   set_up_log("sidestep", level);
   const bool is_terminal = isatty(STDERR_FILENO) == 1;
   system.on_event(level, [&system, is_terminal](const std::string& process, const LogEvent& event) {
-    if (is_terminal) fmt::print(stderr, "\r\x1b[K");  // erases the progress line
+    if (is_terminal) print_to(stderr, "\r\x1b[K");  // erases the progress line
     log(event.level,
         fmt::format("{:.3f} s {}: {}", to_seconds(system.now() - system.begin()), process, event.text));
   });
