@@ -37,8 +37,7 @@ using std::chrono::steady_clock;
 constexpr int kDirectorSocket = 3;  // in the director
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr auto kRepeatedStop = 1000ms;  // a director that begins does not hear signals yet
-/// A director that was asked to end, and one whose processes have ended, is killed after so long.
-constexpr auto kMaxEnding = 60'000ms, kMaxIdle = 15'000ms;
+constexpr auto kMaxIdle = 15'000ms;     // a director whose processes have ended is killed after so long
 constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // before the next director; twice as long after each
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
@@ -330,7 +329,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
         kill(director.pid, SIGTERM);
       }
       if (keeper.has_ended_all() && !idle_since) idle_since = now;
-      const bool is_stuck = (first_asked_at && now - *first_asked_at > kMaxEnding) ||
+      const bool is_stuck = (first_asked_at && now - *first_asked_at > work.max_ending) ||
                             (idle_since && now - *idle_since > kMaxIdle);
       if (is_stuck) {
         group.log("the director of the run does not end and is killed");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
@@ -18,14 +19,17 @@ struct DirectorWork {
   /// Called in this process, after the end of all others, if the director died when it was asked to end, or
   /// while it ended the processes.
   std::function<void(const std::string& reason)> on_lost;
+  /// A director that does not end so long after it was asked to is killed. Ctrl-C has no other effect until
+  /// then if the director was stopped by a signal.
+  std::chrono::milliseconds max_ending{30'000};
 };
 
 /// Runs the work in a director, which speaks with the network, while this process, which does not, keeps the
 /// processes in the group. So they go on if the director dies by a signal; another one then takes its place,
 /// after a pause that doubles with each, up to a minute. When a director ends, those that are left are ended
-/// too. SIGINT and SIGTERM are passed on to the director. One that does not end a minute later, or 15 s after
-/// the end of its processes, is killed. If this process dies, the director is asked to end, and finds that
-/// all processes have ended.
+/// too. SIGINT and SIGTERM are passed on to the director. One that does not end in time, or 15 s after the
+/// end of its processes, is killed. If this process dies, the director is asked to end, and finds that all
+/// processes have ended.
 ///
 /// Returns the exit code of the director, 1 if it was lost. Call it before this process starts threads.
 /// Throws std::runtime_error if no process can be created.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <thread>
@@ -47,12 +48,15 @@ struct Fixture {
   std::string file(const std::string& name) const { return folder.file(name); }
   std::string text(const std::string& name) const { return text_of(file(name)); }
   int keep(std::function<int(Processes&, const Deaths&)> run) {
-    return keep_processes(group, {std::move(run), [this](const std::string& reason) { lost = reason; }});
+    DirectorWork work{std::move(run), [this](const std::string& reason) { lost = reason; }};
+    if (max_ending) work.max_ending = *max_ending;
+    return keep_processes(group, work);
   }
 
   TemporaryFolder folder;
   ProcessGroup group{folder.file("log")};
   std::string lost;
+  std::optional<std::chrono::milliseconds> max_ending;  // of directors; nullopt: the default
 };
 
 }  // namespace
@@ -176,6 +180,25 @@ TEST_CASE("a director that hangs after it has ended its processes is killed", "[
   CHECK(code == 1);
   CHECK(f.lost == "signal 9 (SIGKILL)");
   CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
+}
+
+TEST_CASE(
+    "a director that was stopped and is asked to end is killed, the processes end, and it is reported") {
+  Fixture f;
+  f.max_ending = 500ms;
+  const pid_t self = getpid();
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    write_file(f.file("pid"), std::to_string(processes.start(shell("agent", "exec sleep 1000"))));
+    kill(self, SIGINT);
+    std::raise(SIGSTOP);
+    return 0;
+  });
+  CHECK(code == 1);
+  CHECK(f.lost == "signal 9 (SIGKILL)");
+  CHECK(f.group.running() == 0);
+  CHECK_FALSE(is_alive(std::stoi(f.text("pid"))));
+  CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
+  CHECK(DirectorWork{}.max_ending <= 30s);
 }
 
 TEST_CASE("a director that dies before it has started anything is not started again") {
