@@ -13,6 +13,7 @@
 
 #include "common/config/config_error.hpp"
 #include "common/config/yaml_merge.hpp"
+#include "common/config/yaml_structure.hpp"
 #include "common/file/read_file.hpp"
 
 namespace sidestep {
@@ -112,6 +113,7 @@ std::string read_yaml_file(const std::string& path, const std::string& expected)
 // In yaml-cpp 0.7, Load silently ignores all documents after the first, and LoadAll does not return for some
 // malformed files. So the documents are counted first, up to the second.
 YAML::Node parse_yaml(const std::string& text, const std::string& file_name, const std::string& expected) {
+  check_yaml_structure(text, file_name, kMaxValues);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);

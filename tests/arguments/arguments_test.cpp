@@ -135,7 +135,7 @@ TEST_CASE("broken YAML is refused by all commands that read YAML, with file, lin
     std::ofstream(runner.file(name), std::ios::binary) << text;
     files.emplace_back(runner.file(name), expected);
   };
-  add("deep.yaml", std::string(100'000, '['), "1: not YAML");
+  add("deep.yaml", std::string(16'000'000, '['), "1: expected at most 500 brackets");
   add("binary.yaml",
       std::string("\x7f"
                   "ELF\x02\x01\x01\0\0\0",
@@ -159,6 +159,16 @@ TEST_CASE("broken YAML is refused by all commands that read YAML, with file, lin
           }() +
           "]",
       "1: more than 400000 values");
+  add(
+      "structure.yaml",
+      "[" +
+          [] {
+            std::string lists;
+            for (int i = 0; i < 5'000'000; ++i) lists += "[],";
+            return lists;
+          }() +
+          "]",
+      "1: more than 800000 characters out of");
   add("long-key.yaml", std::string(100'000, 'k') + ": 1\n", "1: ");
   REQUIRE(files.size() > 15);
   for (const std::string& command : commands_of(runner.table(), "yaml"))

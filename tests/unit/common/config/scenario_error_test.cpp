@@ -305,7 +305,7 @@ TEST_CASE("text that is not a single YAML document is rejected with its line") {
   check_rejected(kRobot + "---\n" + kRobot, 2, "a second YAML document");
   check_rejected("\x01\x02\xff", 1, "");
   check_rejected("# , endless in yaml-cpp's LoadAll\n, x_# y\nfield: {length_m: 3}\n", 2, "");
-  check_rejected(std::string(100000, '['), 1, "not YAML");
+  check_rejected(std::string(100000, '['), 1, "expected at most 500 brackets within each other");
 }
 
 TEST_CASE("a file of more values than memory is meant for is rejected, also where anchors multiply them") {
@@ -319,9 +319,9 @@ TEST_CASE("a file of more values than memory is meant for is rejected, also wher
     laughs += "]\n";
   }
   check_rejected(laughs, 6, "more than 400000 values");
-  std::string scalars = kRobot + "x: &x 1\ny: [";
-  for (int i = 0; i < 400'000; ++i) scalars += "*x,";
-  check_rejected(scalars + "]\n", 3, "more than 400000 values");
+  std::string scalars = kRobot + "x: &x 1\ny:\n";
+  for (int i = 0; i < 400'000; ++i) scalars += "- *x\n";
+  check_rejected(scalars, 399'985, "more than 400000 values");
   std::string walls = kRobot + "obstacles:\n  - wall: &w {thickness_m: 0.1, points_m: [";
   for (int i = 0; i < 900; ++i) walls += fmt::format("[{}, {}],", i % 2, 3 + i % 3);
   walls += "]}\n";

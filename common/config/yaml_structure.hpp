@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace sidestep {
+
+/// Refuses YAML for which yaml-cpp would need far more memory than for what the text may hold: it keeps all
+/// tokens of a list in brackets, 240 bytes each, until it hands over the first value. Counts characters
+/// wherever they are, so no text has more tokens than counted here. Throws ConfigError if the text has more
+/// than two such characters for each of `max_values` values ("[x, y]," has four for three values), or is
+/// nested deeper than yaml-cpp reads.
+void check_yaml_structure(const std::string& text, const std::string& file_name, std::size_t max_values);
+
+}  // namespace sidestep

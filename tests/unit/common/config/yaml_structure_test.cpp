@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/yaml_structure.hpp"
+
+#include <fmt/format.h>
+
+#include "common/config/config_error.hpp"
+#include "common/config/yaml_document.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::yaml_structure_test {
+
+constexpr std::size_t kMaxValues = 1000;
+
+std::string repeated(const std::string& part, std::size_t times) {
+  std::string text;
+  for (std::size_t i = 0; i < times; ++i) text += part;
+  return text;
+}
+
+std::string structure_error(const std::string& text) {
+  try {
+    check_yaml_structure(text, "file.yaml", kMaxValues);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST_CASE("YAML with far more structure than values may need is refused before it is read") {
+  const std::string part =
+      GENERATE("[],", "{}", "a,", "a:\n", "*a,", "&a ", "!a ", "'a' ", "\"a\" ", "? ", "[#]\n", "%a b ");
+  CAPTURE(part);
+  CHECK_THAT(
+      structure_error("[" + repeated(part, 2 * kMaxValues + 1)),
+      ContainsSubstring("more than 2000 characters out of []{},:?&*!'\", expected at most 1000 values"));
+  CHECK(structure_error("[" + repeated(part, kMaxValues / 2)) == "accepted");
+}
+
+TEST_CASE("brackets nest as deep as yaml-cpp reads, and those in comments do not") {
+  CHECK(structure_error("a: 1\nb: " + repeated("[", 501)) ==
+        "file.yaml:2: expected at most 500 brackets within each other");
+  CHECK(structure_error(repeated("[{", 300)) ==
+        "file.yaml:1: expected at most 500 brackets within each other");
+  CHECK(structure_error(repeated("[", 500) + repeated("]", 500) + "[]") == "accepted");
+  CHECK(structure_error(repeated("# of [0, 1)\n", 600)) == "accepted");
+}
+
+TEST_CASE("as many values as a file may hold have few enough characters of structure") {
+  const auto [robot, robots, values] = GENERATE(table<std::string, std::size_t, std::size_t>({
+      {"  - [[-1.25, 2], [3, -4]]  # corners\n", 57'000, 7},
+      {"  - {id: 1, start_m: [-1.5, 2.5], goals_m: [[1, 2], [3, 4]]}\n", 23'500, 17},
+      {"  - id: 1\n    start_m: [1, 2]\n    goals_m:\n      - - 3\n        - -4\n", 33'000, 12},
+      {"  - {\"id\": 1, \"start_m\": [1, 2]}\n", 57'000, 7},
+  }));
+  CAPTURE(robot, robots);
+  CHECK(robots * values < 400'000);
+  CHECK(parse_yaml("robots:\n" + repeated(robot, robots), "file.yaml", "a file")["robots"].size() == robots);
+}
+
+}  // namespace sidestep::yaml_structure_test
