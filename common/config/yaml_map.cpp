@@ -6,9 +6,11 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
+#include <string_view>
 
 #include "common/config/config_error.hpp"
 #include "common/config/heading.hpp"
+#include "common/config/plus_sign.hpp"
 #include "common/config/yaml_document.hpp"
 
 namespace sidestep {
@@ -34,11 +36,11 @@ std::string described(const YAML::Node& node) {
 
 std::string described(Range range) { return fmt::format("{:.10g} to {:.10g}", range.low, range.high); }
 
-/// A number is a plain scalar: "3" in quotes or with a tag is text.
+/// A number is a plain scalar: "3" in quotes or with a tag is text. Like YAML's core schema, takes one plus.
 template <typename Number>
 bool parse_plain(const YAML::Node& node, Number& value) {
   if (!node.IsScalar() || node.Tag() != "?") return false;
-  const std::string& text = node.Scalar();
+  const std::string_view text = without_plus(node.Scalar());
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   return error == std::errc{} && stop == end;

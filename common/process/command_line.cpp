@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/config/plus_sign.hpp"
 #include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
 
@@ -32,7 +33,7 @@ std::string in_quotes(const std::string& text) {
 /// not.
 template <typename Number>
 std::optional<Number> parsed(std::string_view text) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
+  text = without_plus(text);
   Number number{};
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, number);

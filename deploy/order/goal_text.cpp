@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "common/config/heading.hpp"
+#include "common/config/plus_sign.hpp"
 #include "common/config/yaml_document.hpp"
 #include "common/config/yaml_map.hpp"
 #include "common/messaging/version_codec.hpp"
@@ -24,8 +25,7 @@ std::vector<double> parse_numbers(const std::string& text) {
   const char *at = text.data(), *const end = at + text.size();
   while (numbers.size() < 3) {
     double number = 0;
-    const bool has_plus = end - at > 1 && *at == '+' && (at[1] == '.' || (at[1] >= '0' && at[1] <= '9'));
-    const auto [stop, error] = std::from_chars(at + has_plus, end, number);
+    const auto [stop, error] = std::from_chars(without_plus({at, end}).data(), end, number);
     if (error != std::errc{} || !std::isfinite(number)) return {};
     numbers.push_back(number);
     if (stop == end) return numbers;

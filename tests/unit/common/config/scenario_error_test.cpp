@@ -117,6 +117,8 @@ TEST_CASE("unknown and duplicate keys are rejected with their line") {
 
 TEST_CASE("values of a wrong type are rejected with their line") {
   check_rejected(kRobot + "margin_m: wide\n", 2, "expected a number from 0 to 1, got \"wide\"");
+  for (const std::string number : {"++0.1", "+-0.1", "+", "+inf", "\"+0.1\"", "+ 0.1"})
+    check_rejected(kRobot + "margin_m: " + number + "\n", 2, "expected a number from 0 to 1, got");
   check_rejected(kRobot + "margin_m: \"0.1\"\n", 2, "expected a number");
   check_rejected(kRobot + "margin_m: 0.1m\n", 2, "expected a number");
   check_rejected(kRobot + "margin_m:\n", 2, "expected a number");

@@ -69,6 +69,21 @@ TEST_CASE(
   for (const auto& [direction, count] : directions) CHECK(count > 200);
 }
 
+TEST_CASE("a number may have one plus in front, whatever is read from it") {
+  const Scenario s = parse_scenario(
+      "robots: [{id: +7, start_m: [+1, -2], heading_rad: +.5, goals_m: [[+1.5, +1e-1, +3]]}]\n"
+      "margin_m: +0.02\n",
+      "file.yaml");
+  CHECK(s.margin_m == 0.02);
+  REQUIRE(s.robots.size() == 1);
+  CHECK(s.robots[0].id == 7);
+  CHECK(s.robots[0].start_m == Vec2(1, -2));
+  CHECK(s.robots[0].start_heading_rad == 0.5);
+  REQUIRE(s.robots[0].goals.size() == 1);
+  CHECK(s.robots[0].goals[0].position_m == Vec2(1.5, 0.1));
+  CHECK(s.robots[0].goals[0].heading_rad == 3);
+}
+
 TEST_CASE("every key is read in its unit") {
   const Scenario s = parse_scenario(R"(name: all-keys
 field: {length_m: 12, width_m: 9}

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace sidestep {
+
+/// The text of a number without one leading plus, which std::from_chars refuses, but people and YAML's core
+/// schema write. The plus stays, to be refused, unless a digit or a point follows.
+[[nodiscard]] inline std::string_view without_plus(std::string_view text) {
+  if (text.size() < 2 || text[0] != '+') return text;
+  const bool is_number = text[1] == '.' || (text[1] >= '0' && text[1] <= '9');
+  return is_number ? text.substr(1) : text;
+}
+
+}  // namespace sidestep
