@@ -93,8 +93,9 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
   return msg::Reason::REASON_GRANTED;
 }
 
-// A robot that obeys a new agent executes no version of an earlier one that the registration does not list.
-// But the registration may have been sent before the robot contradicted the ledger under that agent.
+// When a robot obeys a new agent, it executes no version of an earlier agent except those that the
+// registration lists. But the registration may have been sent before the robot contradicted the ledger under
+// that agent.
 bool Coordinator::ends_quarantine(const Registration& registration, const Record& record) const {
   return registration.incarnation > record.contradicted_under ||
          ledger_.lists_reported(registration.robot, registration.versions->versions());
@@ -107,7 +108,7 @@ bool Coordinator::on_feedback(const Feedback& feedback, Time now) {
     return true;
   }
   Record& record = record_of(feedback.robot);
-  // Older gaps count for less and less.
+  // The weight of older gaps decays.
   if (record.heard_at) record.longest_gap = std::max(now - *record.heard_at, record.longest_gap * 15 / 16);
   record.heard_at = now;
   if (!record.registered && !record.attested) return true;
@@ -146,7 +147,7 @@ void Coordinator::on_world(std::span<const RobotObservation> robots, Time now, b
     latest = std::max(latest, robot.observed_at);
     const Record& record = record_of(robot.robot);
     if (!record.registered && !record.attested) continue;
-    // Others keep clear of a silent robot anyway.
+    // Other robots keep clear of a silent robot anyway.
     if (!displaced_.observe(robot, ledger_) && !record.silent) is_whole = false;
   }
   if (is_whole) watched_until_ = std::max(watched_until_, std::min(latest, now));
@@ -166,8 +167,8 @@ void Coordinator::find_silent(Time now) {
     const bool has_fallen_silent = record.heard_at &&
                                    now - *record.heard_at > std::max(max_silence_, 2 * record.longest_gap) &&
                                    std::ranges::any_of(versions, moves);
-    // The robot's clock has jumped ahead, and its own stop is dated by it. The ledger does not say where it
-    // is until then.
+    // If the robot's clock has jumped ahead, its own stop is dated in the future, and until then the ledger
+    // does not say where the robot is.
     const bool is_ahead = !versions.empty() && std::ranges::all_of(versions, is_later);
     record.silent = record.registered && (has_fallen_silent || is_ahead);
     silent_count_ += record.silent;
@@ -230,7 +231,8 @@ msg::Reason Coordinator::refusal_reason(const Proposal& proposal, const Record& 
 
 msg::Reason Coordinator::suspension_reason(RobotId robot) const {
   if (ledger_.is_quarantined(robot)) return msg::Reason::REASON_QUARANTINED;
-  // Vision may see an absent robot while it is carried. It may still be granted a place to be put down.
+  // Vision may see an absent robot while it is being carried. The robot may still be granted a place where it
+  // is to be put down.
   const bool is_absent = ledger_.versions(robot).empty();
   if (is_absent) return msg::Reason::REASON_GRANTED;
   if (displaced_.contains(robot)) return msg::Reason::REASON_DISPLACED;

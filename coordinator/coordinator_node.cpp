@@ -17,7 +17,7 @@ namespace {
 
 // A standby announces itself every kStandbyAnnouncePeriod heartbeat periods.
 constexpr int kStandbyAnnouncePeriod = 10;
-// A robot that has been heard of within this time is not absent.
+// A robot that has been heard within this time is not absent.
 constexpr Duration kSilence{1'000'000'000};
 
 }  // namespace
@@ -108,7 +108,7 @@ void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
 void CoordinatorNode::handle(const Registration& registration) {
   if (coordinator_.ledger().has_robot(registration.robot))
     failover_.reception().on_registration(registration.robot, bus_.now());
-  if (registration.epoch == 0) return;  // the agent knows no coordinator
+  if (registration.epoch == 0) return;  // epoch 0: the agent knows no coordinator
   observe_epoch(registration.robot, registration.epoch, EpochHolder::kAgent);
   if (registration.asks_for_orders) return order_desk_.repeat();
   const bool was_granting = coordinator_.is_granting();
@@ -151,7 +151,7 @@ void CoordinatorNode::handle(const Feedback& feedback) {
 
 void CoordinatorNode::on_world(const msg::WorldState& message) {
   const Time valid_at = time_from_ns(message.valid_at_ns());
-  // The farther ahead it is, the less certain are the places in it.
+  // The farther a world state is dated ahead, the less certain its places are.
   if (valid_at > bus_.now() + max_vision_lead(max_clock_difference_))
     return drops_.count(DropReason::kFutureWorld);
   failover_.reception().on_vision(bus_.now());
@@ -167,7 +167,7 @@ void CoordinatorNode::on_world(const msg::WorldState& message) {
   }
   const bool was_uncontrolled = coordinator_.has_uncontrolled_robots();
   coordinator_.on_world(observations_, bus_.now(), is_whole);
-  // Agents need the latest places at once.
+  // Agents need the latest places immediately.
   if (was_uncontrolled || coordinator_.has_uncontrolled_robots()) publish_state();
 }
 
@@ -226,7 +226,7 @@ void CoordinatorNode::apply_epoch() {
   changes_.reset();
   report_role();
   publish_state();
-  // Orders that arrived while it stood by were announced by another, if at all.
+  // Orders that arrived while this one was a standby were announced by another coordinator, if at all.
   if (coordinator_.is_active()) order_desk_.announce_all();
 }
 

@@ -25,7 +25,7 @@ class CoordinatorNode {
   CoordinatorNode(const CoordinatorNode&) = delete;
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 
-  /// Sets a callback for events of at least a level. It is called at once with the reason of this
+  /// Sets a callback for events of at least a level. It is called immediately with the reason for this
   /// coordinator's role.
   void on_event(LogLevel min_level, OnLogEvent callback);
 
@@ -45,16 +45,16 @@ class CoordinatorNode {
   void on_attestation(const msg::AbsenceAttestation& message);
   void handle(const OrderPage& page);
   void handle(const OrderReport& report);
-  /// Reports in which epoch this coordinator is active, or that it stands by, and why.
+  /// Reports the epoch in which this coordinator is active, or that it is a standby, and why.
   void report_role();
   void report_registration(const Registration& registration, const Verdict& verdict) const;
   /// Records the epoch that a robot or its agent obeys.
   void observe_epoch(RobotId robot, Epoch epoch, EpochHolder holder);
   void answer(const Verdict& verdict);
-  /// Adopts the epoch of failover_, or stands by if failover_ does, and publishes the new state.
+  /// Adopts the epoch of failover_, which may be 0 (standby), and publishes the new state.
   void apply_epoch();
   void update_failover();
-  /// This process's clock was set back: what it remembers of times is void.
+  /// This process's clock was set back: discards all recorded times.
   void forget_times();
   void publish_state();
   void publish_state_periodically();
@@ -72,10 +72,10 @@ class CoordinatorNode {
   EventReporter events_;
   OrderDesk order_desk_;
   StateChanges changes_{events_};
-  std::map<RobotId, Time> heard_at_;            // when each robot's last fact arrived
-  Time updated_at_{};                           // by update_failover()
-  std::vector<RobotObservation> observations_;  // of the last world state
-  int standby_periods_ = 0;                     // heartbeat periods while standing by
+  std::map<RobotId, Time> heard_at_;            // arrival time of each robot's last fact
+  Time updated_at_{};                           // when update_failover() last ran
+  std::vector<RobotObservation> observations_;  // observations of the last world state
+  int standby_periods_ = 0;                     // number of heartbeat periods spent as a standby
   DropCounters drops_;                          // messages that this node has not used
   CounterPublisher counters_;
 };

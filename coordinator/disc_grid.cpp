@@ -21,7 +21,7 @@ DiscGrid::DiscGrid(const Field& field, std::size_t count)
       circles_(count),
       cell_of_(count, kNoCell) {}
 
-// Positions beyond the field belong to its border cells.
+// Positions outside the field belong to the cells at its border.
 std::size_t DiscGrid::column_of(double x) const {
   return static_cast<std::size_t>(
       std::clamp((x - low_m_.x()) / cell_m_, 0.0, static_cast<double>(columns_ - 1)));

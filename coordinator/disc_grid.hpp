@@ -13,7 +13,7 @@ namespace sidestep {
 /// kept in a separate list. Discs may lie anywhere, but the grid covers the field only.
 class DiscGrid {
  public:
-  /// For discs 0 .. count - 1, all absent at first.
+  /// Creates a grid for discs 0 .. count - 1, initially all absent.
   DiscGrid(const Field& field, std::size_t count);
 
   void set(std::uint32_t disc, const Circle& circle);
@@ -29,7 +29,7 @@ class DiscGrid {
   Vec2 low_m_;
   double cell_m_;
   std::size_t columns_, rows_;
-  std::vector<std::vector<std::uint32_t>> cells_;  // the last one holds the discs larger than a cell
+  std::vector<std::vector<std::uint32_t>> cells_;  // by cell; the last one has the discs larger than a cell
   std::vector<Circle> circles_;
   std::vector<std::uint32_t> cell_of_;
 };

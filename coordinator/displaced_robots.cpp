@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-// Covers the errors of vision that are not random, such as those of the calibration.
+// Covers non-random errors of vision, such as calibration errors.
 constexpr double kObservationError_m = 0.01;
 // Random errors exceed six standard deviations once in 10^8 observations.
 constexpr double kSigmas = 6;

@@ -8,9 +8,9 @@
 namespace sidestep {
 namespace {
 
-// Added to the longest recent gap between heartbeats.
+// Time that is added to the longest recent gap between heartbeats.
 constexpr Duration kHeartbeatTimeout{100'000'000};
-// Per coordinator number, so that standbys do not take over simultaneously.
+// Time that is added per coordinator number, so that standbys do not take over simultaneously.
 constexpr Duration kTimeoutStagger{25'000'000};
 // A standby that has just started may not have been discovered by the others yet.
 constexpr Duration kStartTimeout{1'000'000'000};
@@ -18,24 +18,25 @@ constexpr Duration kStartTimeoutStagger{200'000'000};
 // After a pause of this length, unprocessed heartbeats may be queued.
 constexpr Duration kPauseThreshold{60'000'000};
 constexpr int kMaxBackoffExponent = 2;
-// A coordinator that was superseded earlier has not failed.
+// If a coordinator is superseded earlier than this, its attempt does not count as a failure.
 constexpr Duration kMinAttempt{200'000'000};
 constexpr int kMaxFailures = 4;
-// While no robot moves, a vain attempt costs nothing.
+// While no robot moves, a failed attempt costs nothing.
 constexpr int kMaxFailuresAtRest = 1;
 constexpr Duration kRestTime{1'000'000'000};
-// Robots that begin to execute granted versions as often as this are served by a coordinator that this one
-// does not hear.
+// If robots begin to execute granted versions at least this often, they are served by a coordinator that this
+// one does not hear.
 constexpr Duration kServiceGap{60'000'000};
-// So are robots that do so for that long after the last heartbeat; then they may also rest for a moment.
+// The same holds if they have done so for this long after the last heartbeat; in that case they may also rest
+// for a moment.
 constexpr Duration kUnheardService{500'000'000};
 constexpr Duration kMaxPauseOfService{1'000'000'000};
-// A measurement of the clock may be repeated for so long.
+// A request to measure the clock may be repeated for this long.
 constexpr Duration kMinRequest{150'000'000};
-// An active coordinator that serves for this long has not failed.
+// An active coordinator that has served for this long has not failed.
 constexpr Duration kProbation{1'000'000'000};
-// Two instances with the same number that begin above one known epoch choose different epochs, because each
-// adds its incarnation modulo this spread.
+// If two instances with the same number both begin an epoch above the same known one, they choose different
+// epochs, because each adds its incarnation modulo this number.
 constexpr Epoch kEpochSpread = 1'000'003;
 
 }  // namespace
@@ -62,7 +63,7 @@ void Failover::begin_epoch(Time now, const RoleCause& cause) {
   const Epoch above = highest_ == 0 ? 0 : highest_ + 1 + self_.incarnation % kEpochSpread;
   const Epoch min_epoch =
       std::max<Epoch>({above, static_cast<Epoch>(std::max<std::int64_t>(to_ns(now), 0)), 1});
-  // The epoch modulo kMaxCoordinators is the number, so different numbers never share an epoch.
+  // The epoch modulo kMaxCoordinators is the coordinator's number, so different numbers never share an epoch.
   epoch_ = min_epoch + (kMaxCoordinators + self_.number - min_epoch % kMaxCoordinators) % kMaxCoordinators;
   highest_ = epoch_;
   is_starting_ = false;
@@ -132,8 +133,8 @@ void Failover::on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId 
                                                       : msg::RoleReason::ROLE_EPOCH_OF_AGENT,
                         robot, Duration{0}, epoch};
   // A coordinator that has just become active begins a new epoch above the obeyed one, once. One that grants,
-  // that waits in vain, or that was superseded again has a rival whose heartbeats do not arrive: it stands
-  // by, each time for twice as long.
+  // that waits in vain, or that was superseded again has a rival whose heartbeats do not arrive. It then
+  // stands by, for twice as long each time.
   const bool is_new = now - active_since_ <= kRegistrationTime && !has_risen_;
   if (is_active() && !is_granting && is_new) {
     has_risen_ = true;
@@ -152,7 +153,7 @@ RoleCause Failover::takeover_cause(Time now) const {
 
 Duration Failover::takeover_timeout() const {
   if (is_starting_) return kStartTimeout + kStartTimeoutStagger * self_.number;
-  // While another coordinator is heard, it does not matter that this one could not serve.
+  // While another coordinator is heard, it does not matter that this one failed to serve.
   const int failures = has_heartbeat_ ? 0 : std::min(failures_, kMaxBackoffExponent);
   const Duration longest_gap = *std::max_element(gaps_.begin(), gaps_.end());
   return (kHeartbeatTimeout + kTimeoutStagger * self_.number +
@@ -188,8 +189,8 @@ void Failover::observe_own_service(Time now, bool is_granting) {
   if (now - *serving_since_ >= kProbation) failures_ = 0;
 }
 
-// A coordinator that hears no robot could not serve it. Those that hear them again at the same time do not
-// take over simultaneously.
+// A coordinator that hears no robot could not serve it. If several hear robots again at the same time, they
+// do not take over simultaneously.
 bool Failover::are_heartbeats_lost(Time now) const {
   return now - last_heartbeat_ > takeover_timeout() && now - unheard_at_ > kTimeoutStagger * self_.number &&
          !is_served_by_other(now);
@@ -205,7 +206,7 @@ std::optional<RobotId> Failover::unserved_robot(Time now) const {
   if (highest_ == 0 || now - unheard_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
   for (const RobotId robot : missing_)
     if (has_asked_long(robot, kRegistrationTime, now)) return robot;
-  // Others may be served, so there must be hope to serve all.
+  // Other agents may be served, so it must be likely that this coordinator can serve all of them.
   if (!reception_.hears_agents(roster_, now) || !reception_.hears_vision(now)) return std::nullopt;
   for (const RobotId robot : roster_)
     if (has_asked_long(robot, kServiceTime, now)) return robot;
@@ -216,7 +217,8 @@ bool Failover::has_asked_long(RobotId robot, Duration first, Time now) const {
   const bool is_at_rest = !reception_.is_fleet_served(kRestTime, now);
   const int failures = is_at_rest ? std::min(failures_, kMaxFailuresAtRest) : failures_;
   const Duration needed = first * (1 << failures);
-  // Requests come at intervals, which must not align those who answer them.
+  // Requests come at intervals. Without the stagger, these would synchronise the coordinators that react to
+  // them.
   return reception_.request_duration(robot, now) >= needed - FleetReception::kMaxRequestGap / 3 &&
          reception_.time_since_first_request(robot, now) >= needed + 2 * kTimeoutStagger * self_.number;
 }

@@ -14,10 +14,10 @@
 
 namespace sidestep {
 
-/// Number of a coordinator among those that stand by for each other, 0 .. kMaxCoordinators - 1.
+/// Number of a coordinator in a group of standbys for each other, 0 .. kMaxCoordinators - 1.
 using CoordinatorNumber = std::uint32_t;
 
-/// What this coordinator states as Header.sender.
+/// The Header.sender that this coordinator uses.
 constexpr std::uint32_t process_of(CoordinatorNumber number) {
   return static_cast<std::uint32_t>(Sender::kCoordinator) + number;
 }
@@ -28,19 +28,19 @@ struct CoordinatorIdentity {
   Incarnation incarnation = 0;
 };
 
-/// The process that obeys an epoch.
+/// Who obeys an epoch.
 enum class EpochHolder { kRobot, kAgent };
 
 /// The fleet that coordinators serve.
 struct FleetSpec {
   std::vector<RobotId> roster{};
-  Duration fact_period{16'666'667};  ///< at which robots report facts
+  Duration fact_period{16'666'667};  ///< period at which robots report facts
 };
 
 /// Decides whether this coordinator is active. It stands by while it receives heartbeats of another one,
 /// takes over when they stop, and stands by again when it learns of a higher epoch. It also takes over if the
-/// active one does not serve an agent that asks for a coordinator again and again. A coordinator that does
-/// not hear the robots never takes over. Its clock affects only when robots move again, not safety: two
+/// active one does not serve an agent that repeatedly asks for a coordinator. A coordinator that does not
+/// hear the robots never takes over. Its clock affects only when robots move again, not safety: two
 /// coordinators that both consider themselves active have different epochs, and robots obey the higher one.
 class Failover {
  public:
@@ -49,27 +49,29 @@ class Failover {
   /// Period of update().
   static constexpr Duration kUpdatePeriod{5'000'000};
 
-  /// An agent that has asked for this long without being registered is not heard by the active coordinator.
+  /// If an agent has asked for this long without being registered, the active coordinator does not hear it.
   static constexpr Duration kRegistrationTime{400'000'000};
-  /// The same of an agent that may be registered, but is not served.
+  /// Like kRegistrationTime, but for an agent that may be registered and is not served.
   static constexpr Duration kServiceTime{500'000'000};
 
-  /// A standby waits at least a second for other coordinators; otherwise an epoch begins immediately.
+  /// A standby waits at least a second for other coordinators. A coordinator that is not a standby begins an
+  /// epoch immediately.
   Failover(const CoordinatorIdentity& self, bool is_standby, Time now, const FleetSpec& fleet = {});
 
-  /// A heartbeat of any coordinator, including this one.
+  /// Processes a heartbeat of any coordinator, including this one.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
-  /// A robot or its agent obeys this epoch. `is_granting`: whether this coordinator grants at present. Such
-  /// reports are repeated, and may be forged: only a few of them at once and then one in five seconds count.
+  /// Processes a report that a robot or its agent obeys this epoch. `is_granting` tells whether this
+  /// coordinator is granting now. Such reports are repeated and may be forged, so only a few at once, and
+  /// then one in five seconds, count.
   void on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId robot, EpochHolder holder);
-  /// What arrives of robots and their agents.
+  /// Records what arrives from robots and their agents.
   FleetReception& reception() { return reception_; }
-  /// Takes over if that is due. `is_granting`: whether this coordinator grants at present.
+  /// Takes over if that is due. `is_granting` tells whether this coordinator is granting now.
   void update(Time now, bool is_granting = false);
   bool is_active() const { return epoch_ != 0; }
-  /// The epoch of this coordinator; 0 while it stands by.
+  /// The epoch in which this coordinator is active; 0 while it is a standby.
   Epoch epoch() const { return epoch_; }
-  /// Why this coordinator is active in its epoch, or stands by.
+  /// Why this coordinator is active in its epoch, or is a standby.
   const RoleCause& cause() const { return cause_; }
   /// Silence after which a standby takes over; longer if heartbeats have been irregular.
   Duration takeover_timeout() const;
@@ -79,19 +81,19 @@ class Failover {
   std::uint64_t too_frequent() const { return too_frequent_; }
 
  private:
-  /// Begins a new epoch, above every known one.
+  /// Begins a new epoch, higher than all known ones.
   void begin_epoch(Time now, const RoleCause& cause);
-  /// Yields if it is active. Then the timeout begins anew.
+  /// Yields if this coordinator is active. Then restarts the timeout.
   void stand_by(Time now, const RoleCause& cause);
   RoleCause takeover_cause(Time now) const;
   void record_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
   void observe_own_service(Time now, bool is_granting);
   bool are_heartbeats_lost(Time now) const;
-  /// Whether somebody grants whose heartbeats do not arrive.
+  /// Whether another coordinator grants but its heartbeats do not arrive.
   bool is_served_by_other(Time now) const;
-  /// A robot whose agent the active coordinator does not serve, although this one might.
+  /// A robot whose agent is not served by the active coordinator but might be served by this one.
   std::optional<RobotId> unserved_robot(Time now) const;
-  /// Whether the agent has asked for so long that this coordinator takes over.
+  /// Whether the agent has asked long enough for this coordinator to take over.
   bool has_asked_long(RobotId robot, Duration first, Time now) const;
   /// Whether any agent has asked for a coordinator for this long.
   bool is_any_unserved(Duration min, Time now) const;
@@ -99,23 +101,23 @@ class Failover {
   CoordinatorIdentity self_;
   std::vector<RobotId> roster_;
   FleetReception reception_;
-  std::set<RobotId> missing_;  // by the last heartbeat of the active coordinator
+  std::set<RobotId> missing_;  // robots missing according to the active coordinator's last heartbeat
   Time active_since_{};
-  Time unheard_at_;                    // when robots were not heard last
-  std::optional<Time> serving_since_;  // since when it grants, and no agent asks in vain
-  bool has_served_ = false;            // the same, since it became active
-  bool has_risen_ = false;             // has begun above an obeyed epoch since it became active
-  int failures_ = 0;                   // consecutive times that it was active without serving
-  Epoch epoch_ = 0, highest_ = 0;      // own epoch, and the highest known one
+  Time unheard_at_;                    // last time at which robots were not heard
+  std::optional<Time> serving_since_;  // since when this coordinator grants and no agent asks in vain
+  bool has_served_ = false;            // whether serving_since_ was ever set since it became active
+  bool has_risen_ = false;             // it has begun an epoch above an obeyed one since it became active
+  int failures_ = 0;                   // number of consecutive times that it was active without serving
+  Epoch epoch_ = 0, highest_ = 0;      // own epoch, and highest known epoch
   RoleCause cause_;
   Time last_heartbeat_, last_update_;
-  std::array<Duration, 32> gaps_{};  // between the latest heartbeats
+  std::array<Duration, 32> gaps_{};  // intervals between the latest heartbeats
   std::size_t heartbeat_count_ = 0;
   bool has_heartbeat_ = false;  // last_heartbeat_ is the time of a heartbeat, not of a change of role
-  std::optional<CoordinatorNumber> heard_;  // the last coordinator whose heartbeat has reset the timeout
+  std::optional<CoordinatorNumber> heard_;  // the last coordinator whose heartbeat has restarted the timeout
   bool is_starting_;                        // a standby that has received no heartbeat yet
   RateLimit obeyed_epochs_{4, std::chrono::seconds(5)};
-  int backoff_exponent_ = 0;  // consecutive supersessions by a coordinator whose heartbeats do not arrive
+  int backoff_exponent_ = 0;  // consecutive supersessions by an unheard coordinator
   std::uint64_t invalid_ = 0, too_frequent_ = 0;
 };
 

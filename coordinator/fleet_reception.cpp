@@ -6,11 +6,11 @@
 namespace sidestep {
 namespace {
 
-// A robot that has been silent for longer does not show whether this coordinator hears.
+// A robot that has been silent for longer than this says nothing about whether this coordinator can hear.
 constexpr Duration kForgetAfter{10'000'000'000};
 // An agent whose robot rests reports its order once a second.
 constexpr Duration kMaxAgentSilence{2'500'000'000};
-// Agents drive no longer than that without a comparison by the coordinator.
+// Agents do not drive for longer than this without a comparison by the coordinator.
 constexpr Duration kMaxVisionSilence{600'000'000};
 
 }  // namespace

@@ -10,45 +10,47 @@
 
 namespace sidestep {
 
-/// What a coordinator hears of robots and their agents, whether it is active or stands by. A coordinator that
-/// does not hear them cannot serve them. All times are by the coordinator's clock.
+/// Records what a coordinator hears from robots and their agents, whether it is active or a standby. A
+/// coordinator that does not hear them cannot serve them. All times are by the coordinator's clock.
 class FleetReception {
  public:
-  /// Periods of the robots' facts until a robot counts as not heard.
+  /// Number of periods without facts after which a robot counts as not heard.
   static constexpr int kMissedFacts = 5;
-  /// An agent that repeats its registration at least this often asks for a coordinator.
+  /// An agent counts as asking for a coordinator if it repeats its registration at least this often.
   static constexpr Duration kMaxRequestGap{350'000'000};
 
-  /// `fact_period`: at which robots report facts.
+  /// `fact_period` is the period at which robots report facts.
   explicit FleetReception(Duration fact_period) : max_silence_(kMissedFacts * fact_period) {}
 
-  /// A robot executes this version. `is_granted`: not a stop of its own, and not nothing.
+  /// The robot executes this version. `is_granted` is false if that is an own stop or the robot executes
+  /// nothing.
   void on_fact(RobotId robot, VersionNumber executing, bool is_granted, Time now);
-  /// Any message of the robot's agent.
+  /// Records that a message of the robot's agent has arrived.
   void on_agent(RobotId robot, Time now);
   void on_vision(Time now) { vision_at_ = now; }
-  /// A registration, whatever the epoch: agents repeat it until they are served.
+  /// Processes a registration of any epoch: agents repeat it until they are served.
   void on_registration(RobotId robot, Time now);
 
-  /// Whether facts arrive of at least half of the robots of which any arrived in the last ten seconds. False
-  /// if none did.
+  /// Whether facts arrive from at least half of the robots that sent any in the last ten seconds. False if no
+  /// robot did.
   bool hears_robots(Time now) const;
-  /// Whether a message of each of these agents has arrived lately.
+  /// Whether each of these agents has sent a message recently.
   bool hears_agents(const std::vector<RobotId>& robots, Time now) const;
-  /// Whether a world state has arrived lately.
+  /// Whether a world state has arrived recently.
   bool hears_vision(Time now) const;
-  /// Whether robots have begun to execute granted versions in this time, so that somebody grants.
+  /// Whether robots have begun to execute granted versions in this time, which means that some coordinator
+  /// grants.
   bool is_fleet_served(Duration lately, Time now) const { return served_at_ && now - *served_at_ < lately; }
-  /// When one has last; nullopt: never.
+  /// When a robot last began to execute a granted version; nullopt if never.
   std::optional<Time> served_at() const { return served_at_; }
-  /// For how long the robot's agent has asked for a coordinator since the last forget_requests(), from its
-  /// first request to its last; 0 if it does not.
+  /// How long the robot's agent has been asking for a coordinator since the last forget_requests(), from its
+  /// first request to its latest; 0 if it is not asking.
   Duration request_duration(RobotId robot, Time now) const;
-  /// The same from its first request until now.
+  /// Like request_duration(), but from the first request until now.
   Duration time_since_first_request(RobotId robot, Time now) const;
-  /// A new epoch has begun: the agents have to ask anew.
+  /// A new epoch has begun, so agents must ask again.
   void forget_requests();
-  /// The clock was set back: earlier times mean nothing.
+  /// The clock was set back, so all earlier times are discarded.
   void clear();
 
  private:
@@ -56,7 +58,7 @@ class FleetReception {
     std::optional<Time> fact_at, agent_at, requested_at, requested_since;
     VersionNumber executing = 0;
   };
-  /// The robot, if its agent asks for a coordinator.
+  /// The robot, if its agent is asking for a coordinator; otherwise nullptr.
   const Robot* find_asking(RobotId robot, Time now) const;
 
   Duration max_silence_;

@@ -9,17 +9,17 @@
 
 namespace sidestep {
 
-/// The latest versions that a robot has left, for comparison with observations, which arrive late. At 60 Hz
-/// they cover a quarter of a second.
+/// The versions that a robot has most recently left. Observations, which arrive late, are compared with them.
+/// At 60 Hz they cover a quarter of a second.
 class FormerVersions {
  public:
   struct Entry {
     Version version;
-    Time left_at{};  ///< from then on the robot certainly did not execute it
+    Time left_at{};  ///< from this time on, the robot was certainly no longer executing it
   };
 
   void add(const Version& version, Time left_at) { entries_[count_++ % kCapacity] = {version, left_at}; }
-  /// In no particular order.
+  /// All entries, in no particular order.
   std::span<const Entry> entries() const {
     return {entries_.data(), count_ < kCapacity ? static_cast<std::size_t>(count_) : kCapacity};
   }

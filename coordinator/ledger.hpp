@@ -17,7 +17,7 @@
 
 namespace sidestep {
 
-/// Why a version is refused, and for REASON_CONFLICT the conflicting robot.
+/// The reason for the decision on a version, and for REASON_CONFLICT the conflicting robot.
 struct Ruling {
   msg::Reason reason = msg::Reason::REASON_GRANTED;
   RobotId blocker = 0;
@@ -28,62 +28,63 @@ struct Ruling {
 /// Effect of a fact reported by a robot.
 enum class FactOutcome {
   kApplied,
-  kStale,          ///< superseded by a later fact
-  kContradiction,  ///< inconsistent with the ledger: the robot is quarantined
+  kStale,          ///< overtaken by a later fact
+  kContradiction,  ///< contradicts the ledger; the robot is quarantined
 };
 
 /// Two robots that may come closer than their margin and inflations permit; the lower number first.
 using Conflict = std::pair<RobotId, RobotId>;
 
-/// For every robot, the versions that it may execute, now or later; implements the rules of PROTOCOL.md, "The
+/// Contains the versions that each robot may execute, now or later. Implements the rules of PROTOCOL.md, "The
 /// ledger". Invariant: every version of one robot is clear of every version of every other robot, except for
 /// the pairs in conflicts(), which external events have brought too close; no grant brings those closer. A
 /// robot without versions is not on the floor. A robot that has reported a version that it was never granted
-/// is quarantined: the ledger keeps all its versions and the reported one, until kFactsUntilReleased facts in
-/// a row agree with the ledger.
+/// is quarantined: the ledger keeps all its versions and the reported one, until kFactsUntilReleased
+/// consecutive facts agree with the ledger.
 class Ledger {
  public:
-  /// About a second at 60 Hz.
+  /// About one second at 60 Hz.
   static constexpr int kFactsUntilReleased = 60;
 
-  /// `roster`: the robots that the ledger covers. `max_clock_difference`: between the cameras' clock and a
-  /// robot's.
+  /// `roster` lists the robots that the ledger covers. `max_clock_difference` is the maximum difference
+  /// between the cameras' clock and a robot's.
   Ledger(const FloorRules& rules, std::vector<RobotId> roster,
          Duration max_clock_difference = sidestep::max_clock_difference(SafetyBudget{}.clock_bound_s));
 
   bool has_robot(RobotId robot) const { return index_of(robot) < roster_.size(); }
   std::span<const RobotId> roster() const { return roster_; }
-  /// The versions in the order in which they were added; those that the robot was never granted come last.
+  /// The robot's versions in the order in which they were added. Versions that it was never granted come
+  /// last.
   std::span<const Version> versions(RobotId robot) const;
   bool is_quarantined(RobotId robot) const;
-  /// Whether the versions include what the quarantined robot has reported last. Precondition:
+  /// Whether the versions include the one that the quarantined robot reported last. Precondition:
   /// is_quarantined().
   bool lists_reported(RobotId robot, std::span<const Version> versions) const;
 
-  /// Replaces, without checks, the robot's versions by those that it may execute: when an epoch begins, or
-  /// when a registration ends its quarantine. Precondition: the robot is on the roster.
+  /// Replaces the robot's versions, without checks, by those that it may execute. Used when an epoch begins,
+  /// and when a registration ends the robot's quarantine. Precondition: the robot is on the roster.
   void register_robot(RobotId robot, std::span<const Version> versions);
 
   /// Rules 1, 4 and 5: adds the candidate if it may be granted. Removes nothing; a refusal changes nothing.
   [[nodiscard]] Ruling grant(const Version& candidate);
 
-  /// Rules 2, 3 and 6, for the fact "executing f at time t". A robot off its reference executes a stop of
-  /// its own, which replaces all older versions without checks. `life` is the incarnation of the robot.
+  /// Rules 2, 3 and 6, for the fact "executing f at time t". A robot off its reference executes an own stop,
+  /// which replaces all older versions without checks. `life` is the robot's incarnation.
   [[nodiscard]] FactOutcome on_executing(const Version& executing, Time at, bool is_off_reference,
                                          Incarnation life = 0);
-  /// What on_executing() would return.
+  /// The outcome that on_executing() would return, without applying the fact.
   [[nodiscard]] FactOutcome judge(const Version& executing, Time at, bool is_off_reference,
                                   Incarnation life) const;
   /// Rule 5, for the fact "off the floor at time t, executing nothing": drops all versions that start at or
   /// before t.
   void on_lifted(RobotId robot, Time at, Incarnation life = 0);
 
-  /// In no particular order.
+  /// All conflicts, in no particular order.
   std::span<const Conflict> conflicts() const { return conflicts_; }
 
-  /// Distance of a position from the nearest place to which the robot's versions, also the former ones, may
-  /// have taken it at a time by the robot's clock, less that version's inflation. Infinite for a robot that
-  /// was not on the floor then, nullopt if the ledger does not reach back so far. Conservative: never
+  /// Distance from a position to the nearest place to which the robot's versions, including former ones, may
+  /// have taken it at a time by the robot's clock, minus the version's inflation. Infinite for a robot that
+  /// was not on the floor then; nullopt if the ledger does not reach back that far. Conservative: never
   /// overestimated while the robot's clock differs by at most `max_clock_difference`.
   std::optional<double> distance_from_versions_m(RobotId robot, const Vec2& position_m, Time at) const;
   /// Whether all versions that the robot may have executed since that time had ended by then, so that it
@@ -95,22 +96,22 @@ class Ledger {
  private:
   struct Entry {
     VersionSet set;
-    // If the robot is quarantined: the versions of the set, and the one that it reported last without having
-    // been granted it.
+    // Only if the robot is quarantined: the versions of the set, followed by the version that it reported
+    // last although it was not granted.
     std::vector<Version> quarantined;
-    int agreeing = 0;  // facts in a row that agree with the set, while quarantined
+    int agreeing = 0;  // number of consecutive facts that agree with the set, while quarantined
     FormerVersions former;
-    // Bounding disc of each version's motion, including its inflation.
+    // Bounding disc of each version's motion, including the version's inflation.
     std::array<Circle, VersionSet::kCapacity + 1> discs;
-    // Latest time at which it was reported off the floor, and its incarnation then. After a restart its clock
-    // may be behind that time.
+    // Latest time at which the robot was reported off the floor, and its incarnation then. After a restart
+    // its clock may be behind that time.
     Time lifted_at{};
     Incarnation lifted_life = 0;
 
     std::span<const Version> versions() const { return quarantined.empty() ? set.versions() : quarantined; }
     void quarantine(const Version& reported);
     void release() { quarantined.clear(); }
-    /// Counts a fact that agrees with the set. Whether the robot is not quarantined, or no longer.
+    /// Counts a fact that agrees with the set. Returns whether the robot is not, or no longer, quarantined.
     bool may_forget();
   };
   std::size_t index_of(RobotId robot) const;
@@ -125,13 +126,13 @@ class Ledger {
   bool are_in_conflict(const Entry& a, const Entry& b) const;
   /// Recomputes the robot's conflicts.
   void find_conflicts(RobotId robot);
-  /// Removes the robot's conflicts that have ended.
+  /// Removes those conflicts of the robot that have ended.
   void end_conflicts(RobotId robot);
 
   FloorRules rules_;
   Duration max_clock_difference_;
-  std::vector<RobotId> roster_;     // ascending
-  std::vector<std::size_t> index_;  // by robot
+  std::vector<RobotId> roster_;     // robot numbers, ascending
+  std::vector<std::size_t> index_;  // indexed by robot
   std::vector<Entry> entries_;      // parallel to roster_
   DiscGrid grid_;                   // bounding discs of all entries with versions
   std::vector<std::uint32_t> nearby_;

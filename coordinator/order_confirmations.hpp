@@ -11,24 +11,24 @@
 
 namespace sidestep {
 
-/// Orders that a client has not been told of yet. An order is confirmed once another process remembers it, so
-/// that it survives the death of this one. As long as no such process lives, the client gets no answer, and
+/// Accepted orders whose clients have not been answered yet. An order is confirmed once another process
+/// remembers it, so that it survives the death of this process. Until then the client gets no answer, so it
 /// repeats the order, also to the next coordinator.
-/// - Most orders are remembered by an agent, or another coordinator, whose memory lists them.
-/// - A hold is confirmed once the agent of a robot that it holds has reported to be held, and the robot after
-///   that to obey this coordinator: then this agent has not registered with a later coordinator before it
-///   remembered the hold. So a coordinator that takes over learns of it although this one may have been cut
-///   off.
+/// - Most orders are confirmed when an agent or another coordinator lists them in its memory.
+/// - A hold is confirmed once the agent of one of its robots has reported that the robot is held, and the
+/// robot has afterwards reported that it obeys this coordinator. This proves that the agent had not
+/// registered with a later coordinator before it remembered the hold. So a coordinator that takes over learns
+/// of the hold, even if this one was cut off.
 class OrderConfirmations {
  public:
-  /// An order that stands in the book of orders.
+  /// Adds an order that is in force in the order book.
   void add(const Order& order);
-  /// A page of another process's memory.
+  /// Processes a page of another process's memory.
   void on_page(const OrderPage& page);
   void on_report(const OrderReport& report);
-  /// A fact of a robot that obeys this coordinator's epoch.
+  /// Processes a fact from a robot that obeys this coordinator's epoch.
   void on_obeyed(RobotId robot);
-  /// The orders that are confirmed, and those that stand in the book no more; each once.
+  /// Removes and returns the orders that are confirmed or no longer in the book; each is returned once.
   std::vector<Order> take_confirmed(const OrderBook& book);
   void clear() { waiting_.clear(); }
   bool is_waiting() const { return !waiting_.empty(); }
@@ -36,7 +36,7 @@ class OrderConfirmations {
  private:
   struct Waiting {
     Order order;
-    std::set<RobotId> remembered_by{};  // of a hold: agents of robots of the roster
+    std::set<RobotId> remembered_by{};  // for a hold: the robots on the roster whose agents remember it
     bool is_confirmed = false;
   };
 

@@ -10,9 +10,9 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kPeriod{1'000'000'000};
-// A new agent is told the orders at once, but not more often than this.
+// Minimum interval between announcements to new agents.
 constexpr Duration kMinPeriod{50'000'000};
-// While agents wait to be told what they remember, before they register.
+// Interval of announcements while agents wait for the orders that they remember before they register.
 constexpr Duration kRegisteringPeriod{200'000'000};
 
 }  // namespace
@@ -39,7 +39,7 @@ void OrderDesk::on_order(const msg::Order& message) {
     drops_.count(DropReason::kRefusedOrder);
   const bool is_announced = apply();
   if (!coordinator_.is_active()) return;
-  // An order that changes nothing is not remembered, such as a resume while no robot is held.
+  // An order that changes nothing is not remembered, for example a resume while no robot is held.
   const bool is_to_remember = result == msg::OrderResult::RESULT_REMEMBERED && orders_.book().stands(*order);
   if (!is_to_remember) return answer(message.header().sender(), message.terms().order_number(), result);
   confirmations_.add(*order);
@@ -48,7 +48,7 @@ void OrderDesk::on_order(const msg::Order& message) {
 
 void OrderDesk::on_page(const OrderPage& page) {
   if (page.process == process_of(self_.number)) return;
-  // Later coordinators need not hear other robots' agents.
+  // Only agents of robots on the roster confirm orders: later coordinators need not hear other agents.
   if (coordinator_.ledger().has_robot(page.process) || is_coordinator(page.process))
     confirmations_.on_page(page);
   confirm();
@@ -133,7 +133,7 @@ void OrderDesk::answer(ClientId client, OrderNumber number, msg::OrderResult res
 
 void OrderDesk::confirm() {
   for (const Order& order : confirmations_.take_confirmed(orders_.book())) {
-    // What a resume lifts is lifted, also if another one makes it meaningless.
+    // The effect of a resume remains, even if another resume makes it redundant.
     const bool is_remembered = orders_.book().stands(order) || order.kind == msg::OrderKind::ORDER_RESUME;
     answer(order.client, order.number,
            is_remembered ? msg::OrderResult::RESULT_REMEMBERED : msg::OrderResult::RESULT_REPLACED);

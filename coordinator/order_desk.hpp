@@ -19,33 +19,34 @@ namespace sidestep {
 /// the clients, and holds robots.
 class OrderDesk {
  public:
-  /// `changed`: is called when what the coordinator publishes of its state has changed.
+  /// `changed` is called when the published part of the coordinator's state has changed.
   OrderDesk(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self, Coordinator& coordinator,
             const EventReporter& events, std::function<void()> changed);
   OrderDesk(const OrderDesk&) = delete;
   OrderDesk& operator=(const OrderDesk&) = delete;
 
-  /// Announces all orders, now and every second.
+  /// Announces all orders now, and then every second.
   void announce_periodically();
   void on_order(const msg::Order& message);
-  /// A page of another process's memory, or of its own, which is ignored.
+  /// Processes a page of another process's memory. A page of its own is ignored.
   void on_page(const OrderPage& page);
-  /// The state of a robot's order, from its agent.
+  /// Processes the state of a robot's order, as reported by its agent.
   void on_report(const OrderReport& report);
-  /// A robot of the roster obeys this coordinator's epoch.
+  /// A robot on the roster obeys this coordinator's epoch.
   void on_obeyed(RobotId robot);
-  /// An agent has been registered: learns whether there may be orders, and tells it those that it lacks.
+  /// An agent has been registered: records whether orders may have been given before, and sends the agent the
+  /// orders that it lacks.
   void on_registered(const Registration& registration);
-  /// Tells all orders again for a process that has just started.
+  /// Announces all orders again, for a process that has just started.
   void repeat();
-  /// Completes the memory of orders if that is possible.
+  /// Completes the memory of orders if possible.
   void update_memory();
-  /// To be called every heartbeat period.
+  /// Must be called once per heartbeat period.
   void update();
-  /// The coordinator has begun an epoch, or stands by.
+  /// The coordinator has begun an epoch or has become a standby.
   void begin_epoch();
   void announce_all();
-  /// This process's clock was set back: what it remembers of times is void.
+  /// This process's clock was set back: discards all recorded times.
   void forget_times() { announced_at_.reset(); }
 
   const OrderKeeper& orders() const { return orders_; }
@@ -56,14 +57,14 @@ class OrderDesk {
   /// Answers the clients whose orders another process remembers too.
   void confirm();
   void apply_holds();
-  /// Applies changes of the orders, and announces them if the coordinator is active. Whether it has announced
-  /// any.
+  /// Applies changes of the orders, and announces them if the coordinator is active. Returns whether it has
+  /// announced any.
   bool apply();
   void announce(std::span<const RememberedOrder> orders, bool have_changed);
-  /// Announces again the orders that clients have repeated and no process has confirmed.
+  /// Announces again the orders that clients have repeated but no process has confirmed.
   void announce_again();
-  /// Tells the orders again while agents have to register: they do so once they have been told all that they
-  /// remember.
+  /// Announces the orders repeatedly while agents must register: they register once they have received all
+  /// orders that they remember.
   void tell_registering_agents();
 
   Bus& bus_;
@@ -74,9 +75,9 @@ class OrderDesk {
   OrderKeeper orders_;
   OrderConfirmations confirmations_;
   OrderBook unheard_;         // orders to be announced again
-  bool has_history_ = false;  // in this epoch, a robot has registered that may have been given orders before
-  std::optional<Time> announced_at_;  // all of them
-  bool has_learned_ = false;          // since then, from another process
+  bool has_history_ = false;  // in this epoch, a robot has registered that may have received orders before
+  std::optional<Time> announced_at_;  // when all orders were last announced
+  bool has_learned_ = false;          // learned an order from another process since then
   Writer<msg::OrderAnswer> answer_writer_;
   Writer<msg::OrderMemory> memory_writer_;
   DropCounters drops_;

@@ -58,8 +58,7 @@ bool OrderKeeper::on_page(const OrderPage& page) {
   bool is_new = false;
   for (const RememberedOrder& order : page.orders) is_new |= merge_of_other(order);
   if (page.count == 0 || is_complete_) return is_new;
-  // The pages of a process arrive in order, but the first ones may have been sent before this process heard
-  // it.
+  // The pages of a process arrive in order, but this process may have missed the first ones.
   std::uint32_t& next = next_page_[page.process];
   next = page.is_complete && (page.index == 0 || page.index == next) ? page.index + 1 : 0;
   if (next == page.count) complete();
@@ -85,10 +84,10 @@ bool OrderKeeper::update(bool is_granting, bool has_history, Time now) {
     waiting_since_.reset();
     return false;
   }
-  // It lies in the future if this process's clock was set back.
+  // It is in the future if this process's clock was set back.
   if (!waiting_since_ || now < *waiting_since_) waiting_since_ = now;
   if (!has_history) {
-    // No order can have been carried out.
+    // Without history, no order can have been carried out.
     for (const auto& [robot, has_goals] : has_goals_) {
       if (has_goals) merge({{msg::OrderKind::ORDER_GO, robot, static_cast<ClientId>(Sender::kScenario), 1}});
     }

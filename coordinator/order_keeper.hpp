@@ -11,38 +11,39 @@
 
 namespace sidestep {
 
-/// The orders that a coordinator remembers. Until its memory is complete, every robot is held: an order to
-/// hold might have been given that it does not know.
+/// The orders that a coordinator remembers. Until its memory is complete, every robot is held, because there
+/// might be a hold that the coordinator does not know.
 class OrderKeeper {
  public:
-  /// How long a coordinator that could grant waits for a complete memory, before it holds all robots in its
-  /// own name.
+  /// How long a coordinator that could otherwise grant waits for a complete memory before it holds all robots
+  /// in its own name.
   static constexpr Duration kMaxWait{2'000'000'000};
-  /// Holds and zones of other processes' memories that have room. Every coordinator admits at most
+  /// Maximum number of holds and zones taken from other processes' memories. Every coordinator admits at most
   /// OrderBook::kMaxHolds and kMaxZones of clients.
   static constexpr std::size_t kMaxMergedHolds = 4 * kMaxRobots;
   static constexpr std::size_t kMaxMergedZones = 3 * kMaxCoordinators * OrderBook::kMaxZones;
 
   OrderKeeper(const Scenario& scenario, std::uint32_t coordinator_id);
 
-  /// Takes an order of a client, and returns the answer.
+  /// Processes an order from a client and returns the answer.
   msg::OrderResult on_order(const Order& order);
-  /// A page of another process's memory. Returns whether anything is new. No order of it is refused for lack
-  /// of room: one that finds none, because somebody fills the memory, holds all robots in this coordinator's
-  /// name.
+  /// Processes a page of another process's memory. Returns whether anything is new. No order on it is refused
+  /// for lack of room: if there is none, because somebody floods the memory, all robots are held in this
+  /// coordinator's name.
   bool on_page(const OrderPage& page);
-  /// An agent has registered. It does so only once this memory holds all orders that it remembers.
+  /// An agent has registered. It does so only once this memory contains all orders that the agent remembers.
   void on_registration(bool agent_knows_orders);
-  /// Returns whether anything is new.
+  /// Processes an agent's report on an order. Returns whether anything is new.
   bool on_report(const OrderReport& report);
-  /// To be called periodically. `has_history`: a registered robot has ever executed a granted version, or its
-  /// agent knows the orders; used only if `is_granting`. Returns whether this completes the memory.
+  /// Must be called periodically. `has_history` means that a registered robot has executed a granted version,
+  /// or that its agent knows the orders; it is used only if `is_granting`. Returns whether this call
+  /// completes the memory.
   bool update(bool is_granting, bool has_history, Time now);
 
   bool is_complete() const { return is_complete_; }
   bool is_held(RobotId robot) const { return !is_complete_ || book_.is_held(robot); }
   const OrderBook& book() const { return book_; }
-  /// What has changed since the last call.
+  /// Removes and returns the changes since the last call.
   std::vector<RememberedOrder> take_changes();
 
  private:
@@ -57,12 +58,11 @@ class OrderKeeper {
   const Field field_;
   const double radius_m_;
   const std::uint32_t id_;
-  std::map<RobotId, bool> has_goals_;  // by robot of the roster: whether the scenario gives it goals
+  std::map<RobotId, bool> has_goals_;  // indexed by robot on the roster: whether the scenario gives it goals
   OrderBook book_;
   std::vector<RememberedOrder> changes_;
   bool is_complete_ = false;
-  std::map<std::uint32_t, std::uint32_t>
-      next_page_;  // by process: of its complete memory, until one is heard
+  std::map<std::uint32_t, std::uint32_t> next_page_;  // by process, until one complete memory is heard
   std::optional<Time> waiting_since_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Publishes a message as this coordinator's.
+/// Publishes a message in this coordinator's name.
 template <typename Message>
 void publish(const CoordinatorIdentity& self, Writer<Message>& writer, Message& message, Time now) {
   message.header().sender(process_of(self.number));

@@ -13,24 +13,25 @@
 
 namespace sidestep {
 
-/// Reports what has changed in a coordinator: whether it grants, which robots are not in order, which pairs
-/// are in conflict, and for whose registrations it waits.
+/// Reports changes of a coordinator's state: whether it grants, which robots have problems, which pairs are
+/// in conflict, and whose registrations it awaits.
 class StateChanges {
  public:
-  /// A coordinator that registers robots for longer names those that are missing, again after each such time.
+  /// If registration takes longer than this, the coordinator names the missing robots, and repeats that at
+  /// this interval.
   static constexpr Duration kRegistrationTime{1'000'000'000};
 
   explicit StateChanges(const EventReporter& events) : events_(events) {}
 
-  /// Compares the state with the one of the last call.
+  /// Compares the state with that of the last call.
   void update(const msg::CoordinatorState& state, std::span<const Conflict> conflicts, Time now);
-  /// Forgets the last state: a new epoch has begun, or this coordinator stands by.
+  /// Forgets the last state, because a new epoch has begun or this coordinator has become a standby.
   void reset();
 
  private:
   using Robots = std::set<RobotId>;
   void report_granting(const msg::CoordinatorState& state, Time now);
-  /// Reports the robots that are new in a set, and those that have left it, and stores the set.
+  /// Reports the robots that have joined or left a set, and stores the set.
   void report_robots(Robots now, Robots& before, LogLevel level, const char* begun, const char* ended);
   void report_conflicts(std::span<const Conflict> conflicts);
 

@@ -10,11 +10,11 @@ namespace sidestep {
 
 /// The overhead cameras of a field, row by row from the corner with the lowest x and y, along x first. Each
 /// camera is mounted above its cell of the grid and sees the cell and the overlap around it. Height,
-/// distortion and image size come from `prototype`. Throws std::invalid_argument as overhead_camera_model()
+/// distortion and image size come from `prototype`. Throws std::invalid_argument if overhead_camera_model()
 /// does.
 std::vector<CameraModel> camera_grid(const Field& field, const VisionSpec& spec,
                                      const OverheadCamera& prototype);
-/// The camera grid of a scenario, with its images.
+/// The camera grid of a scenario, with the scenario's image settings.
 std::vector<CameraModel> camera_grid(const Scenario& scenario);
 
 /// An overhead camera with the image size, height and distortion of a scenario's images.

@@ -60,7 +60,7 @@ std::optional<Eigen::Matrix<double, 2, 3>> CameraModel::projection_jacobian(cons
   const double kr2 = parameters_.distortion * u.squaredNorm();
   const double factor = lens::distortion_factor(kr2);
   if (std::isnan(factor)) return std::nullopt;
-  // From the derivative of s (1 + k |u|² s²) = 1 with respect to u, the undistorted image point.
+  // Differentiates s (1 + k |u|² s²) = 1 with respect to u, the undistorted image point.
   const double slope = 1 + 3 * kr2 * factor * factor;
   const double along = -2 * parameters_.distortion * factor * factor * factor / slope;
   const Eigen::Matrix2d distorted_by_u = factor * Eigen::Matrix2d::Identity() + along * u * u.transpose();

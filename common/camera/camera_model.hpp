@@ -10,15 +10,15 @@
 
 namespace sidestep {
 
-/// The fields of the league's SSL_GeometryCameraCalibration in metres, and the image size. Pixel coordinates
-/// everywhere in this project: x to the right, y down, integers at pixel centres. The image extends from -0.5
-/// to width - 0.5.
+/// Camera parameters as in the league's SSL_GeometryCameraCalibration, but in metres, and the image size.
+/// Pixel coordinates in this project: x to the right, y down, integers at pixel centres. The image extends
+/// from -0.5 to width - 0.5.
 struct CameraParameters {
   int width_px = 780;
   int height_px = 580;
   double focal_length_px = 600;
   Vec2 principal_point_px{389.5, 289.5};
-  double distortion = 0;  ///< k of common/camera/lens.hpp
+  double distortion = 0;  ///< coefficient k in common/camera/lens.hpp
   /// A world point p has the camera coordinates rotation · p + translation_m: x to the right, y down, z along
   /// the optical axis. The league's q0 to q3 are the quaternion's x, y, z, w.
   Eigen::Quaterniond rotation{0, 1, 0, 0};

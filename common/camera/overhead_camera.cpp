@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kPointsPerSide = 64;
 
-/// The rotation from world to camera: its rows are the camera axes in world coordinates.
+/// The rotation from world to camera; its rows are the camera's axes in world coordinates.
 Eigen::Matrix3d axes_of(const OverheadCamera& camera, const Vec3& position_m, const Vec2& centre_m) {
   const Vec2 size_m = camera.view_m.max_m - camera.view_m.min_m;
   const bool is_landscape = camera.width_px >= camera.height_px;

@@ -66,7 +66,7 @@ struct Client::Impl {
     return id;
   }
 
-  /// `send_order` makes the order client forget its earlier orders about the zone.
+  /// `send_order` makes the order client forget its earlier orders about this zone.
   OrderId send_zone(std::uint32_t number, Send send_order) {
     const OrderId id = states.add();
     bus.post([this, id, number, send_order = std::move(send_order)] {
@@ -88,7 +88,7 @@ struct Client::Impl {
   }
 
   OrderId send_to(RobotId robot, OrderHandle (OrderClient::*order)(sidestep::RobotId)) {
-    // The number that stands for all robots would be meant for one.
+    // kAllRobots as a robot number would address all robots, although one was meant.
     if (robot >= kMaxRobots) return refuse(Refusal::kUnknownRobot);
     return send([robot, order](OrderClient& client) { return (client.*order)(robot); });
   }
@@ -115,9 +115,9 @@ struct Client::Impl {
   }
 
   DdsBus bus;
-  OrderClient orders;  ///< used by `thread` only
-  // Used by `thread` only.
-  std::map<OrderHandle, OrderId> ids;                              ///< of orders that may still change
+  OrderClient orders;  ///< used only by `thread`
+  // Used only by `thread`.
+  std::map<OrderHandle, OrderId> ids;                              ///< orders that may still change
   std::map<std::uint32_t, std::pair<OrderHandle, OrderId>> zones;  ///< the latest order about each zone
   OrderStates states;
   mutable std::mutex mutex;  ///< guards the two members below

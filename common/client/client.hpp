@@ -10,33 +10,33 @@
 #include <string>
 #include <vector>
 
-/// Tells the robots of a running Sidestep where to go. This header is installed, so it includes only the
-/// standard library.
+/// Client library: sends orders to the robots of a running Sidestep. This header is installed, so it includes
+/// only the standard library.
 namespace sidestep::client {
 
 struct Settings {
-  std::string name;                     ///< of this program; clients of different names have their own holds
-  bool is_operator = false;             ///< its orders come before all others, and its resume ends all holds
+  std::string name;                     ///< of this program; clients with different names have separate holds
+  bool is_operator = false;             ///< its orders take precedence, and its resume ends all holds
   int domain = 0;                       ///< DDS domain of the run, 0 .. 232
   std::string interface = "127.0.0.1";  ///< address of the network interface to use, or "all"
-  /// Addresses of the hosts of all processes, on networks without multicast; empty: multicast.
+  /// Addresses of all hosts that run processes, for networks without multicast. Empty: use multicast.
   std::vector<std::string> peers{};
-  /// Folder with this program's keys ("client NAME" or "operator"), or one that `sidestep keys init` has
-  /// made; empty: no keys.
+  /// Folder with this program's keys ("client NAME" or "operator"), or a folder made by `sidestep keys init`.
+  /// Empty: no keys.
   std::string keys{};
-  bool insecure = false;  ///< may work without keys on networks that other machines can reach
+  bool insecure = false;  ///< allows running without keys on networks that other machines can reach
 };
 
 /// Robots are numbered from 0, as in the scenario.
 using RobotId = std::uint32_t;
-/// Identifies an order for the client that has given it.
+/// Identifies an order of one client.
 using OrderId = std::uint64_t;
 
 struct Goal {
   double x_m = 0, y_m = 0;
-  std::optional<double> heading_rad{};      ///< nullopt: any
-  std::optional<double> speed_limit_mps{};  ///< on the way there; nullopt: that of the robots
-  std::optional<double> tolerance_m{};      ///< distance that counts as arrival; nullopt: the scenario's
+  std::optional<double> heading_rad{};      ///< nullopt: any heading
+  std::optional<double> speed_limit_mps{};  ///< limit on the way to this goal; nullopt: the robots' own limit
+  std::optional<double> tolerance_m{};      ///< arrival distance; nullopt: the scenario's value
 };
 
 struct Point {
@@ -47,34 +47,34 @@ struct Point {
 struct Zone {
   std::vector<Point> corners;
   double radius_m = 0;
-  std::optional<double> speed_limit_mps{};  ///< nullopt: robots keep out
+  std::optional<double> speed_limit_mps{};  ///< nullopt: robots must keep out
 };
 
-/// What has become of an order.
+/// The state of an order.
 enum class OrderPhase {
   kSent,      ///< no coordinator has answered yet; the order is repeated until one does
-  kAccepted,  ///< a coordinator and another process remember it; all orders but those to go are complete
+  kAccepted,  ///< a coordinator and another process remember it; every order except `go` is then complete
   kDriving,
-  kBlocked,   ///< the goal cannot be reached now; the robot goes as near as it can, and on when it can
-  kArrived,   ///< at the last goal
-  kReplaced,  ///< by a later order
+  kBlocked,   ///< the goal cannot be reached now; the robot waits as near as it can
+  kArrived,   ///< the robot is at its last goal
+  kReplaced,  ///< a later order has replaced it
   kRefused
 };
 
 /// Why an order was refused.
 enum class Refusal {
   kNone,
-  kMalformed,     ///< no goal or corner, or too many, or a number that is out of bounds or not a number
+  kMalformed,     ///< no goals or corners, too many of them, or a number that is NaN or out of bounds
   kUnknownRobot,  ///< the scenario has no such robot
-  kOutsideField,  ///< a goal
+  kOutsideField,  ///< a goal lies outside the field
   kTooMany        ///< the coordinator cannot remember more holds or zones
 };
 
 struct OrderState {
   OrderPhase phase = OrderPhase::kSent;
   Refusal refusal = Refusal::kNone;
-  std::size_t goal_index = 0;  ///< of the goal that the robot drives to
-  bool is_over = false;        ///< complete, replaced or refused; of zones, coordinators remember it now
+  std::size_t goal_index = 0;  ///< index of the goal that the robot is driving to
+  bool is_over = false;        ///< complete, replaced or refused; for zones: coordinators remember it
 
   bool operator==(const OrderState& other) const {
     return phase == other.phase && refusal == other.refusal && goal_index == other.goal_index &&
@@ -82,10 +82,10 @@ struct OrderState {
   }
 };
 
-/// What a robot does with the order that it carries out.
+/// What a robot is doing about its current order.
 enum class Task {
   kNone,     ///< no order
-  kWaiting,  ///< has not begun
+  kWaiting,  ///< the robot has not started yet
   kDriving,
   kBlocked,
   kArrived
@@ -97,61 +97,61 @@ struct Pose {
 
 struct Robot {
   RobotId id = 0;
-  bool is_heard = false;                ///< its agent has reported within the last three seconds
-  bool is_held = false;                 ///< by any client
-  bool has_own_order = false;           ///< this client has given the order
-  Task task = Task::kNone;              ///< as its agent has reported last
-  std::size_t goal_index = 0;           ///< of the goal that it drives to
-  std::optional<double> remaining_s{};  ///< estimate until the last goal; nullopt: unknown
-  std::optional<Pose> pose{};           ///< as vision has seen it last; nullopt: not within the last second
+  bool is_heard = false;                ///< the robot's agent has reported within the last three seconds
+  bool is_held = false;                 ///< held by any client
+  bool has_own_order = false;           ///< the robot's order comes from this client
+  Task task = Task::kNone;              ///< as last reported by the robot's agent
+  std::size_t goal_index = 0;           ///< index of the goal that the robot is driving to
+  std::optional<double> remaining_s{};  ///< estimated time to the last goal; nullopt: unknown
+  std::optional<Pose> pose{};           ///< pose last seen by vision; nullopt: not within the last second
 
-  /// Whether it can begin an order at once.
+  /// Whether the robot can start an order at once.
   bool is_free() const {
     return is_heard && !is_held && pose && (task == Task::kNone || task == Task::kArrived);
   }
 };
 
-/// Sends orders, and follows what becomes of them, in a thread of its own. An order is repeated until a
-/// coordinator has answered, and whenever all coordinators have forgotten it. Orders outlive the client:
-/// robots carry them out also when it has ended.
+/// Sends orders and tracks their state in its own thread. An order is repeated until a coordinator has
+/// answered, and whenever all coordinators have forgotten it. Orders outlive the client: robots still carry
+/// them out after it has exited.
 ///
-/// All functions may be called by any thread; those that send return at once. An order that is wrong is
-/// refused, which its state shows.
+/// All functions are thread-safe; those that send return immediately. An invalid order is refused; its state
+/// says why.
 class [[gnu::visibility("default")]] Client {
  public:
-  /// Throws std::invalid_argument without a name (an operator needs none), and std::runtime_error if DDS
-  /// cannot use the domain or the interface.
+  /// Throws std::invalid_argument if a client other than an operator has no name, and std::runtime_error if
+  /// DDS cannot use the domain or the interface.
   explicit Client(const Settings& settings);
-  /// Not from a callback. No other call may be in progress.
+  /// Must not be called from a callback or while another call is in progress.
   ~Client();
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// Sends a robot to up to 64 goals, one after another, instead of what this rank of client has ordered it
-  /// before.
+  /// Sends a robot to up to 64 goals, one after another. Replaces the previous `go` from clients of the same
+  /// rank.
   OrderId go(RobotId robot, const std::vector<Goal>& goals);
-  /// Ends what this rank of client has ordered the robot. It goes on with an order of another rank, if there
-  /// is one, else it brakes and stays where it comes to rest.
+  /// Cancels the robot's current order from clients of this rank. The robot continues with an order of
+  /// another rank if it has one; otherwise it brakes and stays where it comes to rest.
   OrderId cancel(RobotId robot);
   /// Stops a robot until it is resumed. This is not a certified emergency stop: it takes effect when a
   /// coordinator hears it.
   OrderId hold(RobotId robot);
   OrderId hold_all();
-  /// Ends this client's hold of the robot; an operator ends those of all clients.
+  /// Ends this client's hold on the robot. An operator's resume ends every client's hold.
   OrderId resume(RobotId robot);
   OrderId resume_all();
 
-  /// Sets this client's zone of this number, for all robots; an earlier one is replaced, so a zone can move.
-  /// It stays when the client ends.
+  /// Sets this client's zone with this number, for all robots. Setting it again replaces the zone, so a zone
+  /// can move. It remains in force after the client exits.
   OrderId set_zone(std::uint32_t number, const Zone& zone);
   OrderId remove_zone(std::uint32_t number);
 
-  /// nullopt: unknown, or over and so are 1000 later ones.
+  /// nullopt if the order is unknown, or if it is over and 1000 later orders are over too.
   std::optional<OrderState> state(OrderId order) const;
-  /// Waits until the order is over, and returns its state at the end or after `timeout`. In a callback it
-  /// does not wait.
+  /// Waits until the order is over or `timeout` has passed, and returns its state. In a callback it returns
+  /// immediately.
   std::optional<OrderState> wait(OrderId order, std::chrono::nanoseconds timeout) const;
-  /// All robots of which an agent or vision has been heard.
+  /// All robots that an agent or vision has reported.
   std::vector<Robot> robots() const;
   /// Calls back in the client's thread whenever the state of an order has changed. The callback may call the
   /// client, and must not throw.

@@ -81,7 +81,7 @@ bool is_well_formed(sidestep::Order order, Time now) {
   order.client = static_cast<ClientId>(Sender::kClient);
   order.number = static_cast<OrderNumber>(to_ns(now));
   if (order.goals.size() > msg::MAX_ORDER_POSES) return false;
-  // In messages, zero stands for none.
+  // In messages, zero means that there is no value.
   const auto has_valid_limits = [](const sidestep::Goal& goal) {
     return is_none_or_positive(goal.speed_limit_mps) && is_none_or_positive(goal.tolerance_m);
   };

@@ -9,13 +9,14 @@
 namespace sidestep::client {
 
 OrderState state_of(const SentOrder& sent);
-/// Whether the state stays. A zone may be forgotten by all coordinators, or replaced.
+/// Whether the state is final. An accepted zone's state is not: all coordinators may forget the zone, or a
+/// later order may replace it.
 bool stays(const SentOrder& sent, const OrderState& state);
 
 sidestep::Zone to_zone(const Zone& zone);
 std::vector<sidestep::Goal> to_goals(const std::vector<Goal>& goals);
 
-/// Whether coordinators can decode the order at `now`; its client and number are not looked at.
+/// Whether coordinators could decode the order at `now`. Does not check its client and number.
 bool is_well_formed(sidestep::Order order, Time now);
 
 }  // namespace sidestep::client

@@ -7,20 +7,21 @@
 namespace sidestep {
 namespace {
 
-// An order counts as forgotten if so many whole memories in a row lack it: one may have been sent before the
-// coordinator heard of the order.
+// An order counts as forgotten if this many complete memories in a row lack it: a single one may have been
+// sent before the coordinator heard of the order.
 constexpr int kRoundsUntilForgotten = 3;
 
 bool drives(const Order& order) { return order.kind == msg::OrderKind::ORDER_GO; }
 
 bool stops(const Order& order) { return order.kind == msg::OrderKind::ORDER_HOLD; }
 
-/// Whether an order of this kind is in force after it was accepted, so that coordinators must not forget it.
+/// Whether an order of this kind stays in force after it was accepted, so that coordinators must not forget
+/// it.
 bool lasts(const Order& order) {
   return drives(order) || stops(order) || order.kind == msg::OrderKind::ORDER_ZONE;
 }
 
-/// Whether nothing remains of an order after a later one of the same client.
+/// Whether a later order of the same client leaves nothing of an earlier one.
 bool replaces(const Order& later, const Order& earlier) {
   const auto is_drive = [](const Order& o) { return drives(o) || o.kind == msg::OrderKind::ORDER_CANCEL; };
   const auto is_hold = [](const Order& o) { return stops(o) || o.kind == msg::OrderKind::ORDER_RESUME; };
@@ -46,7 +47,7 @@ bool is_refused(msg::OrderResult result) {
   return result != msg::OrderResult::RESULT_REMEMBERED && result != msg::OrderResult::RESULT_REPLACED;
 }
 
-/// Whether there is nothing more to hear about an order.
+/// Whether nothing more can be heard about an order.
 bool is_closed(const SentOrder& sent) {
   return is_final(sent.phase) || (!lasts(sent.order) && sent.phase == OrderPhase::kAccepted);
 }
@@ -87,7 +88,8 @@ OrderHandle OrderClient::send_zone(Order order) {
             earlier.kind == msg::OrderKind::ORDER_REMOVE_ZONE) &&
            earlier.zone_number == order.zone_number;
   };
-  const auto earlier = std::ranges::find_if(sent_, is_same_zone);  // each of them has forgotten the last
+  // At most one: each forgets its predecessor.
+  const auto earlier = std::ranges::find_if(sent_, is_same_zone);
   if (earlier != sent_.end()) forget(earlier);
   return send(std::move(order));
 }
@@ -132,8 +134,8 @@ bool OrderClient::renumber(SentOrder& sent, const msg::OrderAnswer& answer) {
                            sent.order.kind == msg::OrderKind::ORDER_RESUME;
   if (sent.is_number_final || !is_behind || !is_affected || is_refused(answer.result())) return false;
   if (sent.order.kind == msg::OrderKind::ORDER_RESUME) {
-    // A number that this clock has passed is that of an order given later, perhaps a hold, not of a clock
-    // ahead.
+    // If this client's clock has already passed the number, it belongs to a later order, perhaps a hold, and
+    // not to a clock that is ahead.
     const bool is_late = answer.newest_number() <= static_cast<OrderNumber>(to_ns(bus_.now()));
     if (is_late || is_followed_by_hold(sent)) return false;
   }
@@ -170,7 +172,7 @@ void OrderClient::update(SentOrder& sent, OrderPhase phase, std::size_t goal_ind
     missing_.erase(sent.handle);
     ++closed_count_;
   }
-  if (on_change_) on_change_(sent);  // may send orders, and so forget this one
+  if (on_change_) on_change_(sent);  // the callback may send orders, and this one is then forgotten
   if (closed_count_ > kMaxFinal)
     forget(std::ranges::find_if(sent_, [](const auto& entry) { return is_closed(entry.second); }));
 }
@@ -252,8 +254,8 @@ void OrderClient::compare(SentOrder& sent, const OrderBook& remembered) {
   const RememberedOrder* const known = remembered.in_place_of(sent.order);
   if (known && known->order.number == number && known->order.client == client_) {
     missing_.erase(sent.handle);
-    if (stops(sent.order)) return;  // the answer says when others remember it too
-    // The robot's status is more recent, unless it was lost.
+    if (stops(sent.order)) return;  // for these, an answer says when others remember the order too
+    // The robot's status is more recent than the memory, unless it was lost.
     if (known->progress.is_finished() || sent.phase == OrderPhase::kSent)
       update(sent, phase_of(known->progress), known->progress.goal_index);
   } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {
@@ -261,7 +263,7 @@ void OrderClient::compare(SentOrder& sent, const OrderBook& remembered) {
   } else if (stops(sent.order) && remembered.is_lifted(sent.order)) {
     update(sent, OrderPhase::kReplaced, sent.goal_index);
   } else if (sent.phase != OrderPhase::kSent && is_forgotten(sent)) {
-    update(sent, OrderPhase::kSent, 0);  // and is repeated
+    update(sent, OrderPhase::kSent, 0);  // the order is then repeated
   }
 }
 

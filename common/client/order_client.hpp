@@ -13,61 +13,61 @@
 
 namespace sidestep {
 
-/// What has become of an order.
+/// The state of an order.
 enum class OrderPhase : std::uint8_t {
   kSent,      ///< no coordinator has answered yet
-  kAccepted,  ///< a coordinator and another process remember it; all but go are complete then
+  kAccepted,  ///< a coordinator and another process remember it; every order except `go` is then complete
   kDriving,
-  kBlocked,   ///< the goal cannot be reached now; the robot goes as near as it can
-  kArrived,   ///< at the last goal
-  kReplaced,  ///< by a later order; of a hold: lifted
+  kBlocked,   ///< the goal cannot be reached now; the robot waits as near as it can
+  kArrived,   ///< the robot is at its last goal
+  kReplaced,  ///< a later order has replaced it; for a hold: it has been lifted
   kRefused
 };
 
 constexpr bool is_final(OrderPhase phase) { return phase >= OrderPhase::kArrived; }
 
-/// Identifies an order for its client.
+/// Identifies an order within its client.
 using OrderHandle = std::uint64_t;
 
 /// An order that a client has sent.
 struct SentOrder {
   OrderHandle handle = 0;
   Order order;
-  /// A coordinator has answered, or it was numbered again because its first number was below those of earlier
-  /// orders.
+  /// The number will not change again: a coordinator has answered, or the order was renumbered because its
+  /// first number was below those of earlier orders.
   bool is_number_final = false;
   OrderPhase phase = OrderPhase::kSent;
-  msg::OrderResult refusal = msg::OrderResult::RESULT_REMEMBERED;  ///< if it is refused
-  std::size_t goal_index = 0;                                      ///< of the goal that the robot drives to
-  std::optional<Blockage> blockage{};                              ///< if it is blocked
+  msg::OrderResult refusal = msg::OrderResult::RESULT_REMEMBERED;  ///< reason, if the order was refused
+  std::size_t goal_index = 0;                                      ///< index of the robot's current goal
+  std::optional<Blockage> blockage{};                              ///< cause, if the robot is blocked
 };
 
-/// Sends orders, repeats them until a coordinator has answered and whenever all coordinators have forgotten
-/// them (orders to go, holds and zones as long as they are in force; others while coordinators remember what
-/// they have replaced, cancelled, lifted or removed), and follows what becomes of them. If
-/// this client's clock is behind those of others, an order is numbered again, above all that the coordinators
-/// know: otherwise an earlier order of another client would count as later. That never moves an order behind
-/// a later one of this client, nor a resume behind a later hold of anybody.
+/// Sends orders and tracks their state. An order is repeated until a coordinator has answered, and whenever
+/// all coordinators have forgotten it. Orders to go, holds and zones are kept alive while they are in force;
+/// other orders while coordinators remember the orders that they replaced, cancelled, lifted or removed. If
+/// this client's clock is behind other clients' clocks, an order is renumbered above every number that the
+/// coordinators know; otherwise an earlier order of another client would count as later. Renumbering never
+/// moves an order behind a later one of this client, nor a resume behind a later hold by any client.
 class OrderClient {
  public:
   OrderClient(Bus& bus, ClientId client);
   OrderClient(const OrderClient&) = delete;
   OrderClient& operator=(const OrderClient&) = delete;
 
-  /// Precondition: at least one goal, at most msg::MAX_ORDER_POSES.
+  /// Precondition: at least one goal and at most msg::MAX_ORDER_POSES.
   OrderHandle go(RobotId robot, std::vector<Goal> goals);
   OrderHandle cancel(RobotId robot) { return send({msg::OrderKind::ORDER_CANCEL, robot}); }
   /// `robot` may be kAllRobots.
   OrderHandle hold(RobotId robot) { return send({msg::OrderKind::ORDER_HOLD, robot}); }
   OrderHandle resume(RobotId robot) { return send({msg::OrderKind::ORDER_RESUME, robot}); }
-  /// Sets this client's zone of this number. The client forgets its earlier orders about this zone, so that
+  /// Sets this client's zone with this number. The client forgets its earlier orders about this zone, so that
   /// a zone may move often. Precondition: 1 to kMaxZoneCorners corners.
   OrderHandle zone(std::uint32_t number, Zone zone);
-  /// Removes this client's zone of this number, if there is one.
+  /// Removes this client's zone with this number, if there is one.
   OrderHandle remove_zone(std::uint32_t number);
 
-  /// nullptr: unknown, or forgotten: because a later order of this client about the same zone was sent, or
-  /// because nothing more can become of it and of kMaxFinal others.
+  /// nullptr if the order is unknown or forgotten. An order is forgotten when this client sends a later order
+  /// about the same zone, or when it and kMaxFinal others are final.
   const SentOrder* find(OrderHandle handle) const;
   /// The latest report of each robot.
   const std::map<RobotId, OrderReport>& reports() const { return reports_; }
@@ -84,20 +84,20 @@ class OrderClient {
   };
   OrderHandle send(Order order);
   OrderHandle send_zone(Order order);
-  /// Stops repeating the orders that this one makes meaningless.
+  /// Stops repeating the orders that this one supersedes.
   void replace_earlier(const Order& later);
   bool is_followed_by_hold(const SentOrder& resume) const;
   void publish(const Order& order);
-  /// nullptr: no order of this client has this number.
+  /// nullptr if this client has no order with this number.
   SentOrder* find_number(OrderNumber number);
-  /// Numbers the order again if the client's clock is behind, so that the answer says nothing of what the
-  /// client wants. Whether it has.
+  /// Renumbers the order if the client's clock is behind, so that the answer does not reflect the client's
+  /// intent. Returns whether it did.
   bool renumber(SentOrder& sent, const msg::OrderAnswer& answer);
   void repeat();
   void on_answer(const msg::OrderAnswer& answer);
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
-  /// Whether enough whole memories in a row lack the order, this one included.
+  /// Whether the order is missing from enough complete memories in a row, including this one.
   bool is_forgotten(const SentOrder& sent);
   void compare(const OrderBook& remembered);
   void compare(SentOrder& sent, const OrderBook& remembered);
@@ -109,11 +109,11 @@ class OrderClient {
   OrderNumber newest_ = 0;
   OrderHandle last_handle_ = 0;
   std::map<OrderHandle, SentOrder> sent_;
-  std::map<OrderNumber, OrderHandle> by_number_;  // current numbers
+  std::map<OrderNumber, OrderHandle> by_number_;  // keyed by the orders' current numbers
   std::size_t closed_count_ = 0;
-  std::map<OrderHandle, int> missing_;  // whole memories in a row that lack an order that they should have
+  std::map<OrderHandle, int> missing_;  // number of complete memories in a row that lack the order
   std::map<RobotId, OrderReport> reports_;
-  std::map<std::uint32_t, Round> rounds_;  // by coordinator
+  std::map<std::uint32_t, Round> rounds_;  // keyed by coordinator
   std::function<void(const SentOrder&)> on_change_;
   Writer<msg::Order> writer_;
 };

@@ -33,7 +33,7 @@ std::optional<OrderState> OrderStates::find(OrderId order) const {
 }
 
 std::optional<OrderState> OrderStates::wait(OrderId order, std::chrono::nanoseconds timeout) const {
-  // A later deadline would overflow.
+  // A deadline farther away would overflow.
   constexpr std::chrono::nanoseconds kMaxTimeout = std::chrono::hours(24 * 365);
   const auto deadline = std::chrono::steady_clock::now() + std::min(timeout, kMaxTimeout);
   std::unique_lock lock(mutex_);

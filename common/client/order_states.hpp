@@ -15,16 +15,17 @@ namespace sidestep::client {
 /// The states of a client's orders, for threads that wait for changes. Thread-safe.
 class OrderStates {
  public:
-  /// Of the orders that do not change any more, only so many are remembered, the latest.
+  /// Number of final orders that are remembered; the oldest are forgotten first.
   static constexpr std::size_t kMaxFinal = 1000;
 
-  /// A new order, in the phase kSent.
+  /// Adds an order in the phase kSent.
   OrderId add();
-  /// With `is_final` the order does not change any more. Whether it has changed now.
+  /// Updates an order's state. With `is_final` the state can no longer change. Returns whether the state has
+  /// changed.
   bool update(OrderId order, const OrderState& state, bool is_final);
-  /// nullopt: unknown or forgotten.
+  /// nullopt if the order is unknown or forgotten.
   std::optional<OrderState> find(OrderId order) const;
-  /// The order's state when it is over, or after `timeout`.
+  /// Waits until the order is over or `timeout` has passed, and returns its state.
   std::optional<OrderState> wait(OrderId order, std::chrono::nanoseconds timeout) const;
 
  private:

@@ -50,7 +50,7 @@ void RobotTable::on_world(const msg::WorldState& world, Time now) {
     const auto observation = decode(tracked, now);
     if (!observation || !std::isfinite(tracked.observed_heading_rad())) continue;
     Row& row = rows_[observation->robot];
-    // A world repeats the last observation of a robot that cameras do not see.
+    // A world state repeats the last observation of a robot that cameras do not see.
     if (row.observed_at == observation->observed_at) continue;
     row.observed_at = observation->observed_at;
     row.seen_at = now;

@@ -25,14 +25,14 @@ class RobotTable {
 
   void on_status(const msg::OrderStatus& status, Time now);
   void on_world(const msg::WorldState& world, Time now);
-  /// By number.
+  /// All robots, sorted by number.
   std::vector<Robot> robots(Time now) const;
 
  private:
   struct Row {
     Robot robot;
     std::optional<Time> heard_at{};     ///< when the agent's last report arrived
-    std::optional<Time> observed_at{};  ///< by vision's clock
+    std::optional<Time> observed_at{};  ///< capture time by vision's clock
     std::optional<Time> seen_at{};      ///< when the last new observation arrived
   };
 

@@ -9,7 +9,8 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-// Records beyond the slots: kernels may look up any bit of the last word, and index 64 for a missing bit.
+// Number of records beyond the slots. Kernels may look up any bit of the last word, and index 64 for a
+// missing bit.
 constexpr std::size_t kPaddingRecords = 128;
 
 bool touches_one(const void* bodies, Slot slot, const double* from_m, const double* to_m, double radius_m) {
@@ -141,12 +142,12 @@ NearestSlot Bodies::nearest(const Vec2& at) const {
 
 collision::BodiesView Bodies::view() const {
   // A coordinate up to L has a rounding error of L * kRounding, a difference of two coordinates one of 2 L *
-  // kRounding. With the error of the projection onto the path, perpendicular to it, distances are wrong by
-  // less than 16 L * kRounding.
+  // kRounding. Including the error of the projection onto the path and perpendicular to it, distances are
+  // wrong by less than 16 L * kRounding.
   constexpr double kRounding = 0x1p-24;
   const double limit_m = 4 * max_coordinate_m_, error_m = 16 * kRounding * limit_m;
-  // With an error e of the distance, a squared distance near the squared sum of radii R is wrong by at most
-  // 2 R e + e^2. Crossing edges may appear up to 2 e apart.
+  // If a distance has an error e, a squared distance near the squared sum of radii R is wrong by at most 2 R
+  // e + e^2. Crossing edges may appear up to 2 e apart.
   return {{origin_m_.x(), origin_m_.y()},
           rounded_down(limit_m),
           rounded_up(error_m),

@@ -20,11 +20,12 @@ struct NearestSlot {
   Slot slot = 0xffffffffu;
 };
 
-/// The shapes of a world by slot, in double precision and as records for kernels, and exact comparisons.
+/// Shapes of a world, indexed by slot: in double precision for exact comparisons, and as records for the
+/// batch kernels.
 class Bodies {
  public:
-  /// Stores the shapes in slots 0, 1, 2, …. They have to be valid (see check). The centre of their bounding
-  /// box becomes the origin of positions in single precision.
+  /// Stores the shapes in slots 0, 1, 2, …. Precondition: all are valid (see check()). The centre of their
+  /// bounding box becomes the origin of positions in single precision.
   explicit Bodies(std::vector<Shape> shapes);
 
   Slot add(Shape shape);
@@ -35,17 +36,17 @@ class Bodies {
   const Shape& shape(Slot slot) const { return shapes_[slot]; }
   /// Slots in use, in no particular order.
   const std::vector<Slot>& slots() const { return slots_; }
-  /// Upper bound of all slots, in use or not.
+  /// Upper bound (exclusive) of all slots, including unused ones.
   Slot end() const { return static_cast<Slot>(shapes_.size()); }
   const Vec2& origin_m() const { return origin_m_; }
   /// A box that contains all obstacles, including removed ones.
   Box bounds_m() const { return inflated({origin_m_, origin_m_}, max_coordinate_m_); }
 
-  /// The comparison in double precision.
+  /// Exact contact test in double precision.
   bool touches(Slot slot, const Sweep& sweep) const;
-  /// Updates `nearest` if the obstacle is nearer.
+  /// Replaces `nearest` with this obstacle if the obstacle is nearer.
   void compare(Slot slot, const Vec2& at_m, NearestSlot& nearest) const;
-  /// The nearest obstacle, by comparison with all.
+  /// The nearest obstacle, found by brute force.
   NearestSlot nearest(const Vec2& at_m) const;
   /// A view for kernels; invalidated by any change.
   collision::BodiesView view() const;
@@ -59,17 +60,17 @@ class Bodies {
   void rebuild_edges();
 
   std::vector<Shape> shapes_;
-  std::vector<std::uint32_t> indices_;  // by slot: its index in slots_
+  std::vector<std::uint32_t> indices_;  // indexed by slot: position in slots_
   std::vector<Slot> slots_, free_;
   Vec2 origin_m_{0, 0};
   double max_coordinate_m_ = 0;  // largest coordinate of any shape so far, relative to the origin
-  double max_radius_m_ = 0;      // of the circles so far
-  std::vector<collision::BodyRecord> records_;  // by slot, with padding
+  double max_radius_m_ = 0;      // largest radius of any circle so far
+  std::vector<collision::BodyRecord> records_;  // indexed by slot, with padding
   std::vector<collision::EdgeBlock> edges_;
-  std::size_t unused_edges_ = 0;  // blocks
+  std::size_t unused_edges_ = 0;  // number of unused edge blocks
 };
 
-/// A number in single precision that is certainly not above, or not below, the value.
+/// Convert to single precision, rounding down or up.
 float rounded_down(double value);
 float rounded_up(double value);
 

@@ -36,7 +36,7 @@ class BoxTree {
  private:
   using NodeId = std::uint32_t;
 
-  /// A slot (in leaves) or a node, and its box.
+  /// An entry of a node: a slot (in leaves) or a child node, with its box.
   struct Item {
     FloatBox box;
     std::uint32_t id;
@@ -66,13 +66,13 @@ class BoxTree {
   FloatBox rounded_outwards(const Box& box) const;
   FloatBox box_of(NodeId node) const;
 
-  /// Writes an item to a lane, and updates its back reference.
+  /// Writes an item into a lane of a node and updates its back reference.
   void put(NodeId node, std::uint32_t lane, const Item& item);
   void remove_lane(NodeId node, std::uint32_t lane);
   void insert(const Item& slot);
   void append(NodeId node, const Item& item);
   void split(NodeId node, const Item& extra);
-  /// Updates the box of a node in its parent, and so on up to the root.
+  /// Updates the node's box in its parent, and the boxes of all ancestors.
   void refit(NodeId node);
   void erase(Slot slot);
   void collect(NodeId node, std::vector<Item>& slots);
@@ -80,7 +80,7 @@ class BoxTree {
   Vec2 origin_m_;
   std::vector<collision::TreeNode> nodes_;
   std::vector<NodeId> free_nodes_;
-  std::vector<Location> locations_;  // by slot
+  std::vector<Location> locations_;  // indexed by slot
   NodeId root_ = 0;
 };
 

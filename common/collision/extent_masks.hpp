@@ -40,8 +40,8 @@ class ExtentMasks {
   /// The bucket of a coordinate relative to the origin.
   std::size_t bucket(std::size_t axis, double at_m) const;
   void find_rows(const Box& box, const std::uint64_t* (&row)[4]) const;
-  /// By table: in the first two tables, the number of leading rows in which the slot's bit is set; in the
-  /// last two, the number of leading rows in which it is not set. 0 and kBuckets for an unused slot.
+  /// Indexed by table. In the first two tables: the number of leading rows in which the slot's bit is set. In
+  /// the last two: the number of leading rows in which it is clear. An unused slot has 0 and kBuckets.
   using Extents = std::array<std::uint16_t, 4>;
   static constexpr Extents kNone{0, 0, collision::kBuckets, collision::kBuckets};
 
@@ -53,7 +53,7 @@ class ExtentMasks {
   Vec2 origin_m_;
   float per_m_[4] = {}, shift_[4] = {};
   std::vector<std::uint64_t> rows_;
-  std::vector<Extents> extents_;  // by slot
+  std::vector<Extents> extents_;  // indexed by slot
 };
 
 }  // namespace sidestep

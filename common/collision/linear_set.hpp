@@ -19,7 +19,7 @@ class LinearSet {
   }
 
  private:
-  /// The lane of a slot in the circles or in the boxes.
+  /// The lane of a slot in the circle blocks or the box blocks.
   struct Location {
     std::uint32_t lane = 0;
     bool is_circle = false;
@@ -31,8 +31,8 @@ class LinearSet {
   Vec2 origin_m_;
   std::vector<collision::CircleBlock> circles_;
   std::vector<collision::BoxBlock> boxes_;
-  std::vector<Slot> circle_slots_, box_slots_;  // by lane
-  std::vector<Location> locations_;             // by slot
+  std::vector<Slot> circle_slots_, box_slots_;  // indexed by lane
+  std::vector<Location> locations_;             // indexed by slot
 };
 
 }  // namespace sidestep

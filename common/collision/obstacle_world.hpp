@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-/// The search structure by which a world finds the obstacles that a query may touch.
+/// The search structure with which a world finds the obstacles that a query may touch.
 enum class Structure {
   kAutomatic,  ///< chosen by the number of obstacles
   kLinear,     ///< see LinearSet
@@ -22,7 +22,7 @@ enum class Structure {
 
 /// The obstacle nearest to a point. In an empty world: kNoObstacle, infinitely far.
 struct Nearest {
-  double distance_m = std::numeric_limits<double>::infinity();  ///< to its boundary, negative inside
+  double distance_m = std::numeric_limits<double>::infinity();  ///< to the boundary, negative inside
   ObstacleId obstacle = kNoObstacle;
 };
 
@@ -34,12 +34,12 @@ struct Contact {
 
 /// A set of obstacles for contact and distance queries. Shapes touch if they have a point in common.
 /// Obstacles are added, moved and removed without rebuilding the structure for the others. Const functions
-/// are thread-safe and, except obstacles(), do not allocate. Throws std::invalid_argument for numbers that
-/// are not finite, negative radii, invalid shapes (see check) and ids that are not in use.
+/// are thread-safe and, except obstacles(), do not allocate. Functions throw std::invalid_argument for
+/// non-finite numbers, negative radii, invalid shapes (see check()) and unused ids.
 class ObstacleWorld {
  public:
   explicit ObstacleWorld(std::vector<Shape> shapes = {}, Structure structure = Structure::kAutomatic);
-  /// With the kernels of a given instruction set, for tests and benchmarks.
+  /// Uses the kernels of a given instruction set, for tests and benchmarks.
   ObstacleWorld(std::vector<Shape> shapes, Structure structure, const collision::Kernels& kernels);
 
   ObstacleWorld(const ObstacleWorld& other) : ObstacleWorld(Parts(other.parts_)) {}
@@ -54,12 +54,12 @@ class ObstacleWorld {
       return touches_exactly(from_m, to_m, radius_m);
     return result == collision::SweepResult::kTouches;
   }
-  /// The first contact of a disc that moves straight; none if the whole path is free. Paths in contact within
-  /// rounding may be reported either way.
+  /// The first contact of a disc that moves in a straight line; nullopt if the whole path is free. Contacts
+  /// within rounding error may be reported either way.
   std::optional<Contact> first_contact(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
   Nearest nearest(const Vec2& at_m) const;
 
-  /// The shapes passed to the constructor have the ids 0, 1, 2, … in their order.
+  /// Adds an obstacle. The constructor's shapes have the ids 0, 1, 2, … in order.
   ObstacleId add(Shape shape);
   void move(ObstacleId obstacle, const Vec2& by_m);
   void remove(ObstacleId obstacle);
@@ -73,7 +73,7 @@ class ObstacleWorld {
   std::vector<ObstacleId> obstacles() const;
 
  private:
-  /// Everything except view_, which points into it.
+  /// All members except view_, which points into them.
   struct Parts {
     const collision::Kernels* kernels;
     Structure structure;

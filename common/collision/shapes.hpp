@@ -15,7 +15,7 @@ namespace sidestep {
 /// The shape of an obstacle. All but the segment are solid.
 using Shape = std::variant<Circle, Box, ConvexPolygon, Segment>;
 
-/// The circles among shapes.
+/// Returns the circles in a list of shapes.
 [[nodiscard]] std::vector<Circle> circles_of(std::span<const Shape> shapes);
 
 /// Throws std::invalid_argument, with the reason, if a shape is invalid: numbers that are not finite or
@@ -23,13 +23,13 @@ using Shape = std::variant<Circle, Box, ConvexPolygon, Segment>;
 /// convex polygon counter-clockwise.
 void check(const Shape& shape);
 
-/// Whether all coordinates are within ±1e15 m; false for infinities and NaN.
+/// Whether all coordinates are within ±1e15 m. False for infinities and NaN.
 [[nodiscard]] bool is_in_range(const Box& bounds);
 
 /// The bounding box of a shape.
 [[nodiscard]] Box bounds(const Shape& shape);
 
-/// The centre of that box.
+/// The centre of the shape's bounding box.
 [[nodiscard]] Vec2 centre_m(const Shape& shape);
 
 /// The shape, translated.
@@ -38,12 +38,13 @@ void check(const Shape& shape);
 /// The distance from a point to the shape's boundary, negative inside.
 [[nodiscard]] double signed_distance(const Vec2& p, const Shape& shape);
 
-/// The point of the shape's boundary that is nearest to a point; any of them if there are several.
+/// The point on the shape's boundary nearest to a given point. If several are equally near, returns any of
+/// them.
 [[nodiscard]] Vec2 nearest_boundary_point(const Vec2& p, const Shape& shape);
 
-/// A disc that is as far from a point as the shape, in the same direction: the shape itself if it is a
-/// circle, otherwise the nearest point of its boundary, or a disc around the inside of it if the point is
-/// inside.
+/// A disc at the same distance and in the same direction from a point as the shape. For a circle this is the
+/// shape itself. For other shapes it is the nearest boundary point, or, if the point is inside, a disc around
+/// the shape's interior.
 [[nodiscard]] Circle disc_facing(const Vec2& p, const Shape& shape);
 
 /// The squared distance from a segment to the shape, 0 if they touch.

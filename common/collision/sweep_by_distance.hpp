@@ -11,10 +11,10 @@ namespace sidestep {
 /// a path that grazes an obstacle.
 inline constexpr double kGrazing_m = 1e-6;
 
-/// Swept collision queries based on distance queries only, for a body that translates in a straight line. The
-/// function `clearance_m(position)` returns the distance between the body at that position and the nearest
-/// obstacle, or a lower bound of it. It must not change faster than the position, which holds for any body
-/// that does not rotate. `Position` is an Eigen vector.
+/// Swept collision queries for a body that translates in a straight line, built from distance queries only.
+/// The function `clearance_m(position)` returns the distance between the body at that position and the
+/// nearest obstacle, or a lower bound of that distance. Its rate of change must not exceed the body's speed;
+/// this holds for any body that does not rotate. `Position` is an Eigen vector.
 template <typename Position, typename Clearance>
 class SweepByDistance {
  public:
@@ -38,8 +38,8 @@ class SweepByDistance {
   /// (Bruce 2006, chapter 3).
   bool touches() const { return touches(0, length_m_); }
 
-  /// How far the body moves before contact. Each step advances by the clearance at the current position
-  /// (conservative advancement).
+  /// How far the body moves before contact, found by conservative advancement: each step advances by the
+  /// clearance at the current position.
   double free_path_m() const {
     for (double travelled_m = 0; travelled_m < length_m_;) {
       const double free_m = free_at(travelled_m);

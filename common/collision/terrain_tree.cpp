@@ -58,8 +58,8 @@ struct TerrainTree::QuerySegment {
   Vec3 to_m() const { return from_m + displacement_m; }
   Vec3 at(double fraction) const { return from_m + fraction * displacement_m; }
 
-  /// The interval of the segment, as fractions, that lies above or below a node's rectangle in x and y; empty
-  /// if its begin exceeds its end.
+  /// The interval of the segment, as fractions of its length, that lies above or below a node's rectangle in
+  /// x and y. Empty if its start exceeds its end.
   std::pair<double, double> interval_over(const Node& node) const {
     double begin = 0, end = 1;
     for (Eigen::Index axis = 0; axis < 2; ++axis) {
@@ -81,8 +81,8 @@ struct TerrainTree::QuerySegment {
     return p - p.cwiseMax(node.min_m).cwiseMin(node.max_m);
   }
 
-  /// The exact squared distance from a node's box. Its derivative increases along the segment, and is linear
-  /// between the points where the segment meets a plane of the box.
+  /// The exact squared distance of the segment from a node's box. Its derivative increases along the segment,
+  /// and is linear between the points where the segment meets a plane of the box.
   double squared_distance_to(const Node& node) const {
     const auto slope = [&](double fraction) { return displacement_m.dot(offset_outside(node, fraction)); };
     double begin = 0, end = 1, slope_begin = slope(0), slope_end = slope(1);
@@ -103,14 +103,14 @@ struct TerrainTree::QuerySegment {
   }
 };
 
-/// The smallest height of the segment above a triangle; infinite if no point of it lies above or below the
+/// The minimum height of the segment above a triangle. Infinite if no point of it lies above or below the
 /// triangle, or if the triangle is vertical.
 double TerrainTree::height_above(const QuerySegment& segment, const Triangle& t) {
   const std::array<Vec2, 3> corners{t.a_m.head<2>(), t.b_m.head<2>(), t.c_m.head<2>()};
   const double area = cross(corners[1] - corners[0], corners[2] - corners[0]);
   if (area == 0) return kInfinite;
-  // Barycentric coordinates of the segment's ends. The tolerance closes gaps between triangles due to
-  // rounding.
+  // Barycentric coordinates of the segment's ends. The tolerance closes gaps between triangles that are due
+  // to rounding.
   constexpr double kMinWeight = -1e-9;
   std::array<double, 3> at_begin{}, at_end{};
   double begin = 0, end = 1;
@@ -196,7 +196,7 @@ bool TerrainTree::touches(const Vec3& from, const Vec3& to, double radius) const
   double height = kInfinite;
   find_min_height(0, QuerySegment(from, from), height);
   if (height <= 0) return true;
-  // Boxes farther away than the radius are skipped.
+  // Boxes farther away than the radius are skipped by the search.
   double nearest2 = std::nextafter(radius * radius, kInfinite);
   find_nearest(0, segment, radius * radius, nearest2);
   return nearest2 <= radius * radius;

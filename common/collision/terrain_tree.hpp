@@ -38,8 +38,8 @@ class TerrainTree {
   [[nodiscard]] double distance_m(const Vec3& at_m) const { return distance_m(at_m, at_m); }
   /// The distance between a segment and the terrain.
   [[nodiscard]] double distance_m(const Vec3& from_m, const Vec3& to_m) const;
-  /// The smallest height of a segment's points above the terrain: negative below it, infinite if there is no
-  /// terrain below or above the segment.
+  /// The minimum height of a segment above the terrain: negative below it, infinite if there is no terrain
+  /// below or above the segment.
   [[nodiscard]] double min_height_m(const Vec3& from_m, const Vec3& to_m) const;
   /// Whether a ball that moves along a segment touches the terrain, or starts below it.
   [[nodiscard]] bool touches(const Vec3& from_m, const Vec3& to_m, double radius_m) const;
@@ -47,7 +47,7 @@ class TerrainTree {
  private:
   struct Node {
     Vec3 min_m, max_m;
-    std::uint32_t first = 0, count = 0;  // triangles
+    std::uint32_t first = 0, count = 0;  // range of the node's triangles
     std::uint32_t second_child = 0;      // the first child is the next node; 0: a leaf
   };
   struct QuerySegment;

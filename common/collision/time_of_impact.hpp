@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The fraction of the path, 0 to 1, after which the disc first touches the shape; none without contact.
-/// Paths in contact within rounding may be reported either way.
+/// The fraction of the path, 0 to 1, after which the disc first touches the shape; nullopt without contact.
+/// Contacts within rounding error may be reported either way.
 [[nodiscard]] std::optional<double> time_of_impact(const Sweep& sweep, const Shape& shape);
 
 }  // namespace sidestep

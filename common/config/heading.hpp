@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// What is wrong with a heading in radians that a person has given: it is not finite, or beyond a whole turn,
-/// so that it may be meant in degrees. Empty: nothing.
+/// Why a user-supplied heading in radians is rejected: it is not finite, or its magnitude exceeds a full
+/// turn, which suggests degrees. Empty if it is valid.
 [[nodiscard]] std::string heading_problem(double heading_rad);
 
 }  // namespace sidestep

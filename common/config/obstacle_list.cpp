@@ -15,7 +15,7 @@ namespace {
 
 constexpr Range kPlace_m{-1000, 1000}, kSize_m{0.001, 1000};
 constexpr std::size_t kMaxCorners = 1000;
-constexpr std::size_t kMaxPieces = 10'000;  // of all walls, and other obstacles
+constexpr std::size_t kMaxPieces = 10'000;  // total for all walls; also the maximum number of other obstacles
 
 Vec2 point(YamlMap& map, const std::string& key) {
   Vec2 value(0, 0);
@@ -42,7 +42,7 @@ std::vector<Vec2> points(YamlMap& map, const std::string& key) {
 }
 
 /// The rectangle around a straight piece of a wall. It extends beyond both ends by half the thickness, so
-/// that the pieces of a wall leave no notch.
+/// that the pieces leave no notch between them.
 Shape wall_piece(const Vec2& from, const Vec2& to, double thickness_m) {
   const Vec2 along = thickness_m / 2 * (to - from).stableNormalized(), aside(-along.y(), along.x());
   if (along.x() == 0 || along.y() == 0) {
@@ -114,7 +114,7 @@ std::string text_of(const ConvexPolygon& polygon) {
   return fmt::format("polygon: {{corners_m: [{}]}}", corners);
 }
 
-/// What the user of a map has to know; empty: nothing.
+/// What the user of a map must know; empty if nothing.
 std::string notice_of(const LoadedMap& map, const std::string& name, const std::string& unknown) {
   std::string text;
   if (map.unknown > 0)

@@ -25,12 +25,12 @@ inline constexpr std::array<std::string_view, 19> kDrivingPlanners{
     "potential-field", "nf1-potential-field",
     "estar-clearance"};
 
-/// The same, for options of programs.
+/// Names of the planners that can drive robots, for program options.
 inline std::vector<std::string> driving_planners() {
   return {kDrivingPlanners.begin(), kDrivingPlanners.end()};
 }
 
-/// Lets all robots use this planner; empty: those that the scenario gives.
+/// Makes all robots use this planner. Empty: keep the scenario's planners.
 void use_planner(Scenario& scenario, const std::string& planner);
 
 }  // namespace sidestep

@@ -26,18 +26,18 @@ struct RobotSpec {
   Team team = Team::kBlue;
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
-  std::vector<Goal> goals;   ///< visited in order; may be empty
-  std::string planner{};     ///< of its routes, see agents/planning/named_planner.hpp; empty: the scenario's
-  Duration clock_offset{0};  ///< robot's clock - host's clock, at the start
-  double clock_drift_ppm = 0;  ///< by which the robot's clock gains on the host's
-  bool is_absent = false;      ///< not on the floor at the start; start_m is then the robot's own estimate
+  std::vector<Goal> goals;     ///< visited in order; may be empty
+  std::string planner{};       ///< planner of its routes (named_planner.hpp); empty: the scenario's
+  Duration clock_offset{0};    ///< robot's clock - host's clock, at the start
+  double clock_drift_ppm = 0;  ///< rate at which the robot's clock gains on the host's
+  bool is_absent = false;      ///< not on the floor at the start; start_m is its own estimate
 };
 
 /// A moving obstacle outside the protocol: an opponent or a person.
 struct OpponentSpec {
   double radius_m = 0.09;
   double speed_mps = 1;
-  std::vector<Vec2> path_m;  ///< at least one point; back and forth, or in a loop if both ends coincide
+  std::vector<Vec2> path_m;  ///< at least one point; back and forth, or a loop if both ends coincide
 };
 
 struct BallSpec {
@@ -45,52 +45,51 @@ struct BallSpec {
   Vec2 velocity_mps{0, 0};
 };
 
-/// The images that cameras send instead of detections, and the camera mounting.
+/// The camera mounting, and the images that cameras send instead of detections.
 struct ImageSpec {
   PixelFormat format = PixelFormat::kYuv422;
   int width_px = 780;
   int height_px = 580;
   double camera_height_m = 4;
-  double distortion = 0.1;  ///< k of common/camera/lens.hpp
+  double distortion = 0.1;  ///< coefficient k in common/camera/lens.hpp
 };
 
 /// The cameras form a grid above the field and see overlapping rectangles of it.
 struct VisionSpec {
   double rate_hz = 60;
-  int columns = 2;                        ///< cameras along the length
-  int rows = 1;                           ///< cameras along the width
+  int columns = 2;                        ///< number of cameras along the length
+  int rows = 1;                           ///< number of cameras along the width
   double overlap_m = 0.5;                 ///< how far a camera's view extends beyond its grid cell
-  double position_noise_m = 0.0005;       ///< standard deviation per axis
+  double position_noise_m = 0.0005;       ///< standard deviation on each axis
   double heading_noise_rad = 0.005;       ///< standard deviation
   Duration delay{10'000'000};             ///< from capture to publication
-  double miss_probability = 0;            ///< probability that a visible robot is not in a frame
+  double miss_probability = 0;            ///< probability that a visible robot is missing from a frame
   double ghost_probability = 0;           ///< probability of a false detection of a robot in a frame
-  double ghost_obstacle_probability = 0;  ///< the same for a false obstacle
+  double ghost_obstacle_probability = 0;  ///< probability of a false obstacle in a frame
   std::optional<ImageSpec> images;  ///< nullopt: the simulator publishes detections with the noise above
 };
 
 struct OdometrySpec {
   double scale_error = 0.005;        ///< standard deviation of each robot's constant relative error
-  double velocity_noise_mps = 0.01;  ///< standard deviation per axis and millisecond of measurement
+  double velocity_noise_mps = 0.01;  ///< standard deviation per axis of each measurement
 };
 
-/// The laser that each robot carries, and what robots assume of it. Robots with lasers learn of opponents and
-/// people by their own scans only.
+/// The laser scanner on each robot, and what robots assume about it. Robots with lasers learn of opponents
+/// and people only from their own scans.
 struct LaserSpec {
   LaserSettings settings;
   double rate_hz = 15;
-  double range_error_m = 0.03;     ///< largest error of a range
+  double range_error_m = 0.03;     ///< maximum error of a range
   double dropout_probability = 0;  ///< probability that a beam is lost
-  double person_radius_m = 0.15;   ///< of the smallest person, at the height of the laser
+  double person_radius_m = 0.15;   ///< radius of the smallest person at laser height
 };
 
-/// The impairments of messages on SimBus; not applied over DDS.
+/// The impairments of messages on SimBus. They do not apply to DDS.
 struct NetworkSpec {
   double loss = 0;
   double duplicate = 0;
   Duration delay_min{200'000};
-  Duration delay_max{
-      600'000};  ///< uniformly random and independent per message, so messages are reordered too
+  Duration delay_max{600'000};  ///< uniform and independent per message, so messages are also reordered
 };
 
 /// The processes that `sidestep run` restarts when they die. The simulator is never restarted, because it
@@ -109,9 +108,9 @@ struct Scenario {
   Field field;
   std::vector<RobotSpec> robots;  ///< ascending by id
   std::vector<Shape> obstacles;
-  std::shared_ptr<const FloorMap> map;  ///< further obstacles; null: none
+  std::shared_ptr<const FloorMap> map;  ///< additional obstacles; null: none
   std::vector<OpponentSpec> opponents;
-  double max_opponent_speed_mps = 1.5;  ///< upper bound that agents assume
+  double max_opponent_speed_mps = 1.5;  ///< upper bound of opponents' speed that agents assume
   std::optional<BallSpec> ball;
   MotionLimits limits;
   double radius_m = 0.09;
@@ -119,17 +118,17 @@ struct Scenario {
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
   double clock_bound_s = SafetyBudget{}.clock_bound_s;
   Duration cycle{16'666'667};
-  std::string planner = "lazy-visibility";  ///< of the routes of all robots
+  std::string planner = "lazy-visibility";  ///< planner for the routes of all robots
   double goal_tolerance_m = 0.02;
-  double time_limit_s = 60;  ///< for all robots to arrive, counted from when the coordinator starts to grant
+  double time_limit_s = 60;  ///< limit for all robots to arrive, counted from the coordinator's first grants
   VisionSpec vision;
   OdometrySpec odometry;
   std::optional<LaserSpec> laser;  ///< nullopt: vision sees opponents and people
   double command_loss = 0;  ///< probability that the radio link between agent and robot drops a command
   NetworkSpec network;
   RestartSpec restart;
-  int coordinators = 1;        ///< one is active, the others are standbys
-  bool has_test_keys = false;  ///< it has `faults` or `expect`, which only `sidestep test` applies
+  int coordinators = 1;        ///< number of coordinators: one is active, the others are standbys
+  bool has_test_keys = false;  ///< the file has `faults` or `expect`, which only `sidestep test` applies
 };
 
 FloorRules floor_rules(const Scenario& scenario);
@@ -144,10 +143,10 @@ const RobotSpec* find_robot(const Scenario& scenario, RobotId id);
 /// A robot's number within its team, 0 .. 15: the id of its marker pattern and its id in the league's
 /// packets.
 constexpr std::uint32_t number_of(RobotId id) { return id % 16; }
-/// The first robot of a team with a number, or nullptr.
+/// The first robot of a team with this number, or nullptr.
 const RobotSpec* find_robot(const Scenario& scenario, Team team, std::uint32_t number);
-/// Throws std::invalid_argument if two robots of a team have the same number: neither patterns nor packets
-/// could distinguish them.
+/// Throws std::invalid_argument if two robots of a team have the same number, because neither marker patterns
+/// nor league packets could distinguish them.
 void require_unique_numbers(const Scenario& scenario);
 
 }  // namespace sidestep

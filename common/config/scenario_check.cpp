@@ -62,7 +62,7 @@ struct PlacementCheck {
     }
   }
 
-  /// `what` is called for an error only.
+  /// `what` is called only in case of an error.
   template <typename What>
   void check_distance(const Vec2& a, const Vec2& b, int line, What what) const {
     const double min_distance = 2 * scenario.radius_m + scenario.margin_m;
@@ -74,7 +74,7 @@ struct PlacementCheck {
   }
 };
 
-/// Where the robot stays at the end: a robot without goals stays where it starts.
+/// Where the robot stays at the end. A robot without goals stays where it starts.
 std::optional<Vec2> last_place_m(const RobotSpec& robot) {
   if (!robot.goals.empty()) return robot.goals.back().position_m;
   return robot.is_absent ? std::nullopt : std::optional(robot.start_m);

@@ -8,10 +8,10 @@
 
 namespace sidestep {
 
-/// The lines of a robot in the scenario file.
+/// Line numbers of a robot's entries in the scenario file.
 struct RobotLines {
   int start = 1;
-  std::vector<int> goals;  ///< one per goal
+  std::vector<int> goals;  ///< one entry per goal
 };
 
 /// Throws ConfigError if two robots share an id, a start or goal lies outside the field or in an obstacle,

@@ -25,8 +25,9 @@ constexpr const char* kExpected = "a scenario";
 constexpr Range kProbability{0, 1};
 constexpr std::size_t kMaxNameLength = 64;
 
-/// The text as a name of reports and their files: letters and digits of any language, '-', '_' and '.', but
-/// not '.' in front. Each other character becomes '_', and what follows after kMaxNameLength is left out.
+/// Turns the text into a name for reports and their files. Allowed are letters and digits of any language,
+/// '-', '_' and '.', but no leading '.'. Every other character becomes '_', and text beyond kMaxNameLength is
+/// cut off.
 std::string as_name(const std::string& text) {
   std::string name;
   std::size_t characters = 0;
@@ -124,7 +125,7 @@ void check_images(YamlMap& map, const Scenario& scenario) {
 
 void read_vision(YamlMap& map, VisionSpec& vision) {
   read_section(map, "vision", [&](YamlMap& inner) {
-    // Frames farther apart than 0.3 s watch nothing.
+    // Frames more than 0.3 s apart cannot supervise anything.
     inner.read("rate_hz", {5, 1000}, vision.rate_hz);
     inner.read("columns", {1, 16}, vision.columns);
     inner.read("rows", {1, 16}, vision.rows);
@@ -218,10 +219,11 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name,
   read_restart(map, scenario.restart);
   map.read("coordinators", {1, kMaxCoordinators}, scenario.coordinators);
   map.read("planner", kDrivingPlanners, scenario.planner);
-  // `sidestep test` reads these (deploy/fault/plan).
+  // Only `sidestep test` reads these keys (deploy/fault/plan).
   for (const char* key : {"faults", "expect"})
     scenario.has_test_keys = map.find(key).IsDefined() || scenario.has_test_keys;
-  // Placements are checked after all keys, because a misspelt key may be what makes one invalid.
+  // Placements are checked after all keys have been read, because a misspelt key may be the reason why a
+  // placement is invalid.
   map.find("robots");
   map.find("circle");
   map.find("streams");

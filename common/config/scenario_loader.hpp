@@ -11,8 +11,8 @@ namespace sidestep {
 /// Reads and checks a scenario file (deploy/scenarios/README.md). Throws ConfigError.
 [[nodiscard]] Scenario load_scenario(const std::string& path);
 
-/// The same from text. `file_name` appears in error messages, and its stem is the default name of the
-/// scenario. With `map_cells`, these replace the file that the key `map` names.
+/// Parses and checks the text of a scenario file. `file_name` appears in error messages, and its stem is the
+/// default name of the scenario. If `map_cells` is given, it replaces the file that the key `map` names.
 [[nodiscard]] Scenario parse_scenario(const std::string& text, const std::string& file_name,
                                       const OccupancyMap* map_cells = nullptr);
 

@@ -58,7 +58,8 @@ PlacedRobot read_robot(const YAML::Node& node, const YamlLocation& location) {
   return placed;
 }
 
-/// Robots on a circle, given the chord between neighbours. Each faces its goal, the opposite point.
+/// Places robots on a circle, given the chord between neighbours. Each faces its goal, which is the opposite
+/// point.
 void read_circle(YamlMap& map, std::vector<PlacedRobot>& robots) {
   const YAML::Node node = map.find("circle");
   if (!node.IsDefined()) return;
@@ -94,9 +95,9 @@ void read_circle(YamlMap& map, std::vector<PlacedRobot>& robots) {
   }
 }
 
-/// Robots in a square grid, one per cell. In each row, pairs that drive along x alternate with pairs that
-/// drive along y; every other lane runs in the opposite direction. Goals lie on cells of the same kind as the
-/// starts, so no goal blocks another robot.
+/// Places robots in a square grid, one per cell. In each row, pairs that drive along x alternate with pairs
+/// that drive along y; every other lane runs in the opposite direction. Goals lie on cells of the same kind
+/// as the starts, so no goal blocks another robot.
 void read_streams(YamlMap& map, std::vector<PlacedRobot>& robots) {
   const YAML::Node node = map.find("streams");
   if (!node.IsDefined()) return;

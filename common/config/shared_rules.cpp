@@ -12,18 +12,18 @@ namespace {
 
 constexpr std::size_t kMaxKeyLength = 64;
 constexpr std::size_t kMaxRules = 64;
-// Lists of more obstacles are replaced by their number and fingerprint.
+// Longer lists of obstacles are replaced by their number and fingerprint.
 constexpr std::size_t kMaxListedObstacles = 16;
 constexpr std::size_t kMaxShownLength = 80;
 
-/// FNV-1a, 64 bits. Detects mistakes; it is no protection against forgery.
+/// FNV-1a with 64 bits. It detects mistakes but does not protect against forgery.
 std::uint64_t hash(std::string_view text) {
   std::uint64_t result = 0xcbf29ce484222325;
   for (const char c : text) result = (result ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return result;
 }
 
-/// Numbers with runs shortened, e.g. "0-3, 8".
+/// The robot numbers with runs shortened, for example "0-3, 8".
 std::string numbers_of(const Scenario& scenario, Team team) {
   std::string text;
   const auto& robots = scenario.robots;

@@ -13,20 +13,20 @@ namespace sidestep {
 
 /// A rule whose value differs between two processes.
 struct RuleDifference {
-  std::string key;     ///< as in the scenario file, e.g. limits.speed_mps
+  std::string key;     ///< as in the scenario file, for example limits.speed_mps
   std::string own;     ///< empty: this process does not know the key
   std::string others;  ///< empty: the other process does not know the key
 };
 
 /// What all processes that share a floor must agree on: the roster, and the rules that the protocol's safety
-/// relies on. One line "key: value" for each; values never contain a line break.
+/// relies on. Stored as one line "key: value" per rule; values never contain a line break.
 class SharedRules {
  public:
-  /// Identifies rules in message headers; never 0.
+  /// Identifies a set of rules in message headers. Never 0.
   using Fingerprint = std::uint64_t;
 
   explicit SharedRules(const Scenario& scenario);
-  /// Decodes another process's text(), which may be hostile; nullopt if it is not such a text.
+  /// Decodes another process's text(). The text may be hostile; nullopt if it is malformed.
   [[nodiscard]] static std::optional<SharedRules> parse(std::string_view text);
 
   const std::string& text() const { return text_; }

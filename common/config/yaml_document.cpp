@@ -21,12 +21,12 @@ namespace {
 
 constexpr std::size_t kMaxValues = 400'000;
 
-/// Records the line on which the last document began, and counts values: each use of an anchor as often as
-/// what it stands for has values, so merged ones too. yaml-cpp takes about half a kilobyte for each.
+/// Records the line on which the last document began, and counts values. Every use of an anchor counts as
+/// many values as the anchor has, and so do merged ones. yaml-cpp takes about half a kilobyte for each value.
 class FirstReading : public YAML::EventHandler {
  public:
   int line = 1;
-  bool has_merge_key = false;  ///< perhaps: some text is "<<"
+  bool has_merge_key = false;  ///< may be true in vain: some text is "<<"
 
   explicit FirstReading(const std::string& file_name) : file_name_(file_name) {}
 
@@ -77,12 +77,13 @@ class FirstReading : public YAML::EventHandler {
 
   const std::string& file_name_;
   std::size_t values_ = 0;
-  std::vector<std::pair<YAML::anchor_t, std::size_t>> open_;  // collections, and the values before each
-  std::map<YAML::anchor_t, std::size_t> values_of_;           // by anchor; 0 stands for none
+  std::vector<std::pair<YAML::anchor_t, std::size_t>> open_;  // with the number of values before each
+  // Number of values by anchor; 0 stands for no anchor.
+  std::map<YAML::anchor_t, std::size_t> values_of_;
 };
 
-/// Whether the line, from 1, is indented by a tab. yaml-cpp names various consequences of that, but not the
-/// cause.
+/// Whether the line, counted from 1, is indented by a tab. yaml-cpp reports various consequences of that but
+/// not the cause.
 bool is_indented_by_tab(const std::string& text, int line) {
   std::istringstream stream(text);
   std::string content;
@@ -92,7 +93,7 @@ bool is_indented_by_tab(const std::string& text, int line) {
   return content.substr(0, indentation).find('\t') != std::string::npos;
 }
 
-/// yaml-cpp's reason on this line, from 1, or the cause of it.
+/// yaml-cpp's reason for an error on this line, counted from 1, or the actual cause.
 std::string reason_of(const YAML::Exception& error, const std::string& text, int line) {
   return is_indented_by_tab(text, line) ? "a tab indents this line, expected spaces"
                                         : "not YAML: " + error.msg;
@@ -110,8 +111,8 @@ std::string read_yaml_file(const std::string& path, const std::string& expected)
   }
 }
 
-// In yaml-cpp 0.7, Load silently ignores all documents after the first, and LoadAll does not return for some
-// malformed files. So the documents are counted first, up to the second.
+// In yaml-cpp 0.7, Load() silently ignores all documents after the first, and LoadAll() does not return for
+// some malformed files. Therefore the documents are counted first, stopping at the second.
 YAML::Node parse_yaml(const std::string& text, const std::string& file_name, const std::string& expected) {
   check_yaml_structure(text, file_name, kMaxValues);
   try {

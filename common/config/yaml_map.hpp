@@ -15,7 +15,7 @@ namespace sidestep {
 /// A location in a YAML file, for error messages.
 struct YamlLocation {
   std::string file;
-  int line = 1;      ///< from 1
+  int line = 1;      ///< line number, counted from 1
   std::string what;  ///< the key, e.g. "vision.delay_ms"
 
   /// Throws a ConfigError for this location.
@@ -29,13 +29,13 @@ struct Range {
   double high;
 };
 
-// Readers of a node. They throw a ConfigError for `location` if the node has the wrong type or is out of
-// range.
+// Readers of a single node. They throw a ConfigError for `location` if the node has the wrong type or is out
+// of range.
 
 /// A finite number.
 [[nodiscard]] double number_from(const YAML::Node& node, const YamlLocation& location, Range range);
 [[nodiscard]] long integer_from(const YAML::Node& node, const YamlLocation& location, Range range);
-/// A heading in radians, within a whole turn.
+/// A heading in radians, at most a full turn in either direction.
 [[nodiscard]] double heading_from(const YAML::Node& node, const YamlLocation& location);
 /// Plain or quoted text, without zero bytes.
 [[nodiscard]] std::string text_from(const YAML::Node& node, const YamlLocation& location);
@@ -55,13 +55,13 @@ class YamlMap {
   void read(const std::string& key, Range range, double& value);
   void read(const std::string& key, Range range, int& value);
   void read(const std::string& key, Range range, Vec2& value);
-  /// One of these names.
+  /// Reads a value that must be one of these names.
   void read(const std::string& key, std::span<const std::string_view> names, std::string& value);
-  /// true or false.
+  /// Reads "true" or "false".
   void read(const std::string& key, bool& value);
-  /// A heading in radians, within a whole turn.
+  /// Reads a heading in radians, at most a full turn in either direction.
   void read_heading(const std::string& key, double& value_rad);
-  /// For keys that end in _ms.
+  /// Reads a duration in milliseconds, for keys that end in _ms.
   void read_ms(const std::string& key, Range range_ms, Duration& value);
   /// The value of a key; undefined if the key is missing.
   YAML::Node find(const std::string& key);
@@ -78,8 +78,8 @@ class YamlMap {
   std::vector<std::string> known_;
 };
 
-/// The mapping at the root of a YAML text. `expected` ("a marker layout") and `file_name` appear in error
-/// messages.
+/// The mapping at the root of a YAML text. `expected`, for example "a marker layout", and `file_name` appear
+/// in error messages.
 [[nodiscard]] YamlMap document_map(const std::string& text, const std::string& file_name,
                                    const std::string& expected);
 

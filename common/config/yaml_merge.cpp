@@ -13,7 +13,7 @@ namespace {
 /// Aliases can nest deeper than the text does.
 constexpr int kMaxDepth = 1000;
 
-/// In quotes or with a tag, it is an ordinary key.
+/// In quotes or with a tag, "<<" is an ordinary key.
 bool is_merge_key(const YAML::Node& key) {
   return key.IsScalar() && key.Scalar() == "<<" &&
          (key.Tag() == "?" || key.Tag() == "tag:yaml.org,2002:merge");
@@ -37,7 +37,7 @@ class Merger {
     throw ConfigError(file_name_, std::max(1, node.Mark().line + 1), why);
   }
 
-  /// The mappings under a merge key.
+  /// The mappings listed under a merge key.
   std::vector<YAML::Node> sources_of(const YAML::Node& key, const YAML::Node& value) const {
     std::vector<YAML::Node> sources;
     if (value.IsSequence())

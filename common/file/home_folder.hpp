@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// A path with "~" or "~/" at its beginning replaced by the user's home folder ($HOME), as shells do.
+/// Replaces a leading "~" or "~/" in a path with the user's home folder ($HOME), as shells do.
 [[nodiscard]] std::string with_home(const std::string& path);
 
 }  // namespace sidestep

@@ -23,7 +23,7 @@ std::string read_file(const std::string& path, std::size_t max_bytes) {
   require_regular_file(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error(std::strerror(errno));
-  // The file may grow meanwhile, and those of /proc have no size.
+  // The size is not known in advance: the file may grow meanwhile, and files in /proc report no size.
   std::string text;
   char buffer[1 << 16];
   while (file.read(buffer, sizeof buffer) || file.gcount() > 0) {

@@ -6,12 +6,12 @@
 
 namespace sidestep {
 
-/// Throws std::runtime_error with nothing but the reason, e.g. "a directory", if there is no regular file: no
-/// device or pipe may keep a program waiting or fill its memory.
+/// Throws std::runtime_error unless the path is a regular file, because a device or pipe could block a
+/// program or fill its memory. The message is only the reason, for example "a directory".
 void require_regular_file(const std::string& path);
 
-/// The content of a file that somebody names. Throws std::runtime_error with nothing but the reason: if
-/// it is no regular file, has more than `max_bytes`, or cannot be read.
+/// Reads a file whose path comes from a user. Throws std::runtime_error if it is not a regular file, exceeds
+/// `max_bytes`, or cannot be read. The message is only the reason.
 [[nodiscard]] std::string read_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace sidestep

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxLinks = 40;  ///< as the kernel follows
+constexpr int kMaxLinks = 40;  ///< as many as the kernel follows
 
 std::string user_name(uid_t user) {
   passwd entry{};
@@ -36,7 +36,8 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return stat(path.c_str(), &status) == 0 ? std::optional(status) : std::nullopt;
 }
 
-/// What must be allowed of a part of a path: folders on the way are passed, a folder at the end is listed.
+/// The permission that is needed for a part of a path: folders on the way must be searchable, a folder at the
+/// end must be listable.
 int needed_access(const fs::path& part, const fs::path& path) {
   const auto status = status_of(part);
   const bool is_folder = status && S_ISDIR(status->st_mode);
@@ -44,7 +45,7 @@ int needed_access(const fs::path& part, const fs::path& path) {
   return is_folder ? R_OK | X_OK : R_OK;
 }
 
-/// The file or folder whose permissions keep the user from reading an absolute path.
+/// The file or folder whose permissions prevent the user from reading an absolute path.
 fs::path closed_part(const fs::path& path, int links = 0) {
   fs::path part;
   for (const fs::path& name : path) {

@@ -7,11 +7,11 @@
 namespace sidestep {
 
 /// Why the user of this process has no permission to read a file or folder: "user sidestep may not read PATH:
-/// FOLDER belongs to root and has mode 0700". nullopt if permissions do not keep it from reading, e.g.
-/// because nothing is there. Follows links.
+/// FOLDER belongs to root and has mode 0700". nullopt if permissions are not the obstacle, for example
+/// because the file does not exist. Follows links.
 [[nodiscard]] std::optional<std::string> denied_read(const std::string& path);
 
-/// Throws std::invalid_argument with the text of denied_read(), if there is one.
+/// Throws std::invalid_argument with the text of denied_read() if it returns one.
 void require_read_permission(const std::string& path);
 
 }  // namespace sidestep

@@ -5,10 +5,10 @@
 
 namespace sidestep {
 
-/// A new, empty folder that exists, with what is in it, as long as this object.
+/// A new temporary folder. It is removed with its contents when this object is destroyed.
 class TemporaryFolder {
  public:
-  /// Throws std::runtime_error.
+  /// Throws std::runtime_error if the folder cannot be created.
   TemporaryFolder();
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

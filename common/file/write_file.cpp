@@ -17,7 +17,7 @@ namespace {
   throw std::runtime_error(fmt::format("cannot write {}: {}", path, reason));
 }
 
-/// False with errno set when not all of the text could be written.
+/// False, with errno set, if the text could not be written completely.
 bool write(const std::string& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
   file << text;
@@ -25,7 +25,8 @@ bool write(const std::string& path, const std::string& text) {
   return static_cast<bool>(file);
 }
 
-/// Opening a pipe for writing waits for a reader, and a signal does not end a process that handles it.
+/// Opening a pipe for writing would wait for a reader, and a process that handles a signal is not ended by
+/// it.
 void require_reader(const std::string& pipe) {
   const int descriptor = open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) fail(pipe, errno == ENXIO ? "nobody reads this pipe" : std::strerror(errno));

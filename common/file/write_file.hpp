@@ -5,9 +5,10 @@
 
 namespace sidestep {
 
-/// Writes a text file as a whole and creates its folder: readers see the old content or the new one, never a
-/// part. A path that is not a regular file, such as /dev/stdout or a symbolic link, is written in place.
-/// Throws std::runtime_error ("cannot write PATH: reason"); the old content then remains.
+/// Writes a text file atomically, creating its folder if needed: readers see the old content or the new
+/// content, never a part of it. A path that is not a regular file, such as /dev/stdout or a symbolic link, is
+/// written in place. Throws std::runtime_error ("cannot write PATH: reason")on failure; the old content then
+/// remains.
 void write_file(const std::string& path, const std::string& text);
 
 }  // namespace sidestep

@@ -10,8 +10,8 @@
 namespace sidestep {
 
 /// The corners of the convex hull, counter-clockwise, without points on its edges: one corner if all points
-/// are equal, two if they lie on a line (Andrew's monotone chain). Points count as on a grid of a millimetre,
-/// so that the result is exact.
+/// are equal, two if they lie on a line (Andrew's monotone chain). Points are rounded to a millimetre grid,
+/// so that the computation is exact.
 [[nodiscard]] inline std::vector<Vec2> convex_hull(std::vector<Vec2> points_m) {
   constexpr double kPerMetre = 1000;
   for (Vec2& point : points_m) point = (kPerMetre * point).array().round().matrix();
@@ -26,7 +26,7 @@ namespace sidestep {
         hull.pop_back();
       hull.push_back(*point);
     }
-    hull.pop_back();  // the first of the next chain
+    hull.pop_back();  // The last point is also the first one of the next chain.
   };
   if (points_m.size() > 1) {
     add_chain(points_m.begin(), points_m.end());

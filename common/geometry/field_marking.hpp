@@ -9,23 +9,23 @@
 
 namespace sidestep {
 
-/// A straight line on the field, under the league's name for it.
+/// A straight line on the field, with the league's name for it.
 struct MarkedLine {
   const char* name = "";
   Segment segment_m;
 };
 
-/// The lines and goals of the Small Size League's field (its rules, Field of Play), scaled to a field: those
-/// of division A if it is at least 10.5 m long, of division B otherwise. The width of lines and the depth and
-/// height of goals do not scale.
+/// The lines and goals of the Small Size League's field (its rules, Field of Play), scaled to a given field.
+/// Uses the dimensions of division A if the field is at least 10.5 m long, and of division B otherwise. The
+/// width of lines and the depth and height of goals do not scale.
 struct FieldMarking {
   double line_m = 0.01;  ///< width of all lines
   double goal_depth_m = 0.18;
   double goal_height_m = 0.155;
   double goal_width_m = 0;
-  double area_depth_m = 0, area_width_m = 0;  ///< of the penalty areas, between the centres of their lines
+  double area_depth_m = 0, area_width_m = 0;  ///< penalty areas, between line centres
   double centre_circle_radius_m = 0;          ///< at most a quarter of the field's width
-  double penalty_mark_m = 0;                  ///< distance from the goal
+  double penalty_mark_m = 0;                  ///< distance of the penalty mark from the goal
   /// The centres of all straight lines, in the order of the league's shape types (TopTouchLine, type 2,
   /// first).
   std::array<MarkedLine, 12> lines{};

@@ -12,7 +12,7 @@ struct Segment {
   Vec2 from_m{0, 0}, to_m{0, 0};
 };
 
-/// The position on a segment that is nearest to a point, relative to the segment's beginning.
+/// The point on a segment nearest to a given point, relative to the segment's start.
 inline Vec2 nearest_offset(const Vec2& p, const Segment& s) {
   const Vec2 direction = s.to_m - s.from_m, off = p - s.from_m;
   const double length2 = direction.squaredNorm();

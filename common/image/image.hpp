@@ -15,7 +15,7 @@ enum class PixelFormat : std::uint8_t {
   kRgb      ///< R G B per pixel
 };
 
-/// The name in files and on the command line.
+/// The name used in files and on the command line.
 constexpr std::string_view name_of(PixelFormat format) {
   return format == PixelFormat::kRgb ? "rgb" : "yuv422";
 }
@@ -47,7 +47,7 @@ struct ImageView {
 class Image {
  public:
   Image() = default;
-  /// All bytes are 0. Precondition: the sizes are not negative, and the width is even with kYuv422.
+  /// All bytes are zero. Preconditions: the sizes are not negative, and the width is even with kYuv422.
   Image(PixelFormat format, int width_px, int height_px)
       : format_(format),
         width_px_(width_px),

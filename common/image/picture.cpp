@@ -15,13 +15,13 @@ namespace {
 
 cv::Vec3b bgr(const Rgb& colour) { return {colour.b, colour.g, colour.r}; }
 
-/// Empty if OpenCV cannot decode them.
+/// Empty if OpenCV cannot decode the bytes.
 cv::Mat decoded(const std::string& bytes) {
   try {
     const cv::Mat file(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
     return cv::imdecode(file, cv::IMREAD_COLOR);
   } catch (const cv::Exception&) {
-    return {};  // OpenCV's message names its own source file
+    return {};  // discards OpenCV's message, which names its own source file
   }
 }
 
@@ -51,7 +51,7 @@ Image read_picture(const std::string& path) {
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(fmt::format("{}: cannot be read: {}", path, error.what()));
   }
-  // OpenCV allocates what the header states, whatever the file holds.
+  // OpenCV would allocate the size stated in the header, regardless of the file's content.
   const std::optional<PictureSize> size = stated_size(bytes);
   if (!size) throw std::invalid_argument(path + ": expected a picture in PNG, JPEG or PNM");
   if (size->width_px > kMaxPicturePixels || size->height_px > kMaxPicturePixels ||

@@ -8,15 +8,15 @@
 
 namespace sidestep {
 
-/// A copy of an image for OpenCV.
+/// Copies an image into an OpenCV matrix.
 cv::Mat3b bgr_of(const ImageView& image);
 
-/// As many as the largest camera image of a scenario has.
+/// The number of pixels in the largest camera image that a scenario may have.
 inline constexpr std::size_t kMaxPicturePixels = 4096 * 4096;
 inline constexpr std::size_t kMaxPictureBytes = 64'000'000;
 
-/// Reads a picture in PNG, JPEG or PNM as kRgb. Throws std::invalid_argument ("PATH: ...") if there is no
-/// such file, it holds no such picture, or more than kMaxPicturePixels or kMaxPictureBytes. The size that its
+/// Reads a picture in PNG, JPEG or PNM as kRgb. Throws std::invalid_argument ("PATH: ...") if the file does
+/// not exist, is not such a picture, or exceeds kMaxPicturePixels or kMaxPictureBytes. The size that its
 /// header states is checked before memory is allocated for it.
 Image read_picture(const std::string& path);
 

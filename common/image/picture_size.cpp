@@ -11,25 +11,25 @@ using namespace std::string_view_literals;
 
 std::uint8_t byte_at(std::string_view bytes, std::size_t at) { return static_cast<std::uint8_t>(bytes[at]); }
 
-/// Big-endian. Precondition: there are so many bytes.
+/// Reads a big-endian number. Precondition: there are enough bytes.
 std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < size; ++i) value = value << 8 | byte_at(bytes, at + i);
   return value;
 }
 
-/// The first chunk has the size (PNG specification, 11.2.2).
+/// The first chunk contains the size (PNG specification, 11.2.2).
 std::optional<PictureSize> png_size(std::string_view bytes) {
   constexpr std::size_t kChunk = 8, kWidth = kChunk + 8, kHeight = kWidth + 4;
   if (bytes.size() < kHeight + 4 || bytes.substr(kChunk, 8) != "\0\0\0\x0dIHDR"sv) return std::nullopt;
   return PictureSize{number_at(bytes, kWidth, 4), number_at(bytes, kHeight, 4)};
 }
 
-/// The segment that begins the frame has the size (ITU-T T.81, B.2.2).
+/// The segment that begins the frame contains the size (ITU-T T.81, B.2.2).
 std::optional<PictureSize> jpeg_size(std::string_view bytes) {
   for (std::size_t at = 2;;) {
     if (at >= bytes.size() || byte_at(bytes, at) != 0xff) return std::nullopt;
-    while (at < bytes.size() && byte_at(bytes, at) == 0xff) ++at;  // a marker may begin with several
+    while (at < bytes.size() && byte_at(bytes, at) == 0xff) ++at;  // a marker may begin with several of these
     if (at + 8 > bytes.size()) return std::nullopt;
     const std::uint8_t marker = byte_at(bytes, at++);
     const bool is_frame =

@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// BT.601 coefficients times 2^16. Those of y add up to 1, those of u and of v to 0.
+/// BT.601 coefficients times 2^16. Those of y add up to 1, and those of u and of v to 0.
 constexpr int kShift = 16;
 constexpr int fixed(double value) {
   return static_cast<int>(value * (1 << kShift) + (value < 0 ? -0.5 : 0.5));
@@ -25,7 +25,7 @@ std::uint8_t luma(const std::uint8_t* c) {
                                    kShift);
 }
 
-/// From the sum of the weighted channels of two pixels.
+/// The chroma of a pair of pixels, from the sum of their weighted channels.
 std::uint8_t chroma(int sum) {
   const int value = 128 + ((sum + (1 << kShift)) >> (kShift + 1));
   return static_cast<std::uint8_t>(value > 255 ? 255 : value);

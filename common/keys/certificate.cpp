@@ -28,7 +28,7 @@ Time to_time(const ASN1_TIME* time) {
   return Time{} + std::chrono::seconds(timegm(&parts));
 }
 
-/// The only value of a part of the subject; empty if there is none, or several.
+/// The value of a part of the subject; empty unless there is exactly one.
 std::string part_of(const X509_NAME* name, int nid) {
   const int index = X509_NAME_get_index_by_NID(name, nid, -1);
   if (index < 0 || X509_NAME_get_index_by_NID(name, nid, index) >= 0) return {};
@@ -91,7 +91,7 @@ CertifiedPrefix Certificate::prefix() const {
   std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
   unsigned size = 0;
   X509_NAME_digest(X509_get_subject_name(x509_.get()), EVP_sha256(), hash.data(), &size);
-  // The first bit is set, then follow the hash's first 47.
+  // The first bit is set; the first 47 bits of the hash follow.
   CertifiedPrefix result;
   std::uint8_t carried = 1;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -102,7 +102,7 @@ CertifiedPrefix Certificate::prefix() const {
 }
 
 std::array<std::uint8_t, 12> Certificate::guid_prefix(const std::array<std::uint8_t, 12>& candidate) const {
-  // What is hashed is the whole GUID, with the id of the entity that stands for a participant.
+  // The hash covers the whole GUID, including the entity id that stands for a participant.
   std::array<std::uint8_t, 16> guid{};
   std::ranges::copy(candidate, guid.begin());
   guid[14] = 1;

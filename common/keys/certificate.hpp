@@ -17,14 +17,14 @@ struct x509_st;
 
 namespace sidestep {
 
-/// The first bytes of the GUID of a participant with a certificate: DDS Security 1.1, 9.3.3, derives them
-/// from the certificate's subject, and participants check those of each other.
+/// The first bytes of a certified participant's GUID. They are derived from the certificate's subject (DDS
+/// Security 1.1, 9.3.3), and participants check each other's.
 using CertifiedPrefix = std::array<std::uint8_t, 6>;
 
 /// The organisation in the subjects of our certificates.
 inline constexpr const char* kOrganisation = "Sidestep";
 
-/// From when until when something may be used.
+/// The period in which something may be used.
 struct Validity {
   Time from, until;
 };
@@ -34,27 +34,27 @@ class Certificate {
  public:
   explicit Certificate(std::shared_ptr<x509_st> x509) : x509_(std::move(x509)) {}
 
-  /// Untrusted bytes, DER; nullopt if they are no certificate.
+  /// Decodes untrusted DER bytes; nullopt if they are not a certificate.
   [[nodiscard]] static std::optional<Certificate> from_der(std::span<const std::uint8_t> bytes);
-  /// From a PEM file. Throws std::invalid_argument with the file and what is wrong.
+  /// Loads a PEM file. Throws std::invalid_argument with the file and what is wrong.
   static Certificate load(const std::string& path);
 
   /// Whether the authority has signed it.
   [[nodiscard]] bool is_issued_by(const Certificate& authority) const;
-  /// Whether the owner of the certificate's private key has signed these bytes, see sign().
+  /// Whether these bytes were signed by the owner of the certificate's private key, see sign().
   [[nodiscard]] bool has_signed(std::span<const std::uint8_t> bytes,
                                 std::span<const std::uint8_t> signature) const;
-  /// nullopt: its subject is not one of ours.
+  /// nullopt if its subject is not one of ours.
   std::optional<Identity> identity() const;
-  /// In RFC 2253 order: "CN=agent 3,O=Sidestep".
+  /// The subject in RFC 2253 order: "CN=agent 3,O=Sidestep".
   std::string subject() const;
-  std::string serial() const;  ///< hexadecimal
+  std::string serial() const;  ///< The serial number, in hexadecimal.
   Time not_before() const;
   Time not_after() const;
   Validity validity() const { return {not_before(), not_after()}; }
   CertifiedPrefix prefix() const;
-  /// The prefix of the GUID that a participant with this certificate has, if `candidate` is what it would
-  /// have without.
+  /// The GUID prefix of a participant with this certificate, given the prefix `candidate` that it would have
+  /// without one.
   std::array<std::uint8_t, 12> guid_prefix(const std::array<std::uint8_t, 12>& candidate) const;
   std::vector<std::uint8_t> der() const;
   x509_st* x509() const { return x509_.get(); }
@@ -63,17 +63,17 @@ class Certificate {
   std::shared_ptr<x509_st> x509_;
 };
 
-/// Which certificates an authority has revoked (a CRL, RFC 5280).
+/// The certificates that an authority has revoked (a CRL, RFC 5280).
 struct RevocationList {
   std::set<std::string> serials;
   Validity validity;
 };
 
 /// Reads a list of revoked certificates from a PEM file. Throws std::invalid_argument with the file and what
-/// is wrong, e.g. that another authority has signed it.
+/// is wrong, for example that it was signed by another authority.
 RevocationList load_revocation_list(const std::string& path, const Certificate& authority);
 
-/// The serial numbers of a list that load_revocation_list() reads; throws as it does.
+/// The serial numbers in a revocation list. Throws in the same cases as load_revocation_list().
 std::set<std::string> load_revoked_serials(const std::string& path, const Certificate& authority);
 
 }  // namespace sidestep

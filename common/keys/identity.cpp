@@ -34,13 +34,13 @@ std::optional<std::uint32_t> parse_number(std::string_view digits, std::uint32_t
   std::uint32_t number = 0;
   const char* const end = digits.data() + digits.size();
   const auto [stop, error] = std::from_chars(digits.data(), end, number);
-  // Each identity has one text.
+  // No leading zeros, so that each identity has exactly one text.
   const bool has_leading_zero = digits.size() > 1 && digits.front() == '0';
   if (error != std::errc{} || stop != end || number >= count || has_leading_zero) return std::nullopt;
   return number;
 }
 
-/// "3" or, of robots, "0-10".
+/// Parses "3" or, for robots, "0-10".
 bool parse_numbers(std::string_view text, Identity& identity) {
   const std::uint32_t count = identity.role == Role::kCoordinator ? kMaxCoordinators : kMaxRobots;
   const auto dash = text.find('-');
@@ -65,7 +65,7 @@ bool covers(const Identity& identity, std::uint32_t robot) {
   return robot >= identity.first && robot <= identity.last;
 }
 
-/// Whether the channel of this robot is its own, if channels are.
+/// Whether the identity owns this robot's channel, if the topic has one per robot.
 bool has_channel(const Identity& identity, const TopicInfo& topic, std::uint32_t robot) {
   const bool has_own = identity.role == Role::kAgent || identity.role == Role::kRobot;
   return !topic.per_robot || !has_own || covers(identity, robot);
@@ -122,7 +122,7 @@ bool may_read(const Identity& identity, const TopicInfo& topic, std::uint32_t ro
 }
 
 bool exchange_messages(const Identity& a, const Identity& b) {
-  // Of per-robot topics, whoever has its own channels has those of `first` .. `last`.
+  // For per-robot topics: an identity with channels of its own has those of the robots `first` .. `last`.
   const std::uint32_t robots[] = {std::max(a.first, b.first), std::min(a.last, b.last), a.first, b.first};
   bool result = false;
   for_each_topic([&](const TopicInfo& topic) {
@@ -145,7 +145,7 @@ bool may_speak_as(const Identity& identity, std::uint32_t sender) {
     case Role::kVision:
       return is(Sender::kVision);
     case Role::kSimulator:
-      // Robots have their agents' numbers.
+      // Robots send with their agents' numbers.
       return is(Sender::kSimulator) || sender < kMaxRobots;
     case Role::kRobot:
       return is(Sender::kRobots) || covers(identity, sender);
@@ -154,7 +154,7 @@ bool may_speak_as(const Identity& identity, std::uint32_t sender) {
     case Role::kClient:
       return sender == client_id(identity.name);
     case Role::kOperator:
-      // Its orders come before those of all clients, so it may also give theirs.
+      // An operator's orders take precedence over those of all clients, so it may also send theirs.
       return is(Sender::kOperator) || sender >= static_cast<std::uint32_t>(Sender::kClient);
     case Role::kViewer:
     case Role::kJudge:

@@ -39,8 +39,8 @@ void require_own_private_key(const std::string& file, const Certificate& certifi
     throw std::invalid_argument(file + ": this private key is not that of the certificate beside it");
 }
 
-/// The clock may still be set, so that a key which is not valid yet is no wrong usage: whoever restarts the
-/// process tries again.
+/// The clock may not have been set yet, so a key that is not valid yet is not wrong usage: if the process is
+/// restarted, it tries again.
 void require_valid(const std::string& what, const Validity& validity, Time now,
                    const char* remedy = "make new keys in another folder") {
   if (now > validity.until)
@@ -51,7 +51,8 @@ void require_valid(const std::string& what, const Validity& validity, Time now,
                     date_text(validity.from), date_text(now)));
 }
 
-/// Fast DDS refuses authorities, lists of revoked keys and permissions too, without saying why.
+/// Checks the authority, the list of revoked keys and the permissions, because Fast DDS would refuse them
+/// without saying why.
 void require_valid_documents(const KeyFolder& keys, const RevocationList& revoked, Time now) {
   const auto what = [&](const char* file, const std::string& text) { return keys.file(file) + ": " + text; };
   require_valid(what(key_files::kIdentityAuthority, "this authority"), keys.authority.validity(), now);

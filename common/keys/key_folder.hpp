@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// The files in the folder of one identity, as `sidestep keys issue` writes them and ROS 2's sros2 names
-/// them.
+/// The names of the files in an identity's folder, as `sidestep keys issue` writes them and as ROS 2's sros2
+/// names them.
 namespace key_files {
 
 inline constexpr const char* kCertificate = "cert.pem";
@@ -19,7 +19,7 @@ inline constexpr const char* kRevoked = "crl.pem";
 inline constexpr const char* kGovernance = "governance.p7s";
 inline constexpr const char* kPermissions = "permissions.p7s";
 
-/// All of them.
+/// The names of all files.
 inline constexpr const char* kAll[] = {kCertificate, kPrivateKey, kIdentityAuthority, kPermissionsAuthority,
                                        kRevoked,     kGovernance, kPermissions};
 
@@ -29,28 +29,28 @@ inline constexpr const char* kAll[] = {kCertificate, kPrivateKey, kIdentityAutho
 struct KeyFolder {
   std::string path;
   Identity identity;
-  Certificate certificate, authority;  ///< the latter has issued the certificates of all identities
+  Certificate certificate, authority;  ///< `authority` has issued the certificates of all identities
 
   std::string file(const char* name) const { return path + "/" + name; }
 };
 
-/// Loads the keys of one identity and checks all that the identity itself can check of them. Throws
-/// std::invalid_argument that says what is wrong: a file is missing or this user may not read it, the
-/// certificate has expired or is revoked, the private key is another's, other users may read it, or another
-/// authority has signed a document. Throws std::runtime_error if a part is not valid yet: the host's clock
-/// may not be set yet.
+/// Loads the keys of one identity and performs every check that the identity itself can make. Throws
+/// std::invalid_argument with the problem: a file is missing or unreadable for this user, the certificate has
+/// expired or is revoked, the private key does not match or other users may read it, or a document was signed
+/// by another authority. Throws std::runtime_error if a part is not valid yet: the host's clock may not be
+/// set yet.
 [[nodiscard]] KeyFolder load_key_folder(const std::string& path, Time now);
 
-/// The folder with the keys of an identity, in one that `sidestep keys init` has made; of robots, one whose
-/// keys cover them. Throws std::invalid_argument if there is none.
+/// Finds the key folder of an identity inside a folder made by `sidestep keys init`. For robots, finds one
+/// whose keys cover all of them. Throws std::invalid_argument if there is none.
 [[nodiscard]] std::string key_folder_of(const std::string& store, const Identity& identity);
 
-/// As key_folder_of(), but `path` may also be the folder with the keys of one identity, of whomever.
+/// Like key_folder_of(), but `path` may also be the key folder of a single identity, which may be any.
 [[nodiscard]] std::string own_key_folder(const std::string& path, const Identity& identity);
 
-/// The time in UTC, in a format of strftime() that gives at most 63 characters.
+/// Formats a time in UTC with a strftime() format whose result has at most 63 characters.
 [[nodiscard]] std::string utc_text(Time time, const char* format);
-/// "2026-11-26 14:03 UTC"
+/// A date and time such as "2026-11-26 14:03 UTC".
 [[nodiscard]] std::string date_text(Time time);
 
 }  // namespace sidestep

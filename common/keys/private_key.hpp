@@ -16,8 +16,8 @@ using PrivateKey = std::shared_ptr<evp_pkey_st>;
 /// Reads a PEM file. Throws std::invalid_argument with the file and what is wrong.
 [[nodiscard]] PrivateKey load_private_key(const std::string& path);
 
-/// The signature of the bytes' SHA-256; Certificate::has_signed() checks it. Throws std::runtime_error if
-/// OpenSSL fails.
+/// Signs the SHA-256 hash of the bytes; Certificate::has_signed() checks the signature. Throws
+/// std::runtime_error if OpenSSL fails.
 [[nodiscard]] std::vector<std::uint8_t> sign(const PrivateKey& key, std::span<const std::uint8_t> bytes);
 
 }  // namespace sidestep

@@ -16,7 +16,7 @@ namespace {
 using File = std::unique_ptr<BIO, decltype(&BIO_free_all)>;
 using Stack = std::unique_ptr<STACK_OF(X509), void (*)(STACK_OF(X509)*)>;
 
-/// The text between the first <name> and its end, from a position on.
+/// The text between the next <name> after a position and its end tag.
 std::optional<std::string> element(const std::string& xml, const std::string& name, std::size_t from) {
   const std::string open = "<" + name + ">";
   const auto begin = xml.find(open, from);
@@ -25,7 +25,7 @@ std::optional<std::string> element(const std::string& xml, const std::string& na
   return xml.substr(begin + open.size(), end - begin - open.size());
 }
 
-/// Of the form 2026-11-28T03:00:00. Fast DDS takes it for a time of this host's time zone, so we do too.
+/// Parses a time such as 2026-11-28T03:00:00. Fast DDS takes it to be in this host's time zone, so we do too.
 std::optional<Time> parse_time(const std::string& text) {
   std::tm parts{};
   std::istringstream stream(text);
@@ -46,7 +46,7 @@ std::string load_signed_document(const std::string& path, const Certificate& aut
   if (!signature || !document) throw std::invalid_argument(path + ": expected a signed document (S/MIME)");
   const Stack signers(sk_X509_new_null(), [](STACK_OF(X509) * stack) { sk_X509_free(stack); });
   sk_X509_push(signers.get(), authority.x509());
-  constexpr int kFlags = PKCS7_TEXT | PKCS7_NOINTERN | PKCS7_NOVERIFY;  // by the authority's key alone
+  constexpr int kFlags = PKCS7_TEXT | PKCS7_NOINTERN | PKCS7_NOVERIFY;  // accept only the authority's key
   if (PKCS7_verify(signature.get(), signers.get(), nullptr, document.get(), text.get(), kFlags) != 1)
     throw std::invalid_argument(path + ": the permissions authority beside it has not signed this document");
   char* data = nullptr;

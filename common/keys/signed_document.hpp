@@ -8,12 +8,12 @@
 
 namespace sidestep {
 
-/// The text of a document of DDS Security that an authority has signed (S/MIME, DDS Security 1.1, 9.4.1).
+/// The text of a DDS Security document that was signed by an authority (S/MIME, DDS Security 1.1, 9.4.1).
 /// Throws std::invalid_argument with the file and what is wrong.
 [[nodiscard]] std::string load_signed_document(const std::string& path, const Certificate& authority);
 
-/// How long the permissions of a subject are valid on this host, by a permissions document; nullopt if it has
-/// none for this subject, or no times that can be read.
+/// How long a subject's permissions are valid on this host, according to a permissions document. nullopt if
+/// the document has no permissions for this subject, or its times cannot be parsed.
 [[nodiscard]] std::optional<Validity> permissions_validity(const std::string& permissions,
                                                            const std::string& subject);
 

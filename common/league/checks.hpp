@@ -14,8 +14,8 @@ inline constexpr double kMaxHeading_rad =
 inline constexpr double kMaxTime_s = 8589934592.0;  // 2^33; fits into 64 bits as nanoseconds
 inline constexpr std::size_t kMaxTextLength = 256;
 
-/// Checks the values of a packet while they are decoded, and keeps the first error. Values that are decoded
-/// after an error are meaningless.
+/// Checks the values of a packet during decoding and keeps the first error. Values decoded after an error are
+/// meaningless.
 class Checks {
  public:
   void require(bool is_valid, DecodeError error) {

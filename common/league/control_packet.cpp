@@ -119,7 +119,7 @@ BallTeleport read(const wire::control::TeleportBall& from, Checks& checks) {
   return ball;
 }
 
-// An answer without content is an empty datagram.
+// A response without content is an empty datagram.
 template <typename Message>
 DecodeError parse_answer(std::span<const std::byte> bytes, Message& message) {
   return bytes.empty() ? DecodeError::kNone : parse(bytes, message);

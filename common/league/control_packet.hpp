@@ -14,7 +14,7 @@
 
 namespace sidestep::league {
 
-/// How a robot of the league's simulation is to move.
+/// The commanded motion of a robot in the league's simulation.
 struct RobotMove {
   enum class Kind : std::uint8_t { kWheels, kLocal, kGlobal };
   Kind kind = Kind::kLocal;
@@ -29,7 +29,7 @@ struct RobotCommand {
   double kick_angle_rad = 0;
 };
 
-/// RobotControl: the commands of one team.
+/// RobotControl: the commands for one team.
 struct TeamCommands {
   std::vector<RobotCommand> robots;
 };
@@ -40,7 +40,7 @@ struct SimulatorError {
 
 struct RobotFeedback {
   std::uint32_t number = 0;
-  bool has_ball = false;  ///< it touches the dribbler
+  bool has_ball = false;  ///< the ball touches the robot's dribbler
 };
 
 /// RobotControlResponse.
@@ -66,7 +66,7 @@ struct RobotTeleport {
 struct SimulatorCommand {
   std::optional<BallTeleport> ball;
   std::vector<RobotTeleport> robots;
-  std::optional<double> speed;  ///< of the simulation, relative to real time
+  std::optional<double> speed;  ///< speed of the simulation relative to real time
   bool has_geometry = false, has_robot_specs = false, has_realism = false;
   std::optional<std::uint32_t> vision_port;
 };
@@ -76,14 +76,15 @@ struct SimulatorResponse {
   std::vector<SimulatorError> errors;
 };
 
-/// The payloads of datagrams. Precondition: the numbers are in the ranges that the decoders accept.
+/// Encode the payload of a datagram. Precondition: the numbers are in the ranges that the decoders accept.
 std::vector<std::byte> encode(const TeamCommands& packet);
 std::vector<std::byte> encode(const TeamResponse& packet);
 std::vector<std::byte> encode(const SimulatorCommand& packet);
 std::vector<std::byte> encode(const SimulatorResponse& packet);
 
-/// Each rejects a packet as a whole if a value in it is invalid: speeds beyond 100 m/s or 1000 rad/s,
-/// positions beyond 100 m, headings beyond 7 rad, numbers of robots above 15, more than 64 robots or errors.
+/// Decode a datagram. A packet is rejected as a whole if any value in it is invalid: speeds beyond 100 m/s or
+/// 1000 rad/s, positions beyond 100 m, headings beyond 7 rad, robot numbers above 15, more than 64 robots or
+/// errors.
 Decoded<TeamCommands> decode_team_commands(std::span<const std::byte> bytes);
 Decoded<TeamResponse> decode_team_response(std::span<const std::byte> bytes);
 Decoded<SimulatorCommand> decode_simulator_command(std::span<const std::byte> bytes);

@@ -15,12 +15,12 @@ enum class DecodeError : std::uint8_t {
   kMalformed,  ///< not a message of this type, or a required field is missing
   kEmpty,      ///< no content
   kTooMany,    ///< too many elements of one kind
-  kNumber,     ///< not finite, or out of range
+  kNumber,     ///< a number that is not finite or out of range
   kCamera,     ///< a camera id out of range
   kRobot,      ///< a robot id or team out of range
   kTime,       ///< a time that is not finite or out of range
   kText,       ///< a text that is too long
-  kCommand     ///< a command of the referee that is unknown
+  kCommand     ///< an unknown referee command
 };
 inline constexpr std::size_t kDecodeErrors = 11;
 

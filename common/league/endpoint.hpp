@@ -18,15 +18,15 @@ struct Endpoint {
   auto operator<=>(const Endpoint&) const = default;
 };
 
-/// "224.5.23.2:10006".
+/// Formats an endpoint, for example "224.5.23.2:10006".
 std::string to_text(const Endpoint& endpoint);
 
 /// Parses ADDRESS:PORT with a multicast address (224.0.0.0 to 239.255.255.255) and a port (1 to 65535).
-/// Throws std::invalid_argument that says what was expected.
+/// Throws std::invalid_argument with what was expected.
 [[nodiscard]] Endpoint parse_multicast_endpoint(const std::string& text);
-/// Parses ADDRESS:PORT with the address of one machine. Throws likewise.
+/// Parses ADDRESS:PORT with a unicast address. Throws std::invalid_argument with what was expected.
 [[nodiscard]] Endpoint parse_unicast_endpoint(const std::string& text);
-/// Parses an IPv4 address such as 127.0.0.1. Throws likewise.
+/// Parses an IPv4 address such as 127.0.0.1. Throws std::invalid_argument with what was expected.
 [[nodiscard]] std::uint32_t parse_address(const std::string& text);
 
 /// An owned file descriptor.
@@ -45,7 +45,7 @@ class FileDescriptor {
 /// Called with a datagram and its source.
 using DatagramHandler = std::function<void(std::span<const std::byte>, const Endpoint&)>;
 
-/// A UDP socket that does not block. Throws std::runtime_error that names the endpoint.
+/// Opens a non-blocking UDP socket. Throws std::runtime_error that names the endpoint.
 [[nodiscard]] int open_udp_socket(const Endpoint& endpoint);
 /// Throws std::runtime_error with the endpoint, the action and the reason in errno.
 [[noreturn]] void fail(const Endpoint& endpoint, const char* action);

@@ -50,16 +50,16 @@ struct FieldSize {
 };
 
 /// SSL_GeometryCameraCalibration: a world point p has the camera coordinates R p + t with z along the optical
-/// axis, and is projected to x / z and y / z, radially distorted and scaled by the focal length, relative to
-/// the principal point.
+/// axis, and is projected to x / z and y / z, which are then radially distorted and scaled by the focal
+/// length, relative to the principal point.
 struct CameraCalibration {
   std::uint32_t camera = 0;
   double focal_length_px = 0;
   Vec2 principal_point_px{0, 0};
   double distortion = 0;
-  std::array<double, 4> rotation{};  ///< of R, a unit quaternion: x, y, z, w
-  Vec3 translation_m{0, 0, 0};       ///< t
-  std::optional<Vec3> position_m;    ///< of the camera, -R^T t
+  std::array<double, 4> rotation{};  ///< the rotation R as a unit quaternion: x, y, z, w
+  Vec3 translation_m{0, 0, 0};       ///< the translation t
+  std::optional<Vec3> position_m;    ///< position of the camera: -R^T t
   std::optional<std::uint32_t> image_width_px;
   std::optional<std::uint32_t> image_height_px;
 };

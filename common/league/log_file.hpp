@@ -44,7 +44,7 @@ class LogReader {
  public:
   /// Throws std::runtime_error if the file cannot be read or is not a log of this version.
   explicit LogReader(const std::string& path);
-  /// The same from a seekable stream; `name` prefixes error messages.
+  /// Reads a log from a seekable stream; `name` prefixes error messages.
   LogReader(std::unique_ptr<std::istream> stream, std::string name);
 
   /// Reads the next record, skipping unknown types. False at the end.
@@ -71,9 +71,9 @@ class LogReader {
 
   std::unique_ptr<std::istream> stream_;
   std::string name_;
-  std::int64_t offset_ = 0;           ///< bytes read so far
-  std::int64_t record_offset_ = 0;    ///< of the current record
-  std::optional<LogRecord> pending_;  ///< already read, returned by the next call of next()
+  std::int64_t offset_ = 0;           ///< number of bytes read so far
+  std::int64_t record_offset_ = 0;    ///< offset of the current record
+  std::optional<LogRecord> pending_;  ///< already read; returned by the next call of next()
   LogStatus status_ = LogStatus::kReading;
   std::string error_;
 };

@@ -67,7 +67,7 @@ bool MulticastSender::send(std::span<const std::byte> datagram) {
 MulticastReceiver::MulticastReceiver(const Endpoint& group, const std::string& interface)
     : group_(group), socket_(open_udp_socket(group)), buffer_(kMaxDatagramSize) {
   const ip_mreq membership{{htonl(group.address)}, {htonl(interface_address(interface))}};
-  constexpr int kBufferSize = 1 << 20;  // holds one second of packets from eight cameras
+  constexpr int kBufferSize = 1 << 20;  // enough for one second of packets from eight cameras
   set(socket_, SOL_SOCKET, SO_REUSEADDR, 1, group, "share the port");
   set(socket_, SOL_SOCKET, SO_RCVBUF, kBufferSize, group, "set the size of the receive buffer");
   // Without IP_MULTICAST_ALL = 0 and binding to the group's address, the socket would also receive unicast

@@ -16,7 +16,7 @@ namespace sidestep::league {
 inline constexpr const char* kVisionEndpoint = "224.5.23.2:10006";
 inline constexpr const char* kTrackedEndpoint = "224.5.23.2:10010";
 inline constexpr const char* kRefereeEndpoint = "224.5.23.1:10003";
-/// Of simulators, distinct from that of real cameras.
+/// The default endpoint of simulators. It differs from that of real cameras.
 inline constexpr const char* kSimulatedVisionEndpoint = "224.5.23.2:10020";
 /// The loopback interface, so that by default no packet leaves the machine.
 inline constexpr const char* kLeagueInterface = "127.0.0.1";
@@ -41,7 +41,7 @@ class MulticastSender {
 };
 
 /// Receives the datagrams of a multicast group over one interface, and no others. Several receivers on a
-/// machine may share a group. The constructor throws as MulticastSender's does.
+/// machine may share a group. The constructor throws in the same cases as MulticastSender's.
 class MulticastReceiver {
  public:
   MulticastReceiver(const Endpoint& group, const std::string& interface);

@@ -11,8 +11,8 @@
 namespace sidestep::league {
 namespace {
 
-constexpr double kMetres = 0.001;  // in a millimetre
-constexpr double kSeconds = 1e-6;  // in a microsecond
+constexpr double kMetres = 0.001;  // metres per millimetre
+constexpr double kSeconds = 1e-6;  // seconds per microsecond
 constexpr std::int32_t kFirstHalf = 1;
 
 constexpr std::array<std::string_view, kRefereeCommands> kNames{"HALT",

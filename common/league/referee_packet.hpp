@@ -27,7 +27,7 @@ enum class RefereeCommand : std::uint8_t {
   kPreparePenaltyBlue,
   kDirectFreeYellow,
   kDirectFreeBlue,
-  kIndirectFreeYellow,  ///< in logs of earlier years, as the goals
+  kIndirectFreeYellow,  ///< only in logs of earlier years, like the goals
   kIndirectFreeBlue,
   kTimeoutYellow,
   kTimeoutBlue,
@@ -41,16 +41,16 @@ inline constexpr std::size_t kRefereeCommands = 18;
 /// The league's name of a command, e.g. "FORCE_START".
 std::string_view name_of(RefereeCommand command);
 
-/// The team that a command concerns; nullopt: both.
+/// The team that a command concerns; nullopt if it concerns both.
 std::optional<Team> team_of(RefereeCommand command);
 
-/// Referee: what navigation needs of it.
+/// The part of the Referee message that navigation needs.
 struct RefereePacket {
-  Duration sent{0};  ///< by the sender's clock, as DetectionFrame::captured
+  Duration sent{0};  ///< by the sender's clock, like DetectionFrame::captured
   RefereeCommand command = RefereeCommand::kHalt;
-  std::uint32_t command_counter = 0;               ///< of the commands since the referee's start
+  std::uint32_t command_counter = 0;               ///< number of commands since the referee's start
   Duration commanded{0};                           ///< when the command was given, by the sender's clock
-  std::optional<Vec2> designated_position_m = {};  ///< of ball placement
+  std::optional<Vec2> designated_position_m = {};  ///< target position of ball placement
 };
 
 /// The payload of a datagram, with teams without names. Precondition: the numbers are finite and in the

@@ -34,14 +34,14 @@ struct TrackedRobot {
 
 struct TrackedFrame {
   std::uint32_t frame_number = 0;
-  Duration at{0};  ///< by the sender's clock, as DetectionFrame::captured
+  Duration at{0};  ///< by the sender's clock, like DetectionFrame::captured
   std::vector<TrackedBall> balls;
   std::vector<TrackedRobot> robots;
 };
 
 /// TrackerWrapperPacket without the optional kicked ball and capabilities.
 struct TrackedPacket {
-  std::string uuid;  ///< of the sending process; a new one after each restart
+  std::string uuid;  ///< identifies the sending process; a restarted process has a new one
   std::optional<std::string> source_name;
   std::optional<TrackedFrame> frame;
 };

@@ -13,7 +13,7 @@ namespace sidestep::league {
 /// std::runtime_error if the socket cannot be opened.
 class UnicastSocket {
  public:
-  /// Receives at this endpoint of the machine; nullopt: at any free port, for answers.
+  /// Receives at this endpoint of the machine. nullopt: at any free port, to receive replies.
   explicit UnicastSocket(const std::optional<Endpoint>& local);
 
   /// Becomes readable when a datagram has arrived.

@@ -11,7 +11,7 @@ namespace sidestep::league {
 namespace {
 
 constexpr int kMaxBalls = 128;
-constexpr int kMaxRobotsPerTeam = 64;  // more than a team has: a camera may report one robot several times
+constexpr int kMaxRobotsPerTeam = 64;  // a camera may report one robot several times
 constexpr double kMaxPixel = 1e6;
 constexpr double kMaxRobotHeight_m = 2;
 

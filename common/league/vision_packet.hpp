@@ -28,11 +28,11 @@ struct DetectedRobot {
   std::optional<double> heading_rad;  ///< in [-pi, pi] when decoded
   double confidence = 0;              ///< 0 .. 1
   Vec2 pixel{0, 0};
-  std::optional<double> height_m;  ///< of the top
+  std::optional<double> height_m;  ///< height of the robot's top
 };
 
 /// SSL_DetectionFrame: the detections in one image. Times are by the sender's clock, whose epoch is
-/// arbitrary: 1970 for some senders, the start of a simulation for others.
+/// arbitrary: for some senders 1970, for others the start of a simulation.
 struct DetectionFrame {
   std::uint32_t frame_number = 0;
   std::uint32_t camera = 0;
@@ -48,7 +48,7 @@ struct DetectionFrame {
 struct VisionPacket {
   std::optional<DetectionFrame> detection;
   std::optional<Geometry> geometry;
-  std::optional<std::uint32_t> source;  ///< the sending program, as numbered by the league
+  std::optional<std::uint32_t> source;  ///< the sending program, as a number defined by the league
 };
 
 /// The payload of a datagram. Precondition: the numbers are finite and in the ranges that decode_vision()

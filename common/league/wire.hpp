@@ -23,7 +23,7 @@ template <typename Message>
 [[nodiscard]] DecodeError parse(std::span<const std::byte> bytes, Message& message) {
   if (bytes.size() > kMaxDatagramSize) return DecodeError::kTooLong;
   if (bytes.empty()) return DecodeError::kEmpty;
-  // ParseFromArray() would print a line for every message with a missing field.
+  // ParseFromArray() would print a line for every message that lacks a required field.
   const bool is_parsed = message.ParsePartialFromArray(bytes.data(), static_cast<int>(bytes.size()));
   return is_parsed && message.IsInitialized() ? DecodeError::kNone : DecodeError::kMalformed;
 }

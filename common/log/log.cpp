@@ -37,7 +37,7 @@ void install(const std::string& process, LogLevel level) {
   spdlog::set_default_logger(std::move(logger));
 }
 
-// The library's own default logger writes to stdout, which is for the results of programs.
+// The library's default logger writes to stdout, which is reserved for the results of programs.
 const bool is_installed = (install("sidestep", LogLevel::kInfo), true);
 
 }  // namespace

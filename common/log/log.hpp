@@ -8,19 +8,19 @@
 
 namespace sidestep {
 
-/// From now on log() writes lines of at least this level to stderr, each with the time, the level and the
-/// name of this process. Until then the level is info, and the name "sidestep". Call it before other threads
-/// log.
+/// Sets the level and the process name of the log. From then on log() writes lines of at least this level to
+/// stderr, each with the time, the level and the name. Until then the level is info and the name is
+/// "sidestep". Call this before other threads log.
 void set_up_log(const std::string& process, LogLevel level);
 
-/// Whether log() writes lines of this level.
+/// Whether log() would write lines of this level.
 [[nodiscard]] bool is_logged(LogLevel level);
 
-/// Writes one line to this process's log. Any thread may call it. Writing may block, so nothing calls it in
-/// every control cycle.
+/// Writes one line to this process's log. Thread-safe. Writing may block, so it must not be called in every
+/// control cycle.
 void log(LogLevel level, const std::string& text);
 
-/// A line as log() writes it, without the end of the line, in the name of any process.
+/// A line as log() would write it for a process with this name, without the line break.
 [[nodiscard]] std::string log_line(const std::string& process, LogLevel level, const std::string& text);
 
 /// Writes the events of a node to the log.

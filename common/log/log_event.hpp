@@ -12,20 +12,20 @@
 
 namespace sidestep {
 
-/// An event of a node for its log, with the reason.
+/// An event that a node reports to its log.
 struct LogEvent {
   LogLevel level = LogLevel::kInfo;
-  std::optional<std::uint32_t> robot;  ///< the robot that the event concerns, if it concerns one
+  std::optional<std::uint32_t> robot;  ///< the robot that the event concerns; nullopt if none
   std::string text;
 };
 
 using OnLogEvent = std::function<void(const LogEvent&)>;
 
-/// Passes a node's events to its listener. Without one, and for events below its level, it formats
-/// and allocates nothing.
+/// Passes a node's events to its listener. Without a listener, and for events below the listener's level, it
+/// formats and allocates nothing.
 class EventReporter {
  public:
-  /// From now on `listener` gets all events of at least this level.
+  /// From now on, passes all events of at least this level to `listener`.
   void set_listener(LogLevel min_level, OnLogEvent listener) {
     min_level_ = min_level;
     listener_ = std::move(listener);

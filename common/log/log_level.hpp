@@ -10,11 +10,11 @@
 
 namespace sidestep {
 
-/// Severity of a line of the log, ascending. As the level of a log, the lowest severity that it contains;
-/// kOff is the level of an empty log and no severity.
+/// Severity of a log line, in ascending order. As the level of a log it is the lowest severity that is
+/// written; kOff disables the log and is no severity.
 enum class LogLevel : std::uint8_t { kTrace, kDebug, kInfo, kWarning, kError, kOff };
 
-/// The names of the levels on the command line and in the log, by LogLevel.
+/// The names of the levels on the command line and in the log, indexed by LogLevel.
 inline constexpr std::array<std::string_view, 6> kLogLevelNames{"trace",   "debug", "info",
                                                                 "warning", "error", "off"};
 

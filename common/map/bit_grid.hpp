@@ -6,11 +6,11 @@
 
 namespace sidestep {
 
-/// A grid of bits, stored row by row, that finds runs of equal bits 64 at a time. Preconditions: rows are in
-/// the grid, and columns too unless stated otherwise.
+/// A grid of bits, stored row by row, that is searched for runs of equal bits 64 bits at a time. Precondition
+/// of all functions: rows are in the grid, and so are columns unless stated otherwise.
 class BitGrid {
  public:
-  /// All bits are 0. Throws std::invalid_argument if a number is not positive.
+  /// All bits are 0. Throws std::invalid_argument if either size is not positive.
   BitGrid(int columns, int rows);
 
   int columns() const { return columns_; }
@@ -21,12 +21,11 @@ class BitGrid {
   /// Sets the columns begin, …, end - 1 to a value.
   void set_run(int begin, int end, int row, bool value = true);
 
-  /// The first column from `begin` on, and before `end`, whose bit is 1; `end` if there is none. `begin` may
-  /// be `end`.
+  /// The first column in [begin, end) whose bit is 1; `end` if there is none. `begin` may equal `end`.
   int find_set(int begin, int end, int row) const { return find(begin, end, row, 0); }
-  /// The same for bits that are 0.
+  /// The first column in [begin, end) whose bit is 0; `end` if there is none. `begin` may equal `end`.
   int find_clear(int begin, int end, int row) const { return find(begin, end, row, ~std::uint64_t{0}); }
-  /// The last column down to `last`, starting at `begin`, whose bit is 1; `last` - 1 if there is none.
+  /// The last column in [last, begin] whose bit is 1; `last` - 1 if there is none.
   int find_set_down(int begin, int last, int row) const;
 
   /// The bits of the columns 64 * index, …, 64 * index + 63. Those beyond the last column are 0.

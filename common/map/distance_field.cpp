@@ -9,7 +9,8 @@ namespace sidestep {
 namespace {
 
 constexpr std::int32_t kMaxCells = 2'047, kMaxSquare = kMaxCells * kMaxCells;
-/// Bound of the rounding of a stored distance, in steps: half a step and the errors of single precision.
+/// Bound of the rounding error of a stored distance, in steps: half a step plus the errors of single
+/// precision.
 constexpr double kStepError = 0.52;
 constexpr int kMaxBoundsOfAPath = 64;
 

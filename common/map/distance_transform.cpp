@@ -9,10 +9,10 @@
 namespace sidestep {
 namespace {
 
-/// The distance within a column that has no blocked cell; more than any other.
+/// Distance within a column that has no blocked cell; greater than any other.
 constexpr std::uint16_t kFar = 16'384;
 
-/// For eight bits, eight masks: 0 for blocked cells, and all ones for free ones.
+/// Eight masks, one per bit: 0 for blocked cells, and all ones for free cells.
 using Masks = std::array<std::uint16_t, 8>;
 constexpr std::array<Masks, 256> kMasks = [] {
   std::array<Masks, 256> masks{};
@@ -30,7 +30,7 @@ void unpack_row(const BitGrid& blocked, int row, std::vector<std::uint16_t>& mas
   }
 }
 
-/// For each cell, the distance in rows to the nearest blocked cell at or below it in its column.
+/// For each cell, the distance in rows to the nearest blocked cell at or below it in the same column.
 std::vector<std::uint16_t> distances_down(const BitGrid& blocked) {
   const auto columns = static_cast<std::size_t>(blocked.columns());
   std::vector<std::uint16_t> distances(columns * static_cast<std::size_t>(blocked.rows()));
@@ -48,8 +48,9 @@ std::vector<std::uint16_t> distances_down(const BitGrid& blocked) {
   return distances;
 }
 
-/// The pass over one row; keeps its memory for the next. Cells in a run of equal distances within their
-/// columns are nearest to themselves or to the ends of other runs, so only the ends of runs have parabolas.
+/// The pass over one row; its memory is reused for the next row. Within a run of equal column distances, each
+/// cell's nearest blocked cell is in its own column or in the range of a parabola at the end of a run, so
+/// only the ends of runs need parabolas.
 class RowPass {
  public:
   explicit RowPass(std::size_t columns)
@@ -90,8 +91,8 @@ class RowPass {
            std::int64_t{height - last_height} * (last_x - xs_[size - 2]);
   }
 
-  /// The smaller of the envelope and of the distance within the cell's own column. Corner i has the lowest
-  /// parabola up to where the next one's is lower.
+  /// Writes the minimum of the envelope and the distance within the cell's own column. Corner i has the
+  /// lowest parabola up to the column where the next one becomes lower.
   void evaluate(const std::vector<std::uint16_t>& in_column, std::size_t size) {
     for (std::size_t i = 0; i + 1 < size; ++i) {
       const std::int32_t rise = heights_[i + 1] - heights_[i];
@@ -113,8 +114,8 @@ class RowPass {
     }
   }
 
-  std::vector<std::int32_t> xs_, heights_;  // by corner; heights: x² + distance²
-  std::vector<std::int32_t> lasts_;         // by corner: the last column where its parabola is the lowest
+  std::vector<std::int32_t> xs_, heights_;  // indexed by corner; heights are x² + distance²
+  std::vector<std::int32_t> lasts_;         // by corner: last column where its parabola is lowest
   std::vector<std::int32_t> squared_;
 };
 

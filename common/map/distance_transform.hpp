@@ -10,14 +10,14 @@
 
 namespace sidestep {
 
-/// Squared distance in a grid without blocked cells.
+/// Squared distance that is returned for a grid without blocked cells.
 inline constexpr std::int32_t kNoBlockedCell = std::numeric_limits<std::int32_t>::max();
 
-/// Receives a row of squared distances in cells, valid during the call.
+/// Receives one row of squared distances in cells; the row is valid during the call only.
 using TakeDistances = std::function<void(int row, std::span<const std::int32_t> squared)>;
 
 /// The exact squared Euclidean distance from the centre of each cell to the centre of the nearest blocked
-/// cell of the grid, in cells; each row is passed to `take` once, from the last to the first. One pass over
+/// cell of the grid, in cells. Each row is passed to `take` once, from the last to the first. One pass over
 /// the columns finds the distance within each column, one over the rows the lower envelope of parabolas
 /// (Felzenszwalb and Huttenlocher 2012). The envelope is found without divisions, as the lower convex hull of
 /// the points (x, x² + distance²). Linear in the number of cells; at most 16,384 columns and rows.

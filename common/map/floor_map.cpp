@@ -16,7 +16,7 @@ std::vector<Box> rectangles_of(const OccupancyMap& map) {
       fmt::format("the map's blocked cells form more than {} rectangles", FloorMap::kMaxRectangles));
 }
 
-/// FNV-1a, by words.
+/// FNV-1a, computed word by word.
 std::uint64_t fingerprint_of(const OccupancyMap& map) {
   std::uint64_t hash = 0xcbf29ce484222325;
   const auto add = [&hash](std::uint64_t word) { hash = (hash ^ word) * 0x100000001b3, hash ^= hash >> 32; };
@@ -42,7 +42,7 @@ FloorMap::FloorMap(OccupancyMap map, std::string name, std::string notice)
 
 std::vector<Box> FloorMap::boxes_on(const Field& field) const {
   std::vector<Box> boxes = rectangles_;
-  constexpr double kBeyond_m = 10;  // more than any robot's radius and margin
+  constexpr double kBeyond_m = 10;  // more than the radius plus margin of any robot
   const Vec2 half_m(field.length_m / 2 + kBeyond_m, field.width_m / 2 + kBeyond_m);
   const Box inside = cells_.extent();
   const auto add = [&](const Vec2& min_m, const Vec2& max_m) {

@@ -11,30 +11,31 @@
 
 namespace sidestep {
 
-/// The map of a floor, and what is computed from it once. Const functions are thread-safe and do not
+/// The map of a floor, with data that is computed from it once. Const functions are thread-safe and do not
 /// allocate.
 class FloorMap {
  public:
   static constexpr std::size_t kMaxRectangles = 20'000;
 
-  /// `name` is that of the map's file, for people. Throws std::invalid_argument if the blocked cells form
-  /// more than kMaxRectangles rectangles: paths around them would take too long.
+  /// `name` is the name of the map's file, for messages. Throws std::invalid_argument if the blocked cells
+  /// form more than kMaxRectangles rectangles: paths around them would take too long.
   explicit FloorMap(OccupancyMap map, std::string name = "map", std::string notice = "");
 
   const std::string& name() const { return name_; }
-  /// What its user has to know about the file, in one line; empty: nothing. Programs print it at their start.
+  /// What the user must know about the file, in one line; empty if nothing. Programs print it at start.
   const std::string& notice() const { return notice_; }
   const OccupancyMap& cells() const { return cells_; }
   const DistanceField& field() const { return field_; }
-  /// Rectangles that together cover exactly the blocked cells, without the outside. They overlap.
+  /// Rectangles that together cover exactly the blocked cells, without the outside. They may overlap.
   const std::vector<Box>& rectangles() const { return rectangles_; }
-  /// Boxes that cover the blocked cells, and the outside on a field and 10 m around it.
+  /// Boxes that cover the blocked cells, and the outside of the map within a field and 10 m around it.
   std::vector<Box> boxes_on(const Field& field) const;
-  /// Differs between maps whose cells differ in place or state.
+  /// Hash of the cells; maps whose cells differ in place or state have different hashes.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
-  /// A disc that is as far from a point as the nearest blocked cell or the outside, in the same direction, as
-  /// disc_facing(Vec2, Shape) gives it; nullopt if all are farther than `within_m`.
+  /// A disc at the same distance and in the same direction from a point as the nearest blocked cell or the
+  /// outside, as disc_facing(Vec2, Shape) returns for a shape. nullopt if nothing blocked is within
+  /// `within_m`.
   std::optional<Circle> disc_facing(const Vec2& p, double within_m) const;
 
  private:

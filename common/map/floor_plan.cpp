@@ -9,13 +9,13 @@
 namespace sidestep {
 namespace {
 
-/// A part of the plan in cells: from the lower left one up to, but without, the end.
+/// A part of the plan in cells: from the lower left cell up to, but not including, the end.
 struct Area {
   int column, row, end_column, end_row;
 
   int columns() const { return end_column - column; }
   int rows() const { return end_row - row; }
-  /// The part between two lines across its longer side, which is along x if `is_wide`.
+  /// The part between two lines across the longer side; the longer side is along x if `is_wide`.
   Area between(bool is_wide, int begin, int end) const {
     return is_wide ? Area{column + begin, row, column + end, end_row}
                    : Area{column, row + begin, end_column, row + end};
@@ -79,13 +79,13 @@ class FloorPlanner {
     if (is_corridor) fill(area.between(is_wide, first + wall + corridor, first + between), true);
     divide(area.between(is_wide, 0, first));
     divide(area.between(is_wide, first + between, length));
-    // After both sides are divided, so that no wall of theirs ends in a door.
+    // The door is opened after both sides have been divided, so that no wall inside them ends in the door.
     open_door(area, is_wide, first, first + wall);
     if (is_corridor) open_door(area, is_wide, first + wall + corridor, first + between);
   }
 
-  /// Opens a wall at a random place where both sides are free. The outermost rooms on both sides are never
-  /// narrower than a door, so there is one.
+  /// Opens a door in a wall at a random place where both sides are free. Such a place exists, because the
+  /// outermost rooms on both sides are never narrower than a door.
   void open_door(const Area& area, bool is_wide, int begin, int end) {
     const int length = std::min(area.columns(), area.rows()),
               door = std::min(cells(settings_.door_m), length);
@@ -108,7 +108,7 @@ class FloorPlanner {
     return true;
   }
 
-  /// Parallel to the longer side, with aisles all around.
+  /// Places shelves parallel to the longer side, with aisles all around.
   void place_shelves(const Area& area) {
     const bool is_wide = area.columns() > area.rows();
     const int length = std::max(area.columns(), area.rows()), width = std::min(area.columns(), area.rows());

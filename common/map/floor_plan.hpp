@@ -7,22 +7,23 @@
 
 namespace sidestep {
 
-/// Sizes of random floor plans; each is rounded to whole cells, at least one.
+/// Sizes for random floor plans. Each is rounded to whole cells, and is at least one cell.
 struct FloorPlanSettings {
-  double wall_m = 0.15;     ///< thickness
-  double door_m = 1.0;      ///< at most min_room_m
-  double min_room_m = 3.0;  ///< shortest side of rooms
-  double max_room_m = 9.0;  ///< longer rooms are divided
+  double wall_m = 0.15;     ///< wall thickness
+  double door_m = 1.0;      ///< door width, at most min_room_m
+  double min_room_m = 3.0;  ///< minimum length of a room's shorter side
+  double max_room_m = 9.0;  ///< rooms with a longer side are divided
   double corridor_m = 2.0;
   double shelf_m = 0.8;
-  double aisle_m = 1.2;          ///< between shelves, and between shelves and walls
-  double corridor_chance = 0.3;  ///< that a division is a corridor, if there is room for it
-  double shelves_chance = 0.5;   ///< that a room has shelves
+  double aisle_m = 1.2;          ///< aisle width between shelves, and between shelves and walls
+  double corridor_chance = 0.3;  ///< probability that a division is a corridor, if there is space for one
+  double shelves_chance = 0.5;   ///< probability that a room has shelves
 };
 
 /// A random floor plan of rooms, corridors, doors and shelves within an outer wall. All free cells are
-/// connected by edges of cells; every door is door_m wide. Made by recursive division. The same seed gives
-/// the same plan. Throws std::invalid_argument if the grid is invalid, or a size or chance out of range.
+/// connected through shared cell edges; every door is door_m wide. Made by recursive division. The same seed
+/// gives the same plan. Throws std::invalid_argument if the grid is invalid, or a size or chance out of
+/// range.
 [[nodiscard]] OccupancyMap make_floor_plan(std::uint64_t seed, const MapGrid& grid,
                                            const FloorPlanSettings& settings = {});
 

@@ -10,7 +10,7 @@ namespace sidestep {
 /// Throws MapImageError if an image has no pixels or is larger than a map may be.
 void check_image_size(long columns, long rows);
 
-/// Sets a cell as the state of its pixel says.
+/// Sets a cell to the state that its pixel encodes.
 inline void set_cell(ImageCells& cells, int column, int row, CellState state, UnknownCells unknown) {
   cells.unknown += state == CellState::kUnknown;
   if (state == CellState::kOccupied || (state == CellState::kUnknown && unknown == UnknownCells::kBlocked))

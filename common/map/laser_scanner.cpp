@@ -14,7 +14,7 @@ constexpr int kMaxBeams = 100'000;
 constexpr double kMinFieldOfView_rad = 1e-3;
 /// Widens the angles that a shape covers, so that rounding excludes no beam.
 constexpr double kAngleSlack_rad = 1e-9;
-/// A shape that is nearer covers all angles: those of its corners are not reliable.
+/// A shape nearer than this covers all angles, because the angles of its corners are unreliable.
 constexpr double kTouching_m = 1e-9;
 
 const LaserSettings& checked(const LaserSettings& settings) {
@@ -31,18 +31,18 @@ const LaserSettings& checked(const LaserSettings& settings) {
   return settings;
 }
 
-/// The angles under which a shape is seen; half_width_rad = pi for all angles.
+/// The interval of angles under which a shape is seen; half_width_rad = pi means all angles.
 struct Bearings {
   double middle_rad, half_width_rad;
 };
 
-/// Of a circle that does not contain the point.
+/// The bearings of a circle that does not contain the point.
 Bearings bearings_of(const Vec2& at, const Circle& circle) {
   const Vec2 offset = circle.centre_m - at;
   return {std::atan2(offset.y(), offset.x()), std::asin(std::min(1.0, circle.radius_m / offset.norm()))};
 }
 
-/// Of the convex hull of points that does not contain the point `at`. It is seen within half a turn.
+/// The bearings of the convex hull of points, which does not contain `at`. They span at most half a turn.
 Bearings bearings_of(const Vec2& at, std::span<const Vec2> corners_m) {
   const Vec2 first = corners_m.front() - at;
   double low_rad = 0, high_rad = 0;
@@ -84,7 +84,7 @@ Vec2 LaserScanner::direction(const View& view, int beam) const {
   return view.heading.x() * relative + view.heading.y() * left_of(relative);
 }
 
-/// Calls `call(beam)` for the beams within these angles, relative to the heading, once or more.
+/// Calls `call(beam)` at least once for each beam within these angles, which are relative to the heading.
 template <typename Call>
 void LaserScanner::for_beams(double middle_rad, double half_width_rad, const Call& call) const {
   const double low_rad = wrapped_rad(middle_rad) - half_width_rad - kAngleSlack_rad;

@@ -15,22 +15,23 @@ namespace sidestep {
 namespace {
 
 constexpr const char* kExpectedMap = "a map";
-/// A probability this near its threshold counts as unknown: the brightness is rounded.
+/// A probability that is within this distance of its threshold counts as unknown, because the brightness is
+/// rounded.
 constexpr double kTie = 1e-9;
 /// Map savers write unknown cells as 205 of 255, which some free thresholds would call free.
 constexpr double kUnknownGrey = 50.0 / 255;
-/// A yaw that moves no corner of a map by more than a millimetre.
+/// Maximum yaw that is ignored: it moves no corner of a map by more than a millimetre.
 constexpr double kMaxIgnoredYaw_rad = 1e-6;
 constexpr char kBlockedPixel = 0, kFreePixel = static_cast<char>(254);
 
-/// How a pixel's brightness tells whether its cell is free.
+/// Decides from a pixel's brightness whether its cell is free.
 struct Interpretation {
   enum class Mode { kTrinary, kScale, kRaw };
   Mode mode = Mode::kTrinary;
   bool is_negated = false;
   double occupied_above = 0, free_below = 0;
 
-  /// Trinary and scale differ only for the grey of unknown cells.
+  /// The modes trinary and scale differ only for the grey of unknown cells.
   CellState state(double brightness) const {
     double occupied = is_negated ? brightness : 1 - brightness;
     if (mode == Mode::kTrinary && std::abs(occupied - kUnknownGrey) < kTie) return CellState::kUnknown;
@@ -55,7 +56,7 @@ Interpretation::Mode read_mode(YamlMap& map) {
   map.location_of("mode").fail("expected trinary, scale or raw, got \"" + name.substr(0, 40) + "\"");
 }
 
-/// 0 or 1, or a truth value in any of YAML's forms.
+/// Accepts 0 or 1, or a truth value in any of YAML's forms.
 bool read_negate(YamlMap& map) {
   const YAML::Node node = map.require("negate");
   bool value = false;
@@ -76,7 +77,7 @@ Interpretation read_interpretation(YamlMap& map) {
   return result;
 }
 
-/// In the axes of the map's rows and columns.
+/// The origin along the axes of the map's rows and columns.
 Vec2 read_origin(YamlMap& map, double& yaw_rad) {
   const YamlLocation location = map.location_of("origin");
   const std::vector<double> origin =
@@ -127,7 +128,7 @@ MapFiles map_files(const OccupancyMap& map, const std::string& image_name) {
       files.image += map.blocked().get(column, row) ? kBlockedPixel : kFreePixel;
   YAML::Emitter name;
   name << YAML::DoubleQuoted << image_name;
-  // Numbers are written so that reading them gives the same ones.
+  // Numbers are written so that reading them gives the same numbers.
   files.yaml = fmt::format(
       "image: {}\nresolution: {}\norigin: [{}, {}, 0]\nnegate: 0\n"
       "occupied_thresh: 0.65\nfree_thresh: 0.196\n",

@@ -8,32 +8,32 @@
 
 namespace sidestep {
 
-/// A map as its file has it, and what its user has to know.
+/// A map as loaded from its file, with facts that its user must know.
 struct LoadedMap {
   OccupancyMap cells;
-  std::size_t unknown = 0;  ///< cells of which nobody knows whether they are free
-  double yaw_rad = 0;       ///< of the map's rows and columns in the frame of other programs
+  std::size_t unknown = 0;  ///< number of cells that are neither known to be free nor known to be occupied
+  double yaw_rad = 0;       ///< rotation of the map's rows and columns in other programs' frame
 };
 
 /// Reads a map in the format of ROS's map_server: a YAML file with the keys image, resolution, origin,
 /// negate, occupied_thresh, free_thresh and optionally mode (trinary, scale, raw), and a PGM or PNG image,
 /// whose path is relative to the YAML file. A cell is free only if its probability of occupancy is below
-/// free_thresh. In mode trinary, pixels of the grey that map savers write for unknown cells are unknown,
-/// whatever free_thresh says. In mode raw, the samples are the probability in per cent, and those above 100
-/// are unknown. The axes are those of the map's rows and columns, also if its origin has a yaw. Throws
-/// ConfigError; errors of the image name it.
+/// free_thresh. In mode trinary, pixels with the grey that map savers write for unknown cells are unknown,
+/// regardless of free_thresh. In mode raw, the samples are the probability in per cent, and those above 100
+/// are unknown. The axes follow the map's rows and columns, even if its origin has a yaw. Throws ConfigError;
+/// errors in the image name the image file.
 [[nodiscard]] LoadedMap load_map(const std::string& path, UnknownCells unknown = UnknownCells::kBlocked);
 
 /// The contents of the two files of a map.
 struct MapFiles {
   std::string yaml;
-  std::string image;  ///< PGM
+  std::string image;  ///< content of the PGM file
 };
 
-/// What load_map reads as this map, if the image is stored as `image_name`.
+/// File contents that load_map() would read back as this map, if the image is stored as `image_name`.
 [[nodiscard]] MapFiles map_files(const OccupancyMap& map, const std::string& image_name);
 
-/// Writes them as `path`.pgm and `path`.yaml. Throws std::runtime_error if a file cannot be written.
+/// Writes a map as `path`.pgm and `path`.yaml. Throws std::runtime_error if a file cannot be written.
 void write_occupancy_map(const OccupancyMap& map, const std::string& path);
 
 }  // namespace sidestep

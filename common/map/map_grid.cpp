@@ -7,13 +7,13 @@
 namespace sidestep {
 namespace {
 
-/// The last of `count` + 1 borders that is not beyond a coordinate, or -1.
+/// The index of the last of `count` + 1 borders that is not beyond a coordinate, or -1.
 template <typename Border>
 int last_border(double at_m, double origin_m, double resolution_m, int count, const Border& border_m) {
   if (!(at_m >= origin_m)) return -1;
   if (at_m >= border_m(count)) return count;
   int index = std::min(static_cast<int>((at_m - origin_m) / resolution_m), count - 1);
-  // The quotient may be rounded across a border.
+  // Rounding may have moved the quotient across a border.
   while (border_m(index) > at_m) --index;
   while (border_m(index + 1) <= at_m) ++index;
   return index;
@@ -28,7 +28,7 @@ Cell MapGrid::cell_at(const Vec2& p) const {
 
 CellRange MapGrid::cells_that_meet(const Box& box) const {
   CellRange range{cell_at(box.min_m), cell_at(box.max_m)};
-  // Closed squares: one whose upper border is the box's lower one meets it.
+  // Squares are closed: a square whose upper border is the box's lower border meets the box.
   if (range.first.column > 0 && x_m(range.first.column) >= box.min_m.x()) --range.first.column;
   if (range.first.row > 0 && y_m(range.first.row) >= box.min_m.y()) --range.first.row;
   range.first.column = std::max(range.first.column, 0);

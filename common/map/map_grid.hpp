@@ -12,7 +12,7 @@ struct Cell {
   friend bool operator==(const Cell&, const Cell&) = default;
 };
 
-/// Cells from `first` to `last`, both included; empty if first exceeds last on an axis.
+/// Cells from `first` to `last`, both included. The range is empty if first exceeds last on an axis.
 struct CellRange {
   Cell first, last;
 };
@@ -22,13 +22,13 @@ inline constexpr long kMaxMapCells = 64L << 20;
 inline constexpr double kMinResolution_m = 0.001, kMaxResolution_m = 10;
 inline constexpr double kMaxMapOrigin_m = 1e6;
 
-/// How a map's cells lie in the plane: square cells, with sides along x (columns) and y (rows).
+/// The grid of a map: square cells, with columns along x and rows along y.
 struct MapGrid {
   int columns = 1, rows = 1;   ///< 1 to kMaxMapSide each, and at most kMaxMapCells cells
-  double resolution_m = 0.05;  ///< side of a cell, kMinResolution_m to kMaxResolution_m
+  double resolution_m = 0.05;  ///< side of a cell, from kMinResolution_m to kMaxResolution_m
   Vec2 origin_m{0, 0};         ///< the lower left corner, within ±kMaxMapOrigin_m
 
-  /// The border between a column and its left neighbour. The same rounded number for both cells: cells
+  /// The border between a column and its left neighbour. Both cells use the same rounded number, so cells
   /// neither overlap nor leave a gap.
   double x_m(int column) const { return origin_m.x() + column * resolution_m; }
   double y_m(int row) const { return origin_m.y() + row * resolution_m; }
@@ -40,10 +40,11 @@ struct MapGrid {
   bool has(const Cell& cell) const {
     return cell.column >= 0 && cell.column < columns && cell.row >= 0 && cell.row < rows;
   }
-  /// The cell that contains a point, with its left and lower border but without the others. A point outside
-  /// the map gets the nearest cell beyond the border: column -1 or `columns`, row -1 or `rows`.
+  /// The cell that contains a point. A cell includes its left and lower border but not the others. For a
+  /// point outside the map, returns the nearest cell beyond the border: column -1 or `columns`, row -1 or
+  /// `rows`.
   Cell cell_at(const Vec2& p) const;
-  /// The cells of the map whose closed squares have a point in common with a closed box.
+  /// The cells of the map whose closed squares intersect a closed box.
   CellRange cells_that_meet(const Box& box) const;
 };
 

@@ -10,10 +10,11 @@
 namespace sidestep {
 namespace {
 
-/// Widens ranges of candidates, so that rounding excludes none; far more than rounding errors of coordinates.
+/// Widens candidate ranges so that rounding excludes no candidate; much larger than the rounding errors of
+/// coordinates.
 constexpr double kSlack_m = 1e-6;
 
-/// The bounding box of the part of a path that is within `reach_m` of a row. Larger by the slack.
+/// The bounding box of the part of a path that is within `reach_m` of a row, widened by the slack.
 Box part_near_row(const Segment& path, double row_low_m, double row_high_m, double reach_m) {
   const double low_m = row_low_m - reach_m - kSlack_m, high_m = row_high_m + reach_m + kSlack_m;
   const Vec2 along = path.to_m - path.from_m;
@@ -45,7 +46,7 @@ double OccupancyMap::distance_m(const Vec2& p, double max_m) const {
   double best_m = std::min(max_m, -signed_distance(p, extent()));
   if (best_m <= 0) return 0;
   const Cell at = cell_at(p);
-  // Rows in the order of their distance, each up to the best distance so far.
+  // Visits rows by increasing distance, and searches each only up to the best distance so far.
   const auto search = [&](int row, double row_distance_m) {
     const double reach_m = std::sqrt(best_m * best_m - row_distance_m * row_distance_m);
     const int reach = static_cast<int>(reach_m / grid_.resolution_m) + 1;

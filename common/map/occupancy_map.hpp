@@ -15,8 +15,8 @@ namespace sidestep {
 /// except rectangles(), do not allocate. They throw std::invalid_argument for numbers that are not finite.
 class OccupancyMap {
  public:
-  /// Cells whose bit is 1 are blocked. Throws std::invalid_argument if the grid is invalid (see check) or of
-  /// another size than the bits.
+  /// Cells whose bit is 1 are blocked. Throws std::invalid_argument if the grid is invalid (see check) or its
+  /// size differs from that of the bits.
   OccupancyMap(const MapGrid& grid, BitGrid blocked);
 
   const MapGrid& grid() const { return grid_; }
@@ -27,29 +27,30 @@ class OccupancyMap {
   /// True outside the map.
   bool is_blocked(const Cell& cell) const { return !grid_.has(cell) || blocked_.get(cell.column, cell.row); }
 
-  /// The exact distance from a point to the nearest blocked cell or the outside, 0 in them; `max_m` if
-  /// nothing is nearer. The time grows with the smaller of both. `max_m` may be infinite.
+  /// The exact distance from a point to the nearest blocked cell or the outside, or `max_m` if that is
+  /// smaller. It is 0 inside them. The run time grows with the result. `max_m` may be infinite.
   double distance_m(const Vec2& p, double max_m = std::numeric_limits<double>::infinity()) const;
 
   /// Whether a disc that moves straight from one position to another touches a blocked cell or the outside.
   /// Exact in double precision: contact by more than a nanometre is never missed.
   bool touches(const Vec2& from_m, const Vec2& to_m, double radius_m) const;
 
-  /// Calls `call(box)` for boxes that together cover exactly the blocked cells that meet a closed region, and
-  /// the outside as far as it is within a cell of the region. No two boxes share a cell: runs of cells in a
-  /// row, merged with equal runs of the next rows. Stops when `call` returns false, and then returns false.
+  /// Calls `call(box)` for boxes that together cover exactly the blocked cells that intersect a closed
+  /// region, and the part of the outside that is within one cell of the region. Boxes share no cells: each is
+  /// a run of cells in a row, merged with equal runs in the following rows. Stops when `call` returns false,
+  /// and then returns false.
   template <typename Call>
   bool for_each_box(const Box& region, const Call& call) const;
 
   /// Rectangles that together cover exactly the blocked cells, without the outside. Each is maximal, so they
   /// overlap. Their number is small but not minimal: for each cell not yet covered, in rows from the lower
-  /// left, the largest rectangle with this cell as its corner is chosen, and extended. None if more than
+  /// left, the largest rectangle with this cell as its corner is chosen, and extended. nullopt if more than
   /// `limit` would be needed.
   std::optional<std::vector<Box>> rectangles(std::size_t limit) const;
 
  private:
   void check_region(const Box& region) const;
-  /// Whether the columns begin, …, end - 1 of a row are a whole run of blocked cells within a range.
+  /// Whether the columns begin, …, end - 1 of a row are a complete run of blocked cells within a range.
   bool is_run(int begin, int end, int row, const CellRange& range) const {
     return blocked_.find_clear(begin, end, row) == end &&
            (begin == range.first.column || !blocked_.get(begin - 1, row)) &&
@@ -77,7 +78,7 @@ bool OccupancyMap::for_each_box(const Box& region, const Call& call) const {
       const int begin = blocked_.find_set(end, end_column, row);
       if (begin >= end_column) break;
       end = blocked_.find_clear(begin, end_column, row);
-      // A run that is equal to the one below it belongs to that run's box.
+      // A run that equals the one below it belongs to that run's box.
       if (row > range.first.row && is_run(begin, end, row - 1, range)) continue;
       int end_row = row + 1;
       while (end_row <= range.last.row && is_run(begin, end, end_row, range)) ++end_row;

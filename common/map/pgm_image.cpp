@@ -13,7 +13,7 @@ constexpr long kMaxSample = 65'535;
 
 bool is_space(int c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-/// A decimal number up to `max`, after white space and, in the header, comments.
+/// Reads a decimal number up to `max`, after white space and, in the header, comments.
 long read_number(std::istream& file, const char* what, long max, bool has_comments) {
   int c = file.get();
   while (is_space(c) || (has_comments && c == '#')) {
@@ -27,14 +27,14 @@ long read_number(std::istream& file, const char* what, long max, bool has_commen
     value = 10 * value + (c - '0');
     if (value > max) throw MapImageError(fmt::format("its {} is larger than {}", what, max));
   }
-  // The character after a number, if any, is one white space.
+  // A number must be followed by one white space or the end of the file.
   if (file && !is_space(c)) throw MapImageError(fmt::format("its {} is not a number", what));
   return value;
 }
 
 [[noreturn]] void fail_truncated() { throw MapImageError("it is truncated: pixels are missing"); }
 
-/// The samples of a row of raw pixels, of one byte or two.
+/// Reads the samples of a row of raw pixels, of one or two bytes each.
 void read_raw_row(std::istream& file, bool is_wide, std::vector<char>& bytes, std::vector<long>& samples) {
   if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) fail_truncated();
   const auto byte = [&](std::size_t i) { return long{static_cast<unsigned char>(bytes[i])}; };
@@ -54,7 +54,7 @@ ImageCells read_pgm(std::istream& file, const StateOf& state_of, UnknownCells un
   check_image_size(columns, rows);
   if (max_sample < 1) throw MapImageError("its maximum sample is 0");
   const bool is_wide = max_sample > 255;
-  // A plain sample takes two characters, but for the white space after the last one.
+  // A plain sample takes at least two characters; the last one may lack its white space.
   if (bytes_left(file) + (is_plain ? 1 : 0) < columns * rows * (is_plain || is_wide ? 2 : 1))
     fail_truncated();
 

@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Reads a PGM image (Netpbm's specification: plain "P2" and raw "P5") from a stream that can seek; see
-/// read_map_image.
+/// Reads a PGM image (Netpbm's specification: plain "P2" and raw "P5") from a seekable stream; see
+/// read_map_image().
 [[nodiscard]] ImageCells read_pgm(std::istream& file, const StateOf& state_of, UnknownCells unknown);
 
 }  // namespace sidestep

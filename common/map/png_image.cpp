@@ -14,11 +14,11 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kSignatureSize = 8, kChunkOverhead = 12;
-/// Enough for 64 bits a pixel without compression.
+/// Enough for 64 bits per pixel without compression.
 constexpr long kMaxFileBytes = 8 * kMaxMapCells;
-/// Deflate compresses to no less than this part, and a pixel has at least one bit.
+/// Maximum compression of deflate, where a pixel has at least one bit.
 constexpr long kMaxPixelsPerByte = 8 * 1032;
-/// gAMA chunks hold 100,000 / gamma. libpng leaves samples as they are if it is within 5 % of sRGB's.
+/// gAMA chunks contain 100,000 / gamma. libpng leaves samples unchanged if gamma is within 5 % of sRGB's.
 constexpr std::uint32_t kMinGamma = 44'000, kMaxGamma = 47'000;
 
 std::uint32_t big_endian(const char* bytes) {
@@ -27,7 +27,7 @@ std::uint32_t big_endian(const char* bytes) {
   return value;
 }
 
-/// Rejects an image that libpng would brighten or darken: it could show unknown cells as free ones.
+/// Rejects an image that libpng would brighten or darken, because it could then show unknown cells as free.
 void check_gamma(const std::string& bytes) {
   for (std::size_t at = kSignatureSize; at + kChunkOverhead <= bytes.size();) {
     const std::uint32_t size = big_endian(&bytes[at]);
@@ -42,7 +42,7 @@ void check_gamma(const std::string& bytes) {
   }
 }
 
-/// Frees what libpng holds for an image.
+/// Frees libpng's memory for an image.
 struct PngImage : png_image {
   PngImage() : png_image{} { version = PNG_IMAGE_VERSION; }
   PngImage(const PngImage&) = delete;

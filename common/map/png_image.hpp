@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Reads a PNG image from a stream that can seek; see read_map_image. Samples are taken as they are stored:
-/// an image whose gamma would change them is rejected.
+/// Reads a PNG image from a seekable stream; see read_map_image(). Samples are used as stored, so an image
+/// whose gamma would change them is rejected.
 [[nodiscard]] ImageCells read_png(std::istream& file, const StateOf& state_of, UnknownCells unknown);
 
 }  // namespace sidestep

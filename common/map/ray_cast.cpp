@@ -9,13 +9,13 @@ namespace sidestep {
 namespace {
 
 constexpr double kNoHit = std::numeric_limits<double>::infinity();
-/// Free cells around any point of a cell: the distance between centres minus this. Half a diagonal for the
-/// point, half a diagonal for the blocked cell, and the error of the stored distance.
+/// Every point of a cell has at least this much less free space than the distance between centres: half a
+/// diagonal for the point, half a diagonal for the blocked cell, and the error of the stored distance.
 constexpr double kCellMargin = 1.4143 + 0.02;
-/// Keeps a ray off blocked cells after a jump, so that rounding cannot put it into one.
+/// Margin that keeps a ray off blocked cells after a jump, so that rounding cannot put it into one.
 constexpr double kJumpMargin_m = 1e-8;
 
-/// One coordinate of a ray on its way through the grid.
+/// One axis of a ray on its way through the grid.
 struct RayAxis {
   double origin_m, from_m, direction, resolution_m;
   int count;
@@ -30,7 +30,7 @@ struct RayAxis {
     const double offset_m = from_m + along_m * direction - origin_m;
     return std::clamp(static_cast<int>(offset_m / resolution_m), 0, count - 1);
   }
-  /// Where the ray leaves the map.
+  /// The distance along the ray at which it leaves the map.
   double end_m() const { return exit_m(direction > 0 ? count - 1 : 0); }
 };
 

@@ -4,7 +4,7 @@
 namespace sidestep {
 namespace {
 
-/// Cells from the lower left one up to, but without, the end.
+/// Cells from the lower left one up to, but not including, the end.
 struct Rectangle {
   int column, row, end_column, end_row;
 };

@@ -7,7 +7,8 @@
 namespace sidestep {
 namespace {
 
-/// The colours of the ids 0 to 15, P pink and G green: front left, front right, rear left, rear right.
+/// The colours of the dots for the ids 0 to 15, P for pink and G for green, in the order front left, front
+/// right, rear left, rear right.
 constexpr std::array<std::string_view, 16> kIds{"PPGP", "GPGP", "GGGP", "PGGP", "PPPG", "GPPG",
                                                 "GGPG", "PGPG", "GGGG", "PPPP", "PPGG", "GGPP",
                                                 "GPGG", "GPPP", "PGGG", "PGPP"};

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Reads a colour name. Throws ConfigError for `location` if there is no such colour.
+/// Parses a colour name. Throws ConfigError for `location` if there is no such colour.
 [[nodiscard]] Colour colour_from(const YAML::Node& node, const YamlLocation& location);
 
 }  // namespace sidestep

@@ -27,7 +27,7 @@ enum class Colour : std::uint8_t {
 struct NamedColour {
   Colour colour;
   std::string_view name;
-  Rgb rgb;  ///< as seen by a white-balanced camera in full light
+  Rgb rgb;  ///< colour as seen by a white-balanced camera in full light
 };
 
 /// All named colours, indexed by Colour.

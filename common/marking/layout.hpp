@@ -24,28 +24,28 @@ struct MarkerPattern {
   std::vector<Colour> colours;  ///< of the layout's dots, in order
 };
 
-/// The arrangement of markers on top of a robot. The colour of the centre marker identifies the team and
-/// those of the other dots the robot; the positions give the heading.
+/// The arrangement of markers on top of a robot. The centre marker's colour identifies the team, the other
+/// dots' colours identify the robot, and their positions give the heading.
 struct MarkerLayout {
   std::string name;
   Marker centre;
   Colour blue_team = Colour::kBlue;
   Colour yellow_team = Colour::kYellow;
-  std::vector<Marker> dots;             ///< without the centre
-  std::vector<MarkerPattern> patterns;  ///< with distinct ids
+  std::vector<Marker> dots;             ///< all dots except the centre marker
+  std::vector<MarkerPattern> patterns;  ///< patterns with distinct ids
 
   Colour team_colour(Team team) const { return team == Team::kBlue ? blue_team : yellow_team; }
   /// The pattern with an id, or nullptr.
   const MarkerPattern* find(std::uint32_t id) const;
 };
 
-/// The pattern of a robot, by its number. Throws std::invalid_argument if the layout has none.
+/// The pattern of the robot with this number. Throws std::invalid_argument if the layout has none.
 const MarkerPattern& pattern_of(const MarkerLayout& layout, RobotId robot);
 
 /// The invalid part of a layout, and the reason.
 struct LayoutError {
   enum class Part { kCentre, kDots, kPatterns } part = Part::kCentre;
-  std::size_t index = 0;  ///< of the dot or pattern
+  std::size_t index = 0;  ///< index of the invalid dot or pattern
   std::string why;
 };
 

@@ -7,9 +7,9 @@ namespace sidestep {
 
 /// Standard deviations of a robot's pose from a least-squares fit to all markers.
 struct PoseError {
-  double centroid_m = 0;      ///< of the markers' centroid, per axis
-  double longitudinal_m = 0;  ///< of the robot's origin along its x axis
-  double lateral_m = 0;       ///< of the robot's origin along its y axis
+  double centroid_m = 0;      ///< error of the markers' centroid, per axis
+  double longitudinal_m = 0;  ///< error of the robot's origin along its x axis
+  double lateral_m = 0;       ///< error of the robot's origin along its y axis
   double heading_rad = 0;
 };
 

@@ -10,7 +10,7 @@ namespace sidestep {
 /// the first one decodes it. It is empty at first and lives as long as the message.
 class MessageAttachment {
  public:
-  /// What set() has stored; null if the slot is empty or holds another type.
+  /// The value stored by set(); null if the slot is empty or holds another type.
   template <typename Value>
   [[nodiscard]] std::shared_ptr<Value> get() const {
     return type_ == &kType<Value> ? std::static_pointer_cast<Value>(value_) : nullptr;
@@ -22,7 +22,7 @@ class MessageAttachment {
   }
 
  private:
-  // Its address identifies the type.
+  // The address of this variable identifies the type.
   template <typename Value>
   static constexpr char kType = 0;
 

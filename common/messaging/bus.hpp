@@ -15,7 +15,7 @@
 
 namespace sidestep {
 
-/// A bus's writer of one channel, without the message's type.
+/// A bus's writer for one channel, independent of the message's type.
 class RawWriter {
  public:
   virtual ~RawWriter() = default;
@@ -55,15 +55,15 @@ class Bus {
   /// Calls back once, as soon as possible at or after `when`.
   virtual void at(Time when, std::function<void()> callback) = 0;
 
-  /// The slot of the message that is being delivered, valid until the next call of the bus; null if the bus
-  /// does not support attachments.
+  /// The attachment slot of the message being delivered, valid until the next call of the bus; null if the
+  /// bus does not support attachments.
   virtual MessageAttachment* attachment(const void* message) {
     (void)message;
     return nullptr;
   }
 
   /// Whether this process's keys allow it to write, or read, a topic's channel of a robot; true without keys.
-  /// If not, advertise() throws std::invalid_argument. A subscription that they do not allow gets no
+  /// If the keys forbid it, advertise() throws std::invalid_argument, and a subscription receives no
   /// messages.
   virtual bool may_write(const TopicInfo& topic, std::uint32_t robot) const {
     (void)topic;
@@ -76,37 +76,37 @@ class Bus {
     return true;
   }
 
-  /// From now on, every new writer announces these rules (Header.rules), and messages of processes with other
-  /// rules, or none, are refused on all topics with TopicInfo::is_checked: callbacks do not get them, but
-  /// `on_refused` gets their topics and headers. Call it before the first advertise().
+  /// From now on, every new writer announces these rules (Header.rules), and messages from processes with
+  /// different or no rules are refused on all topics with TopicInfo::is_checked: they are not passed to
+  /// callbacks, but `on_refused` receives their topics and headers. Call it before the first advertise().
   void use_rules(std::uint64_t fingerprint,
                  std::function<void(const TopicInfo&, const msg::Header&)> on_refused) {
     rules_ = fingerprint;
     on_refused_ = std::move(on_refused);
   }
 
-  /// From now on, `watcher` gets the topic and header of every message that a subscription gets.
+  /// From now on, `watcher` receives the topic and header of every message that a subscription receives.
   void watch_headers(std::function<void(const TopicInfo&, const msg::Header&)> watcher) {
     header_watcher_ = std::move(watcher);
   }
 
-  /// From now on, `watcher` gets the topic, its robot and the header of a message of a second process
-  /// whenever two begin to write a channel that is for one (TopicInfo::is_sole).
+  /// From now on, `watcher` is called whenever a second process starts to write a single-writer channel
+  /// (TopicInfo::is_sole). It receives the topic, the robot and the header of that process's message.
   void watch_contests(std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> watcher) {
     contest_watcher_ = std::move(watcher);
   }
 
-  /// From now on, of two processes that write a channel that is for one, those messages count that the one
-  /// sends which was heard first. For observers of a simulation, who know it to be the true one.
+  /// From now on, if two processes write a single-writer channel, messages count if they come from the
+  /// process that was heard first. For observers of a simulation, who know that this one is genuine.
   void follow_first_senders() { follows_first_ = true; }
 
-  /// Later subscriptions to channels that are for one process listen for a moment before they believe it. For
-  /// a process that starts among others.
+  /// From now on, new subscriptions to single-writer channels listen for a moment before they trust a writer.
+  /// For a process that starts while others are running.
   void listen_first() { listening_ = SoleSender::kListening; }
 
-  /// Counts something that this process has dropped, other than for a reason that its node counts.
+  /// Counts an item that this process has dropped for a reason that its node does not count.
   void count_drop(DropReason reason) { drops_.count(reason); }
-  /// Adds what this bus, or its process outside the node, has dropped.
+  /// Adds the drops of this bus, and of this process outside its node.
   void count_drops(DropCounters& drops) const {
     drops.add(drops_);
     add_drops(drops);
@@ -118,19 +118,18 @@ class Bus {
   Writer<Message> advertise(const Topic<Message>& topic, std::uint32_t robot = 0) {
     return Writer<Message>(make_writer(topic, channel_name(topic, robot)), rules_);
   }
-  /// For messages that keep the headers that they have, e.g. those of a recording.
+  /// Creates a writer that leaves message headers unchanged, for example for messages of a recording.
   std::unique_ptr<RawWriter> relay(const TopicInfo& topic, const std::string& channel) {
     return make_writer(topic, channel);
   }
-  /// For messages without our headers. `callback` takes a const Message&, of the topic's type.
+  /// Subscribes to messages without our headers. `callback` takes a const Message& of the topic's type.
   template <typename Message, typename Callback>
   void observe_channel(const TopicInfo& topic, const std::string& channel, Callback callback) {
     make_reader(topic, channel, [callback = std::move(callback)](const void* message) mutable {
       callback(*static_cast<const Message*>(message));
     });
   }
-  /// `callback` takes a const Message&. It gets no messages in the name of processes that may not write the
-  /// topic.
+  /// `callback` takes a const Message&. Messages whose sender may not write the topic are not passed to it.
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe(topic, robot,
@@ -147,7 +146,7 @@ class Bus {
   void subscribe(const Topic<Message>& topic, Callback callback) {
     subscribe(topic, 0, std::move(callback));
   }
-  /// As subscribe(), but refuses nothing. For recordings.
+  /// Like subscribe(), but refuses nothing. For recordings.
   template <typename Message, typename Callback>
   void observe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe_channel<Message>(topic, channel_name(topic, robot), std::move(callback));
@@ -157,7 +156,7 @@ class Bus {
   virtual std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) = 0;
   virtual void make_reader(const TopicInfo& topic, const std::string& channel,
                            std::function<void(const void*)> callback) = 0;
-  /// Adds what the bus itself has dropped.
+  /// Adds the drops counted by the bus itself.
   virtual void add_drops(DropCounters& drops) const { (void)drops; }
 
  private:
@@ -192,7 +191,7 @@ class Bus {
   DropCounters drops_;
 };
 
-/// Calls back after each period, until the bus stops. What the callback refers to must outlive the bus.
+/// Calls back once per period until the bus stops. Anything that the callback refers to must outlive the bus.
 template <typename Callback>
 void call_periodically(Bus& bus, Duration period, Callback callback) {
   bus.at(bus.now() + period, [&bus, period, callback] {

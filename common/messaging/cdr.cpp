@@ -23,16 +23,16 @@ std::uint32_t read_uint32(Bytes bytes, ByteOrder order) {
   return value;
 }
 
-/// Size of a message without elements; of every message, if the type has no sequence.
+/// Size of a message whose sequence is empty; if the type has no sequence, the size of every message.
 template <typename Message>
 std::size_t min_size() {
   static const std::size_t size = fast_dds::cdr_size(Message());
   return size;
 }
 
-/// Whether the generated code can read the bytes safely. A type's sequence is its last member, so an
-/// empty message ends with the sequence's count. A count beyond the bound would make the generated code
-/// allocate that much memory.
+/// Whether the generated code can read the bytes safely. A type's sequence is its last member, so a message
+/// with an empty sequence ends with the sequence's count. For a count beyond the bound, the generated code
+/// would allocate that much memory.
 template <typename Message>
 [[nodiscard]] bool is_acceptable(Bytes bytes, ByteOrder order, std::size_t max_elements) {
   if (bytes.size() < min_size<Message>()) return false;
@@ -71,7 +71,7 @@ bool read_cdr(Bytes bytes, ByteOrder order, std::size_t max_elements, void* mess
   try {
     CdrCoder coder(bytes, order);
     coder.read(*static_cast<Message*>(message));
-    // Fast CDR 2 takes the end of the bytes between two members for the end of the message.
+    // If the bytes end between two members, Fast CDR 2 takes that for the end of the message.
     const std::size_t whole = max_elements == 0 ? min_size<Message>() : cdr_size<Message>(message);
     return coder.position() == whole && bytes.size() - coder.position() <= kMaxPadding;
   } catch (const std::exception&) {

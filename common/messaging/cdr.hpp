@@ -12,7 +12,7 @@ namespace sidestep {
 
 using ByteOrder = fast_dds::ByteOrder;
 
-/// A key's CDR bytes, big-endian, followed by zeros.
+/// The CDR bytes of a key, big-endian and padded with zeros.
 using CdrKey = std::array<std::uint8_t, 16>;
 
 /// The templates below are instantiated in cdr.cpp for the messages of all topics. Each `message` points to a

@@ -9,23 +9,23 @@
 
 namespace sidestep {
 
-/// Answers a clock probe: when its probe arrived, and when the answer was sent, by this process's clock.
-/// Several commands at the same time share the rate of answers; probes beyond it are ignored, so that nobody
-/// can occupy the process with them.
+/// Answers clock probes with the time at which the probe arrived and the time at which the answer was sent,
+/// by this process's clock. Several commands at the same time share the rate of answers; probes beyond it are
+/// ignored, so that nobody can occupy the process with them.
 class ClockResponder {
  public:
-  /// What an answer tells of the process besides its clock.
+  /// What an answer says about the process besides its clock.
   struct Identity {
     std::uint32_t process = 0;
     Incarnation incarnation = 0;
     double clock_bound_s = 0;
     std::string host, scenario;
   };
-  /// Answers at once, and one per kPeriod in the long run.
+  /// Number of probes that are answered at once; beyond it, one per kPeriod.
   static constexpr int kBurst = 20;
   static constexpr Duration kPeriod{10'000'000};
 
-  /// `host_ahead` reads how far the host's clock is ahead of the process's.
+  /// `host_ahead` returns how far the host's clock is ahead of the process's.
   ClockResponder(Bus& bus, const Identity& identity, std::function<Duration()> host_ahead);
   ClockResponder(const ClockResponder&) = delete;
   ClockResponder& operator=(const ClockResponder&) = delete;

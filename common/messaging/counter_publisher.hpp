@@ -8,12 +8,12 @@
 
 namespace sidestep {
 
-/// Publishes what a process has dropped, once per kPeriod: what its bus has, and what its node adds.
+/// Publishes this process's drop counts once per kPeriod: those of its bus and those of its node.
 class CounterPublisher {
  public:
   static constexpr Duration kPeriod{1'000'000'000};
 
-  /// `process` and `incarnation` are the node's. `count_drops` adds the node's counts since its start. The
+  /// `process` and `incarnation` identify the node. `count_drops` adds the node's counts since its start. The
   /// bus makes no callbacks after this object's destruction.
   CounterPublisher(Bus& bus, std::uint32_t process, Incarnation incarnation,
                    std::function<void(DropCounters&)> count_drops);

@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// Fills in a frame's obstacles, and up to which distance from the frame's robots they are complete. Of more
-/// obstacles than a frame holds, keeps those whose edges are nearest to a robot; it reorders them.
-/// Precondition: the frame's robots are filled in.
+/// Fills in a frame's obstacles, and the distance from the frame's robots up to which the list is complete.
+/// If there are more obstacles than a frame holds, keeps those whose edges are nearest to a robot. Reorders
+/// the given obstacles. Precondition: the frame's robots are filled in.
 void set_obstacles(std::span<Circle> detected, msg::DetectionFrame& frame);
 
 }  // namespace sidestep

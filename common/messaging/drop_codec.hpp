@@ -9,10 +9,10 @@
 
 namespace sidestep {
 
-/// Fills in the counts that are not zero.
+/// Writes the non-zero counts into a message.
 void encode(const DropCounters& drops, msg::Counters& message);
-/// Decodes untrusted counts. Returns nullopt unless their sender is the process that they are of, every
-/// reason is known, and every robot possible.
+/// Decodes untrusted counts. Returns nullopt unless the sender is the process that the counts describe, every
+/// reason is known, and every robot number is possible.
 [[nodiscard]] std::optional<std::vector<DropCount>> decode(const msg::Counters& message);
 
 }  // namespace sidestep

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Counts beyond 32 bits saturate at the maximum of the message.
+/// Encodes a histogram. Counts beyond 32 bits saturate at the message's maximum.
 msg::DurationCounts encode(const DurationHistogram& histogram);
 
 /// Any message gives a valid histogram; a hostile one gives wrong figures.

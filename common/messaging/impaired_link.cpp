@@ -14,9 +14,9 @@ Duration sample_delay(const LinkQuality& quality, Rng& rng) {
 
 bool ImpairedLink::is_lost(const LinkQuality& quality, Rng& rng) {
   if (quality.is_cut || quality.loss >= 1) return true;
-  // Gilbert model: two states; every message sent in the losing state is lost. The losing state lasts
-  // mean_burst messages on average, and is entered so often that the fraction `loss` of all messages falls
-  // into it.
+  // Gilbert model: there are two states, and every message sent in the losing state is lost. The losing state
+  // lasts mean_burst messages on average. Its probability of entry is chosen so that the fraction `loss` of
+  // all messages falls into it.
   const double leave = 1 / std::max(1.0, quality.mean_burst);
   const double enter = std::min(1.0, leave * quality.loss / (1 - quality.loss));
   is_losing_ = is_losing_ ? !rng.chance(leave) : rng.chance(enter);

@@ -11,9 +11,9 @@ namespace sidestep {
 
 /// Quality of the link from one process to another.
 struct LinkQuality {
-  double loss = 0;              ///< fraction of the messages
+  double loss = 0;              ///< fraction of messages that are lost
   double mean_burst = 1;        ///< mean number of messages lost in a row (Gilbert 1960)
-  double duplicate = 0;         ///< probability
+  double duplicate = 0;         ///< probability of a duplicate
   Duration delay_min{200'000};  ///< delays are exponential above the minimum, truncated at the maximum
   Duration delay_mean{400'000};
   Duration delay_max{600'000};
@@ -22,7 +22,7 @@ struct LinkQuality {
   bool operator==(const LinkQuality&) const = default;
 };
 
-/// Delays after which the copies of one message arrive: none if it is lost, two if it is duplicated.
+/// Delays after which the copies of one message arrive: no entry if it is lost, two if it is duplicated.
 struct MessageCopies {
   std::array<Duration, 2> delays{};
   std::size_t count = 0;
@@ -36,10 +36,10 @@ class ImpairedLink {
  private:
   bool is_lost(const LinkQuality& quality, Rng& rng);
 
-  bool is_losing_ = false;  // in a burst
+  bool is_losing_ = false;  // currently in a burst of losses
 };
 
-/// Delay of one message.
+/// Draws the delay of one message.
 Duration sample_delay(const LinkQuality& quality, Rng& rng);
 
 }  // namespace sidestep

@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-/// No loss, no delay, no duplicates.
+/// A perfect link: no loss, no delay, no duplicates.
 inline constexpr LinkQuality kUnimpairedLink{0, 1, 0, Duration{0}, Duration{0}, Duration{0}, false};
 
 /// Decodes a network fault; nullopt if a value is out of range.
@@ -21,7 +21,7 @@ inline constexpr LinkQuality kUnimpairedLink{0, 1, 0, Duration{0}, Duration{0}, 
 /// Impairs the messages that arrive at one process, with one link per sender. Thread-safe.
 class Impairment {
  public:
-  /// RTPS GUID prefix.
+  /// An RTPS GUID prefix.
   using SenderId = std::array<std::uint8_t, 12>;
 
   void set(const LinkQuality& quality, std::uint64_t seed);

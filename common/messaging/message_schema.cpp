@@ -12,7 +12,7 @@ namespace {
 
 bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Names, numbers and single other characters.
+/// Splits the text into names, numbers and single other characters.
 std::vector<std::string_view> tokens_of(std::string_view text) {
   std::vector<std::string_view> tokens;
   for (std::size_t i = 0; i < text.size();) {
@@ -26,12 +26,12 @@ std::vector<std::string_view> tokens_of(std::string_view text) {
 }
 
 struct Definition {
-  std::string module;  // e.g. sidestep::msg
+  std::string module;  // for example sidestep::msg
   std::string_view text;
   std::vector<std::string_view> tokens;
 };
 
-/// The name that a definition defines: the last one before its braces or its value, or its end.
+/// The name that a definition defines: the last one before its braces, its value or its end.
 std::string_view defined_name(const std::vector<std::string_view>& tokens) {
   std::string_view name;
   for (const std::string_view token : tokens) {
@@ -78,7 +78,7 @@ class Definitions {
     return found == definitions_.end() ? nullptr : &found->second;
   }
 
-  /// Appends what a definition uses, and then itself.
+  /// Appends the definitions that a definition uses, and then the definition itself.
   void append(const std::string& name, std::set<std::string>& done, std::string& text) const {
     const Definition* definition = find(name);
     if (definition == nullptr || !done.insert(name).second) return;
@@ -99,7 +99,7 @@ class Definitions {
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0)
       text.remove_prefix(1);
   }
-  /// Up to the first semicolon outside all braces.
+  /// The length of a definition: up to the first semicolon outside all braces.
   static std::size_t size_of_definition(std::string_view text) {
     int depth = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -110,7 +110,7 @@ class Definitions {
     throw std::invalid_argument("IDL: a definition without end");
   }
 
-  std::map<std::string, Definition> definitions_;  // by name; ours are unique across modules
+  std::map<std::string, Definition> definitions_;  // keyed by name; our names are unique across modules
 };
 
 }  // namespace

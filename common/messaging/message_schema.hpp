@@ -6,12 +6,12 @@
 
 namespace sidestep {
 
-/// All definitions of idl/, without comments and includes. Some occur several times.
+/// All definitions in idl/, without comments and includes. Some occur several times.
 extern const char* const kIdlText;
 
-/// The IDL of a message type and of everything that it uses, in an order in which each definition comes after
-/// those that it uses. `idl`: definitions in modules, without comments and preprocessor directives. Throws
-/// std::invalid_argument if the type, e.g. sidestep::msg::Verdict, is not among them.
+/// The IDL of a message type and of all definitions that it uses, sorted so that each comes after those that
+/// it depends on. `idl` contains definitions in modules, without comments and preprocessor directives. Throws
+/// std::invalid_argument if it does not define the type, for example sidestep::msg::Verdict.
 [[nodiscard]] std::string message_schema(std::string_view type, std::string_view idl = kIdlText);
 
 }  // namespace sidestep

@@ -9,16 +9,16 @@
 namespace sidestep {
 
 /// Decodes an untrusted proposal. Returns nullopt if its sender is not an agent of the proposal's robot, or
-/// if incarnation or epoch are implausible at `now`, by the local clock, as in all of these functions. An
-/// invalid candidate becomes nullopt, and so does one of another robot, base or start than the first one; the
-/// other candidates remain.
+/// if incarnation or epoch are implausible at `now` (here and below: by the local clock). A candidate becomes
+/// nullopt if it is invalid, or if its robot, base or start differs from the first one's; the other
+/// candidates remain.
 [[nodiscard]] std::optional<Proposal> decode(const msg::Proposal& message, Time now);
 /// Decodes an untrusted registration. Returns nullopt if its sender is not an agent of the registration's
-/// robot, or if incarnation or epoch are implausible. Registration::versions is nullopt if they are too many,
-/// any is invalid, of another robot or listed twice, or if they contradict is_absent.
+/// robot, or if incarnation or epoch are implausible. Registration::versions is nullopt if there are too
+/// many, if any is invalid, belongs to another robot or is listed twice, or if they contradict is_absent.
 [[nodiscard]] std::optional<Registration> decode(const msg::Registration& message, Time now);
-/// Decodes an untrusted verdict. Returns nullopt unless it is from a coordinator and for `robot`, and all
-/// reasons are known.
+/// Decodes an untrusted verdict. Returns nullopt unless a coordinator sent it for `robot`, and all reasons
+/// are known.
 [[nodiscard]] std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot);
 /// Decodes an untrusted coordinator state. Returns nullopt if its sender is not the coordinator of that
 /// number, or if its epoch, its mode, the reason of its role, a time or the place of a displaced robot is
@@ -28,14 +28,14 @@ namespace sidestep {
 /// Decodes the untrusted reason of a coordinator's role. Returns nullopt if it is unknown or refers to no
 /// possible process.
 [[nodiscard]] std::optional<RoleCause> decode_role_cause(const msg::CoordinatorState& message);
-/// Writes it into a coordinator's state.
+/// Writes a role's reason into a coordinator's state.
 void encode(const RoleCause& cause, msg::CoordinatorState& message);
 
-/// Without the header's message_number and stamp_ns, which Writer::publish() sets.
+/// Encodes a proposal without the header's message_number and stamp_ns, which Writer::publish() sets.
 msg::Proposal encode(const Proposal& proposal);
-/// As above.
+/// Encodes a registration without the header's message_number and stamp_ns.
 msg::Registration encode(const Registration& registration);
-/// Without the header.
+/// Encodes a verdict without its header.
 msg::Verdict encode(const Verdict& verdict);
 
 }  // namespace sidestep

@@ -17,7 +17,7 @@ constexpr double kMaxRemaining_s = 1e9;
 // False for a NaN.
 bool is_between(double value, double low, double high) { return value >= low && value <= high; }
 
-/// Zero stands for none.
+/// Zero means that there is no value.
 bool is_none_or_between(double value, double low, double high) {
   return value == 0 || is_between(value, low, high);
 }
@@ -54,7 +54,8 @@ msg::OrderPose encode(const Goal& goal) {
   return pose;
 }
 
-/// Whether orders of this kind are for all robots, for one, or for either.
+/// Whether orders of this kind may address this robot: some kinds are for all robots, some for one, some for
+/// either.
 bool fits(msg::OrderKind kind, RobotId robot) {
   switch (kind) {
     case msg::OrderKind::ORDER_GO:
@@ -78,7 +79,7 @@ bool is_valid(const msg::OrderTerms& terms, std::size_t poses) {
                  : poses == 0 || terms.order_kind() == msg::OrderKind::ORDER_GO;
 }
 
-/// Also for the orders of the scenario, which have no poses.
+/// Also used for orders of the scenario, which have no poses.
 std::optional<Order> decode(RobotId robot, ClientId client, const msg::OrderTerms& terms,
                             std::span<const msg::OrderPose> poses, Time now) {
   const auto is_valid_pose = [](const msg::OrderPose& pose) { return is_valid(pose); };
@@ -122,8 +123,8 @@ bool is_client(std::uint32_t sender) {
          sender >= static_cast<std::uint32_t>(Sender::kClient);
 }
 
-/// Whether an order of this client may be remembered: scenarios only let robots drive, and coordinators only
-/// hold them.
+/// Whether an order from this client may be remembered: scenarios only give orders to drive, and coordinators
+/// only hold robots.
 bool may_order(std::uint32_t client, const msg::OrderTerms& terms, std::size_t poses) {
   if (is_coordinator(client)) return terms.order_kind() == msg::OrderKind::ORDER_HOLD;
   const bool is_go = terms.order_kind() == msg::OrderKind::ORDER_GO;
@@ -133,7 +134,7 @@ bool may_order(std::uint32_t client, const msg::OrderTerms& terms, std::size_t p
 
 }  // namespace
 
-// An order's number and client determine its contents.
+// Comparing numbers and clients is enough, because they determine an order's contents.
 bool have_same_orders(const OrderPage& a, const OrderPage& b) {
   const auto is_same = [](const RememberedOrder& x, const RememberedOrder& y) {
     return x.order.number == y.order.number && x.order.client == y.order.client &&

@@ -18,7 +18,7 @@ inline std::string coordinator_process(int number) {
   return number == 0 ? "coordinator" : "coordinator " + std::to_string(number);
 }
 
-/// The name of the process with an id (senders.hpp); a robot's number names its agent.
+/// The name of the process with this id (see senders.hpp). A robot's number names its agent.
 inline std::string process_name(std::uint32_t id) {
   if (id < kMaxRobots) return agent_process(id);
   const auto is = [id](Sender sender) { return id == static_cast<std::uint32_t>(sender); };
@@ -32,8 +32,8 @@ inline std::string process_name(std::uint32_t id) {
   return "process " + std::to_string(id);
 }
 
-/// The id of the process with such a name, also of "coordinator 0"; nullopt if it is no agent, coordinator,
-/// vision, simulator or robots.
+/// The id of the process with this name; accepts "coordinator 0". nullopt unless it names an agent, a
+/// coordinator, vision, the simulator or robots.
 [[nodiscard]] std::optional<std::uint32_t> process_id(const std::string& name);
 
 }  // namespace sidestep

@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-// A robot that needs longer cannot be driven.
+// A robot that needs a longer lead cannot be driven.
 constexpr Duration kMaxLead = std::chrono::milliseconds(300);
 
 bool is_magnitude(double value) { return std::isfinite(value) && value >= 0; }

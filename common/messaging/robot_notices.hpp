@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// The robots of a coordinator's state for which a condition on their notice holds.
+/// The robots in a coordinator's state whose notices satisfy a condition.
 template <typename Condition>
 std::vector<RobotId> robots_where(const msg::CoordinatorState& state, Condition condition) {
   std::vector<RobotId> robots;

@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-// A hostile sender may invent any number of processes.
+// Bounded, because a hostile sender may invent any number of processes.
 constexpr std::size_t kMaxOthers = 16;
 
 bool is(std::uint32_t process, Sender sender) { return process == static_cast<std::uint32_t>(sender); }

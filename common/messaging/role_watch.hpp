@@ -11,18 +11,19 @@
 
 namespace sidestep {
 
-/// Notices other processes with this one's process id, which must be alone: a second simulator, vision,
-/// coordinator of one number, or referee. Any of them that started earlier has priority.
+/// Detects other processes with this process's id where only one may run: a second simulator, vision,
+/// referee, or coordinator with the same number. The process that started first has priority.
 class RoleWatch {
  public:
-  /// `on_other` is called once for each other process, with its incarnation. Does nothing for processes of
-  /// which there may be several.
+  /// `on_other` is called once for each other process, with its incarnation. Has no effect for kinds of
+  /// processes that may run several times.
   RoleWatch(Bus& bus, std::uint32_t process, Incarnation incarnation,
             std::function<void(Incarnation other)> on_other);
   RoleWatch(const RoleWatch&) = delete;
   RoleWatch& operator=(const RoleWatch&) = delete;
 
-  /// Others are believed after this time. Messages of an earlier run of this process may arrive late.
+  /// Other processes are believed after this time, because messages from an earlier run of this process may
+  /// arrive late.
   static constexpr Duration kConfirmation{500'000'000};
 
  private:
@@ -40,14 +41,15 @@ class RoleWatch {
   std::map<Incarnation, Other> others_;
 };
 
-/// Whether a process with this id ends if one that started earlier is heard. Coordinators of one number agree
-/// by themselves which of them works.
+/// Whether a process with this id exits when it hears one that started earlier. Coordinators with the same
+/// number agree among themselves which of them is active.
 [[nodiscard]] bool must_be_alone(std::uint32_t process);
 
-/// Why a process ends, or what it has found: that another one with its id works.
+/// The message with which a process reports that another process with its id is running, and why it exits if
+/// it does.
 std::string describe_other(std::uint32_t process, Incarnation own, Incarnation other);
 
-/// That two processes write a channel that is for one, for Bus::watch_contests().
+/// The message for Bus::watch_contests(): two processes write a single-writer channel.
 std::string describe_contest(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header);
 
 }  // namespace sidestep

@@ -5,16 +5,16 @@
 
 namespace sidestep {
 
-/// The kinds of processes, as far as what they may read and write is concerned.
+/// The kinds of processes, by what they may read and write.
 enum class Role : std::uint8_t {
   kAgent,
   kCoordinator,
   kVision,
   kSimulator,
-  kRobot,  ///< drives robots of others
+  kRobot,  ///< drives robots outside this project
   kReferee,
   kClient,    ///< gives orders
-  kOperator,  ///< gives orders that come first, causes faults, and attests absences
+  kOperator,  ///< gives orders that take precedence, causes faults, and attests absences
   kViewer,    ///< reads everything but the ground truth, and writes nothing
   kJudge      ///< reads everything, and writes nothing
 };
@@ -38,13 +38,13 @@ class Roles {
 
 constexpr Roles operator|(Role a, Role b) { return Roles(a) | Roles(b); }
 
-/// Those that watch a run.
+/// Roles that watch a run.
 inline constexpr Roles kWatchers = Role::kOperator | Role::kViewer | Role::kJudge;
-/// Those that have clocks and rules of their own.
+/// Roles whose processes have their own clocks and rules.
 inline constexpr Roles kParts =
     Role::kAgent | Role::kCoordinator | Role::kVision | Role::kSimulator | Role::kRobot | Role::kReferee;
 
-/// Those of which there is one of each number.
+/// Roles with only one process per number.
 inline constexpr Roles kSoleRoles = Role::kCoordinator | Role::kVision | Role::kSimulator | Role::kReferee;
 
 }  // namespace sidestep

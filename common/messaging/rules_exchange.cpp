@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// A hostile sender may invent any number of processes and rules.
+// Bounded, because a hostile sender may invent any number of processes and rules.
 constexpr std::size_t kMaxReported = 256;
 
 }  // namespace
@@ -20,7 +20,7 @@ RulesExchange::RulesExchange(Bus& bus, std::uint32_t process, const SharedRules&
 }
 
 void RulesExchange::on_refused(const TopicInfo& topic, const msg::Header& header) {
-  // The simulator speaks for its robots with their numbers.
+  // The simulator sends its robots' messages with their numbers.
   const bool is_simulator = topic.per_robot && topic.writers.has(Role::kSimulator);
   report(is_simulator ? static_cast<std::uint32_t>(Sender::kSimulator) : header.sender(), header.rules(), {});
   publish_if_due();
@@ -39,7 +39,7 @@ void RulesExchange::report(std::uint32_t process, Fingerprint fingerprint,
                            std::vector<RuleDifference> differences) {
   const std::pair key(process, fingerprint);
   const bool is_full = reported_.size() >= kMaxReported && !reported_.contains(key);
-  // Anybody can invent processes. Those of later come in the place of others, but rarely.
+  // Anybody can invent processes. Once the table is full, later processes are still reported, but rarely.
   if (is_full && !later_reports_.admit(bus_.now())) return;
   if (is_full) reported_.erase(reported_.begin());
   const auto [known, is_new] = reported_.try_emplace(key, false);
@@ -57,10 +57,11 @@ void RulesExchange::publish_if_due() {
   message.process(process_);
   message.header().sender(process_);
   message.text().assign(rules_.text().begin(), rules_.text().end());
-  // Only now: among many processes, writers that are not needed are what takes time at the start.
+  // Created only now: with many processes, unnecessary writers would dominate the start-up time.
   if (!writer_) {
     writer_ = bus_.advertise(topics::kRules);
-    // Nobody has found this writer yet, so the message is lost over DDS; what was refused may not come again.
+    // Over DDS the first message is lost, because nobody has discovered this writer yet, and the other
+    // process may not send another message that is refused. So the rules are sent again later.
     for (const int periods : {1, 2, 4}) bus_.at(now + periods * kPeriod, [this] { publish_if_due(); });
   }
   writer_->publish(message, now);

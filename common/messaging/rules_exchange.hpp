@@ -12,14 +12,14 @@
 
 namespace sidestep {
 
-/// Another process works by other rules.
+/// A process whose rules differ from ours.
 struct RulesMismatch {
-  std::uint32_t process = 0;                ///< process id, see senders.hpp
+  std::uint32_t process = 0;                ///< the process's id, see senders.hpp
   std::vector<RuleDifference> differences;  ///< empty: that process has not sent its rules yet
 };
 
-/// Makes a process refuse all messages of processes with other rules (PROTOCOL.md, "The same rules"), and
-/// tells them its own, so that both sides can name what differs.
+/// Makes a process refuse all messages from processes with different rules (PROTOCOL.md, "The same rules"),
+/// and sends them its own rules, so that both sides can name the differences.
 class RulesExchange {
  public:
   /// After the first refusal, the rules are sent at most once per kPeriod.
@@ -43,14 +43,14 @@ class RulesExchange {
   const std::uint32_t process_;
   const SharedRules rules_;
   const OnMismatch on_mismatch_;
-  std::optional<Writer<msg::SharedRules>> writer_;  ///< nullopt: nothing was refused yet
+  std::optional<Writer<msg::SharedRules>> writer_;  ///< nullopt until something is refused
   std::optional<Time> published_at_;
-  /// By process and fingerprint: whether the differences have been reported.
+  /// Indexed by process and fingerprint: whether the differences have been reported.
   std::map<std::pair<std::uint32_t, Fingerprint>, bool> reported_;
-  RateLimit later_reports_{1, std::chrono::seconds(10)};  ///< once reported_ is full
+  RateLimit later_reports_{1, std::chrono::seconds(10)};  ///< used once reported_ is full
 };
 
-/// "refuses agent 3, which works by other rules: margin_m is 0.02 instead of 0.01".
+/// A log message such as "refuses agent 3, which works by other rules: margin_m is 0.02 instead of 0.01".
 std::string describe(const RulesMismatch& mismatch);
 
 }  // namespace sidestep

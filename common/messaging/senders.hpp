@@ -15,11 +15,11 @@ enum class Sender : std::uint32_t {
   kCoordinator = 10000,
   kVision = 20000,
   kSimulator = 30000,
-  kRobots = 35000,  ///< a process that drives robots of others
+  kRobots = 35000,  ///< a process that drives robots outside this project
   kOperator = 40000,
   kReferee = 50000,
-  kScenario = 60000,  ///< orders that the scenario file gives
-  kClient = 1000000,  ///< the first of all other clients
+  kScenario = 60000,  ///< orders from the scenario file
+  kClient = 1000000,  ///< the lowest id of all other clients
 };
 
 /// Coordinators are numbered 0 .. kMaxCoordinators - 1.
@@ -30,7 +30,7 @@ constexpr bool is_coordinator(std::uint32_t sender) {
   return sender >= first && sender < first + kMaxCoordinators;
 }
 
-/// The roles of processes that may have this Header.sender. A robot's facts have its agent's number, and an
+/// The roles of processes that may use this Header.sender. A robot's facts carry its agent's number, and an
 /// operator may speak as a client.
 constexpr Roles roles_of(std::uint32_t sender) {
   if (sender < kMaxRobots) return Role::kAgent | Role::kSimulator | Role::kRobot;
@@ -52,7 +52,7 @@ constexpr Roles roles_of(std::uint32_t sender) {
   }
 }
 
-/// The id of the client with this name: programs of different names hardly ever have the same one.
+/// The id of the client with this name. Collisions between different names are unlikely.
 constexpr std::uint32_t client_id(std::string_view name) {
   std::uint32_t hash = 2166136261;  // FNV-1a
   for (const char c : name) hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619;
@@ -60,7 +60,7 @@ constexpr std::uint32_t client_id(std::string_view name) {
   return first + hash % (4294967295 - first);
 }
 
-/// NetworkFault.target that addresses every process.
+/// NetworkFault.target value that addresses every process.
 inline constexpr std::uint32_t kEveryProcess = 4294967295;
 
 }  // namespace sidestep

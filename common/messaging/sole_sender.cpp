@@ -28,8 +28,8 @@ SoleSender::Outcome SoleSender::receive(std::uint64_t incarnation, Time now) {
     other_heard_at_ = now;
     ++others_;
   }
-  // A message that was overtaken by the first one of a restarted process is no contest, and neither is a
-  // single false one.
+  // A message that the first one of a restarted process has overtaken does not prove a conflict, and neither
+  // does a single forged one.
   if (std::min(others_, interleaved_) < kEvidence)
     return incarnation == sender_ ? Outcome::kCounts : Outcome::kRefused;
   gone_after_ = kGoneAfterContest;

@@ -25,23 +25,21 @@ namespace sidestep {
 
 /// Quality of service. States are best effort and keep the last sample of each key: each message of the
 /// control cycle supersedes the previous one, and the protocol tolerates loss, so a retransmission would only
-/// cost time. Events are few and should arrive: reliable, and in order as far as they have one key (README.md
-/// lists when they are lost nevertheless). Images are states of about a megabyte, and may go by shared
-/// memory.
+/// cost time. Events are few and should arrive: reliable, and in order per key (README.md lists when they may
+/// still be lost). Images are states of about a megabyte, and may be sent through shared memory.
 enum class Qos : std::uint8_t { kState, kEvent, kImage };
 
-/// A message type without its C++ type, for buses and recordings. Pointers to messages are to messages of
-/// this type.
+/// A type-erased message type, for buses and recordings. Pointers to messages point to messages of this type.
 struct MessageType {
-  const char* name;          ///< as in the IDL, e.g. sidestep::msg::Proposal
-  std::size_t max_elements;  ///< bound of the sequence that is the type's last member, 0: none
+  const char* name;          ///< the IDL name, for example sidestep::msg::Proposal
+  std::size_t max_elements;  ///< bound of the sequence that is the type's last member; 0: no sequence
   std::shared_ptr<void> (*make)();
   std::shared_ptr<const void> (*copy)(const void* message);
-  /// As the templates of these names in cdr.hpp.
+  /// See the templates of the same names in cdr.hpp.
   std::size_t (*cdr_size)(const void* message);
   std::size_t (*write_cdr)(const void* message, std::span<std::uint8_t> bytes);
   CdrKey (*cdr_key)(const void* message);  ///< null: the type has no key
-  /// Header.sender of the message; null: the type has no header.
+  /// Returns the message's Header.sender; null if the type has no header.
   std::uint32_t (*sender)(const void* message);
   bool (*read_cdr)(std::span<const std::uint8_t> bytes, ByteOrder order, std::size_t max_elements,
                    void* message);
@@ -54,9 +52,9 @@ struct TopicInfo {
   Qos qos{};
   bool per_robot =
       false;  ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
-  bool is_checked = false;  ///< processes refuse its messages if they come from a process with other rules
+  bool is_checked = false;  ///< processes refuse messages on this topic from processes with other rules
   MessageType type{};
-  bool is_sole = false;  ///< one process at a time writes a channel, see SoleSender
+  bool is_sole = false;  ///< only one process at a time may write a channel, see SoleSender
 };
 
 template <typename Message>
@@ -81,14 +79,14 @@ inline std::string channel_name(const TopicInfo& topic, std::uint32_t robot) {
   return topic.per_robot ? std::string(topic.name) + "/" + std::to_string(robot) : topic.name;
 }
 
-/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. None if the
-/// channel does not belong to the topic.
+/// For a per-robot topic, the robot in the channel name "<name>/<robot>"; for any other topic 0. nullopt if
+/// the channel does not belong to the topic.
 [[nodiscard]] std::optional<std::uint32_t> channel_robot(const TopicInfo& topic, const std::string& channel);
 
 /// Appends the message's CDR bytes, little-endian, without an encapsulation header.
 void append_cdr(const TopicInfo& topic, const void* message, std::vector<std::uint8_t>& bytes);
-/// Decodes untrusted bytes as written by append_cdr(), and passes the message to `use`. False if the bytes
-/// are not a valid message of the topic.
+/// Decodes untrusted bytes as written by append_cdr() and passes the message to `use`. False if the bytes are
+/// not a valid message of the topic.
 [[nodiscard]] bool read_cdr(const TopicInfo& topic, std::span<const std::uint8_t> bytes,
                             const std::function<void(const void* message)>& use);
 
@@ -144,8 +142,8 @@ inline constexpr Topic<msg::OrderMemory> kOrderMemory{
     {"order_memory", Role::kCoordinator,
      Role::kCoordinator | Role::kAgent | Role::kClient | Role::kReferee | kWatchers, Qos::kEvent, false, true,
      message_type<msg::OrderMemory>("sidestep::msg::OrderMemory", msg::MAX_MEMORY_POSES)}};
-/// A topic of its own, so that agents, which ignore each other's memories, need not find each other's
-/// endpoints.
+/// Separate from the coordinators' topic, so that agents, which ignore each other's memories, need not
+/// discover each other's endpoints.
 inline constexpr Topic<msg::OrderMemory> kAgentOrders{
     {"agent_orders", Role::kAgent, Role::kCoordinator | kWatchers, Qos::kEvent, false, true,
      message_type<msg::OrderMemory>("sidestep::msg::OrderMemory", msg::MAX_MEMORY_POSES)}};
@@ -155,8 +153,8 @@ inline constexpr Topic<msg::OrderStatus> kOrderStatus{
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", Role::kAgent, kWatchers, Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
-/// What each process has refused, dropped or received too late. Those that must be alone learn from it
-/// whether they are.
+/// Counts of messages that each process has refused, dropped or received too late. Processes that must run
+/// alone also detect duplicates by it.
 inline constexpr Topic<msg::Counters> kCounters{
     {"counters", kParts, kSoleRoles | kWatchers, Qos::kState, false, true,
      message_type<msg::Counters>("sidestep::msg::Counters", msg::MAX_COUNTERS)}};
@@ -172,12 +170,12 @@ inline constexpr Topic<msg::ClockProbe> kClockProbe{
 inline constexpr Topic<msg::ClockReading> kClockReading{
     {"clock_reading", kParts, kWatchers, Qos::kState, false, false,
      message_type<msg::ClockReading>("sidestep::msg::ClockReading", msg::MAX_PLACE)}};
-/// For audit and metrics only.
+/// Only for audit and metrics.
 inline constexpr Topic<msg::GroundTruth> kTruth{
     {"truth", Role::kSimulator, Role::kJudge, Qos::kState, false, true,
      message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024), true}};
 
-/// From every process that has received messages of a process with other rules.
+/// Sent by every process that has received messages from a process with other rules.
 inline constexpr Topic<msg::SharedRules> kRules{
     {"rules", kParts | Role::kOperator, kParts | Role::kClient | kWatchers, Qos::kEvent, false, false,
      message_type<msg::SharedRules>("sidestep::msg::SharedRules", msg::MAX_RULES_TEXT)}};

@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// Codecs refuse positions with larger coordinates: they are beyond any floor.
+/// Codecs refuse positions with larger coordinates: no floor is that large.
 inline constexpr double kMaxCoordinate_m = 1e4;
-/// Codecs refuse larger speeds: no robot is as fast.
+/// Codecs refuse larger speeds: no robot is that fast.
 inline constexpr double kMaxSpeed_mps = 100;
 /// Codecs refuse versions with larger accelerations along an axis.
 inline constexpr double kMaxAcceleration_mps2 = 1000;
@@ -18,8 +18,8 @@ inline constexpr double kMaxAcceleration_mps2 = 1000;
 /// Decodes an untrusted version. Returns nullopt unless all numbers are finite and physically plausible,
 /// times and durations within bounds, and phase count and robot id in range.
 [[nodiscard]] std::optional<Version> decode(const msg::Version& message);
-/// As above, but also nullopt if its numbers or start are implausible (is_plausible()) at `now`, by the local
-/// clock.
+/// Decodes an untrusted version with the same checks. Also returns nullopt if its numbers or start are
+/// implausible (is_plausible()) at `now`, by the local clock.
 [[nodiscard]] std::optional<Version> decode(const msg::Version& message, Time now);
 
 msg::Version encode(const Version& version);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Duration kForever = Duration::max();
 
-/// Steps through the phases of a trajectory from a time on.
+/// Iterates over the phases of a trajectory, starting at a given time.
 class TrajectoryCursor {
  public:
   TrajectoryCursor(const Trajectory& trajectory, Time from) : trajectory_(trajectory) {
@@ -30,7 +30,7 @@ class TrajectoryCursor {
 
   const State& state() const { return state_; }
   const Vec2& acceleration() const { return acceleration_; }
-  /// The time until the acceleration changes.
+  /// The time until the acceleration changes next.
   Duration remaining() const { return remaining_; }
 
   void advance(Duration step) {
@@ -62,7 +62,7 @@ class TrajectoryCursor {
   std::size_t index_ = 0;
 };
 
-/// Relative motion d + v t + a t^2 / 2 on [0, seconds].
+/// Relative motion d + v t + a t^2 / 2 over [0, seconds].
 struct RelativeMotion {
   Vec2 d, v, a;
   double seconds;
@@ -139,8 +139,8 @@ double min_squared_distance(const RelativeMotion& motion) {
   return minimum;
 }
 
-/// The minimum, or a NaN if a motion that has led to this position had numbers that are none: std::min
-/// ignores them.
+/// The minimum, or NaN if the motion that led to this position contained NaN or infinity: std::min ignores
+/// NaN.
 double or_nan(double minimum, const Vec2& last_m) { return minimum + 0 * last_m.squaredNorm(); }
 
 /// Conservative: false only if the motion along the line of centres cannot come within `far_m`.
@@ -172,12 +172,12 @@ double min_squared_distance(const Trajectory& a, const Trajectory& b, double far
   return or_nan(minimum, cursor_a.state().position_m - cursor_b.state().position_m);
 }
 
-/// The minimum squared distance of a motion from an edge while it moves parallel to it, and 0 if it crosses
-/// the edge. The caller handles the ends of the motion and of the edge.
+/// The minimum squared distance of a motion from an edge at times when it moves parallel to the edge, and 0
+/// if it crosses the edge. The caller handles the ends of the motion and of the edge.
 double min_squared_distance(const RelativeMotion& motion, const Segment& edge) {
   const Vec2 along = edge.to_m - edge.from_m;
   const Vec2 normal(-along.y(), along.x());
-  // Distance from the edge's line, times the edge's length: q0 + q1 t + q2 t^2.
+  // Signed distance from the edge's line times the edge's length: q0 + q1 t + q2 t^2.
   const double q0 = normal.dot(motion.d - edge.from_m), q1 = normal.dot(motion.v),
                q2 = 0.5 * normal.dot(motion.a);
   double minimum = std::numeric_limits<double>::infinity();
@@ -195,8 +195,9 @@ double min_squared_distance(const RelativeMotion& motion, const Segment& edge) {
   return minimum;
 }
 
-/// The minimum squared distance from a trajectory to the boundary of a polygon that it begins outside of,
-/// or to a segment, which has two corners. Ends early when `stop(squared distance)` is true.
+/// The minimum squared distance from a trajectory to the boundary of a polygon. Precondition: the trajectory
+/// starts outside the polygon. A segment counts as a polygon with two corners. Ends early when `stop(squared
+/// distance)` is true.
 template <typename Stop>
 double min_squared_distance(const Trajectory& a, std::span<const Vec2> corners, double far_m, Stop stop) {
   TrajectoryCursor cursor(a, a.start());
@@ -223,7 +224,7 @@ double min_squared_distance(const Trajectory& a, std::span<const Vec2> corners, 
   return or_nan(minimum, cursor.state().position_m);
 }
 
-/// The corners of any shape but a circle.
+/// The corners of any shape except a circle.
 struct Corners {
   explicit Corners(const Shape& shape) {
     if (const auto* box = std::get_if<Box>(&shape)) {
@@ -300,12 +301,12 @@ bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m)
 
 bool for_each_near_box(const Trajectory& a, const FloorMap& map, double min_separation_m,
                        const std::function<bool(const Box&)>& call) {
-  // Pieces of this length come near to few boxes, whatever the whole path does.
+  // A piece of this length is near few boxes, however long the whole path is.
   constexpr double kPiece_m = 1;
   const double far_m = std::max(min_separation_m, 0.0) + 2 * kClearanceTolerance_m;
   const auto visit = [&](const Trajectory& piece, double length_m) {
     const Vec2 &from = piece.at_start().position_m, to = piece.rest_position_m();
-    // A path of this length lies within this distance of the middle of its ends.
+    // A path of this length is always within this distance of the midpoint of its ends.
     const Vec2 middle = 0.5 * (from + to);
     const double reach_m = 0.5 * length_m + far_m;
     if (map.field().lower_bound_m(middle) > reach_m) return true;
@@ -319,7 +320,7 @@ bool for_each_near_box(const Trajectory& a, const FloorMap& map, double min_sepa
   for (const MotionPhase& phase : a.phases()) {
     const double seconds = to_seconds(phase.duration);
     const double end_mps = (state.velocity_mps + seconds * phase.acceleration_mps2).norm();
-    // The speed is convex over a phase.
+    // The speed is a convex function of time over a phase.
     const double length_m = seconds * std::max(state.velocity_mps.norm(), end_mps);
     const auto pieces = static_cast<std::int64_t>(std::ceil(length_m / kPiece_m));
     Duration begin{0};

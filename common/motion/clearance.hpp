@@ -9,13 +9,13 @@
 
 namespace sidestep {
 
-/// The computed clearance is at most this far below the true one, and never above it.
+/// The computed clearance is never above the true one, and at most this far below it.
 inline constexpr double kClearanceTolerance_m = 1e-9;
 
-/// The clearance of two robots, the only such function in the system: the minimum distance between their
-/// trajectories at equal times from the later start on, less `min_separation_m` (both radii and the margin).
-/// Negative if the robots come too close. Before the later start, at least one robot executes another
-/// version, which has to be checked separately.
+/// The clearance between two robots; this is the only such function in the system. It is the minimum distance
+/// between their trajectories at equal times, from the later start on, minus `min_separation_m` (both radii
+/// and the margin). Negative if the robots come too close. Before the later start, at least one robot
+/// executes another version, which has to be checked separately.
 ///
 /// The relative motion is piecewise quadratic, so the squared distance is a quartic on each piece. Its minima
 /// are bracketed by the extrema of its derivative, which finds all of them.
@@ -25,23 +25,23 @@ double clearance_m(const Trajectory& a, const Trajectory& b, double min_separati
 /// robots can come close.
 [[nodiscard]] bool is_clear(const Trajectory& a, const Trajectory& b, double min_separation_m);
 
-/// The clearance of a trajectory from a static disc.
+/// The clearance between a trajectory and a static disc.
 double clearance_m(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
 [[nodiscard]] bool is_clear(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
 
-/// The clearance of a trajectory from a static shape: its minimum distance to the boundary, less
-/// `min_separation_m`; minus infinity if it enters the shape, except for circles, whose boundary has a
-/// distance inside too.
+/// The clearance between a trajectory and a static shape: the minimum distance to its boundary, minus
+/// `min_separation_m`. It is minus infinity if the trajectory enters the shape, except for circles, where the
+/// distance to the boundary is also defined inside.
 double clearance_m(const Trajectory& a, const Shape& shape, double min_separation_m);
 /// Whether clearance_m(a, shape, min_separation_m) >= 0.
 [[nodiscard]] bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m);
 
-/// Whether the trajectory keeps `min_separation_m` from all blocked cells of a map and from its outside, by
-/// the same comparison as with shapes. The time grows with the length of the path.
+/// Whether the trajectory keeps at least `min_separation_m` from all blocked cells of a map and from the
+/// outside, tested as for shapes. The time grows with the length of the path.
 [[nodiscard]] bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m);
 
-/// Calls `call` with boxes of blocked cells, or of the outside, from which the trajectory does not keep
-/// `min_separation_m`; together they cover all such cells. Stops when `call` returns false, and then returns
+/// Calls `call` with boxes of blocked cells, or of the outside, to which the trajectory comes closer than
+/// `min_separation_m`. Together they cover all such cells. Stops when `call` returns false, and then returns
 /// false.
 bool for_each_near_box(const Trajectory& a, const FloorMap& map, double min_separation_m,
                        const std::function<bool(const Box&)>& call);

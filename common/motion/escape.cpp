@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// The maximum |x| and |y| that a trajectory reaches.
+/// The maximum |x| and |y| along a trajectory.
 Vec2 max_extent_m(const Trajectory& trajectory) {
   State state = trajectory.at_start();
   Vec2 extent = state.position_m.cwiseAbs();

@@ -6,19 +6,19 @@
 
 namespace sidestep {
 
-/// The part of a trajectory from a time on; all of it when it starts later.
+/// The part of a trajectory from a given time on; the whole trajectory if it starts later.
 Trajectory remaining_trajectory(const Trajectory& trajectory, Time from);
 
-/// The distance that a version which continues `base` at `from` has to keep from another trajectory:
-/// min_separation_m, or the base's own smallest distance from then on if that is less. Thus two robots that
+/// The separation required between another trajectory and a version that continues `base` at `from`. It is
+/// min_separation_m, or the base's own minimum distance from then on if that is smaller. Thus two robots that
 /// an external event brought too close may separate, and neither comes closer than it would by braking alone
 /// (coordinator/PROTOCOL.md, rule 4).
 double relaxed_separation_m(const Trajectory& base, Time from, const Trajectory& other,
                             double min_separation_m);
 
 /// check_workspace() for a version that continues `base`, with its inflation and the escape rule: where the
-/// base is too close to an obstacle or off the field from the version's start on, the version may be as
-/// close, or as far off.
+/// base, from the version's start on, is too close to an obstacle or off the field, the version may be
+/// equally close or equally far off.
 [[nodiscard]] Validity check_workspace_with_escape(const Version& version, const Trajectory& base,
                                                    const FloorRules& rules);
 

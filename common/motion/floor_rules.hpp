@@ -11,16 +11,16 @@
 
 namespace sidestep {
 
-/// The constraints that every version has to satisfy regardless of the other robots.
+/// Constraints that every version must satisfy, regardless of other robots.
 struct FloorRules {
   Field field;
   std::vector<Shape> obstacles;
   MotionLimits limits;
   double radius_m = 0.09;
   double margin_m = 0.014;
-  std::shared_ptr<const FloorMap> map{};  ///< further obstacles; null: none
+  std::shared_ptr<const FloorMap> map{};  ///< additional obstacles; null: none
 
-  /// The minimum distance between the centres of two robots without inflation.
+  /// Minimum distance between the centres of two robots, without inflation.
   double min_separation_m() const { return 2 * radius_m + margin_m; }
 };
 

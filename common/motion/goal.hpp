@@ -10,9 +10,9 @@ namespace sidestep {
 /// Where a robot is to drive.
 struct Goal {
   Vec2 position_m{0, 0};
-  std::optional<double> heading_rad{};      ///< nullopt: any
-  std::optional<double> speed_limit_mps{};  ///< on the way there; nullopt: that of the robots
-  std::optional<double> tolerance_m{};      ///< nullopt: that of the scenario
+  std::optional<double> heading_rad{};      ///< nullopt: any heading
+  std::optional<double> speed_limit_mps{};  ///< limit on the way there; nullopt: the robot's own limit
+  std::optional<double> tolerance_m{};      ///< nullopt: the scenario's tolerance
 };
 
 }  // namespace sidestep

@@ -7,13 +7,13 @@
 namespace sidestep {
 namespace {
 
-// Below this speed a velocity has no direction.
+// A velocity with a lower speed has no direction.
 constexpr double kAtRest_mps = 1e-6;
 
 double squared(double x) { return x * x; }
 
-// The square of the norm whose unit ball is A(v): 1 on its boundary. The batch kernels compute the same,
-// operation by operation (batch::ChoiceKernels::limit).
+// The square of the norm whose unit ball is A(v); it is 1 on the boundary. The batch kernels perform the same
+// operations in the same order (batch::ChoiceKernels::limit).
 double effort2(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
   const double sideways_and_ahead2 =
       (a.x() * a.x() + a.y() * a.y()) * (1 / squared(limits.acceleration_mps2));
@@ -26,8 +26,8 @@ double effort2(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
          across * across * (1 / squared(limits.acceleration_mps2));
 }
 
-// The same at the end of a phase with this velocity. A phase that ends at rest has braked until then. The
-// batch kernels compute the same.
+// The same norm at the end of a phase with this velocity. A phase that ends at rest has braked until then.
+// The batch kernels compute the same.
 double effort2_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
   const double speed2 = v.x() * v.x() + v.y() * v.y();
   const double ahead = a.x() * v.x() + a.y() * v.y(), across = v.x() * a.y() - v.y() * a.x();
@@ -38,8 +38,8 @@ double effort2_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) 
          across * across * per_speed2 * (1 / squared(limits.acceleration_mps2));
 }
 
-/// The longest acceleration in the same direction, up to the requested one, that may be held so long. If it
-/// is in A(v) at the end of a longer one, it is in A(v) at its own.
+/// The longest acceleration in the requested direction, up to the requested one, that may be held for the
+/// duration. If an acceleration is in A(v) at the end of a longer one, it is in A(v) at its own end.
 Vec2 scaled_to_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
                           double seconds) {
   const double at_start2 = effort2(acceleration, velocity, limits);
@@ -54,8 +54,8 @@ bool is_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionL
   return effort2(acceleration, velocity, limits) <= squared(1 + 1e-6);
 }
 
-// While the velocity changes, the angle between it and the acceleration only decreases. So does what is
-// allowed of the acceleration, if D is at least F, and otherwise it increases until the velocity's turn.
+// While the velocity changes, the angle between it and the acceleration only decreases. The permitted
+// acceleration decreases too if D is at least F; otherwise it increases until the velocity has turned.
 bool may_be_held(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
                  Duration duration) {
   const Vec2 end = velocity + to_seconds(duration) * acceleration;

@@ -16,8 +16,8 @@ namespace sidestep {
 [[nodiscard]] bool is_admissible(const Vec2& acceleration_mps2, const Vec2& velocity_mps,
                                  const MotionLimits& limits);
 
-/// Whether it lies in A(v) for every velocity v while it is held for `duration`. A robot that brakes at D
-/// beyond the reversal of its velocity would accelerate at D.
+/// Whether the acceleration stays in A(v) while it is held for `duration` and v changes accordingly. A robot
+/// that brakes at D beyond the point where its velocity reverses would accelerate at D.
 [[nodiscard]] bool may_be_held(const Vec2& acceleration_mps2, const Vec2& velocity_mps,
                                const MotionLimits& limits, Duration duration);
 
@@ -26,10 +26,10 @@ namespace sidestep {
 Vec2 limit_acceleration(const Vec2& acceleration_mps2, const Vec2& velocity_mps, const MotionLimits& limits,
                         Duration duration);
 
-/// A sample from the uniform distribution over A(v).
+/// Draws an acceleration uniformly from A(v).
 Vec2 sample_acceleration(const Vec2& velocity_mps, const MotionLimits& limits, Rng& rng);
 
-/// `count` samples as by sample_acceleration(), in the frame whose x axis is the velocity.
+/// Draws `count` samples like sample_acceleration(), in a frame whose x axis is the velocity.
 void sample_in_velocity_frame(bool is_at_rest, const MotionLimits& limits, Rng& rng, std::size_t count,
                               double* x_mps2, double* y_mps2);
 

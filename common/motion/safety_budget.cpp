@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-/// Half the time that a message and its answer take on a quick network: clocks cannot be compared better.
+/// Half the round-trip time of a message on a fast network. Clocks cannot be compared more accurately.
 constexpr double kMeasuredOffset_s = 0.0001;
 
 }  // namespace
@@ -20,7 +20,7 @@ std::string budget_line(const SafetyBudget& budget, double margin_m) {
       budget.speed_mps);
   const double spare_m = margin_m - budget.required_margin_m();
   if (spare_m >= 0.00005) line += fmt::format(" + {:.1f} mm to spare", spare_m * 1e3);
-  // Cameras and robots date observations by clocks that may differ by twice the bound.
+  // Cameras and robots date observations with clocks that may differ by twice the clock bound.
   const double shift_m = 2 * budget.clock_bound_s * budget.speed_mps;
   const double sight_m = sight_error_bound_m(budget.tracking_bound_m);
   if (shift_m > sight_m + 1e-9) {

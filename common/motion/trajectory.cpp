@@ -49,9 +49,9 @@ double reach_m(const Trajectory& trajectory) {
   State state = trajectory.at_start();
   for (const MotionPhase& phase : trajectory.phases()) {
     const double seconds = to_seconds(phase.duration);
-    // The speed is convex over a phase, so its maximum is at one of the ends.
+    // The speed is a convex function of time over a phase, so its maximum is at one of the ends.
     const State next = state_after(state, phase.acceleration_mps2, seconds);
-    // What is no number at the end is returned by std::max if it comes first.
+    // std::max returns its first argument if that is NaN, so NaN is passed on.
     reach += seconds * std::max(next.velocity_mps.norm(), state.velocity_mps.norm());
     state = next;
   }

@@ -42,7 +42,7 @@ class Trajectory {
   Trajectory() = default;
   Trajectory(Time start, const State& at_start) : start_(start), at_start_(at_start) {}
 
-  /// At rest from `start` on.
+  /// Creates a trajectory that is at rest from `start` on.
   static Trajectory resting(Time start, const Vec2& position_m) {
     return {start, {position_m, Vec2::Zero()}};
   }
@@ -62,13 +62,13 @@ class Trajectory {
   const State& at_start() const { return at_start_; }
   std::span<const MotionPhase> phases() const { return {phases_, static_cast<std::size_t>(count_)}; }
 
-  /// The state at a time: at rest from end() on, and the start state before the start.
+  /// The state at a time. Before the start it is the start state; from end() on it is at rest.
   State state_at(Time t) const { return motion_at(t).state; }
-  /// The state and the acceleration at a time. At a phase boundary, the acceleration is the later phase's; it
-  /// is zero before the start and from end() on.
+  /// The state and the acceleration at a time. At a phase boundary the acceleration is that of the later
+  /// phase. It is zero before the start and from end() on.
   Motion motion_at(Time t) const;
   Vec2 rest_position_m() const;
-  /// The speed at the end of the last phase; zero but for rounding in a valid trajectory.
+  /// The speed at the end of the last phase. In a valid trajectory it is zero up to rounding.
   double residual_speed_mps() const;
 
  private:
@@ -78,11 +78,11 @@ class Trajectory {
   int count_ = 0;
 };
 
-/// Appends the stop at the end of every trajectory: deceleration against the velocity until rest (Bruce,
+/// Appends the stop that ends every trajectory: deceleration against the velocity until rest (Bruce,
 /// CMU-CS-06-181, ch. 5). No effect if the trajectory already ends at rest.
 void append_stop(Trajectory& trajectory, double deceleration_mps2);
 
-/// An upper bound of the distance from the start position over all time.
+/// An upper bound of the distance from the start position, over all time.
 double reach_m(const Trajectory& trajectory);
 
 }  // namespace sidestep

@@ -42,7 +42,7 @@ TrajectoryBounds trajectory_bounds(const Trajectory& trajectory) {
     ++count;
     state = state_after(state, phase.acceleration_mps2, seconds);
     const double speed_after = state.velocity_mps.norm();
-    // The speed is convex over a phase, so its maximum is at one of the ends.
+    // The speed is a convex function of time over a phase, so its maximum is at one of the ends.
     path_m += seconds * std::max(speed, speed_after);
     speed = speed_after;
     bounds.acceleration_mps2 = std::max(bounds.acceleration_mps2, phase.acceleration_mps2.norm());
@@ -54,7 +54,7 @@ TrajectoryBounds trajectory_bounds(const Trajectory& trajectory) {
   is_moderate = is_moderate && speed <= kMaxResidualSpeed_mps && within(state.position_m, kMaxCoordinate_m) &&
                 bounds.acceleration_mps2 <= kMaxSpeed_mps && path_m <= kMaxPathLength_m;
   bounds.is_batchable = is_moderate && count <= 2;
-  // A path of this length lies in an ellipse with its ends as foci.
+  // A path of this length lies within an ellipse whose foci are the path's ends.
   bounds.disc.centre_m = 0.5 * (trajectory.at_start().position_m + state.position_m);
   bounds.disc.radius_m = 0.5 * path_m + kDiscRounding_m;
   if (!is_moderate) bounds.disc = {Vec2::Zero(), 1e300};

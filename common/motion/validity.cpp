@@ -40,7 +40,7 @@ Validity check_limits(const Trajectory& trajectory, const MotionLimits& limits) 
       return Validity::kBeyondLimits;
     }
     state = state_after(state, a, to_seconds(phase.duration));
-    // The speed is convex over a phase, so its maximum is at one of the ends.
+    // The speed is a convex function of time over a phase, so its maximum is at one of the ends.
     if (!(state.velocity_mps.norm() <= max_speed_mps)) return Validity::kBeyondLimits;
   }
   return state.velocity_mps.norm() <= kSpeedTolerance_mps ? Validity::kValid : Validity::kNotAtRest;

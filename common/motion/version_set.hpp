@@ -9,24 +9,24 @@
 
 namespace sidestep {
 
-/// The versions that a robot may be executing, now or later: R(i) in the coordinator's ledger, and the
-/// content of an agent's registration. Only facts remove versions (coordinator/PROTOCOL.md, rule 2).
+/// All versions that the robot may be executing, now or later. This is R(i) in the coordinator's ledger, and
+/// the content of an agent's registration. Only facts remove versions (coordinator/PROTOCOL.md, rule 2).
 class VersionSet {
  public:
   static constexpr std::size_t kCapacity = 8;
 
   bool is_full() const { return count_ == kCapacity; }
-  /// No effect if the set contains the version's number. Precondition: not full.
+  /// Adds a version. No effect if the set already contains the version's number. Precondition: not full.
   void add(const Version& version);
   /// The version with this number, or nullptr.
   const Version* find(VersionNumber number) const;
-  /// The fact "executing f at time t": removes all versions older than f, and all newer ones that start at or
-  /// before t, because the firmware can no longer switch to them. False, without effect, if f is not in the
-  /// set: the fact is late or false.
+  /// Applies the fact "executing f at time t": removes all versions older than f, and all newer ones that
+  /// start at or before t, because the firmware can no longer switch to them. Returns false, without effect,
+  /// if f is not in the set; the fact is then outdated or false.
   bool forget(VersionNumber executing, Time at) {
     return forget(executing, at, [](const Version&) {});
   }
-  /// The same; calls back with every version before it is removed.
+  /// Like above, but calls back with every version before removing it.
   template <typename Callback>
   bool forget(VersionNumber executing, Time at, Callback on_removal) {
     if (!find(executing)) return false;
@@ -38,11 +38,11 @@ class VersionSet {
         on_removal);
     return true;
   }
-  /// The fact "executing nothing at time t": removes all versions that start at or before t.
+  /// Applies the fact "executing nothing at time t": removes all versions that start at or before t.
   void forget_started(Time at) {
     forget_started(at, [](const Version&) {});
   }
-  /// The same; calls back with every version before it is removed.
+  /// Like above, but calls back with every version before removing it.
   template <typename Callback>
   void forget_started(Time at, Callback on_removal) {
     remove_if([at](const Version& version) { return version.trajectory.start() <= at; }, on_removal);

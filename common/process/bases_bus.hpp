@@ -10,18 +10,18 @@
 
 namespace sidestep {
 
-/// Where the topics of bases are, which are programs of others, such as ROS 2's.
+/// Where to find the topics of robot bases. Bases are third-party programs, such as ROS 2's.
 struct BasesBusOptions {
-  std::string topic_prefix = "robot";  ///< of rt/robot3/cmd_vel and rt/robot3/odom
-  std::optional<int> domain;           ///< of this machine; none: the network of the agents
+  std::string topic_prefix = "robot";  ///< the prefix "robot" in rt/robot3/cmd_vel and rt/robot3/odom
+  std::optional<int> domain;           ///< a domain on this machine; nullopt: the agents' network
 };
 
-/// Adds --topic-prefix and --base-domain. `condition` begins their descriptions.
+/// Adds the options --topic-prefix and --base-domain. `condition` is put in front of their descriptions.
 void add_bases_bus_options(const CliCommand& app, const std::string& condition, BasesBusOptions& options);
 
-/// The bus of the bases' topics: `bus` itself, or one of this machine, without keys. Throws
-/// std::invalid_argument if `bus` has keys and no domain is given, since bases have none, or if the domain is
-/// that of `bus`.
+/// The bus for the topics of robot bases: `bus` itself, or another one on this machine, without keys. Throws
+/// std::invalid_argument if `bus` has keys and no domain is given, because bases have no keys, or if the
+/// domain is that of `bus`.
 [[nodiscard]] std::shared_ptr<Bus> bases_bus(DdsBus& bus, const BasesBusOptions& options);
 
 }  // namespace sidestep

@@ -23,13 +23,13 @@ ValueCheck from_library(const CLI::Validator& validator) {
   return {validator.get_description(), [validator](const std::string& text) { return validator(text); }};
 }
 
-/// Quoted for a message; a long value is cut.
+/// Quotes a value for a message, and truncates long values.
 std::string in_quotes(const std::string& text) {
   constexpr std::size_t kMaxLength = 60;
   return fmt::format("\"{}\"", text.size() > kMaxLength ? text.substr(0, kMaxLength) + "..." : text);
 }
 
-/// The number that is all of the text, in decimal notation; "+" in front is allowed, NaN and infinity are
+/// Parses a number in decimal notation that is the whole text. A leading "+" is allowed; NaN and infinity are
 /// not.
 template <typename Number>
 std::optional<Number> parsed(std::string_view text) {
@@ -44,7 +44,7 @@ std::optional<Number> parsed(std::string_view text) {
   return number;
 }
 
-/// The type of one value of an option.
+/// The type of a single value of an option.
 template <typename Value>
 struct Element {
   using Type = Value;
@@ -58,8 +58,9 @@ struct Element<std::vector<Value>> {
   using Type = Value;
 };
 
-/// What the library would read differently than people mean it is refused, or written as the library reads
-/// it: it takes 010 for 8, numbers that are too large for the largest, and an empty text for none.
+/// Prevents misreadings by the CLI library: it takes 010 for 8, numbers that are too large for the maximum,
+/// and an empty text for no value. Such texts are refused or rewritten in the form that the library reads
+/// correctly.
 template <typename Number>
 std::string normalise_number(std::string& text) {
   const auto number = parsed<Number>(text);
@@ -81,13 +82,13 @@ CLI::Validator type_check() {
   if constexpr (std::is_arithmetic_v<Type>) {
     return CLI::Validator([](std::string& text) { return normalise_number<Type>(text); }, "");
   } else {
-    // A script's unset variable must not count as an option that is not given.
+    // Refuses empty values, so that a script's unset variable does not count as a missing option.
     return CLI::Validator(
         [](std::string& text) { return text.empty() ? "expected some text, got \"\"" : ""; }, "");
   }
 }
 
-/// Turns the project's exception into the library's, with the option's name in front if there is one.
+/// Converts the project's exception into the library's, prefixed with the option's name if there is one.
 template <typename Callback>
 auto translated(const std::string& option, Callback callback) {
   return [option, callback = std::move(callback)](const auto&... arguments) {
@@ -142,7 +143,7 @@ Option Option::required() const {
   return *this;
 }
 
-// In front of the check of the type, because it names the limits.
+// Inserted before the type check, because its message names the limits.
 Option Option::check(const ValueCheck& check) const {
   ValueCheck used = check;
   if (is_whole_ && check.limits)
@@ -262,7 +263,8 @@ CommandLine::~CommandLine() = default;
 
 namespace {
 
-/// Names the word that stands where a command is expected; the library only says that a command is missing.
+/// Names the word that stands where a command is expected; the library would only say that a command is
+/// missing.
 std::optional<CLI::ParseError> unknown_command(const CLI::App& root) {
   const CLI::App* app = &root;
   while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
@@ -279,7 +281,7 @@ std::optional<CLI::ParseError> unknown_command(const CLI::App& root) {
 
 }  // namespace
 
-/// As the library wants them. It takes "-.5" for an option, but not "-0.5".
+/// Converts arguments to the form that the library expects. It takes "-.5" for an option but not "-0.5".
 std::vector<std::string> CommandLine::reversed(std::vector<std::string> arguments) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   for (std::string& argument : arguments) {

@@ -8,26 +8,26 @@
 
 namespace sidestep {
 
-/// Whose clocks a process's clock must agree with.
+/// The processes whose clocks this process's clock must agree with.
 enum class ClockReference {
-  kCoordinators,  ///< for all but coordinators
+  kCoordinators,  ///< for all processes except coordinators
   kRobots         ///< for coordinators: they serve the robots, whose clocks they cannot set
 };
 
-/// Notices that the host's clock has been set, and decides with ClockRecovery whether the process begins anew
-/// by it. Costs nothing as long as the host's clock is not set.
+/// Detects when the host's clock is set, and uses ClockRecovery to decide whether the process must restart
+/// with it. Costs nothing as long as the host's clock is not set.
 class HostClockWatch {
  public:
   static constexpr Duration kPeriod{1'000'000'000};
 
   struct Callbacks {
-    std::function<Duration()> host_ahead;   ///< reads the host's clock - the process's
-    std::function<bool()> is_in_use;        ///< the process works by its clock with others
-    std::function<void()> on_adopt;         ///< called once: the process must begin anew by its host's clock
-    std::function<void(Duration)> on_step;  ///< the host's clock has been set: it is this far ahead
+    std::function<Duration()> host_ahead;   ///< returns the host's clock minus the process's clock
+    std::function<bool()> is_in_use;        ///< whether the process uses its clock together with others
+    std::function<void()> on_adopt;         ///< called once if the process must restart with its host's clock
+    std::function<void(Duration)> on_step;  ///< the host's clock was set: it is this far ahead
   };
 
-  /// The bus makes no callbacks after this object's destruction. `max_clock_difference`: see ClockRecovery.
+  /// `max_clock_difference`: see ClockRecovery. The bus makes no callbacks after this object's destruction.
   HostClockWatch(Bus& bus, ClockReference reference, Duration max_clock_difference, Callbacks callbacks);
   HostClockWatch(const HostClockWatch&) = delete;
   HostClockWatch& operator=(const HostClockWatch&) = delete;

@@ -6,9 +6,9 @@
 
 namespace sidestep {
 
-/// The condition that a value is the name of a level.
+/// Requires the name of a log level.
 [[nodiscard]] ValueCheck log_level_names();
-/// Adds --log-level. `level` keeps its value if the option is not given.
+/// Adds --log-level. `level` keeps its value if the option is absent.
 Option add_log_option(const CliCommand& app, LogLevel& level);
 
 }  // namespace sidestep

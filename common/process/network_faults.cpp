@@ -31,7 +31,7 @@ void apply_network_faults(DdsBus& bus, std::uint32_t target) {
                   log(LogLevel::kWarning,
                       "network fault: " + (quality ? describe(*quality) : "invalid, ignored"));
                   if (!quality) bus.count_drop(DropReason::kMalformedNetworkFault);
-                  // A seed per process, so that the losses are independent.
+                  // Each process has its own seed, so that losses are independent.
                   if (quality) bus.impair(*quality, fault.seed() ^ (target * 0x9e3779b97f4a7c15ULL));
                 }));
 }

@@ -17,8 +17,8 @@
 namespace sidestep {
 namespace {
 
-/// Calls `work` and returns its exit code, or the exit code of the exception that it throws, after reporting
-/// that.
+/// Calls `work` and returns its exit code. If it throws, reports the exception and returns the corresponding
+/// exit code.
 int run_reporting(const std::function<int()>& work, const std::function<void(const std::string&)>& report) {
   try {
     return work();

@@ -17,42 +17,41 @@
 
 namespace sidestep {
 
-/// The nodes of a process on a bus.
+/// The nodes of a process on its bus.
 struct RunningNodes {
   std::shared_ptr<void> nodes;
-  /// Whether the process works by its clock with others, so that it must keep it when the host's clock is
-  /// set. Empty: never.
+  /// Whether the process uses its clock together with others, so that it must keep its clock when the host's
+  /// is set. Empty: never.
   std::function<bool()> uses_clock = {};
-  /// Called when the process is asked to end, and then every 10 ms until it returns true. Only then does the
-  /// process end. Empty: it ends at once.
+  /// Called when the process is asked to exit, and then every 10 ms until it returns true; only then does the
+  /// process exit. Empty: it exits immediately.
   std::function<bool()> finish = {};
 };
 
-/// The parts of a program that differ from the others; run_process() provides the rest.
+/// The program-specific parts of a process; run_process() provides the rest.
 struct Program {
-  std::string name;         ///< e.g. sidestep-agent
+  std::string name;         ///< for example sidestep-agent
   std::string description;  ///< one sentence for --help
-  /// Adds the program's own options to --scenario, --domain and --interface. May be empty.
+  /// Adds the program's own options to --scenario, --domain and --interface. Empty: none.
   std::function<void(const CliCommand&)> add_options;
-  /// The name of the DDS participant and of the process in its log, e.g. agent-3; called after the options
-  /// are parsed. Empty: `name`.
+  /// Returns the name of the DDS participant, which also names the process in its log, for example agent-3.
+  /// Called after the options are parsed. Empty: `name`.
   std::function<std::string()> participant;
-  /// The process id (common/messaging/senders.hpp); called after the options are parsed.
+  /// Returns the process id (common/messaging/senders.hpp). Called after the options are parsed.
   std::function<std::uint32_t()> process;
-  /// Creates the nodes on the bus; run_process() keeps the result until the bus has stopped. May throw;
-  /// std::invalid_argument for an option that does not fit the scenario. Called again, with a higher
-  /// incarnation on a new bus, if the process begins anew by its host's clock.
+  /// Creates the nodes on the bus; run_process() keeps them until the bus has stopped. May throw; it throws
+  /// std::invalid_argument if an option does not fit the scenario. Called again, with a higher incarnation on
+  /// a new bus, if the process starts anew with its host's clock.
   std::function<RunningNodes(DdsBus&, const Scenario&, Incarnation)> start;
   ClockReference clock_reference = ClockReference::kCoordinators;
 };
 
 /// The main function of a process on DDS: parses the options, loads the scenario, starts the program and runs
-/// until SIGINT or SIGTERM. Returns the exit code. The log of the process is on stderr, in the name of the
-/// participant.
+/// until SIGINT or SIGTERM. Returns the exit code. The process logs to stderr under the participant's name.
 int run_process(int argc, char** argv, const Program& program);
 
-/// The incarnation of a process that begins now: a clock reading, above that of its previous run, unless
-/// others would refuse the latter because it is too far ahead of the clock.
+/// The incarnation of a process that starts now. It is a clock reading, and above the incarnation of the
+/// previous run, unless other processes would refuse such a number because it is too far ahead of the clock.
 [[nodiscard]] Incarnation next_incarnation(Incarnation previous, Time now);
 
 /// Adds --domain, --interface, --peers, --keys and --insecure.

@@ -8,8 +8,9 @@
 
 namespace sidestep {
 
-/// Whose keys the process with this number (common/messaging/senders.hpp) has in a run of the scenario; the
-/// process that drives the robots has those of all robots. Throws std::logic_error for numbers of no process.
+/// The identity whose keys the process with this number (common/messaging/senders.hpp) has in a run of the
+/// scenario. The process that drives the robots has the keys of all robots. Throws std::logic_error for
+/// numbers that no process has.
 [[nodiscard]] Identity identity_of_process(std::uint32_t process, const Scenario& scenario);
 
 }  // namespace sidestep

@@ -28,7 +28,7 @@ struct StopRequest {
   std::atomic<DdsBus*> bus{nullptr};
 };
 
-/// Names the bus in a request for the lifetime of the object.
+/// Registers the bus with a stop request for the lifetime of the object.
 class StoppableBus {
  public:
   StoppableBus(StopRequest& request, DdsBus& bus) : request_(request) {
@@ -39,7 +39,7 @@ class StoppableBus {
   StoppableBus(const StoppableBus&) = delete;
   StoppableBus& operator=(const StoppableBus&) = delete;
 
-  /// Stops it no more.
+  /// The bus can no longer be stopped through the request.
   void release() { request_.bus = nullptr; }
 
  private:
@@ -60,7 +60,7 @@ void log_step(Duration host_ahead) {
           to_seconds(host_ahead)));
 }
 
-/// Runs the program on one bus. Returns whether it begins anew by the host's clock.
+/// Runs the program on one bus. Returns whether it must start anew with the host's clock.
 bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSettings& dds,
                 Incarnation incarnation, StopRequest& stop) {
   DdsBus bus(dds);

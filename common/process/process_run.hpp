@@ -5,9 +5,9 @@
 
 namespace sidestep {
 
-/// Runs a program on DDS until SIGINT or SIGTERM. If the host's clock was set after the start and only then
-/// agrees with the clocks of others (HostClockWatch), the program begins anew by it, with a new bus and new
-/// nodes, as if its process had been restarted. Throws what the bus and the program throw.
+/// Runs a program on DDS until SIGINT or SIGTERM. If the host's clock is set after the start and thereby
+/// comes to agree with the others' clocks (HostClockWatch), the program starts anew with a new bus and new
+/// nodes, as if its process had been restarted. Passes on the exceptions of the bus and the program.
 void run_program(const Program& program, const Scenario& scenario, const DdsSettings& dds);
 
 }  // namespace sidestep

@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// A signal handler takes no user data, so it needs a global.
+// A global, because a signal handler takes no user data.
 std::function<void()> stop_now;
 
 void handle(int) {

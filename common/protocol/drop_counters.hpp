@@ -10,16 +10,16 @@
 
 namespace sidestep {
 
-/// How often a process has dropped something for a reason, since its start.
+/// How often a process has dropped something for one reason since its start.
 struct DropCount {
   DropReason reason = DropReason::kUnreadable;
-  std::optional<RobotId> robot;  ///< the robot that it concerned; nullopt: none, or one of too many
+  std::optional<RobotId> robot;  ///< the robot concerned; nullopt: none, or too many to count
   std::uint64_t count = 0;
 };
 
 /// What a process has dropped, by reason and robot. Allocates nothing. At most kMaxRobotCounts pairs of
-/// reason and robot are counted apart, so that a hostile sender can fill no memory; further ones are counted
-/// without the robot.
+/// reason and robot are counted separately, so that a hostile sender cannot fill the memory; further ones are
+/// counted without the robot.
 class DropCounters {
  public:
   static constexpr std::size_t kMaxRobotCounts = 256;
@@ -28,17 +28,17 @@ class DropCounters {
   DropCounters();
 
   void count(DropReason reason, std::optional<RobotId> robot = std::nullopt, std::uint64_t times = 1);
-  /// Adds the counts of others.
+  /// Adds another process's or component's counts.
   void add(const DropCounters& others);
-  /// Of all robots together.
+  /// The count of a reason over all robots.
   std::uint64_t total(DropReason reason) const;
-  /// Of all reasons.
+  /// The count over all reasons.
   std::uint64_t total() const;
-  /// Includes counts of zero.
+  /// All counts, including zeros.
   std::span<const DropCount> counts() const { return {counts_.data(), size_}; }
 
  private:
-  std::array<DropCount, kCapacity> counts_;  // first those without a robot, by reason
+  std::array<DropCount, kCapacity> counts_;  // first the counts without a robot, indexed by reason
   std::size_t size_ = kDropReasonCount;
 };
 

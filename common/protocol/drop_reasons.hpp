@@ -7,10 +7,10 @@
 
 namespace sidestep {
 
-/// Why a process did not use a message that it received, or a part of one, or did not send one. The numbers
-/// are part of messages.
+/// Why a process did not use a received message or part of one, or did not send a message. The numbers are
+/// used in messages.
 enum class DropReason : std::uint16_t {
-  // The bus of any process.
+  // Counted by the bus of any process.
   kUnreadable,
   kOtherRules,
   kInjectedLoss,
@@ -21,7 +21,7 @@ enum class DropReason : std::uint16_t {
   kRefusedParticipant,
   kForgedSender,
   kContestedSender,
-  // Any process that reads the topic.
+  // Counted by any process that reads the topic.
   kMalformedFeedback,
   kMalformedVerdict,
   kMalformedObservation,
@@ -48,51 +48,51 @@ enum class DropReason : std::uint16_t {
   kFrequentEpoch,
   kImplausibleClock,
   kUnknownRobot,
-  // Agents.
+  // Counted by agents.
   kUnproposedGrant,
   kUnexpectedVerdict,
   kLateFact,
   kLatePage,
   kOldEpoch,
-  // Coordinators.
+  // Counted by coordinators.
   kContradictoryFact,
   kFactOfHigherEpoch,
   kRefusedProposal,
   kRefusedRegistration,
   kRefusedAttestation,
   kRefusedOrder,
-  // Vision.
+  // Counted by vision.
   kUntimelyFrame,
   kFalseDetection,
   kTooManyObstacles,
   kRepeatedLeagueFrame,
   kUndatedLeagueFrame,
   kUnusedLeagueDetection,
-  // The simulator and its robots.
+  // Counted by the simulator and its robots.
   kCommandLost,
   kFencedCommand,
   kLateVersion,
   kWrongBase,
   kRefusedDisturbance,
   kUnsentLeaguePacket,
-  // Processes that drive robots of others.
+  // Counted by processes that drive robots outside this project.
   kUnstoredCommand,
   kMalformedOdometry,
   kMisdatedOdometry,
   kRejectedByBase,
-  // Monitors.
+  // Counted by monitors.
   kUnusedByMonitor,
 };
 
-/// A row of the table of reasons.
+/// A row of the table of drop reasons.
 struct DropReasonInfo {
   DropReason reason;
-  const char* name;         ///< in reports and `sidestep topic echo`
-  const char* description;  ///< what was dropped, for documents
-  bool is_unusual;          ///< whether only faulty, foreign or hostile processes cause it
+  const char* name;         ///< name in reports and in `sidestep topic echo`
+  const char* description;  ///< description for documents
+  bool is_unusual;          ///< whether only faulty, third-party or hostile processes cause it
 };
 
-/// By DropReason.
+/// Indexed by DropReason.
 inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
     {DropReason::kUnreadable, "unreadable", "bytes that are no message of the topic", true},
     {DropReason::kOtherRules, "other_rules", "messages of processes with other rules", true},
@@ -196,7 +196,7 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
 
 inline constexpr std::size_t kDropReasonCount = kDropReasons.size();
 
-/// Whether a row of the table is where its reason's number says.
+/// Whether every row of the table stands at the index that its reason's number requires.
 constexpr bool are_drop_reasons_in_order() {
   for (std::size_t i = 0; i < kDropReasonCount; ++i) {
     if (static_cast<std::size_t>(kDropReasons[i].reason) != i) return false;

@@ -11,15 +11,16 @@
 
 namespace sidestep {
 
-/// Agent to coordinator; see Proposal in idl/negotiation.idl. All candidates have one robot, base and start.
+/// Agent to coordinator; see Proposal in idl/negotiation.idl. All candidates have the same robot, base and
+/// start.
 struct Proposal {
   RobotId robot = 0;
-  Incarnation incarnation = 0;  ///< of the agent
+  Incarnation incarnation = 0;  ///< the agent's incarnation
   Epoch epoch = 0;
-  Time sent_at{};            ///< by the agent's clock
-  VersionNumber number = 0;  ///< of the first candidate, also if that is malformed; identifies the proposal
-  std::size_t candidate_count = 0;  ///< 0: malformed
-  /// In order of preference; nullopt: malformed. Only the first candidate_count are used.
+  Time sent_at{};                   ///< by the agent's clock
+  VersionNumber number = 0;         ///< of the first candidate, even if malformed; identifies the proposal
+  std::size_t candidate_count = 0;  ///< 0: the proposal is malformed
+  /// In order of preference. nullopt: the candidate is malformed. Only the first candidate_count are used.
   std::array<std::optional<Version>, msg::MAX_CANDIDATES> candidates{};
 };
 
@@ -29,40 +30,40 @@ struct Verdict {
   Epoch epoch = 0;
   Time sent_at{};                     ///< by the coordinator's clock
   VersionNumber proposal_number = 0;  ///< 0: answers a registration
-  Time request_sent_at{};             ///< of the answered message, by the agent's clock
+  Time request_sent_at{};             ///< send time of the answered message, by the agent's clock
   VersionNumber granted_version = 0;  ///< 0: none
   std::array<msg::Reason, msg::MAX_CANDIDATES> reasons{};
-  std::array<RobotId, msg::MAX_CANDIDATES> blockers{};  ///< valid for REASON_CONFLICT
+  std::array<RobotId, msg::MAX_CANDIDATES> blockers{};  ///< valid if the reason is REASON_CONFLICT
 };
 
 /// Agent to coordinator after a change of epoch; see Registration in idl/negotiation.idl.
 struct Registration {
   RobotId robot = 0;
-  Incarnation incarnation = 0;  ///< of the agent
+  Incarnation incarnation = 0;  ///< the agent's incarnation
   Epoch epoch = 0;
   Time sent_at{};  ///< by the agent's clock
-  /// All versions that the robot may execute, now or later; empty: it is absent; nullopt: malformed, or
-  /// asks_for_orders.
+  /// All versions that the robot may execute, now or later. Empty: the robot is absent. nullopt: malformed,
+  /// or asks_for_orders.
   std::optional<VersionSet> versions{};
-  /// The robot has ever executed a granted version, or had obeyed another epoch before it obeyed this agent.
+  /// The robot has executed a granted version, or it had obeyed another epoch before it obeyed this agent.
   bool has_moved = false;
-  bool knows_orders = false;     ///< the agent has learned all orders
-  bool asks_for_orders = false;  ///< it registers no robot, and asks for all orders
+  bool knows_orders = false;     ///< the agent knows all orders
+  bool asks_for_orders = false;  ///< the message registers no robot but asks for all orders
 };
 
 /// The part of a CoordinatorState that agents and other coordinators use.
 struct CoordinatorHeartbeat {
   std::uint32_t sender = 0;
   Incarnation incarnation = 0;
-  Epoch epoch = 0;  ///< 0: standing by
+  Epoch epoch = 0;  ///< 0: the coordinator is a standby
   msg::CoordinatorMode mode = msg::CoordinatorMode::COORDINATOR_STANDBY;
-  /// The world state with which the robots' places were last compared.
+  /// The world state against which the robots' places were last checked.
   Time watched_until{};
   bool remembers_orders = false;
-  std::span<const msg::RobotNotice> notices{};  ///< valid as long as the decoded message
+  std::span<const msg::RobotNotice> notices{};  ///< valid as long as the decoded message exists
 };
 
-/// Whether nothing can be said of where a robot is going, so that it counts as a moving obstacle.
+/// Whether nothing is known about where a robot is going, so that it counts as a moving obstacle.
 inline bool is_uncontrolled(const msg::RobotNotice& notice) {
   return notice.is_displaced() || notice.is_silent();
 }

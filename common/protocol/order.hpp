@@ -12,14 +12,14 @@
 
 namespace sidestep {
 
-/// The Header.sender of a process that sends orders.
+/// The Header.sender of a process that gives orders.
 using ClientId = std::uint32_t;
 using OrderNumber = std::uint64_t;
 
-/// Order::robot of orders that apply to every robot.
+/// Value of Order::robot for orders that apply to every robot.
 inline constexpr RobotId kAllRobots = msg::ALL_ROBOTS;
 
-/// A robot carries out the order of the highest rank first.
+/// Priority of clients. A robot carries out the order of the highest rank first.
 enum class Rank : std::uint8_t { kScenario, kClient, kReferee, kOperator };
 inline constexpr std::size_t kRanks = 4;
 
@@ -40,24 +40,24 @@ constexpr Rank rank_of(ClientId client) {
 struct Zone {
   std::vector<Vec2> corners_m;  ///< at least one
   double radius_m = 0;
-  std::optional<double> speed_limit_mps{};  ///< nullopt: to keep out of
+  std::optional<double> speed_limit_mps{};  ///< nullopt: robots must keep out
 };
 
-/// What a client orders; see Order in idl/order.idl.
+/// An order by a client; see Order in idl/order.idl.
 struct Order {
   msg::OrderKind kind = msg::OrderKind::ORDER_GO;
   RobotId robot = 0;
   ClientId client = 0;
   OrderNumber number = 0;
-  std::vector<Goal> goals{};  ///< of ORDER_GO; empty: those of the scenario
+  std::vector<Goal> goals{};  ///< for ORDER_GO; empty: the scenario's goals
   std::uint32_t zone_number = 0;
-  Zone zone{};  ///< of ORDER_ZONE
+  Zone zone{};  ///< for ORDER_ZONE
 };
 
-/// How far a robot has got with an order to drive.
+/// A robot's progress with a drive order.
 struct OrderProgress {
   msg::OrderState state = msg::OrderState::ORDER_ACCEPTED;  ///< never ORDER_BLOCKED, see Blockage
-  std::size_t goal_index = 0;                               ///< of the goal that it drives to
+  std::size_t goal_index = 0;                               ///< index of the robot's current goal
 
   bool is_finished() const { return state >= msg::OrderState::ORDER_ARRIVED; }
 };
@@ -65,9 +65,9 @@ struct OrderProgress {
 /// Why a robot cannot reach its goal.
 struct Blockage {
   msg::BlockReason reason = msg::BlockReason::BLOCK_NO_PATH;
-  std::uint32_t blocker = 0;  ///< number of the robot or zone
-  Vec2 blocker_m{0, 0};       ///< where the obstacle or robot is
-  Vec2 nearest_m{0, 0};       ///< where the robot goes instead
+  std::uint32_t blocker = 0;  ///< number of the blocking robot or zone
+  Vec2 blocker_m{0, 0};       ///< position of the blocking obstacle or robot
+  Vec2 nearest_m{0, 0};       ///< position that the robot goes to instead
 };
 
 struct RememberedOrder {

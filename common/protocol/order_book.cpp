@@ -9,7 +9,7 @@
 namespace sidestep {
 namespace {
 
-/// Whether the first is later. Numbers of different clients may be equal.
+/// Whether the first order is later. Orders of different clients may have equal numbers.
 bool is_later(const Order& a, const Order& b) {
   return std::pair(a.number, a.client) > std::pair(b.number, b.client);
 }
@@ -80,7 +80,7 @@ bool OrderBook::has_room(const Order& order) const {
   const Rank rank = rank_of(order.client);
   const auto known = orders_.find(place_of(order));
   const bool stands = known != orders_.end() && known->second.order.kind == order.kind;
-  if (stands) return true;  // and is replaced
+  if (stands) return true;  // the order in this place is replaced
   if (order.kind == msg::OrderKind::ORDER_ZONE) return zones_[static_cast<std::size_t>(rank)] < kMaxZones;
   if (order.kind == msg::OrderKind::ORDER_RESUME)
     return rank != Rank::kClient || !is_exception(order) || exception_count() < kMaxExceptions;
@@ -151,7 +151,7 @@ void OrderBook::clear_lifted_by(const Order& resume) {
   clear(Kind::kResume, is_for_all ? 0 : resume.robot, resume.robot);
 }
 
-// If an exception were forgotten, its robot would be held again.
+// Exceptions are kept: if one were forgotten, its robot would be held again.
 void OrderBook::forget_oldest_resumes() {
   if (resumes_.by_age.size() <= kMaxResumes) return;
   const std::size_t exceptions = exception_count();
@@ -229,7 +229,7 @@ OrderBook::Outcome OrderBook::admit(const Order& order) {
 }
 
 bool OrderBook::report(RobotId robot, ClientId client, OrderNumber number, const OrderProgress& progress) {
-  if (number == 0) return false;  // the robot has no order
+  if (number == 0) return false;  // 0 means that the robot has no order
   bool is_new = false;
   for (std::size_t i = 0; i < kRanks; ++i) {
     const auto found = orders_.find(Place{Kind::kDrive, robot, static_cast<std::uint32_t>(i), 0});
@@ -260,7 +260,7 @@ bool OrderBook::is_lifted(const Order& hold) const {
 bool OrderBook::contradicts(const Order& order) const {
   if (knows(order)) return false;
   if (order.kind == msg::OrderKind::ORDER_RESUME) return lifts_any(order);
-  return orders_.contains(place_of(order));  // by an earlier one, since this one is not known
+  return orders_.contains(place_of(order));  // by an earlier order, since this one is not known
 }
 
 bool OrderBook::stands(const Order& order) const {

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// The reasons of verdicts in words, by msg::Reason.
+/// Descriptions of the reasons of verdicts, indexed by msg::Reason.
 inline constexpr const char* kReasonTexts[] = {"granted",       "not evaluated",      "malformed",
                                                "wrong epoch",   "not all registered", "old incarnation",
                                                "old version",   "base unknown",       "not continuous",
@@ -17,7 +17,7 @@ inline constexpr const char* kReasonTexts[] = {"granted",       "not evaluated",
                                                "absent",        "quarantined",        "displaced",
                                                "held"};
 
-/// Precondition: the reason is an enumerator.
+/// Precondition: the reason is a valid enumerator.
 constexpr const char* to_text(msg::Reason reason) { return kReasonTexts[static_cast<std::size_t>(reason)]; }
 
 }  // namespace sidestep

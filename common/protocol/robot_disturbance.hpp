@@ -7,18 +7,18 @@
 
 namespace sidestep {
 
-/// External disturbance of one robot; see Disturbance in idl/disturbance.idl. Each kind uses some of the
+/// External disturbance of one robot; see Disturbance in idl/disturbance.idl. Each kind uses only some of the
 /// fields.
 struct RobotDisturbance {
   RobotId robot = 0;
   msg::DisturbanceKind kind = msg::DisturbanceKind::DISTURBANCE_PUSH;
   Vec2 push_mps{0, 0};       ///< change of velocity
-  double grip = 1;           ///< while slipping
-  Vec2 place_m{0, 0};        ///< where it is put down, or carried to; or how far beside its place it is seen
-  double heading_rad = 0;    ///< of the blocked wheel (body frame), or with which it is put down
-  Duration clock_offset{0};  ///< of the robot's clock, ahead of the host's
-  Duration duration{0};      ///< of slipping, blocking, carrying or being seen wrongly
-  RobotId other_robot = 0;   ///< with which cameras confuse it
+  double grip = 1;           ///< grip while slipping
+  Vec2 place_m{0, 0};        ///< where it is put down or carried to; or the offset at which it is seen
+  double heading_rad = 0;    ///< of the blocked wheel (body frame), or heading when it is put down
+  Duration clock_offset{0};  ///< offset of the robot's clock from the host's; positive: ahead
+  Duration duration{0};      ///< how long it slips, is blocked, is carried or is seen wrongly
+  RobotId other_robot = 0;   ///< robot with which cameras confuse it
 };
 
 }  // namespace sidestep

@@ -12,7 +12,7 @@ struct RobotObservation {
   Time observed_at{};
   Vec2 position_m{0, 0};
   Vec2 velocity_mps{0, 0};
-  double position_variance_m2 = 0;  ///< per axis
+  double position_variance_m2 = 0;  ///< variance on each axis
 };
 
 }  // namespace sidestep

@@ -9,9 +9,9 @@
 
 namespace sidestep {
 
-/// xoshiro256++ (Blackman, Vigna 2018) with its own distributions: those of the standard library differ
-/// between implementations, and a seed has to give the same run everywhere. For the same reason, draw into
-/// variables: the order in which arguments of a call are evaluated is unspecified.
+/// xoshiro256++ (Blackman, Vigna 2018) with its own distributions. The standard library's distributions
+/// differ between implementations, but a seed must give the same run everywhere. For the same reason, assign
+/// draws to variables first: the evaluation order of function arguments is unspecified.
 class Rng {
  public:
   explicit Rng(std::uint64_t seed) {
@@ -30,21 +30,21 @@ class Rng {
     return result;
   }
 
-  /// In [0, 1).
+  /// Uniformly distributed in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
-  /// In [low, high).
+  /// Uniformly distributed in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// In 0 .. count - 1; count > 0.
+  /// Uniformly distributed in 0 .. count - 1. Precondition: count > 0.
   std::uint64_t below(std::uint64_t count) {
     return static_cast<std::uint64_t>(uniform() * static_cast<double>(count));
   }
   bool chance(double probability) { return uniform() < probability; }
-  /// Standard normal (Box, Muller 1958).
+  /// Normally distributed with mean 0 and variance 1 (Box, Muller 1958).
   double normal() {
     const double u = 1.0 - uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(2 * std::numbers::pi * uniform());
   }
-  /// Shuffles a container with size() and []; all permutations are equally likely (Fisher, Yates).
+  /// Shuffles a container that has size() and []. All permutations are equally likely (Fisher, Yates).
   template <typename Values>
   void shuffle(Values& values) {
     for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);

@@ -6,7 +6,7 @@ namespace {
 
 static_assert(robot::Version::kMaxPhases == Trajectory::kMaxPhases);
 
-// The wire has floats, so nothing is lost.
+// The wire format uses float, so no precision is lost.
 robot::Intent to_plain(const Intent& intent) {
   const auto narrow = [](double value) { return static_cast<float>(value); };
   return {

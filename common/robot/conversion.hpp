@@ -7,12 +7,12 @@
 
 namespace sidestep {
 
-/// Between the robot side's plain types and those of the rest. A version that comes back from the robot side
-/// equals the one that went in, bit for bit.
+/// Convert between the robot side's plain types and the types of the rest of the system. A version converted
+/// to the plain type and back is bit-identical.
 robot::Version to_plain(const Version& version);
 Version from_plain(const robot::Version& version, RobotId robot);
 
-/// The protocol's part of a fact; the caller sets the robot's estimate and robot_incarnation.
+/// Converts the protocol's part of a fact. The caller sets the robot's estimate and robot_incarnation.
 Feedback from_plain(const robot::Facts& facts, RobotId robot);
 
 inline robot::Vec<double> to_plain(const Vec2& v) { return {v.x(), v.y()}; }

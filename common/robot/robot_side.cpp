@@ -19,7 +19,7 @@ constexpr Number smaller(Number a, Number b) {
 
 template <typename Real>
 bool is_finite(const Vec<Real>& v) {
-  // Neither infinities nor NaN differ from themselves by 0.
+  // For infinities and NaN the difference is NaN, not 0.
   return v.x - v.x == 0 && v.y - v.y == 0;
 }
 
@@ -31,8 +31,8 @@ void append_phase(Version& version, std::int64_t duration_ns, double ax_mps2, do
   version.phases[version.phase_count++] = {duration_ns, ax_mps2, ay_mps2};
 }
 
-// As append_stop() in common/motion/trajectory.hpp: the duration is rounded up to whole nanoseconds and the
-// deceleration reduced to match, so that the version ends at rest.
+// Like append_stop() in common/motion/trajectory.hpp: the duration is rounded up to whole nanoseconds and the
+// deceleration reduced to match, so that the version ends exactly at rest.
 template <typename Real>
 void append_braking(Version& version, const Vec<Real>& velocity_mps, Real deceleration_mps2) {
   const auto speed = static_cast<double>(norm(velocity_mps));
@@ -113,8 +113,8 @@ bool RobotSide<Real>::on_command(const Command& command, std::int64_t now_ns, St
     ++counts_.refused_fenced;
     return false;
   }
-  // A new agent may not know the latest epoch that the robot learned from an earlier agent. Its versions are
-  // refused until it learns that epoch from a fact.
+  // A new agent may not know the latest epoch, which the robot learned from an earlier agent. The agent's
+  // versions are refused until it learns that epoch from a fact.
   const bool is_old_epoch = command.epoch < durable_.epoch;
   DurableState next = durable_;
   next.incarnation = command.incarnation;
@@ -143,8 +143,8 @@ void RobotSide<Real>::on_malformed_command(std::int64_t now_ns) {
   ++counts_.refused_malformed;
 }
 
-// Of the versions of earlier agents, those remain that the motors have been sent: they start within the lead,
-// and each continues the one before it. Versions of the new agent start later.
+// Discards versions of earlier agents, except those that were already sent to the motors: they start within
+// the lead, and each continues the one before it. Versions of the new agent start later.
 template <typename Real>
 void RobotSide<Real>::discard_fenced(std::int64_t now_ns) {
   std::uint64_t planned = executing_.number, highest = highest_executed_;
@@ -183,7 +183,7 @@ void RobotSide<Real>::take(const Version& version, std::int64_t now_ns, StableMe
   } else if (is_irrevocable(version, now_ns)) {
     ++counts_.refused_late;
   } else if (!may_take(version)) {
-    ++counts_.refused_base;  // its base is older than the version being executed
+    ++counts_.refused_base;  // the version's base is older than the version being executed
   } else if (!store(moved, memory)) {
     ++counts_.refused_unstored;
   } else {
@@ -256,7 +256,8 @@ const Version& RobotSide<Real>::planned(std::int64_t t_ns) const {
   return *planned;
 }
 
-// All comparisons of numbers below are true for what is known to be within a bound, so that a NaN is not.
+// Comparisons of numbers below are written so that they are true only for values known to be within a bound,
+// and thus false for NaN.
 template <typename Real>
 Real RobotSide<Real>::error_m(std::int64_t now_ns, const Vec<Real>& position_m) const {
   const Vec<Real> reference_m = motion_at<Real>(executing_, now_ns).position_m;
@@ -269,8 +270,8 @@ bool RobotSide<Real>::needs_uncertainty(std::int64_t now_ns, const Vec<Real>& po
          !(error_m(now_ns, position_m) < Real(0.5) * settings_.drift_bound_m);
 }
 
-// The uncertainty counts for at most half of the bound, so that a robot is not off its reference merely
-// because no camera sees it.
+// The uncertainty counts for at most half of the bound, so that a robot does not count as off its reference
+// merely because no camera sees it.
 template <typename Real>
 bool RobotSide<Real>::is_within(Real bound_m, Real error_m, const Estimate<Real>& estimate) const {
   const Real half_m = Real(0.5) * bound_m, uncertainty_m = 2 * estimate.position_error_rms_m;
@@ -287,13 +288,13 @@ std::int64_t RobotSide<Real>::drifted_since_ns(std::int64_t now_ns, const Estima
 
 // A fix may reveal all drift since the last one at once. The control corrects it before a message could reach
 // the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
-// control cannot correct in time, or that the margin does not cover.
+// control cannot correct in time or that the margin does not cover.
 template <typename Real>
 bool RobotSide<Real>::must_stop(std::int64_t now_ns, const Estimate<Real>& estimate,
                                 OwnStopReason& reason) const {
   const Real error = error_m(now_ns, estimate.position_m);
   const bool has_jumped = !(estimate.jump_m <= 0);
-  // Inflation covers where the robot may be, not the way back to its reference.
+  // Inflation covers the uncertainty of where the robot is, but not its way back to the reference.
   if (has_jumped && !(error <= settings_.drift_bound_m)) {
     reason = OwnStopReason::kDisplaced;
     return true;
@@ -357,11 +358,12 @@ void RobotSide<Real>::start_own_stop(OwnStopReason reason, const Estimate<Real>&
   if (highest_seen_ <= durable_.number_bound) return;
   DurableState next = durable_;
   next.number_bound = highest_seen_ + kStoredAhead;
-  // The stop must not wait for the memory. Without it the robot stops too, but reports nothing.
+  // The stop must not wait for the memory. If storing fails, the robot still stops but reports nothing.
   is_memory_broken_ = !store(next, memory);
 }
 
-// The place, the motion and the inflation of a stop from the estimate. False if they cannot be told.
+// Computes the place, the motion and the inflation of a stop from the estimate. False if they cannot be
+// determined.
 template <typename Real>
 bool RobotSide<Real>::begin_with_motion_under_way(Version& stop, const Estimate<Real>& estimate) const {
   const MotionUnderWay<Real>& under_way = estimate.under_way;
@@ -380,7 +382,7 @@ bool RobotSide<Real>::begin_with_motion_under_way(Version& stop, const Estimate<
   }
   if (!is_finite(velocity_mps) || !is_finite(motion_at<Real>(stop, stop.end_ns()).position_m)) return false;
   append_braking(stop, velocity_mps, settings_.deceleration_mps2);
-  // Includes the last displacement, because its cause may act again before the next fix.
+  // Includes the last jump, because its cause may act again before the next fix.
   const Real error_m = is_late ? under_way.error_m : Real(0);
   const auto inflation_m = static_cast<double>(2 * estimate.position_error_rms_m + estimate.jump_m + error_m);
   stop.inflation_m = inflation_m <= kMaxInflation_m ? inflation_m : kMaxInflation_m;
@@ -391,7 +393,7 @@ template <typename Real>
 void RobotSide<Real>::lift(std::int64_t now_ns, double x_m, double y_m) {
   is_lifted_ = true;
   is_rebooting_ = is_clock_set_back_ = false;
-  has_pose_ = true;  // a lifted robot needs none until it is put down
+  has_pose_ = true;  // a lifted robot needs no own stop until it is put down
   has_found_pose_ = false;
   is_off_reference_ = false;
   pending_count_ = 0;
@@ -430,7 +432,7 @@ Facts RobotSide<Real>::facts(std::int64_t now_ns) {
   facts.is_off_reference = is_off_reference_;
   facts.is_lifted = is_lifted_;
   facts.has_moved = has_moved_;
-  // The agent that is acknowledged would take another one's command for its own.
+  // Otherwise the acknowledged agent would mistake another agent's command for its own.
   facts.has_command = has_command_ && acknowledged_incarnation_ == durable_.incarnation;
   facts.command_sent_at_ns = command_sent_at_ns_;
   facts.command_received_at_ns = command_received_at_ns_;

@@ -11,41 +11,42 @@ namespace sidestep::robot {
 template <typename Real>
 struct Settings {
   Real tracking_bound_m = Real(0.005);
-  Real drift_bound_m = Real(0.003);    ///< the part of the tracking bound that drift may use, 0.6 of it
-  Real deceleration_mps2 = 5;          ///< D, of the robot's own stops
-  std::int64_t actuation_lead_ns = 0;  ///< from a command to the motors until the body moves accordingly
+  Real drift_bound_m = Real(0.003);    ///< the part of the tracking bound that drift may use: 0.6 of it
+  Real deceleration_mps2 = 5;          ///< D, used for the robot's own stops
+  std::int64_t actuation_lead_ns = 0;  ///< from a command to the motors until the body moves
 };
 
-/// Versions and commands that a robot has received, by outcome.
+/// Number of versions and commands that a robot has received, by outcome.
 struct Counts {
   std::uint64_t activated = 0;  ///< since the last restart
   std::uint64_t refused_late = 0;
   std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
   std::uint64_t refused_fenced = 0;
   std::uint64_t refused_malformed = 0;
-  std::uint64_t refused_unstored = 0;  ///< because the memory failed
+  std::uint64_t refused_unstored = 0;  ///< could not be stored in memory
 };
 
-/// Why a robot has made a stop of its own.
+/// Why a robot has made an own stop, that is, a stop that it decided on by itself.
 enum class OwnStopReason : std::uint8_t {
-  kOffReference,  ///< beyond the tracking bound
-  kDrifted,       ///< beyond the drift bound for kMaxRecovery_ns
-  kDisplaced,     ///< displaced without its wheels measuring it
+  kOffReference,  ///< the robot is farther from its reference than the tracking bound
+  kDrifted,       ///< drift has exceeded its bound for kMaxRecovery_ns
+  kDisplaced,     ///< the robot was displaced without its wheels measuring it
   kRestart,       ///< the robot has restarted
-  kClockSetBack,  ///< its clock has been set back
+  kClockSetBack,  ///< the robot's clock was set back
 };
 
-/// What the protocol needs of a command. Its numbers and times are checked: finite, and less than an hour
-/// ahead of the robot's clock.
+/// The protocol's part of a command. Its numbers and times have been checked: they are finite, and less than
+/// an hour ahead of the robot's clock.
 struct Command {
-  std::uint64_t incarnation = 0;  ///< of the agent
-  std::uint64_t epoch = 0;        ///< highest that the agent knows, 0: none
+  std::uint64_t incarnation = 0;  ///< the agent's incarnation
+  std::uint64_t epoch = 0;        ///< highest epoch that the agent knows; 0: none
   std::int64_t sent_at_ns = 0;    ///< by the agent's clock
   const Version* version = nullptr;
 };
 
-/// What the motors will make the robot do during Settings::actuation_lead_ns, because they have been sent the
-/// commands already: from the velocity `from_mps` on, a few parts in which the velocity changes evenly.
+/// The motion that the motors will still perform during Settings::actuation_lead_ns because of commands
+/// already sent to them: starting at the velocity `from_mps`, a few parts in each of which the velocity
+/// changes linearly.
 template <typename Real>
 struct MotionUnderWay {
   static constexpr int kMaxParts = Version::kMaxPhases - 1;
@@ -56,133 +57,137 @@ struct MotionUnderWay {
   Vec<Real> from_mps;
   int part_count = 0;
   Part parts[kMaxParts];
-  Real error_m = 0;  ///< the commands lead at most so far away from these parts, at any time
+  Real error_m = 0;  ///< maximum distance at any time between these parts and what the commands cause
 };
 
 /// The robot's own estimate of its state. A robot whose estimate is not finite has no pose.
 template <typename Real>
 struct Estimate {
   Vec<Real> position_m, velocity_mps;
-  Real position_error_rms_m = 0;   ///< only read if needs_uncertainty()
-  Real jump_m = 0;                 ///< displacement that the last fix showed and the wheels did not measure
-  MotionUnderWay<Real> under_way;  ///< only read if there is a lead and is_stop_due()
+  Real position_error_rms_m = 0;   ///< only read if needs_uncertainty() returns true
+  Real jump_m = 0;                 ///< displacement that the last fix showed but the wheels did not measure
+  MotionUnderWay<Real> under_way;  ///< only read if there is an actuation lead and is_stop_due() returns true
 };
 
-/// The protocol's part of a fact (Feedback in idl/robot.idl).
+/// The protocol's part of a fact (see Feedback in idl/robot.idl).
 struct Facts {
-  std::uint64_t obeyed_incarnation = 0;  ///< acknowledged: no version of an earlier agent is still to start
+  std::uint64_t obeyed_incarnation = 0;  ///< acknowledged: no version of an earlier agent can still start
   std::uint64_t obeyed_epoch = 0;
   std::int64_t valid_at_ns = 0;
   const Version* executing = nullptr;  ///< valid until the next call
   bool is_off_reference = false, is_lifted = false, has_moved = false;
   bool has_command = false;
-  std::int64_t command_sent_at_ns = 0;  ///< of the last obeyed command, by the agent's clock
+  std::int64_t command_sent_at_ns = 0;  ///< send time of the last obeyed command, by the agent's clock
   std::int64_t command_received_at_ns = 0;
   std::uint64_t activated = 0;
-  std::int64_t lead_ns = 0;  ///< how long before its start a version has to arrive
+  std::int64_t lead_ns = 0;  ///< how long before its start a version must arrive
 };
 
 /// The robot's side of the safety protocol (coordinator/PROTOCOL.md, "What a robot must do"), without control
-/// and estimation. It executes one whole version and holds a few pending ones. It switches to a version only
-/// at that version's start time, and only from its base. Without commands it executes its version to the end
-/// and rests. What it acknowledges it has stored.
+/// and estimation. It executes one complete version and holds a few pending ones. It switches to a version
+/// only at that version's start time, and only from that version's base. Without commands it executes its
+/// version to the end and rests. It stores everything that it acknowledges before acknowledging it.
 ///
-/// From a new agent on it refuses the versions of earlier ones, and discards those that it holds and has not
-/// begun. But motors that obey late have been sent the beginning of a version whose start is less than the
-/// lead away. The robot executes such a version. It acknowledges the new agent, and takes versions of it,
-/// when no such version is still to start. So the fact that acknowledges an agent states all that the robot
-/// executes of earlier ones.
+/// Once it obeys a new agent, it refuses versions of earlier agents and discards their pending ones. There is
+/// one exception: if the motors respond with a delay, they have already been sent the beginning of any
+/// version that starts within the lead, so the robot executes such versions. It acknowledges the new agent
+/// and accepts its versions only when no such version can still start. So the fact that acknowledges an agent
+/// covers everything that the robot executes for earlier ones.
 ///
-/// It makes a stop of its own if the robot may be farther from its reference than the tracking bound, or than
-/// the drift bound and either does not return within kMaxRecovery_ns or was displaced without its wheels
-/// measuring it. The stop is a version that brakes from the estimated state; the robot executes it at once.
-/// If the motors obey late, the stop begins with the motion that is under way.
+/// It makes an own stop if the robot may be farther from its reference than the tracking bound. It also makes
+/// one if the robot may be farther than the drift bound and either does not return within kMaxRecovery_ns or
+/// was displaced without its wheels measuring it. An own stop is a version that brakes from the estimated
+/// state; the robot executes it immediately. If the motors respond with a delay, the stop begins with the
+/// motion already under way.
 ///
 /// A robot without a pose accepts no version, and must not report facts. A lifted robot executes nothing
 /// (version 0) and accepts only a granted rest version on base 0.
 ///
 /// All times are by the robot's clock in nanoseconds since 1970, and go back only with set_clock_back().
-/// `Real` is float or double. Needs no heap, no exceptions and no operating system.
+/// `Real` is float or double. Requires no heap, no exceptions and no operating system.
 template <typename Real>
 class RobotSide {
  public:
   static constexpr int kMaxPending = 8;
-  /// How long the control may take to return to the reference before the robot makes a stop of its own.
+  /// How long the control may take to return to the reference before the robot makes an own stop.
   static constexpr std::int64_t kMaxRecovery_ns = 25'000'000;
-  /// Gap between the numbers that have reached the robot and the number of a stop of its own: versions that
+  /// Gap between the highest number that has reached the robot and the number of its own stop: versions that
   /// it has not received yet may already be granted and in transit.
   static constexpr std::uint64_t kOwnNumberGap = std::uint64_t{1} << 20;
-  /// The stored bound of numbers is ahead of them by up to this, so that it is rarely stored.
+  /// The stored bound of numbers exceeds the numbers in use by up to this, so that it rarely needs to be
+  /// stored again.
   static constexpr std::uint64_t kStoredAhead = std::uint64_t{1} << 26;
 
-  /// A robot that has just been switched on and does not know its pose.
+  /// Creates the side of a robot that has just been switched on and does not know its pose.
   RobotSide(const Settings<Real>& settings, const DurableState& remembered);
 
-  /// It is at rest at this place: executes version 0 there. For a robot that has never obeyed an agent.
+  /// The robot is at rest at this place and executes version 0 there. Only for a robot that has never obeyed
+  /// an agent.
   void begin_at_rest(double x_m, double y_m);
-  /// It knows its pose from now on: the next check_reference() makes a stop of its own there.
+  /// The robot knows its pose from now on. The next check_reference() makes an own stop there.
   void find_pose();
-  /// It does not know its pose any more.
+  /// The robot no longer knows its pose.
   void lose_pose();
-  /// It has lost everything but its memory, its pose and what it reported: the next check_reference() that
-  /// may do so makes a stop of its own.
+  /// The robot has lost everything except its stored memory, its pose and what it reported. The next
+  /// check_reference() that may do so makes an own stop.
   void reboot() { is_rebooting_ = true; }
-  /// It has been without power, and has lost its pending versions.
+  /// The robot has been without power and has lost its pending versions.
   void switch_on();
-  /// Its clock reads less than before. The times of its versions and facts are void, so it reports nothing
-  /// until the next check_reference() makes a stop of its own, by the new time. The caller's facts bear a
-  /// higher incarnation of the robot from then on.
+  /// The robot's clock was set back. The times of its versions and facts are void, so it reports nothing
+  /// until the next check_reference() makes an own stop by the new time. From then on, the caller must give
+  /// facts a higher robot incarnation.
   void set_clock_back(std::int64_t now_ns);
 
-  /// Obeys a command, or refuses and counts it. Whether it is from an agent that the robot obeys; then the
-  /// robot may use the rest of the command, such as a fix.
+  /// Obeys a command, or refuses and counts it. Returns whether it is from an agent that the robot obeys; if
+  /// so, the robot may use the rest of the command, such as a fix.
   [[nodiscard]] bool on_command(const Command& command, std::int64_t now_ns, StableMemory& memory);
   /// Counts a command that could not be decoded.
   void on_malformed_command(std::int64_t now_ns);
 
-  /// Makes the next switch of version that is due; false if none is. Every other call with a time first makes
-  /// all switches due by then, so that a reported "executing f at t" remains true.
+  /// Switches to the next version if it is due; returns false if none is due. Every other function that takes
+  /// a time first makes all switches due by then, so that a reported "executing f at t" remains true.
   bool switch_next(std::int64_t now_ns);
 
   /// Whether check_reference() would read the estimate's position error, which is costly to compute.
   bool needs_uncertainty(std::int64_t now_ns, const Vec<Real>& position_m) const;
-  /// Whether check_reference() would make a stop of its own, and read the estimate's motion under way, which
-  /// is costly to compute. Precondition: all switches due by then are made.
+  /// Whether check_reference() would make an own stop, and would read the estimate's motion under way, which
+  /// is costly to compute. Precondition: all switches due by then have been made.
   bool is_stop_due(std::int64_t now_ns, const Estimate<Real>& estimate) const;
-  /// Once per control period: makes a stop of its own if the estimate demands it. If the estimate is not
-  /// finite, the robot has no pose from then on. No effect on a robot that is lifted or has no pose.
+  /// Call once per control period. Makes an own stop if the estimate demands it. If the estimate is not
+  /// finite, the robot loses its pose. No effect on a robot that is lifted or has no pose.
   void check_reference(std::int64_t now_ns, const Estimate<Real>& estimate, StableMemory& memory);
 
-  /// Off the floor: discards the executed version and all pending ones. Facts name the last version as the
-  /// base of nothing, number 0, so that the agent can number the next one above it. Called again, it also
-  /// discards a rest version accepted since.
+  /// The robot was lifted off the floor: discards the executed version and all pending ones. Facts then
+  /// report version 0 and name the last version as its base, so that the agent can number the next version
+  /// above it. If called again, it also discards a rest version accepted since.
   void lift(std::int64_t now_ns, double x_m, double y_m);
   /// The lifted robot has been put down at the rest version that it executes.
   void put_down() { is_lifted_ = false; }
 
   /// The facts at this time. Precondition: may_report().
   Facts facts(std::int64_t now_ns);
-  /// Whether it executes a version that begins where it is, and has stored what its facts would acknowledge.
+  /// Whether the robot executes a version that begins where it is, and has stored everything that its facts
+  /// would acknowledge.
   bool may_report() const {
     return has_pose_ && !has_found_pose_ && !is_memory_broken_ && !is_clock_set_back_;
   }
 
   const Version& executing() const { return executing_; }
-  /// What is to be executed at a later time, as far as it is known.
+  /// The version to be executed at a later time, as far as it is known.
   const Version& planned(std::int64_t t_ns) const;
-  /// Whether it executes a stop of its own.
+  /// Whether the robot executes an own stop.
   bool is_off_reference() const { return is_off_reference_; }
-  /// Why it has made the last one.
+  /// Reason for the last own stop.
   OwnStopReason own_stop_reason() const { return own_stop_reason_; }
   bool is_lifted() const { return is_lifted_; }
   bool has_pose() const { return has_pose_; }
-  /// Of the agent whose versions it takes.
+  /// Incarnation of the agent whose versions the robot accepts.
   std::uint64_t obeyed_incarnation() const { return durable_.incarnation; }
-  /// Of the agent that its facts acknowledge.
+  /// Incarnation of the agent that the robot's facts acknowledge.
   std::uint64_t acknowledged_incarnation() const { return acknowledged_incarnation_; }
   std::uint64_t obeyed_epoch() const { return durable_.epoch; }
   const Counts& counts() const { return counts_; }
-  /// Number of stops of its own since the last restart.
+  /// Number of own stops since the last restart.
   std::uint64_t own_stops() const { return own_stops_; }
   bool has_pending() const { return pending_count_ > 0; }
   /// The start of the next pending version. Precondition: has_pending().
@@ -216,8 +221,8 @@ class RobotSide {
   static constexpr std::int64_t kNever_ns = INT64_MAX;
 
   Settings<Real> settings_;
-  DurableState durable_;            ///< as stored
-  std::uint64_t highest_seen_ = 0;  ///< of all version numbers and incarnations received
+  DurableState durable_;            ///< the state as stored
+  std::uint64_t highest_seen_ = 0;  ///< highest version number or incarnation received
   std::uint64_t highest_executed_ = 0;
   std::uint64_t acknowledged_incarnation_ = 0;
   Version executing_;
@@ -227,14 +232,14 @@ class RobotSide {
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
   bool has_pose_ = false;
-  bool has_found_pose_ = false;     ///< and has not made its own stop there yet
+  bool has_found_pose_ = false;     ///< and it has not made its own stop there yet
   bool is_clock_set_back_ = false;  ///< and it has not made its own stop by the new time yet
   bool is_memory_broken_ = false;
   bool has_command_ = false;
   std::int64_t command_sent_at_ns_ = 0, command_received_at_ns_ = 0;
   std::int64_t last_fact_ns_ = INT64_MIN;
-  std::int64_t drifted_since_ns_ = kNever_ns;  ///< kNever_ns: within the drift bound
-  Version pending_[kMaxPending];               ///< ascending by start, then number
+  std::int64_t drifted_since_ns_ = kNever_ns;  ///< kNever_ns while within the drift bound
+  Version pending_[kMaxPending];               ///< sorted by start, then number, ascending
   int pending_count_ = 0;
   Counts counts_;
   std::uint64_t own_stops_ = 0;

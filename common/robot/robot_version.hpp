@@ -5,8 +5,8 @@
 
 namespace sidestep::robot {
 
-/// Numbers in this folder that come from messages and go back into messages are doubles, as on the wire, and
-/// are never recomputed. What the robot computes for itself it computes in `Real`, float or double.
+/// Numbers in this folder that come from messages or go into messages are doubles, as on the wire, and are
+/// never recomputed. Values that the robot computes for itself have the type `Real`, float or double.
 template <typename Real>
 struct Vec {
   Real x = 0, y = 0;
@@ -33,7 +33,7 @@ struct Phase {
   double ax_mps2 = 0, ay_mps2 = 0;
 };
 
-/// What the robot's agent intends beyond a version. The robot only repeats it.
+/// The agent's intentions beyond a version. The robot only repeats them.
 struct Intent {
   float vx_mps = 0, vy_mps = 0, velocity_duration_s = 0;
   float waypoint_x_m = 0, waypoint_y_m = 0;
@@ -41,8 +41,8 @@ struct Intent {
   float target_x_m = 0, target_y_m = 0;
 };
 
-/// One version of the robot's trajectory, with the fields of Version in idl/trajectory.idl: from start_ns on
-/// it executes its phases in order, then rests.
+/// One version of the robot's trajectory, with the fields of Version in idl/trajectory.idl: from start_ns on,
+/// the robot executes the phases in order, then rests.
 struct Version {
   static constexpr int kMaxPhases = 4;
 
@@ -60,7 +60,7 @@ struct Version {
     for (int i = 0; i < phase_count; ++i) end += phases[i].duration_ns;
     return end;
   }
-  /// At rest throughout.
+  /// Whether the robot is at rest throughout.
   bool is_rest() const { return phase_count == 0 && vx_mps == 0 && vy_mps == 0; }
 };
 

@@ -5,14 +5,15 @@
 
 namespace sidestep {
 
-/// The largest difference of two clocks that are both within the clock bound of the coordinator's.
+/// Maximum difference between two clocks that are both within the clock bound of the coordinator's clock.
 constexpr Duration max_clock_difference(double clock_bound_s) { return from_seconds(2 * clock_bound_s); }
 
-/// Vision's own clock dates no observation, so it may be off by more than the clock bound: it may be ahead of
-/// the cameras' by this much.
+/// Maximum amount by which vision's clock may be ahead of the cameras'. It may exceed the clock bound,
+/// because no observation is dated by vision's own clock.
 inline constexpr Duration kMaxVisionLead{100'000'000};
 
-/// How far the time of a frame, of a world or of a list of obstacles may be ahead of the receiver's clock.
+/// Maximum amount by which the time of a frame, a world state or a list of obstacles may be ahead of the
+/// receiver's clock.
 constexpr Duration max_vision_lead(Duration max_clock_difference) {
   return kMaxVisionLead + max_clock_difference;
 }

@@ -11,10 +11,10 @@ namespace sidestep {
 /// on.
 struct ClockError {
   Duration offset{0};    ///< positive: the clock is ahead
-  double drift_ppm = 0;  ///< positive: the clock gains; within ±1000
+  double drift_ppm = 0;  ///< positive: the clock gains; at most 1000 in magnitude
   Time since{};
 
-  /// What the clock shows at a true time.
+  /// The clock's reading at a true time.
   Time reading(Time true_time) const {
     if (drift_ppm == 0) return true_time + offset;
     return true_time + offset + part(true_time - since, drift_ppm * 1e-6);

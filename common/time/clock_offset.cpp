@@ -6,8 +6,8 @@
 namespace sidestep {
 namespace {
 
-// Ages are clamped to this bound, at which an interval is too wide to be useful, so that the product below
-// does not overflow.
+// Upper bound for ages, so that the product below does not overflow. At this age an interval is too wide to
+// be useful.
 constexpr Duration kMaxAge = std::chrono::hours(24);
 
 bool is_time(Time t) { return to_ns(t) > 0 && t <= kMaxTime; }

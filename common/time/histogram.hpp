@@ -17,7 +17,7 @@ class DurationHistogram {
   using Buckets = std::array<std::uint64_t, kBuckets>;
 
   DurationHistogram() = default;
-  /// A histogram that was recorded elsewhere: the count of each bucket, and the maximum duration.
+  /// Creates a histogram that was recorded elsewhere, from the count of each bucket and the maximum duration.
   DurationHistogram(const Buckets& buckets, Duration max);
 
   /// Negative durations count as zero.
@@ -27,7 +27,7 @@ class DurationHistogram {
   std::uint64_t count() const { return count_; }
   Duration max() const { return max_; }
   const Buckets& buckets() const { return buckets_; }
-  /// The upper edge of the bucket that contains the quantile q (0 .. 1), and at most max(); zero for an empty
+  /// The upper edge of the bucket that contains the quantile q (0 .. 1), but at most max(). Zero for an empty
   /// histogram.
   Duration quantile(double q) const;
 

@@ -13,19 +13,19 @@ class RateLimit {
   constexpr RateLimit(int burst, Duration period) : period_(period), tolerance_((burst - 1) * period) {}
 
   [[nodiscard]] constexpr bool admit(Time now) {
-    // No clock but one that was set back since shows a later time for the next event.
+    // The next event can only be due this much later if the clock was set back since.
     if (due_ - now > tolerance_ + period_) due_ = now;
     const Time due = std::max(due_, now);
     if (due - now > tolerance_) return false;
     due_ = due + period_;
     return true;
   }
-  /// An event that was admitted does not count after all.
+  /// Takes back an admitted event, so that it does not count.
   constexpr void give_back() { due_ -= period_; }
 
  private:
   Duration period_, tolerance_;
-  Time due_ = Time{};  ///< when the next event would be due at one per period
+  Time due_ = Time{};  ///< when the next event would be due at a rate of one per period
 };
 
 }  // namespace sidestep

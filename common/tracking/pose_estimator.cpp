@@ -8,15 +8,15 @@
 namespace sidestep {
 namespace {
 
-// By the robot's clock, which may drift, periods differ a little: by up to this part.
+// Periods differ a little because the robot's clock may drift: by up to one part in this.
 constexpr int kMaxPeriodErrorPart = 1000;
-constexpr double kHeadingGain = 0.05;        // of a heading fix
-constexpr double kSlipVariance_m2ps = 1e-8;  // of wheels that roll imperfectly
+constexpr double kHeadingGain = 0.05;        // gain of a heading fix
+constexpr double kSlipVariance_m2ps = 1e-8;  // position variance due to wheel slip
 constexpr double kScaleDriftPerSqrtSecond = 2e-5;
 constexpr double kOutlierDeviations = 4;
 // No odometry has a larger relative error than this many standard deviations.
 constexpr double kMaxScaleDeviations = 5;
-// By chance, a sum of two or three innovations exceeds this many standard deviations once in a thousand
+// An innovation sum of two or three fixes exceeds this many standard deviations by chance once in a thousand
 // robot-hours.
 constexpr double kJumpDeviations = 5;
 // Minimum projection of an innovation on the previous one, relative to the longer of the two.
@@ -49,7 +49,7 @@ void PoseEstimator::advance(Time now, const Odometry& odometry, const Vec2& acce
   history_[static_cast<std::size_t>(count_ % kHistoryPeriods)] = {odometry_m_, turned_rad_};
   ++count_;
 
-  // The measurement is the mean over the period, valid half a period ago.
+  // The measurement is the mean over the period, so it is valid half a period ago.
   velocity_mps_ += acceleration_mps2 * dt;
   const Vec2 measured = odometry.velocity_mps * (1 - scale_) + acceleration_mps2 * (0.5 * dt);
   velocity_mps_ += settings_.velocity_gain * (measured - velocity_mps_);
@@ -82,7 +82,7 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   Vec2 innovation = position_m - predicted;
   jump_m_ = 0;
   const double expected = 0.5 * (covariance_(0, 0) + covariance_(1, 1)) + fix_variance;
-  // What displaces the robot, or misleads vision, tells nothing about the odometry's scale.
+  // An event that displaces the robot or misleads vision says nothing about the odometry's scale.
   if (!(innovation.squaredNorm() <= kOutlierDeviations * kOutlierDeviations * expected)) decorrelate_scale();
   if (detect_displacement({innovation, expected})) {
     jump_m_ = innovation.norm();
@@ -101,9 +101,9 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   anchor_odometry_m_ = odometry;
   anchor_m_ = predicted + correction.head<2>();
   scale_ += correction.z();
-  // The odometry's relative error e is that of 1 + e = 1 / (1 - scale).
+  // The odometry's relative error e is defined by 1 + e = 1 / (1 - scale).
   if (!(scale_ < 1 && std::abs(scale_ / (1 - scale_)) <= kMaxScaleDeviations * settings_.scale_error)) {
-    // Wheels that roll while the robot is displaced look like such an error.
+    // If wheels roll while the robot is displaced, that looks like such an error.
     scale_ = 0;
     covariance_(2, 2) = settings_.scale_error * settings_.scale_error;
     decorrelate_scale();
@@ -121,7 +121,7 @@ void PoseEstimator::decorrelate_scale() {
 Eigen::Matrix3d PoseEstimator::covariance_after(double elapsed_s, const Vec2& moved_m) const {
   Eigen::Matrix3d transition = Eigen::Matrix3d::Identity();
   transition.topRightCorner<2, 1>() = -moved_m;
-  // If a part of the motion since the anchor was only commanded, all of it counts as such.
+  // If part of the motion since the anchor was only commanded, all of it counts as commanded.
   const double noise_mps =
       commanded_at_ <= anchor_time_ ? settings_.velocity_noise_mps : settings_.commanded_noise_mps;
   const double noise_variance = noise_mps * noise_mps;
@@ -135,7 +135,7 @@ Eigen::Matrix3d PoseEstimator::covariance_after(double elapsed_s, const Vec2& mo
 
 double PoseEstimator::position_error_rms_m() const {
   const auto now = covariance_after(to_seconds(time_ - anchor_time_), odometry_m_ - anchor_odometry_m_);
-  return std::sqrt(std::max(now(0, 0) + now(1, 1), 0.0));  // NaN if the sum is
+  return std::sqrt(std::max(now(0, 0) + now(1, 1), 0.0));  // NaN if the sum is NaN
 }
 
 bool PoseEstimator::detect_displacement(const Innovation& latest) {

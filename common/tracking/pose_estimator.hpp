@@ -21,40 +21,40 @@ struct Odometry {
 
 /// The robot's sensor model. Noises and errors are standard deviations.
 struct EstimatorSettings {
-  double velocity_noise_mps = 0.01;   ///< of one odometry measurement, per axis
+  double velocity_noise_mps = 0.01;   ///< of one odometry measurement, on each axis
   double scale_error = 0.005;         ///< of the odometry's constant relative error
-  double fix_noise_m = 0.0005;        ///< of a fix, per axis
-  double extra_fix_noise_m = 0.0005;  ///< for the correlation that vision's filter introduces between fixes
-  double velocity_gain = 0.08;        ///< of a velocity measurement relative to the motor model; 1: no model
+  double fix_noise_m = 0.0005;        ///< of a fix, on each axis
+  double extra_fix_noise_m = 0.0005;  ///< for correlation between fixes due to vision's filter
+  double velocity_gain = 0.08;        ///< weight against the motor model; 1: no model
   Duration period{1'000'000};         ///< of the odometry
-  double commanded_noise_mps = 0.01;  ///< of one velocity that is commanded instead of measured, per axis
+  double commanded_noise_mps = 0.01;  ///< of a velocity that was commanded instead of measured, on each axis
 };
 
-/// A robot's estimate of its own pose: dead reckoning from the last fix, with a Kalman filter over position
-/// and odometry scale that is updated at the fixes' capture times.
+/// A robot's estimate of its own pose: dead reckoning from the last fix. A Kalman filter over position and
+/// odometry scale is updated at the fixes' capture times.
 class PoseEstimator {
  public:
-  /// Standard deviation of the place at which a robot begins or is put down, per axis.
+  /// Standard deviation, on each axis, of the place at which a robot starts or is put down.
   static constexpr double kKnownPlaceDeviation_m = 0.0005;
 
-  /// Starts at a pose whose position has this standard deviation per axis.
+  /// Starts at a pose whose position has this standard deviation on each axis.
   PoseEstimator(const Vec2& position_m, double heading_rad, Time now, const EstimatorSettings& settings,
                 double deviation_m = kKnownPlaceDeviation_m);
 
-  /// Integrates the measurement over the period that ends now, or what was commanded instead; the
+  /// Integrates the measurement, or else the commanded velocity, over the period that ends now. The
   /// accelerations are those of the motor model. A gap in time clears the history, so that fixes from before
-  /// it are refused.
+  /// the gap are refused.
   void advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
                double angular_acceleration_radps2, bool is_measured = true);
 
-  /// Corrects the estimate with a fix from vision. False, and nothing changes, if the fix is not finite, from
-  /// the future, older than kHistoryPeriods, or not newer than the last one.
+  /// Corrects the estimate with a fix from vision. Returns false and changes nothing if the fix is not
+  /// finite, from the future, older than kHistoryPeriods, or not newer than the last one.
   ///
   /// Fixes that agree with each other but not with the odometry show that the robot was displaced without its
   /// wheels measuring it; the estimate then follows the fixes.
   bool correct(Time captured_at, const Vec2& position_m, double heading_rad);
 
-  /// The robot's clock has been set: what it knows of earlier times keeps its age.
+  /// The robot's clock was set by `change`. Shifts all recorded times, so that their age stays the same.
   void set_clock(Duration change) {
     time_ += change;
     anchor_time_ += change;
@@ -63,41 +63,40 @@ class PoseEstimator {
   Time time() const { return time_; }
   Vec2 position_m() const { return anchor_m_ + (odometry_m_ - anchor_odometry_m_) * (1 - scale_); }
   const Vec2& velocity_mps() const { return velocity_mps_; }
-  /// Unwrapped: counts full turns.
+  /// The heading without wrapping: it counts full turns.
   double heading_rad() const { return heading_anchor_rad_ + turned_rad_; }
   double angular_radps() const { return angular_radps_; }
-  /// Estimated relative error of the odometry, whose measurements are approximately (1 + scale_error) x
-  /// truth.
+  /// Estimated relative error of the odometry: its measurements are approximately (1 + scale_error) x truth.
   double scale_error() const { return scale_; }
-  /// The filter's estimate of the root mean square distance from the truth.
+  /// The filter's estimate of the root mean square position error.
   double position_error_rms_m() const;
-  /// The filter's estimate of scale_error()'s standard deviation.
+  /// The filter's estimate of the standard deviation of scale_error().
   double odometry_scale_stddev() const { return std::sqrt(std::max(covariance_(2, 2), 0.0)); }
-  /// Whether the pose can be used. What is not finite once remains so.
+  /// Whether the pose is usable. A value that is not finite once stays that way.
   bool is_finite() const {
     return position_m().allFinite() && std::isfinite(heading_rad()) && covariance_.allFinite();
   }
-  /// The displacement, unmeasured by the wheels, that the last fix showed; 0 if none.
+  /// The displacement that the last fix showed but the wheels did not measure; 0 if none.
   double jump_m() const { return jump_m_; }
 
   static constexpr std::int64_t kHistoryPeriods = 512;
 
  private:
   struct Sample {
-    Vec2 odometry_m{0, 0};  ///< integrated since the creation
-    double turned_rad = 0;  ///< the same
+    Vec2 odometry_m{0, 0};  ///< integrated since creation
+    double turned_rad = 0;  ///< integrated since creation
   };
-  /// A fix's difference from the prediction.
+  /// The difference between a fix and its prediction.
   struct Innovation {
     Vec2 offset_m{0, 0};
-    double variance_m2 = 0;  ///< expected, per axis
+    double variance_m2 = 0;  ///< expected variance on each axis
   };
   bool detect_displacement(const Innovation& latest);
   void decorrelate_scale();
   Eigen::Matrix3d covariance_after(double elapsed_s, const Vec2& moved_m) const;
 
   std::vector<Sample> history_;  ///< ring buffer with one sample per period
-  std::int64_t count_ = 0;       ///< samples since the creation or the last gap
+  std::int64_t count_ = 0;       ///< number of samples since creation or the last gap
 
   Time time_;
   Vec2 odometry_m_{0, 0};
@@ -105,12 +104,12 @@ class PoseEstimator {
   Vec2 velocity_mps_{0, 0};
   double angular_radps_ = 0;
 
-  Time anchor_time_;  ///< capture of the last fix
+  Time anchor_time_;  ///< capture time of the last fix
   Vec2 anchor_m_;
   Vec2 anchor_odometry_m_{0, 0};
   double scale_ = 0;
-  Eigen::Matrix3d covariance_;  ///< of the position at the anchor and of the scale
-  double heading_anchor_rad_;   ///< heading when turned_rad_ was 0
+  Eigen::Matrix3d covariance_;  ///< of the position at the anchor, and of the scale
+  double heading_anchor_rad_;   ///< heading at which turned_rad_ was 0
   double jump_m_ = 0;
   Time commanded_at_ = Time::min();               ///< when a velocity was last commanded instead of measured
   std::array<Innovation, 3> recent_innovations_;  ///< latest first, before clamping

@@ -11,7 +11,8 @@
 namespace sidestep::baselines {
 
 /// Answers the queries of ObstacleWorld with a textbook structure for comparison: `Set` finds candidates,
-/// which are compared one by one in double precision. Throws std::invalid_argument like ObstacleWorld.
+/// which are compared one by one in double precision. Throws std::invalid_argument in the same cases as
+/// ObstacleWorld.
 template <typename Set>
 class BaselineWorld {
  public:

@@ -9,9 +9,9 @@
 namespace sidestep::baselines {
 namespace {
 
-constexpr std::size_t kMaxInLeaf = 4;  // leaves with no more are not divided
-constexpr double kMaxCost = 0.7;  // of both sides together, relative to the undivided leaf; 0.5 is the best
-constexpr double kRelativeRounding = 1e-14;  // of projections, relative to coordinates
+constexpr std::size_t kMaxInLeaf = 4;  // leaves with this many obstacles or fewer are not divided
+constexpr double kMaxCost = 0.7;       // total of both sides, relative to the undivided leaf; 0.5 is the best
+constexpr double kRelativeRounding = 1e-14;  // rounding of projections, relative to coordinates
 
 template <std::size_t kCount>
 std::array<Vec2, kCount> evenly_spaced_directions() {
@@ -94,7 +94,7 @@ void PartitionTree<kDirections>::add(Slot slot, const Shape& shape) {
   const Extents extents = extents_[slot];
   each_leaf(0, extents, [&](NodeId leaf) {
     nodes_[leaf].slots.push_back(slot);
-    // Not at every size: leaves that cannot be divided would be tried again and again.
+    // Not tried at every size, because leaves that cannot be divided would be tried again and again.
     const std::size_t size = nodes_[leaf].slots.size();
     if (size > 2 * kMaxInLeaf && std::has_single_bit(size)) divide(leaf);
   });

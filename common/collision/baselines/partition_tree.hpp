@@ -7,11 +7,11 @@
 
 namespace sidestep::baselines {
 
-/// Lines that divide the plane again and again (binary space partitioning; Fuchs et al. 1980), at
-/// right angles to a fixed number of directions. With two, x and y, it is a K-D tree (Bentley 1975). An
-/// obstacle is in all leaves whose region it may touch. A region is divided where the sum over both sides of
-/// the squared number of obstacles is smallest, as long as that reduces this number enough. Rebuilt when
-/// updates have doubled the number of nodes.
+/// A binary space partitioning tree (Fuchs et al. 1980) whose dividing lines are perpendicular to a fixed set
+/// of directions. With two directions, x and y, it is a K-D tree (Bentley 1975). Every leaf lists all
+/// obstacles that may touch its region. A region is divided where the sum over both sides of the squared
+/// number of obstacles is smallest, as long as that reduces this number enough. Rebuilt when updates have
+/// doubled the number of nodes.
 template <std::size_t kDirections>
 class PartitionTree {
  public:
@@ -39,9 +39,9 @@ class PartitionTree {
   };
   struct Node {
     std::uint32_t direction = kLeaf;
-    std::uint32_t low = 0, high = 0;  // children, on either side of the line; they share its points
-    double offset_m = 0;              // of the line
-    std::vector<Slot> slots;          // of a leaf
+    std::uint32_t low = 0, high = 0;  // children on either side of the line; both include its points
+    double offset_m = 0;              // offset of the dividing line
+    std::vector<Slot> slots;          // obstacles of a leaf
   };
   struct Line {
     std::uint32_t direction;
@@ -72,13 +72,13 @@ class PartitionTree {
 
   /// The best line to divide a leaf's obstacles; its direction is kLeaf if none is good enough.
   Line best_line(const std::vector<Slot>& slots) const;
-  /// Divides a leaf, and the leaves that this creates, where that is useful.
+  /// Divides a leaf, and recursively the new leaves, where that reduces the cost.
   void divide(NodeId id);
   void rebuild();
 
   std::vector<Node> nodes_;
-  std::vector<Extents> extents_;  // by slot
-  std::vector<bool> is_used_;     // by slot
+  std::vector<Extents> extents_;  // indexed by slot
+  std::vector<bool> is_used_;     // indexed by slot
   std::size_t nodes_when_built_ = 1;
 };
 

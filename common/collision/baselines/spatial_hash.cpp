@@ -8,7 +8,7 @@
 namespace sidestep::baselines {
 namespace {
 
-constexpr std::uint64_t kMaxCells = 64;  // of an obstacle
+constexpr std::uint64_t kMaxCells = 64;  // maximum number of cells of one obstacle
 constexpr double kMaxCell = 0x1p30;
 constexpr double kUnused_m = std::numeric_limits<double>::quiet_NaN();
 const Box kUnusedBox{{kUnused_m, kUnused_m}, {kUnused_m, kUnused_m}};
@@ -33,7 +33,7 @@ SpatialHash::SpatialHash(const Bodies& bodies) : origin_m_(bodies.origin_m()) {
   for (const Slot slot : bodies.slots()) add(slot, bodies.shape(slot));
 }
 
-/// Grows with the position; cells far from the origin coincide.
+/// Increases with the position. Cells far from the origin coincide.
 std::int32_t SpatialHash::cell(double at_m) const {
   return static_cast<std::int32_t>(std::clamp(std::floor(at_m * cells_per_m_), -kMaxCell, kMaxCell));
 }

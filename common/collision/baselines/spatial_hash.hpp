@@ -34,7 +34,7 @@ class SpatialHash {
         for (std::uint32_t i = heads_[bucket(x, y)]; i != kNone; i = entries_[i].next) {
           const Entry& entry = entries_[i];
           if (entry.x != x || entry.y != y) continue;
-          // An obstacle in several of the query's cells is tested in the first of them only.
+          // An obstacle in several of the query's cells is tested only in the first of them.
           const CellRange& own = ranges_[entry.slot];
           if (x != std::max(range.min_x, own.min_x) || y != std::max(range.min_y, own.min_y)) continue;
           if (passes(entry.slot)) return true;
@@ -53,7 +53,7 @@ class SpatialHash {
              static_cast<std::uint64_t>(std::int64_t{max_y} - min_y + 1);
     }
   };
-  /// An obstacle in a cell, in a list with all of the cell's bucket.
+  /// An obstacle in a cell; an element of its bucket's linked list.
   struct Entry {
     std::int32_t x, y;
     Slot slot;
@@ -73,12 +73,12 @@ class SpatialHash {
 
   Vec2 origin_m_;
   double cells_per_m_ = 1;
-  std::vector<std::uint32_t> heads_;  // by bucket: its first entry; a power of two
+  std::vector<std::uint32_t> heads_;  // indexed by bucket: its first entry; the size is a power of two
   std::vector<Entry> entries_;
-  std::uint32_t free_entry_ = kNone;  // first of the list of unused entries
+  std::uint32_t free_entry_ = kNone;  // head of the list of unused entries
   std::size_t used_entries_ = 0;
-  std::vector<Box> boxes_;         // by slot; NaN if unused
-  std::vector<CellRange> ranges_;  // by slot; empty if large or unused
+  std::vector<Box> boxes_;         // indexed by slot; NaN if unused
+  std::vector<CellRange> ranges_;  // indexed by slot; empty if large or unused
   std::vector<Slot> large_;
 };
 

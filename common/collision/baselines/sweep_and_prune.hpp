@@ -9,8 +9,8 @@ namespace sidestep::baselines {
 
 /// Obstacles sorted by the lower ends of their boxes on one axis (Baraff 1992; Cohen et al. 1995): a query
 /// compares those whose lower ends are between its own lower end, less the longest box, and its upper end.
-/// The axis is the one on which the obstacles are spread farther. A moved obstacle is sorted in by exchanges
-/// with its neighbours, which are few if it moves little.
+/// Sorts along the axis on which the obstacles are spread more widely. A moved obstacle is sorted in by
+/// exchanges with its neighbours, which are few if it moves little.
 class SweepAndPrune {
  public:
   explicit SweepAndPrune(const Bodies& bodies);
@@ -40,11 +40,11 @@ class SweepAndPrune {
   void exchange(std::size_t i, std::size_t j);
 
   Eigen::Index axis_ = 0;
-  double max_length_m_ = 0;     // of the boxes so far, on the axis
+  double max_length_m_ = 0;     // longest box so far, along the axis
   std::vector<double> lows_m_;  // in ascending order; boxes and slots in the same order
   std::vector<Box> boxes_;
   std::vector<Slot> slots_;
-  std::vector<std::size_t> indices_;  // by slot
+  std::vector<std::size_t> indices_;  // indexed by slot
 };
 
 }  // namespace sidestep::baselines

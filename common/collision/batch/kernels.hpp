@@ -8,8 +8,8 @@
 
 namespace sidestep::collision {
 
-inline constexpr std::size_t kLanes = 16;     ///< lanes of a block, independent of the machine's vector width
-inline constexpr std::size_t kBuckets = 256;  ///< buckets of an axis for extent masks
+inline constexpr std::size_t kLanes = 16;     ///< lanes per block, independent of the machine's vector width
+inline constexpr std::size_t kBuckets = 256;  ///< buckets per axis in extent masks
 
 /// An obstacle, relative to the origin: a circle or, if `radius_m` is NaN, a shape with edges that begin at
 /// the block `edges`.
@@ -18,23 +18,23 @@ struct alignas(16) BodyRecord {
   std::uint32_t edges;
 };
 
-/// Four edges of a convex shape, one per lane: begin of the edge, edge vector, and edge vector over its
+/// Four edges of a convex shape, one per lane: start point, edge vector, and edge vector divided by its
 /// squared length. The shape lies to the left of all edges. A segment has two edges, there and back. Unused
 /// lanes repeat the last edge.
 struct alignas(32) EdgeBlock {
   float x_m[4], y_m[4], edge_x_m[4], edge_y_m[4], along_x_per_m[4], along_y_per_m[4];
-  std::uint32_t following;  ///< number of further blocks of the same shape
+  std::uint32_t following;  ///< number of further blocks that belong to the same shape
 };
 
-/// All obstacles by slot, and the error bounds of single precision for them.
+/// All obstacles, indexed by slot, and single-precision error bounds for them.
 struct BodiesView {
   double origin_m[2];
-  float limit_m;  ///< queries with a larger coordinate or radius are left undecided
+  float limit_m;  ///< queries with a larger coordinate or radius remain undecided
   float error_m;  ///< upper bound of the error of a distance up to limit_m
   /// Bound of the error of a gap (a difference of squared distances) near 0: `gap_error_per_m` times the
-  /// query's radius plus `min_gap_error_m2`.
+  /// query's radius, plus `min_gap_error_m2`.
   float gap_error_per_m, min_gap_error_m2;
-  const BodyRecord* records;  ///< by slot; kernels may read some entries beyond the last slot
+  const BodyRecord* records;  ///< indexed by slot; kernels may read a few entries beyond the last slot
   const EdgeBlock* edges;
   /// The exact comparison in double precision.
   bool (*touches)(const void* bodies, std::uint32_t slot, const double* from_m, const double* to_m,
@@ -58,7 +58,7 @@ struct LinearView {
   std::size_t circle_blocks;
   const BoxBlock* boxes;
   std::size_t box_blocks;
-  const std::uint32_t* box_slots;  ///< by lane
+  const std::uint32_t* box_slots;  ///< indexed by lane
 };
 
 /// Extent masks: four consecutive tables of kBuckets rows. A row has `words` words with one bit per slot. The
@@ -68,7 +68,7 @@ struct LinearView {
 struct MasksView {
   const std::uint64_t* rows;
   std::size_t words;
-  const float *per_m, *shift;  ///< one per table
+  const float *per_m, *shift;  ///< one entry per table
 };
 
 /// A node of a box tree: boxes, and the node or slot that each box belongs to. Entries of empty lanes may be
@@ -77,11 +77,11 @@ struct TreeNode {
   BoxBlock boxes;
   std::uint32_t children[kLanes];
   std::uint32_t parent, lane;  ///< the parent, and the lane of this node in it
-  std::uint32_t count;         ///< number of lanes in use, which come first
+  std::uint32_t count;         ///< number of lanes in use; these come first
   bool is_leaf;
 };
 
-inline constexpr std::size_t kMaxDepth = 16;  ///< number of nodes from the root to a leaf
+inline constexpr std::size_t kMaxDepth = 16;  ///< maximum number of nodes on a path from the root to a leaf
 
 struct TreeView {
   const TreeNode* nodes;
@@ -98,9 +98,9 @@ struct WorldView {
   TreeView tree;
 };
 
-/// Whether a disc that moves along a segment touches an obstacle. Undecided for motions that are not finite
-/// or too far away, for negative radii and, with the linear kernel, for contacts within rounding of a circle:
-/// these need the exact comparison with all obstacles.
+/// Whether a disc that moves along a segment touches an obstacle. The result is undecided for motions that
+/// are not finite or too far away, for negative radii and, with the linear kernel, for contacts with a circle
+/// within rounding error: these need the exact comparison with all obstacles.
 using SweepKernel = SweepResult (*)(const WorldView& world, const double* from_m, const double* to_m,
                                     double radius_m);
 

@@ -64,7 +64,7 @@ SweepResult linear(const WorldView& world, const double* from_m, const double* t
   Vector smallest = all<Vector>(kFar_m2);
   for (std::size_t i = 0; i < blocks; ++i) smallest = smaller(smallest, smallest_gaps(circles[i], disc));
   undecided |= not_above(smallest, gap_error);
-  // The result of the last circles is computed without branches.
+  // The result for the last circles is computed without branches.
   const auto touched = static_cast<unsigned>(not_above(smallest, -gap_error) != 0);
   const unsigned result = touched | (static_cast<unsigned>(undecided != 0) & ~touched) << 1;
   if (view.box_blocks == 0 || result != 0) return static_cast<SweepResult>(result);
@@ -79,7 +79,7 @@ SweepResult linear(const WorldView& world, const double* from_m, const double* t
   return SweepResult::kClear;
 }
 
-/// The buckets of the bounds of the swept area: minimum x and y, maximum x and y.
+/// The buckets of the swept area's bounds: minimum x and y, maximum x and y.
 inline FourInts buckets(const MasksView& view, const BodiesView& bodies, const MovingDisc& disc) {
   const FourFloats ends = disc.ends_m, turned = -ends;
   const FourFloats low = smaller(__builtin_shufflevector(ends, turned, 0, 1, 4, 5),

@@ -10,7 +10,7 @@ constexpr float kMinLength2_m2 = 1e-24f;  // a shorter motion counts as standing
 
 /// A disc that moves along a segment, relative to the origin.
 struct MovingDisc {
-  FourFloats ends_m;  ///< x and y of the start, x and y of the end
+  FourFloats ends_m;  ///< start x, start y, end x, end y
   float path_x_m, path_y_m, along_x_per_m, along_y_per_m, radius_m;
   float gap_error_m2;  ///< bound of the error of a gap near 0
   bool is_valid;       ///< all numbers are finite and within the limit of single precision
@@ -66,7 +66,7 @@ struct Query {
   double radius_m;
 };
 
-/// Bits of the obstacles, out of four, that are touched and that single precision leaves undecided.
+/// Two bit masks for four obstacles: those that are touched, and those that single precision cannot decide.
 struct Touched {
   unsigned surely, undecided;
 };
@@ -83,13 +83,13 @@ inline Touched touched(const Query& query, const std::uint32_t* slots) {
       __builtin_shufflevector(ab, cd, 0, 1, 4, 5), __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
       __builtin_shufflevector(ab_radius, cd_radius, 0, 1, 4, 5), query.disc);
   const unsigned surely = not_above(gap, all<FourFloats>(-query.disc.gap_error_m2));
-  // Includes NaN gaps, which shapes other than circles have.
+  // Includes NaN gaps, which mark shapes other than circles.
   const unsigned undecided = ~(not_above(all<FourFloats>(query.disc.gap_error_m2), gap) | surely);
   return {surely, undecided};
 }
 
-/// Squared distances of points from segments. `off` is the offset of the point from the segment's begin,
-/// `along` its projection onto the segment as a fraction of the length.
+/// Squared distances of points from segments. `off` is the point's offset from the segment's start, `along`
+/// its projection onto the segment as a fraction of the length.
 template <typename V>
 inline V squared_distances(const V& off_x_m, const V& off_y_m, const V& along, const V& segment_x_m,
                            const V& segment_y_m) {
@@ -98,8 +98,8 @@ inline V squared_distances(const V& off_x_m, const V& off_y_m, const V& along, c
   return ex * ex + ey * ey;
 }
 
-/// Whether a shape with edges is touched: an end of the path is near an edge, the begin of an edge is near
-/// the path, path and edge cross, or the path begins inside all edges.
+/// Whether a shape with edges is touched: an end of the path is near an edge, an edge's start point is near
+/// the path, the path crosses an edge, or the path starts inside all edges.
 inline SweepResult touches_edges(const BodiesView& bodies, const MovingDisc& d, std::uint32_t first) {
   const EdgeBlock* block = bodies.edges + first;
   const FourFloats error = all<FourFloats>(bodies.error_m);
@@ -117,8 +117,8 @@ inline SweepResult touches_edges(const BodiesView& bodies, const MovingDisc& d, 
                 squared_distances(-x, -y, -x * d.along_x_per_m - y * d.along_y_per_m,
                                   all<FourFloats>(d.path_x_m), all<FourFloats>(d.path_y_m)));
     const FourFloats gap = nearest2 - all<FourFloats>(d.radius_m * d.radius_m);
-    // Signed distances of the path's ends from the edge times the edge's length, and of the edge's ends from
-    // the path times the path's length.
+    // Signed distances of the path's ends from the edge, times the edge's length; and of the edge's ends from
+    // the path, times the path's length.
     const FourFloats turn = d.path_x_m * edge_y - d.path_y_m * edge_x;
     const FourFloats from = edge_x * y - edge_y * x, to = from - turn;
     const FourFloats begin = d.path_y_m * x - d.path_x_m * y, end = begin + turn;
@@ -138,7 +138,7 @@ inline SweepResult touches_edges(const BodiesView& bodies, const MovingDisc& d, 
   return inside ? SweepResult::kTouches : undecided ? SweepResult::kUndecided : SweepResult::kClear;
 }
 
-/// Decides an undecided obstacle: a shape with edges, or a circle in contact within rounding.
+/// Resolves an undecided obstacle: a shape with edges, or a circle in contact within rounding error.
 inline bool touches_undecided(const BodiesView& bodies, const MovingDisc& disc, const double* from_m,
                               const double* to_m, double radius_m, std::uint32_t slot) {
   const BodyRecord& record = bodies.records[slot];
@@ -149,7 +149,7 @@ inline bool touches_undecided(const BodiesView& bodies, const MovingDisc& disc, 
   return result == SweepResult::kTouches;
 }
 
-/// Whether any obstacle is touched among the undecided ones of the first four set bits.
+/// Whether any undecided obstacle among the first four set bits is touched.
 template <typename SlotOf>
 [[gnu::noinline]] bool touches_any_undecided(const BodiesView& bodies, const double* from_m,
                                              const double* to_m, double radius_m, std::uint64_t bits,

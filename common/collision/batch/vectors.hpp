@@ -27,7 +27,7 @@ inline V all(float value) {
   return value - V{};
 }
 
-// Intrinsics, because g++ does not compile `a < b ? a : b` to one instruction for all of these types.
+// Uses intrinsics because g++ does not compile `a < b ? a : b` to one instruction for all of these types.
 // not_above: bit k is set if lane k of a is <= lane k of b.
 #ifdef __AVX2__
 inline FourFloats smaller(const FourFloats& a, const FourFloats& b) { return _mm_min_ps(a, b); }
@@ -42,7 +42,7 @@ inline unsigned not_above(const Vector& a, const Vector& b) {
   return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
 }
 #else
-// Masked intrinsics, because g++ 12 warns about the unmasked ones.
+// Uses masked intrinsics because g++ 12 warns about the unmasked ones.
 inline Vector smaller(const Vector& a, const Vector& b) { return _mm512_maskz_min_ps(0xffff, a, b); }
 inline Vector larger(const Vector& a, const Vector& b) { return _mm512_maskz_max_ps(0xffff, a, b); }
 inline unsigned not_above(const Vector& a, const Vector& b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
@@ -60,7 +60,7 @@ inline unsigned not_above(const FourFloats& a, const FourFloats& b) {
   const auto is = a <= b;
   unsigned bits = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    // Separate from the shift: in one expression, g++ 12 reads the wrong lane under -fsanitize=shift.
+    // Kept separate from the shift: in one expression, g++ 12 reads the wrong lane under -fsanitize=shift.
     const auto lane = static_cast<unsigned>(is[i] & 1);
     bits |= lane << i;
   }
@@ -93,7 +93,7 @@ inline unsigned lowest(std::uint64_t bits) {
 #endif
 }
 
-/// The lowest n bits, where n is the number of set bits, at most 4.
+/// A mask of the lowest n bits, where n is the number of set bits in the argument, at most 4.
 inline unsigned lowest_four(std::uint64_t bits) {
   const auto count = static_cast<unsigned>(__builtin_popcountll(bits));
 #ifdef __BMI2__

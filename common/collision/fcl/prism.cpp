@@ -49,8 +49,8 @@ Solid prism(const Shape& shape, double height_m) {
   if (!(height_m > 0 && std::isfinite(height_m)))
     throw std::invalid_argument("a prism's height has to be > 0");
   if (const auto* circle = std::get_if<Circle>(&shape)) {
-    // FCL's cylinders are centred on the origin, so the circle is replaced by a circumscribed polygon, whose
-    // error is 0.03 % of the radius.
+    // FCL's cylinders must be centred on the origin, so the circle is replaced by a circumscribed polygon,
+    // whose error is 0.03 % of the radius.
     constexpr int kCorners = 128;
     std::vector<Vec2> corners;
     corners.reserve(kCorners);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMark{'S', 'k', 'y', '2'};
 constexpr std::size_t kMaxKnown = 4096;
 
-/// Appends a part of at most 255 bytes, after its size.
+/// Appends a part of at most 255 bytes, preceded by its size.
 void append_part(std::vector<std::uint8_t>& bytes, std::span<const std::uint8_t> part) {
   if (part.size() > 255)
     throw std::invalid_argument(
@@ -23,7 +23,7 @@ void append_part(std::vector<std::uint8_t>& bytes, std::span<const std::uint8_t>
   bytes.insert(bytes.end(), part.begin(), part.end());
 }
 
-/// Takes such a part from the front.
+/// Removes such a part from the front and returns it.
 std::optional<std::span<const std::uint8_t>> take_part(std::span<const std::uint8_t>& bytes) {
   if (bytes.empty() || bytes.size() - 1 < bytes[0]) return std::nullopt;
   const std::span<const std::uint8_t> part = bytes.subspan(1, bytes[0]);
@@ -31,8 +31,8 @@ std::optional<std::span<const std::uint8_t>> take_part(std::span<const std::uint
   return part;
 }
 
-/// What the owner of a private key signs: which participant has started when. The mark keeps it apart from
-/// whatever else the key signs.
+/// The bytes that the owner of a private key signs: the participant and its start time. The prefix
+/// distinguishes them from everything else that the key signs.
 std::vector<std::uint8_t> signed_part(const ParticipantId& id, std::span<const std::uint8_t> start) {
   std::vector<std::uint8_t> result(kMark.size() + id.size() + start.size());
   auto end = std::ranges::copy(kMark, result.begin()).out;
@@ -41,7 +41,7 @@ std::vector<std::uint8_t> signed_part(const ParticipantId& id, std::span<const s
   return result;
 }
 
-/// In little-endian order.
+/// Bytes in little-endian order.
 std::array<std::uint8_t, 8> bytes_of(Time time) {
   std::array<std::uint8_t, 8> result{};
   for (std::size_t i = 0; i < result.size(); ++i)
@@ -55,7 +55,7 @@ Time time_of(std::span<const std::uint8_t> bytes) {
   return time_from_ns(static_cast<std::int64_t>(ns));
 }
 
-/// Those of equal first numbers understand each other.
+/// The first component of a version. Versions in which it is equal understand each other.
 std::string first_number(const std::string& version) { return version.substr(0, version.find('.')); }
 
 const char* reason_text(Admission::Refusal refusal) {
@@ -94,7 +94,7 @@ bool has_prefix(const ParticipantId& id, const CertifiedPrefix& prefix) {
 
 }  // namespace
 
-/// What credentials() has put together.
+/// The parsed content of credentials().
 struct Admission::Announced {
   std::string version;
   std::span<const std::uint8_t> start, signature, certificate;
@@ -223,7 +223,7 @@ std::vector<Identity> Admission::newly_unproven(Time now) {
     if (participant.is_proven || participant.is_reported || now - participant.admitted < kMaxUnproven)
       continue;
     participant.is_reported = true;
-    // One that has ended meanwhile may have been too brief.
+    // A participant that has ended meanwhile may have been too short-lived to authenticate.
     if (id == self_id_ || now - participant.last_heard > kMaxUnproven / 2) continue;
     result.push_back(participant.known->identity);
   }

@@ -25,7 +25,7 @@ struct Session {
 
 }  // namespace
 
-/// Writers share ownership of the participants, so they may outlive the bus.
+/// Writers share ownership of the participants, so writers may outlive the bus.
 struct DdsBus::Impl {
   Impl(const DdsSettings& with, std::shared_ptr<EventLoop> runs)
       : loop(std::move(runs)), settings(with), session(std::make_shared<Session>(with)) {}
@@ -38,7 +38,7 @@ struct DdsBus::Impl {
   std::shared_ptr<EventLoop> loop;
   DdsSettings settings;
   std::shared_ptr<Session> session;
-  std::shared_ptr<DdsParticipant> image_participant;  ///< null until images are written
+  std::shared_ptr<DdsParticipant> image_participant;  ///< null until images are published
   std::vector<std::unique_ptr<DdsReader>> readers;
   std::vector<std::unique_ptr<DdsImageReader>> image_readers;
 };

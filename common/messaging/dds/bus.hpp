@@ -11,29 +11,29 @@
 
 namespace sidestep {
 
-/// The ports of higher domains would be above 65535 (RTPS 2.2, 9.6.1.1). This one has room for 62 processes
-/// on a machine.
+/// Ports of higher domains would exceed 65535 (RTPS 2.2, 9.6.1.1). This domain has room for 62 processes on a
+/// machine.
 inline constexpr int kMaxDomain = 232;
 
 struct DdsSettings {
   int domain = 0;                        ///< 0 .. kMaxDomain
-  std::string interface = "127.0.0.1";   ///< address of the only interface to use; "all": every one
+  std::string interface = "127.0.0.1";   ///< address of the only interface to use; "all": all interfaces
   std::string participant = "sidestep";  ///< name announced to the domain
-  bool faults = false;                   ///< arriving messages can be impaired, see DdsBus::impair()
+  bool faults = false;                   ///< arriving messages may be impaired, see DdsBus::impair()
   bool is_operator = false;              ///< messages from this participant are never impaired
-  /// Addresses of the hosts where the other processes are, this one included. Empty: processes find each
-  /// other by multicast.
+  /// Addresses of all hosts that run processes, including this one. Empty: processes find each other by
+  /// multicast.
   std::vector<std::string> peers{};
-  /// Folder with the keys of one identity, or one that `sidestep keys init` has made. Empty: no keys, so that
+  /// Folder with the keys of one identity, or a folder made by `sidestep keys init`. Empty: no keys, so that
   /// anybody on the network can command the robots.
   std::string keys{};
-  bool insecure = false;  ///< may work without keys on networks that other machines can reach
-  /// Whose keys to take from a folder with those of several.
+  bool insecure = false;  ///< allows running without keys on networks that other machines can reach
+  /// The identity whose keys to use if the folder has several.
   Identity identity{Role::kViewer};
-  /// Arrived states wait until they are read. False: a newer one replaces one that waits, as suits whoever
-  /// acts by them; true: for whoever has to see every one.
+  /// Whether arriving states queue until they are read, for readers that must see every one. If false, a
+  /// newer state replaces an unread one, which suits readers that act on the latest.
   bool keeps_all = false;
-  bool is_local_bus = false;  ///< of DdsBus::local_bus(): says nothing about its missing keys
+  bool is_local_bus = false;  ///< created by DdsBus::local_bus(): no warning about missing keys
 };
 
 /// The version of Fast DDS that this program was built with, e.g. "3.1.2".
@@ -43,8 +43,8 @@ struct LinkQuality;
 
 /// A bus over Fast DDS and UDPv4. A second participant per process carries images by shared memory. All
 /// callbacks are made by the thread that calls run(). Throws std::runtime_error with the reason if a
-/// participant or an endpoint cannot be created, and std::invalid_argument if its keys are wrong, or it has
-/// none and needs some (see DdsSettings), or they do not allow what it is to do.
+/// participant or an endpoint cannot be created. Throws std::invalid_argument if its keys are wrong, if
+/// required keys are missing (see DdsSettings), or if they do not permit an operation.
 class DdsBus : public Bus {
  public:
   explicit DdsBus(const DdsSettings& settings);
@@ -53,34 +53,33 @@ class DdsBus : public Bus {
   DdsBus& operator=(const DdsBus&) = delete;
 
   Time now() const override;
-  /// As EventLoop's functions; precondition of the last: there is no bus.
+  /// See the functions of the same names in EventLoop. Precondition of adopt_host_clock(): there is no bus.
   static Time clock();
   static Duration host_clock_ahead();
   static void adopt_host_clock();
   void at(Time when, std::function<void()> callback) override;
 
-  /// Calls back whenever the descriptor, e.g. a socket, is readable. It must stay open until the bus has
-  /// stopped.
+  /// Calls back whenever the descriptor, for example a socket, is readable. It must stay open until the bus
+  /// has stopped.
   void watch(int descriptor, std::function<void()> readable);
 
-  /// Calls back soon, in the thread that runs the bus; callbacks are made in the order of the calls.
-  /// Thread-safe.
+  /// Calls back soon, in the thread that runs the bus, in the order of the calls to post(). Thread-safe.
   void post(std::function<void()> callback);
 
-  /// Makes callbacks until stop().
+  /// Runs and makes callbacks until stop().
   void run();
-  /// Makes callbacks until `when` or stop(). For tests and tools that act between callbacks.
+  /// Runs and makes callbacks until `when` or stop(). For tests and tools that act between callbacks.
   void run_until(Time when);
   /// Makes the current and all later calls of run() and run_until() return soon. Thread-safe and
   /// async-signal-safe.
   void stop();
 
-  /// A bus without keys in another domain, over the loopback interface: for other people's programs on this
-  /// machine. The thread that runs this bus makes its callbacks, too; it must outlive the last of them.
-  /// Throws std::invalid_argument if the domain is this bus's own, and as the constructor does.
+  /// Creates a bus without keys in another domain, over the loopback interface, for third-party programs on
+  /// this machine. Its callbacks are made by the thread that runs this bus, which must outlive the last of
+  /// them. Throws std::invalid_argument if the domain is this bus's own, and whatever the constructor throws.
   std::unique_ptr<DdsBus> local_bus(int domain) const;
 
-  /// The addresses on which this participant listens for messages, for the log; empty before the first
+  /// The addresses on which this participant listens for messages, for the log. Empty before the first
   /// subscription.
   std::string locators() const;
 

@@ -31,7 +31,7 @@ void append(Datagram& to, Integer value) {
 
 void append(Datagram& to, Bytes bytes) { to.insert(to.end(), bytes.begin(), bytes.end()); }
 
-/// Removes an integer from the front. Precondition: there are enough bytes.
+/// Removes an integer from the front and returns it. Precondition: there are enough bytes.
 template <std::unsigned_integral Integer>
 Integer take(Bytes& from) {
   Integer value = 0;
@@ -49,8 +49,8 @@ Datagram one_submessage(const ParticipantId& sender, std::uint8_t kind, std::uin
   return result;
 }
 
-/// Calls `use(id, value)` for each parameter of a list (RTPS 2.2, 9.4.2.11), and removes the list from
-/// `bytes`. False if the list is malformed.
+/// Calls `use(id, value)` for each parameter of a parameter list (RTPS 2.2, 9.4.2.11), and removes the list
+/// from `bytes`. False if the list is malformed.
 template <typename Use>
 bool for_each_parameter(Bytes& bytes, bool is_little_endian, Use use) {
   constexpr std::uint16_t kEnd = 1;
@@ -70,8 +70,8 @@ bool for_each_parameter(Bytes& bytes, bool is_little_endian, Use use) {
   return false;
 }
 
-/// `body`: of a DATA submessage of the writer that announces participants (RTPS 2.2, 9.4.5.3). False if it is
-/// malformed, or about another participant than the sender.
+/// Reads an announcement from `body`, a DATA submessage of the writer that announces participants (RTPS 2.2,
+/// 9.4.5.3). False if it is malformed or about a participant other than the sender.
 bool read_announcement(Bytes body, std::uint8_t flags, Bytes sender, ParticipantAnnouncement& result) {
   constexpr std::uint8_t kHasInlineQos = 2, kHasPayload = 4;
   constexpr std::uint16_t kKeyHash = 0x70, kGuid = 0x50, kUserData = 0x2c;
@@ -126,7 +126,7 @@ std::optional<ParticipantAnnouncement> participant_announcement(Bytes datagram, 
     std::size_t size = is_little_endian ? left[2] | left[3] << 8 : left[2] << 8 | left[3];
     left = left.subspan(kSubmessageHeaderSize);
     if (size == 0 && kind != kTimestampSubmessage && kind != kPadSubmessage)
-      size = left.size();  // the last one
+      size = left.size();  // a size of 0 marks the last submessage
     if (size > left.size() || kind == kSourceSubmessage) return std::nullopt;
     const Bytes body = left.first(size);
     left = left.subspan(size);
@@ -143,7 +143,7 @@ std::optional<ParticipantAnnouncement> participant_announcement(Bytes datagram, 
 }
 
 bool copy_without_timestamp(Bytes datagram, Datagram& copy) {
-  constexpr std::size_t kPlainTimestampSize = 12;  // with its header
+  constexpr std::size_t kPlainTimestampSize = 12;  // size including the header
   std::size_t begin = kDatagramHeaderSize;
   const auto size_at = [&](std::size_t at) -> std::size_t {
     const bool is_little_endian = (datagram[at + 1] & kLittleEndianFlag) != 0;
@@ -158,7 +158,7 @@ bool copy_without_timestamp(Bytes datagram, Datagram& copy) {
   if (has(begin, kDestinationSubmessage)) begin = next(begin);
   if (!has(begin, kEncryptedPrefixSubmessage)) return false;
   const std::size_t body = next(begin);
-  // The body is the encrypted submessage after its size.
+  // The body is the encrypted submessage, preceded by its size.
   if (!has(body, kEncryptedBodySubmessage) || size_at(body) != kPlainTimestampSize + 4) return false;
   const std::size_t postfix = next(body);
   if (!has(postfix, kEncryptedPostfixSubmessage) || !has(next(postfix), kEncryptedPrefixSubmessage))
@@ -180,7 +180,7 @@ Datagram departure_of(const ParticipantId& participant) {
   append(body, kBytesToInlineQos);
   append(body, kReader);
   append(body, kWriter);
-  append(body, std::uint32_t{1});  // high half of the sequence number: higher than that of any announcement
+  append(body, std::uint32_t{1});  // high half of a sequence number that exceeds that of any announcement
   append(body, std::uint32_t{0});
   append(body, kKeyHash);
   append(body, static_cast<std::uint16_t>(participant.size() + kParticipant.size()));

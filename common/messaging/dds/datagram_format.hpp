@@ -8,13 +8,14 @@
 
 namespace sidestep {
 
-/// A datagram of RTPS has a header, then submessages. That of each is its kind, its flags, and its length in
-/// two bytes, little-endian if its flags say so (RTPS 2.2, 8.3.3 and 9.4).
+/// An RTPS datagram has a header and then submessages. A submessage has a header of its kind, its flags, and
+/// its length in two bytes, which are little-endian if a flag says so (RTPS 2.2, 8.3.3 and 9.4).
 inline constexpr std::size_t kDatagramHeaderSize = 8 + sizeof(ParticipantId);
 inline constexpr std::size_t kSubmessageHeaderSize = 4;
 inline constexpr std::uint8_t kLittleEndianFlag = 1;
 
-/// RTPS 2.2, 9.4.5.1.1; the encrypted ones: DDS Security 1.1, 7.3.6. Vendors may use 0x80 to 0xff.
+/// Defined in RTPS 2.2, 9.4.5.1.1; the encrypted kinds in DDS Security 1.1, 7.3.6. Vendors may use 0x80 to
+/// 0xff.
 enum SubmessageKind : std::uint8_t {
   kPadSubmessage = 0x01,
   kAckNackSubmessage = 0x06,
@@ -28,7 +29,7 @@ enum SubmessageKind : std::uint8_t {
   kEncryptedBodySubmessage = 0x30,
   kEncryptedPrefixSubmessage = 0x31,
   kEncryptedPostfixSubmessage = 0x32,
-  kStatisticsSubmessage = 0x80,  ///< of Fast DDS
+  kStatisticsSubmessage = 0x80,  ///< used by Fast DDS
   kPresenceSubmessage = 0xf0,    ///< see presence_datagram()
 };
 

@@ -16,7 +16,7 @@
 
 namespace sidestep {
 
-/// Holds delayed datagrams. Its own thread passes each one on when the delay is over.
+/// Holds delayed datagrams. Its own thread passes each one on after its delay.
 class DelayedDatagrams {
  public:
   /// `counts` must outlive this object.
@@ -25,11 +25,12 @@ class DelayedDatagrams {
   DelayedDatagrams(const DelayedDatagrams&) = delete;
   DelayedDatagrams& operator=(const DelayedDatagrams&) = delete;
 
-  /// The datagram is lost, and counted, if too many wait.
+  /// Delays a datagram. If too many are waiting, it is dropped and counted.
   void add(Duration delay, fast_dds::transport::TransportReceiverInterface& receiver,
            std::span<const std::uint8_t> datagram, const fast_dds::rtps::Locator_t& local,
            const fast_dds::rtps::Locator_t& remote);
-  /// Drops the port's datagrams. Once this returns, none is being passed on, and none will be.
+  /// Drops the port's datagrams. Once this returns, none is being passed on, and none will be passed on
+  /// later.
   void close(std::uint32_t port);
 
  private:
@@ -40,7 +41,7 @@ class DelayedDatagrams {
     std::vector<std::uint8_t> bytes;
     fast_dds::rtps::Locator_t local, remote;
 
-    /// Puts the earliest on top of a heap.
+    /// Inverted, so that the earliest is at the top of a heap.
     bool operator<(const Delayed& other) const {
       return when != other.when ? when > other.when : order > other.order;
     }
@@ -49,7 +50,7 @@ class DelayedDatagrams {
   void run();
 
   TransportCounts& counts_;
-  std::mutex mutex_;  ///< guards the members below but the thread
+  std::mutex mutex_;  ///< guards all members below except the thread
   std::condition_variable changed_;
   std::vector<Delayed> queue_;  ///< heap
   std::set<std::uint32_t> closed_;

@@ -6,22 +6,22 @@
 
 namespace sidestep {
 
-/// At how many ports of each peer's address a process looks for others: the number of participants on one
+/// Number of ports per peer address at which a process looks for others. It limits the participants on one
 /// host that find each other without multicast.
 inline constexpr std::uint32_t kPortsPerPeer = 40;
 
-/// Whether a locator is one for discovery. Ports are 7400 + 250 domain + an offset: 0 and 10 + 2 i for
-/// discovery, 1 and 11 + 2 i for messages (RTPS 2.2, 9.6.1).
+/// Whether a locator is for discovery. Ports are 7400 + 250 domain + an offset: 0 and 10 + 2 i for discovery,
+/// 1 and 11 + 2 i for messages (RTPS 2.2, 9.6.1).
 template <typename Locator>
 bool is_discovery(const Locator& locator) {
   return locator.port % 2 == 0;
 }
 
-/// Whether a datagram for discovery goes to everybody: to a multicast address, or to all ports at which peers
-/// may be.
+/// Whether a discovery datagram is addressed to everybody: to a multicast address, or to all ports at which
+/// peers may be.
 template <typename Locators>
 bool goes_to_everybody(Locators& destinations) {
-  constexpr std::uint8_t kFirst = 224, kLast = 239;  // of an IPv4 address, which is the last of 16 bytes
+  constexpr std::uint8_t kFirst = 224, kLast = 239;  // first byte of multicast addresses
   std::size_t count = 0;
   for (const auto& destination : destinations) {
     ++count;

@@ -19,9 +19,9 @@ class DdsDirectory : public fast_dds::DiscoveryListener {
   void on_endpoint(const fast_dds::rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                    EndpointChange change) override;
 
-  /// All endpoints known at present, sorted by topic.
+  /// All endpoints that are known now, sorted by topic.
   std::vector<DiscoveredEndpoint> endpoints() const;
-  /// Name of the participant of the endpoint with this GUID; empty if unknown.
+  /// The name of the participant that owns the endpoint with this GUID; empty if unknown.
   std::string participant_of(const fast_dds::rtps::GUID_t& guid) const;
 
  private:

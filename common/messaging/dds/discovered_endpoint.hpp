@@ -9,30 +9,32 @@
 
 namespace sidestep {
 
-/// A writer or reader that a participant of the domain has announced, of any vendor.
+/// A writer or reader that a participant in the domain has announced. The participant's software may be of
+/// any vendor.
 struct DiscoveredEndpoint {
   enum class Durability : std::uint8_t { kVolatile, kTransientLocal, kTransient, kPersistent };
   enum class Liveliness : std::uint8_t { kAutomatic, kByParticipant, kByTopic };
 
   std::string guid;
-  std::string participant;  ///< name of its participant
+  std::string participant;  ///< name of the endpoint's participant
   std::string topic;
   std::string type;
   bool is_writer = false;
   bool is_keyed = false;
   bool is_reliable = false;
-  bool is_exclusive = false;  ///< ownership
+  bool is_exclusive = false;  ///< whether ownership is exclusive
   Durability durability = Durability::kVolatile;
   Liveliness liveliness = Liveliness::kAutomatic;
-  Duration lease = Duration::max();  ///< of the liveliness
+  Duration lease = Duration::max();  ///< lease duration of its liveliness
   Duration deadline = Duration::max();
   std::vector<std::string> partitions;  ///< empty: the unnamed partition
 };
 
-/// What discovery reports of an endpoint.
+/// A change of an endpoint that discovery reports.
 enum class EndpointChange : std::uint8_t { kDiscovered, kChanged, kGone };
 
-/// All policies of an endpoint, e.g. "best effort, volatile, keyed, liveliness automatic (no limit), …".
+/// Lists all policies of an endpoint, for example "best effort, volatile, keyed, liveliness automatic (no
+/// limit), …".
 [[nodiscard]] std::string qos_in_words(const DiscoveredEndpoint& endpoint);
 
 /// The reasons why this writer and this reader of one topic do not match, in plain words; empty if they

@@ -18,7 +18,7 @@ namespace sidestep {
 /// A bus's writer of one channel.
 class DdsWriter : public RawWriter, public fast_dds::dds::DataWriterListener {
  public:
-  /// Throws std::runtime_error as DdsParticipant::create_writer().
+  /// Throws std::runtime_error if DdsParticipant::create_writer() does.
   DdsWriter(std::shared_ptr<DdsParticipant> participant, const TopicInfo& topic, const std::string& channel);
   ~DdsWriter() override;
 
@@ -37,17 +37,17 @@ class DdsWriter : public RawWriter, public fast_dds::dds::DataWriterListener {
 /// A bus's reader of one channel.
 class DdsReader : public EventLoop::Source, public fast_dds::dds::DataReaderListener {
  public:
-  /// Throws std::runtime_error as DdsParticipant::create_reader().
+  /// Throws std::runtime_error if DdsParticipant::create_reader() does.
   DdsReader(EventLoop& loop, std::shared_ptr<DdsParticipant> participant, const TopicInfo& topic,
             const std::string& channel, std::function<void(const void*)> callback);
   ~DdsReader() override;
 
-  /// From now on reads through another participant; samples not yet taken are lost. If this throws, as
+  /// Moves the reader to another participant; samples that were not taken yet are lost. If this throws, as
   /// create_reader() may, the reader is unchanged.
   void move_to(std::shared_ptr<DdsParticipant> participant);
 
   bool drain() override;
-  /// Samples dropped because their payload was invalid.
+  /// Number of samples dropped because their payload was invalid.
   std::uint64_t refused() const { return refused_; }
   std::string locators() const { return dds_locators(*reader_); }
 
@@ -57,14 +57,14 @@ class DdsReader : public EventLoop::Source, public fast_dds::dds::DataReaderList
 
  private:
   void count_refused();
-  /// Whether the keys of the sample's writer allow the message.
+  /// Whether the keys of the sample's writer permit it to send the message.
   bool is_genuine(const fast_dds::dds::SampleInfo& info);
 
   EventLoop& loop_;
   std::shared_ptr<DdsParticipant> participant_;
   TopicInfo topic_;
   std::string channel_;
-  std::uint32_t robot_;  ///< of the channel
+  std::uint32_t robot_;  ///< the robot of a per-robot channel
   std::function<void(const void*)> callback_;
   fast_dds::dds::TypeSupport type_;  ///< a GuardedType
   GuardedType::Sample* sample_;

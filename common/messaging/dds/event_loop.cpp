@@ -15,7 +15,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "stop() is called from sig
 
 namespace {
 
-// Cannot be set, and advances while the host is suspended.
+// This clock cannot be set, and advances while the host is suspended.
 constexpr clockid_t kSteady = CLOCK_BOOTTIME;
 
 Duration read_clock(clockid_t clock) {
@@ -24,8 +24,8 @@ Duration read_clock(clockid_t clock) {
   return Duration{std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec};
 }
 
-/// Host's clock - steady clock. An interruption between the two readings would cause an error of the
-/// same length, so this takes several pairs of readings and uses the quickest.
+/// The host's clock minus the steady clock. An interruption between the two readings would cause an error of
+/// the same length, so this takes several pairs of readings and uses the quickest.
 Duration host_clock_offset() {
   constexpr int kReadings = 20;
   Duration ahead{0}, quickest = Duration::max();
@@ -39,7 +39,7 @@ Duration host_clock_offset() {
   return ahead;
 }
 
-/// The process's clock - steady clock.
+/// The process's clock minus the steady clock.
 std::atomic<Duration::rep>& process_clock_offset_ns() {
   static std::atomic<Duration::rep> offset_ns{host_clock_offset().count()};
   return offset_ns;
@@ -140,7 +140,7 @@ void EventLoop::call_posted() {
 void EventLoop::serve_watched() {
   if (polled_.size() == 1 || stopped() || poll(polled_.data(), polled_.size(), 0) <= 0) return;
   for (std::size_t i = 1; i < polled_.size() && !stopped(); ++i) {
-    // A closed descriptor would wake the loop for ever; poll() ignores negative ones.
+    // A closed descriptor would wake the loop repeatedly without end; poll() ignores negative descriptors.
     if (polled_[i].revents & POLLNVAL)
       polled_[i].fd = -1;
     else if (polled_[i].revents)

@@ -35,13 +35,13 @@ class EventLoop {
   EventLoop(const EventLoop&) = delete;
   EventLoop& operator=(const EventLoop&) = delete;
 
-  /// The process's clock, the same for all its loops: the host's clock at the first call, or at the last
+  /// The process's clock, shared by all its loops. It is the host's clock at the first call or at the last
   /// adopt_host_clock(), plus the time that has passed since. Setting the host's clock does not affect it.
   static Time now();
-  /// The host's clock - the process's. It changes only when the host's clock is set: a time daemon that slews
-  /// the host's clock slews both.
+  /// The host's clock minus the process's clock. It changes only when the host's clock is set: a time daemon
+  /// that slews the host's clock slews both.
   static Duration host_clock_ahead();
-  /// Sets the process's clock to the host's. Precondition: there is no loop, whose timers would be wrong.
+  /// Sets the process's clock to the host's. Precondition: no loop exists, because its timers would be wrong.
   static void adopt_host_clock();
 
   /// Calls back once at or after `when`; callbacks for equal times are made in the order of scheduling. Call
@@ -86,7 +86,7 @@ class EventLoop {
   std::vector<pollfd> polled_;                   ///< event_fd_, then the watched descriptors
   std::vector<std::function<void()>> readable_;  ///< parallel to polled_; empty for event_fd_
   std::vector<Timer> timers_;                    ///< heap, the earliest first
-  std::vector<Source*> draining_;                ///< used by the loop's thread only
+  std::vector<Source*> draining_;                ///< used only by the loop's thread
   std::mutex mutex_;                             ///< guards the members below
   std::vector<Source*> ready_;
   std::vector<std::function<void()>> posted_;

@@ -13,7 +13,7 @@
 namespace sidestep {
 namespace {
 
-/// The UDP ports on which processes of this network namespace listen.
+/// The UDP ports in this network namespace on which processes listen.
 std::set<unsigned> open_ports() {
   std::ifstream file("/proc/net/udp");
   std::string line;
@@ -30,7 +30,7 @@ std::set<unsigned> open_ports() {
   return result;
 }
 
-/// RTPS 2.2, 9.6.1.1.
+/// Whether a port of the domain is open (RTPS 2.2, 9.6.1.1).
 bool is_used(int domain, const std::set<unsigned>& ports) {
   constexpr unsigned kFirstPort = 7400, kPorts = 250;
   const unsigned first = kFirstPort + kPorts * static_cast<unsigned>(domain);
@@ -42,7 +42,7 @@ bool is_used(int domain, const std::set<unsigned>& ports) {
 
 FreeDomain::FreeDomain() {
   const std::set<unsigned> ports = open_ports();
-  // Those below 10 are what people choose; from 101 on, Linux gives the ports to other programs.
+  // People choose domains below 10; from 101 on, Linux gives the ports to other programs.
   for (number_ = 10; number_ <= 100; ++number_) {
     if (is_used(number_, ports)) continue;
     const std::string path = "/tmp/sidestep-domain-" + std::to_string(number_);

@@ -3,8 +3,8 @@
 
 namespace sidestep {
 
-/// A DDS domain that no process of this machine uses when the object is made, and no other object of this
-/// class on this machine during its lifetime: guarded by a file lock.
+/// Reserves a DDS domain that no process on this machine uses. No other object of this class on this machine
+/// gets the same domain during its lifetime; a file lock ensures that.
 class FreeDomain {
  public:
   /// Throws std::runtime_error if all domains are in use.

@@ -13,8 +13,8 @@
 namespace sidestep {
 namespace {
 
-// A hostile sender can be refused for any number of reasons. Those beyond this number at once are reported
-// one per period.
+// Bound on refusals that are reported at once, because a hostile sender can cause any number of them. Further
+// ones are reported at a rate of one per period.
 constexpr int kMaxReported = 64;
 constexpr Duration kReportPeriod = std::chrono::seconds(10);
 

@@ -16,34 +16,34 @@
 
 namespace sidestep {
 
-/// Keeps strangers away from a participant with keys: Admission in a process, with a list of revoked keys
-/// that is read again when its file changes, and a log. Thread-safe.
+/// Keeps strangers away from a participant with keys: Admission within a process, with logging and with a
+/// list of revoked keys that is reloaded when its file changes. Thread-safe.
 class Gate {
  public:
   /// Throws std::invalid_argument if the list of revoked keys cannot be read.
   Gate(const KeyFolder& keys, const std::string& version);
 
-  /// As Admission::set_self().
+  /// See Admission::set_self().
   void set_self(const ParticipantId& id);
-  /// Whether a datagram of the sender may be passed on. `address`: the IPv4 address from which it comes, for
+  /// Whether a datagram of the sender may be passed on. `address` is the IPv4 address that it came from, for
   /// the log.
   [[nodiscard]] bool passes(const ParticipantId& sender, std::span<const std::uint8_t> datagram,
                             bool is_discovery, std::span<const std::uint8_t, 4> address);
-  /// As Admission::newly_refused(). Call it about once a second.
+  /// See Admission::newly_refused(). Call it about once a second.
   [[nodiscard]] std::vector<ParticipantId> newly_refused();
-  /// Whether a participant may send messages of the topic's channel of a robot with this Header.sender. Logs
-  /// and counts if not.
+  /// Whether a participant may send messages with this Header.sender on a robot's channel of a topic. If not,
+  /// logs and counts that.
   [[nodiscard]] bool may_send(const ParticipantId& participant, const TopicInfo& topic, std::uint32_t robot,
                               std::uint32_t sender);
   [[nodiscard]] bool is_operator(const ParticipantId& participant) const;
-  /// What Fast DDS says of a participant's private key and certificate; false is logged.
+  /// Handles Fast DDS's verdict on a participant's private key and certificate. Logs a refusal.
   void on_authentication(const ParticipantId& participant, bool is_genuine);
 
-  /// Datagrams with messages of participants that were not admitted.
+  /// Number of datagrams with messages from participants that were not admitted.
   std::uint64_t unknown() const { return unknown_; }
-  /// Announcements, and malformed datagrams of discovery, that were refused.
+  /// Number of refused announcements and malformed discovery datagrams.
   std::uint64_t refused() const { return refused_; }
-  /// Messages for which may_send() was false.
+  /// Number of messages for which may_send() was false.
   std::uint64_t forged() const { return forged_; }
 
  private:

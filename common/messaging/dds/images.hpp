@@ -12,21 +12,21 @@
 
 namespace sidestep {
 
-/// Removes the shared-memory segments of killed processes from a folder: those whose lock is free and whose
-/// age is at least `min_age`.
+/// Removes the shared-memory segments that killed processes have left in a folder. These are the segments
+/// whose lock is free and whose age is at least `min_age`.
 void remove_stale_segments(const std::filesystem::path& folder, std::chrono::seconds min_age);
 
-/// The participant that writes images: by shared memory to readers on this host that use it, by UDP to all
-/// others. If there is no shared memory it uses UDP only, and logs that.
+/// The participant that writes images. It uses shared memory for readers on this host that use it too, and
+/// UDP for all others. Without shared memory it uses only UDP and logs that.
 std::shared_ptr<DdsParticipant> image_publisher_participant(const DdsSettings& settings);
 
-/// A bus's reader of images. It starts with shared memory, which fails silently if the writer uses another
-/// shared memory (containers). Therefore, if a writer is known but no image arrives for a second, the reader
-/// switches to UDP; after two more seconds it switches back to shared memory, and so on. The timeout doubles
-/// each time, until an image arrives.
+/// A bus's reader of images. It starts with shared memory, which fails silently if the writer cannot access
+/// the same shared memory (containers). Therefore, if a writer is known but no image arrives for a second,
+/// the reader switches to UDP; after two more seconds it switches back to shared memory, and so on. The
+/// timeout doubles each time, until an image arrives.
 class DdsImageReader {
  public:
-  /// Throws std::runtime_error as DdsReader.
+  /// Throws std::runtime_error if DdsReader does.
   DdsImageReader(EventLoop& loop, const DdsSettings& settings, const TypeMismatchListener& type_mismatches,
                  const TopicInfo& topic, const std::string& channel,
                  std::function<void(const void*)> callback);

@@ -23,14 +23,14 @@ using eprosima::fastdds::dds::Log;
 constexpr std::size_t kKeptErrors = 4;
 
 std::mutex errors_mutex;
-std::vector<std::string> errors;  ///< the first ones since they were taken
+std::vector<std::string> errors;  ///< the first errors since the last call of take_library_errors()
 
 void keep_error(const Log::Entry& entry) {
   const std::lock_guard lock(errors_mutex);
   if (errors.size() < kKeptErrors) errors.push_back(entry.message);
 }
 
-/// Fast DDS calls it by one thread.
+/// Fast DDS calls it from one thread.
 class LibraryLog : public eprosima::fastdds::dds::LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {

@@ -5,11 +5,12 @@
 
 namespace sidestep {
 
-/// From now on this process's log has what Fast DDS logs, instead of stderr. Of each function of Fast DDS it
-/// has only a few lines a minute, because every hostile datagram can cause one. Later calls have no effect.
+/// Redirects Fast DDS's log from stderr to this process's log. Only a few lines per minute are kept for each
+/// function of Fast DDS, because every hostile datagram can cause one. Later calls have no effect.
 void log_library();
 
-/// The first few errors that Fast DDS has logged since the last call, or since log_library(); empty if none.
+/// The first few errors that Fast DDS has logged since the last call, or else since log_library(); empty if
+/// none.
 std::string take_library_errors();
 
 }  // namespace sidestep

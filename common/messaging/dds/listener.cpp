@@ -13,7 +13,7 @@ namespace {
 
 using namespace fast_dds::dds;
 
-/// Matches every writer of the topic.
+/// A QoS that matches every writer of the topic.
 DataReaderQos permissive_qos(const DiscoveredEndpoint& writer) {
   constexpr int kDepth = 256;
   DataReaderQos qos = dds_reader_qos(Qos::kState, kDepth);

@@ -21,16 +21,16 @@ struct RawSample {
 /// Lists all endpoints of a domain, and reads topics of any type as raw bytes.
 class DdsListener {
  public:
-  /// Throws std::runtime_error as DdsBus.
+  /// Throws std::runtime_error if DdsBus does.
   explicit DdsListener(const DdsSettings& settings);
   ~DdsListener();
   DdsListener(const DdsListener&) = delete;
   DdsListener& operator=(const DdsListener&) = delete;
 
-  /// All endpoints known at present except this listener's, sorted by topic.
+  /// All endpoints that are known now, except this listener's, sorted by topic.
   std::vector<DiscoveredEndpoint> endpoints() const;
-  /// Calls back for each sample of the writer's topic, from run_until(). All calls for one topic must name
-  /// the same type. Throws std::runtime_error as DdsParticipant::create_reader().
+  /// Calls back from run_until() for each sample of the writer's topic. All calls for one topic must name the
+  /// same type. Throws std::runtime_error if DdsParticipant::create_reader() does.
   void listen(const DiscoveredEndpoint& writer, std::function<void(const RawSample&)> callback);
 
   Time now() const;

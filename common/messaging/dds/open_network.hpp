@@ -5,9 +5,10 @@
 
 namespace sidestep {
 
-/// For a process without keys: logs once that anybody on the network can command the robots. Throws
-/// std::invalid_argument if other machines can reach the interface, unless DdsSettings::insecure. The
-/// loopback interface and the network namespaces of `sidestep run` cannot be reached.
+/// Checks the network of a process without keys. Logs once that anybody on the network can command the
+/// robots. Throws std::invalid_argument if other machines can reach the interface, unless
+/// DdsSettings::insecure is set. The loopback interface and the network namespaces of `sidestep run` cannot
+/// be reached from outside.
 void require_safe_network(const DdsSettings& settings);
 
 }  // namespace sidestep

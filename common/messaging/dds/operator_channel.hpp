@@ -10,19 +10,19 @@
 
 namespace sidestep {
 
-/// An operator's writer of one topic, which knows its subscribers. Its messages are exempt from network
-/// faults.
+/// An operator's writer for one topic, which knows the topic's subscribers. Its messages are exempt from
+/// network faults.
 class OperatorChannel {
  public:
-  /// Throws std::runtime_error as DdsBus.
+  /// Throws std::runtime_error if DdsBus does.
   OperatorChannel(const DdsSettings& settings, const TopicInfo& topic);
   ~OperatorChannel();
   OperatorChannel(const OperatorChannel&) = delete;
   OperatorChannel& operator=(const OperatorChannel&) = delete;
 
-  /// Names of the participants that subscribe at present, sorted; one entry per participant.
+  /// Names of the participants that subscribe now, sorted; one entry per participant.
   std::vector<std::string> subscribers() const;
-  /// Whether a channel, e.g. "feedback/3", has a writer.
+  /// Whether a channel, for example "feedback/3", has a writer.
   bool has_writer(const std::string& channel) const;
   /// Sends messages of the topic's type to all subscribers.
   RawWriter& writer();

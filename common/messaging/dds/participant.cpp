@@ -34,12 +34,12 @@ using fast_dds::Duration_t;
 constexpr std::uint32_t kMutationTries = 250;  ///< limits the number of participants on one host
 const Duration_t kAnnouncementPeriod{1, 0};
 constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< requested; the system may grant less
-constexpr int kKeptStates = 64;                        ///< a second of a topic with one message per cycle
+constexpr int kKeptStates = 64;                        ///< one second of a topic with one message per cycle
 constexpr int kMaxInstances = 2048;  ///< keys per endpoint; beyond that, idle ones are dropped
 
 Duration_t milliseconds(std::uint32_t ms) { return Duration_t(0, ms * 1'000'000); }
 
-/// Throws std::invalid_argument.
+/// Throws std::invalid_argument if the address is invalid.
 fast_dds::rtps::Locator_t locator_at(const std::string& address) {
   fast_dds::rtps::Locator_t locator;
   locator.kind = LOCATOR_KIND_UDPv4;
@@ -68,7 +68,7 @@ void check(const DdsSettings& settings) {
     throw std::invalid_argument(fmt::format("--domain: expected 0..{}, got {}", kMaxDomain, settings.domain));
   }
   if (settings.interface == "all") return;
-  // With an address of another machine, Fast DDS would have no interface and report no error.
+  // If the address belongs to another machine, Fast DDS would have no interface and report no error.
   const std::string own = own_addresses();
   if (!settings.interface.empty() &&
       (" " + own + " ").find(" " + settings.interface + " ") != std::string::npos)
@@ -77,7 +77,7 @@ void check(const DdsSettings& settings) {
       "--interface: expected 'all' or an address of this machine ({}), got '{}'", own, settings.interface);
   in_addr address{};
   if (inet_pton(AF_INET, settings.interface.c_str(), &address) != 1) throw std::invalid_argument(problem);
-  throw std::runtime_error(problem);  // the interface may come later, and a service tries again
+  throw std::runtime_error(problem);  // the interface may appear later: a service tries again
 }
 
 ParticipantId id_of(const fast_dds::rtps::GuidPrefix_t& prefix) {
@@ -97,7 +97,7 @@ ParticipantId random_id() {
   return result;
 }
 
-/// The properties of Fast DDS's security plugins (DDS Security 1.1, 9.3 to 9.5).
+/// Sets the properties of Fast DDS's security plugins (DDS Security 1.1, 9.3 to 9.5).
 void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
   auto& properties = qos.properties().properties();
   const auto set = [&](const std::string& name, const std::string& value) {
@@ -118,7 +118,7 @@ void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
   set_file(access + "governance", key_files::kGovernance);
   set_file(access + "permissions", key_files::kPermissions);
   set("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
-  // What is announced is signed for the id that Fast DDS makes of this candidate.
+  // The announcement must be signed for the id that Fast DDS derives from this candidate.
   const ParticipantId candidate = random_id();
   std::ranges::copy(candidate, qos.wire_protocol().prefix.value);
   qos.user_data().setValue(credentials(keys.certificate, load_private_key(keys.file(key_files::kPrivateKey)),
@@ -146,14 +146,14 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   }
   qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts, gate));
   if (keys) use_keys(*keys, qos);
-  // Keys say who is an operator.
+  // With keys, the keys determine who is an operator.
   if (settings.is_operator && !keys) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;
   builtin.mutation_tries = kMutationTries;
   builtin.discovery_config.leaseDuration = fast_dds::kInfiniteDuration;  // see Presence
   builtin.discovery_config.leaseDuration_announcementperiod = kAnnouncementPeriod;
   for (const std::string& peer : settings.peers) builtin.initialPeersList.push_back(locator_at(peer));
-  // With an address of its own for discovery, Fast DDS uses no multicast.
+  // If it has its own address for discovery, Fast DDS uses no multicast.
   if (!settings.peers.empty())
     builtin.metatrafficUnicastLocatorList.push_back(
         locator_at(settings.interface == "all" ? "0.0.0.0" : settings.interface));
@@ -213,7 +213,7 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   log_library();
   if (settings.faults) impairment_ = std::make_shared<Impairment>();
   fast_dds::disable_intraprocess_delivery();
-  (void)take_library_errors();  // those of other participants
+  (void)take_library_errors();  // discards errors of other participants
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
       static_cast<DomainId_t>(settings.domain),
       participant_qos(settings, impairment_, counts_, keys_, gate_, shared_memory_bytes), listener_,
@@ -253,7 +253,7 @@ dds::Topic* DdsParticipant::topic(const std::string& channel, const TypeSupport&
   return created;
 }
 
-/// What Fast DDS would refuse too, without saying why.
+/// Reports permission problems that Fast DDS would refuse without saying why.
 void DdsParticipant::require_permission(const std::string& channel, bool writes) const {
   if (!keys_) return;
   for (const TopicInfo& topic : all_topics()) {

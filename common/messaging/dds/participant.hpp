@@ -24,15 +24,15 @@ class DdsParticipant {
   /// The listener, if any, must outlive the participant. `shared_memory_bytes` > 0 is the size of the segment
   /// for written messages. Two participants on one host that both have shared memory use it instead of UDP,
   /// even if their segments are not visible to each other (containers); faults do not affect it. Throws
-  /// std::runtime_error with the reason, std::invalid_argument if the keys are wrong or missing.
+  /// std::runtime_error with the reason, and std::invalid_argument if the keys are wrong or missing.
   DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryListener* listener,
                  std::uint32_t shared_memory_bytes = 0);
   ~DdsParticipant();
   DdsParticipant(const DdsParticipant&) = delete;
   DdsParticipant& operator=(const DdsParticipant&) = delete;
 
-  /// Registers `type` unless a type of its name is already registered. Throws std::runtime_error that names
-  /// the topic.
+  /// Creates a writer. Registers `type` unless a type with its name is already registered. Throws
+  /// std::runtime_error that names the topic.
   fast_dds::dds::DataWriter* create_writer(const std::string& channel, const fast_dds::dds::TypeSupport& type,
                                            const fast_dds::dds::DataWriterQos& qos,
                                            fast_dds::dds::DataWriterListener* listener);
@@ -42,12 +42,12 @@ class DdsParticipant {
   fast_dds::dds::DataReaderQos reader_qos(Qos qos) const;
   void delete_writer(fast_dds::dds::DataWriter* writer);
   void delete_reader(fast_dds::dds::DataReader* reader);
-  /// As DdsBus::impair().
+  /// See DdsBus::impair().
   void impair(const LinkQuality& quality, std::uint64_t seed) { impairment_->set(quality, seed); }
   const TransportCounts& counts() const { return *counts_; }
-  /// Null without keys.
+  /// Null if the process has no keys.
   Gate* gate() const { return gate_.get(); }
-  /// Whose keys this process has; nullptr without keys.
+  /// The identity whose keys this process has; nullptr if it has none.
   const Identity* identity() const { return keys_ ? &keys_->identity : nullptr; }
 
  private:
@@ -67,7 +67,7 @@ class DdsParticipant {
 };
 
 fast_dds::dds::DataWriterQos dds_writer_qos(Qos qos);
-/// `depth`: how many states of each key wait until they are read.
+/// `depth` is the number of states per key that may wait to be read.
 fast_dds::dds::DataReaderQos dds_reader_qos(Qos qos, int depth = 1);
 /// The addresses on which the reader listens.
 std::string dds_locators(const fast_dds::dds::DataReader& reader);

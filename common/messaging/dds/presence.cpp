@@ -7,9 +7,9 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kMaxCheckInterval{3'000'000'000};
-/// A notice is repeated with each announcement, of which there is one a second, for this long.
+/// How long a notice is repeated. It is sent with each announcement, once a second.
 constexpr Duration kRepeatFor{2'500'000'000};
-/// Datagrams that wait in a socket are older than this when a process has caught up with them.
+/// After this time, a process that has caught up has read all datagrams that were waiting in its sockets.
 constexpr Duration kCatchUp{300'000'000};
 
 }  // namespace
@@ -34,7 +34,7 @@ bool Presence::on_announcement(const ParticipantId& self, const ParticipantId& s
   for (const PresenceNotice& notice : notices) {
     if (notice.whom != self) continue;
     if (notice.kind == PresenceNotice::Kind::kForgotten) {
-      // What is known of the sender is older than its forgetting, unless this notice was processed before.
+      // Our record of the sender predates the sender's reset, unless this notice was already processed.
       const bool is_repeated = peer->agreed == notice.number;
       must_forget = must_forget || (!peer->is_forgotten && !is_repeated);
       peer->is_forgotten = false;
@@ -82,7 +82,7 @@ std::vector<PresenceNotice> Presence::notices(Time now) const {
 Presence::Peer* Presence::find_or_add(const ParticipantId& id, Time now) {
   if (const auto found = peers_.find(id); found != peers_.end()) return &found->second;
   if (peers_.size() >= kMaxPeers) {
-    // Numbers increase with time, so the least one is the oldest.
+    // Numbers increase with time, so the lowest one is the oldest.
     const auto oldest = std::ranges::min_element(peers_, {}, [](const auto& entry) {
       return entry.second.is_forgotten ? entry.second.forgotten_number : ~std::uint64_t{0};
     });

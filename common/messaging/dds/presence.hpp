@@ -17,12 +17,13 @@ namespace sidestep {
 /// A participant's GUID prefix (RTPS 2.2, 8.2.4).
 using ParticipantId = std::array<std::uint8_t, 12>;
 
-/// What one participant announces to another.
+/// A notice from one participant to another.
 struct PresenceNotice {
   enum class Kind : std::uint32_t {
-    /// The sender has forgotten `whom`. `number` identifies this event among the sender's.
+    /// The sender has forgotten `whom`. `number` identifies this event among those of the sender.
     kForgotten = 1,
-    /// The answer to that notice, with the same number: its receiver has forgotten the other side too.
+    /// The answer to that notice, with the same number: the receiver of the notice has forgotten the sender
+    /// too.
     kAgreed = 2,
   };
   ParticipantId whom{};
@@ -37,30 +38,30 @@ struct PresenceNotice {
 /// Fast DDS can forget a silent participant by itself (its lease), but not safely: versions 2.9 and 3.1 may
 /// abort if the participant leaves during the check, and if only one side forgets the other, as when a
 /// process was stopped for a while, they may never find each other again. Participants therefore announce an
-/// infinite lease to Fast DDS, and this class decides instead. A forgotten participant that is heard again is
-/// told so, and forgets the other side too. For a moment it refuses the other side's datagrams, because older
-/// ones may still wait in its sockets: if Fast DDS took an old acknowledgement for a new one, it would never
-/// send again what that acknowledges. Then it agrees, and its own datagrams are accepted again.
+/// infinite lease to Fast DDS, and this class decides instead. When a forgotten participant is heard again,
+/// it is notified, and forgets the other side too. For a moment it refuses the other side's datagrams,
+/// because older ones may still wait in its sockets: if Fast DDS took an old acknowledgement for a new one,
+/// it would never resend the messages in question. Then it agrees, and its own datagrams are accepted again.
 ///
-/// Only participants that announce presence are tracked, so those of other software are left to Fast DDS.
+/// Only participants that announce presence are tracked; those of other software are left to Fast DDS.
 class Presence {
  public:
-  /// Forgotten participants beyond this number are no longer remembered, the oldest first.
+  /// Maximum number of forgotten participants that are remembered. Beyond it the oldest are dropped.
   static constexpr std::size_t kMaxPeers = 1024;
-  /// Bound of notices().
+  /// Maximum number of notices that notices() returns.
   static constexpr std::size_t kMaxNotices = 64;
 
-  /// Whether a datagram of the sender may be passed on.
+  /// Whether a datagram from the sender may be passed on.
   [[nodiscard]] bool accept(const ParticipantId& sender, Time now);
-  /// Processes an announcement. True: everything known of the sender must be removed before anything else of
-  /// it is passed on.
+  /// Processes an announcement. If true, everything known about the sender must be removed before any further
+  /// data from it is passed on.
   [[nodiscard]] bool on_announcement(const ParticipantId& self, const ParticipantId& sender,
                                      std::span<const PresenceNotice> notices, Time now);
   /// The participants that have become silent since the last call and must be removed now. Call it about once
-  /// a second. After a break of seconds this process must have been stopped itself, so no participant is
-  /// forgotten.
+  /// a second. If seconds have passed since the last call, this process itself was stopped, so no participant
+  /// is forgotten.
   [[nodiscard]] std::vector<ParticipantId> newly_silent(Time now);
-  /// What to announce now.
+  /// The notices to announce now.
   std::vector<PresenceNotice> notices(Time now) const;
 
  private:
@@ -68,9 +69,9 @@ class Presence {
     Time last_heard{};
     bool is_forgotten = false;
     std::uint64_t forgotten_number = 0;
-    Time ask_until{};                     ///< it was heard although it is forgotten
-    std::optional<std::uint64_t> agreed;  ///< its latest kForgotten that was processed
-    Time agree_from{}, agree_until{};     ///< until agree_from its datagrams are refused
+    Time ask_until{};                     ///< end of kForgotten notices to it
+    std::optional<std::uint64_t> agreed;  ///< number of its latest processed kForgotten notice
+    Time agree_from{}, agree_until{};     ///< times of refusing it, and of agreeing
   };
 
   Peer* find_or_add(const ParticipantId& id, Time now);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace fast_dds::dds;
 
-/// Takes the key of each message from the caller, because the layout of the bytes is unknown here.
+/// Gets the key of each message from the caller, because the layout of the bytes is unknown here.
 class KeyedRawType : public RawType {
  public:
   using RawType::RawType;
@@ -43,7 +43,7 @@ struct DdsRawPublisher::Impl {
   ~Impl() { participant.delete_writer(writer); }
 
   DdsParticipant participant;
-  KeyedRawType* type;  ///< of `support`
+  KeyedRawType* type;  ///< owned by `support`
   TypeSupport support;
   DataWriter* writer;
 };

@@ -14,16 +14,16 @@ namespace sidestep {
 /// Writes messages of any type to a topic, as bytes. Reliable and durable, so that readers of any QoS match.
 class DdsRawPublisher {
  public:
-  /// `type` as the topic's readers name it. Throws std::runtime_error as DdsBus.
+  /// `type` must be the name that the topic's readers use. Throws std::runtime_error if DdsBus does.
   DdsRawPublisher(const DdsSettings& settings, const std::string& topic, const std::string& type,
                   bool is_keyed);
   ~DdsRawPublisher();
   DdsRawPublisher(const DdsRawPublisher&) = delete;
   DdsRawPublisher& operator=(const DdsRawPublisher&) = delete;
 
-  /// Bytes with their encapsulation header. Throws std::runtime_error if DDS cannot send them.
+  /// Sends a payload including its encapsulation header. Throws std::runtime_error if DDS cannot send it.
   void write(std::span<const std::uint8_t> bytes, const CdrKey& key);
-  /// Readers that match at present.
+  /// Number of readers that match now.
   int readers() const;
   /// Waits until every reliable reader has acknowledged all messages; false on timeout.
   [[nodiscard]] bool wait_until_acknowledged(Duration timeout);

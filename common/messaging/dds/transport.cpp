@@ -30,10 +30,10 @@ using Receiver = transport::TransportReceiverInterface;
 
 constexpr std::array<std::uint8_t, 4> kOperatorMark{'s', 's', 'o', 'p'};
 constexpr Duration kCheckInterval{500'000'000};
-/// Fast DDS announces a participant some milliseconds before it can process the answers.
+/// Fast DDS announces a participant a few milliseconds before it can process the answers.
 constexpr Duration kUntilReady{50'000'000};
 
-/// So many that writers never reach it; they have periodic heartbeats.
+/// A value that writers never reach; they send periodic heartbeats anyway.
 constexpr std::uint32_t kBytesUntilHeartbeat = 1U << 30;
 
 bool has_operator_mark(const ParticipantId& id) {
@@ -50,10 +50,10 @@ struct UdpDescriptor : transport::ChainingTransportDescriptor {
         gate(std::move(gate_of_participant)) {}
 
   transport::TransportInterface* create_transport() const override;
-  /// Fast DDS sends a heartbeat to all readers of a writer whenever the writer has sent so many bytes. Of the
-  /// writers of discovery it counts far too many (2.9.1 adds up sums), so that each new participant would
-  /// cause heartbeats from and to all others for every second endpoint: among 25, most of the packets at the
-  /// start.
+  /// Fast DDS sends a heartbeat to all readers of a writer whenever the writer has sent this many bytes. For
+  /// discovery writers its count is far too high (2.9.1 adds up sums), so each new participant would cause
+  /// heartbeats from and to all others for every second endpoint. With 25 participants, these are most of the
+  /// packets at start-up.
   std::uint32_t min_send_buffer_size() const override { return kBytesUntilHeartbeat; }
 
   std::shared_ptr<Impairment> impairment;
@@ -82,7 +82,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
   void on_datagram(Receiver& next, Bytes datagram, const rtps::Locator_t& local,
                    const rtps::Locator_t& remote) override {
     const std::optional<ParticipantId> sender = sender_of(datagram);
-    if (!sender) return;  // Fast DDS would refuse it too
+    if (!sender) return;  // Fast DDS would refuse this datagram too
     if (!presence_notices(datagram)) {
       datagram = descriptor_.gate ? checked_datagram(datagram) : without_statistics(datagram);
       descriptor_.counts->malformed += datagram.empty();
@@ -118,7 +118,8 @@ class UdpTransport : public fast_dds::ChainedTransport {
     return is_accepted;
   }
 
-  /// One at a time, so that nothing of a participant is processed while Fast DDS forgets it.
+  /// Processes discovery datagrams one at a time, so that none of a participant is processed while Fast DDS
+  /// forgets it.
   void on_discovery(Receiver& next, const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
                     const rtps::Locator_t& remote) {
     const std::lock_guard one_at_a_time(discovery_);
@@ -151,7 +152,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
     std::vector<ParticipantId> result;
     if (notices && self_ && sender != *self_ && presence_.on_announcement(*self_, sender, *notices, now))
       result.push_back(sender);
-    // This participant's own announcements arrive too, so this happens at least once a second.
+    // This participant's own announcements arrive here too, so this happens at least once a second.
     if (now - checked_at_ > kCheckInterval) {
       checked_at_ = now;
       const std::vector<ParticipantId> silent = presence_.newly_silent(now);
@@ -184,7 +185,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
     next.OnDataReceived(datagram.data(), static_cast<std::uint32_t>(datagram.size()), local, remote);
   }
 
-  /// A datagram that may have been lost because Fast DDS was not ready.
+  /// A datagram that arrived early, and may have been lost because Fast DDS was not ready.
   struct Early {
     ParticipantId sender;
     Datagram datagram;
@@ -193,14 +194,14 @@ class UdpTransport : public fast_dds::ChainedTransport {
   static constexpr std::size_t kMaxEarly = 1024;
 
   UdpDescriptor descriptor_;
-  std::mutex discovery_;      ///< guards early_, and orders what Fast DDS is given
-  std::vector<Early> early_;  ///< passed on again when it is ready
+  std::mutex discovery_;      ///< guards early_ and orders what is passed to Fast DDS
+  std::vector<Early> early_;  ///< passed on again once Fast DDS is ready
   std::mutex state_;          ///< guards the members below; never held while Fast DDS is called
   std::optional<ParticipantId> self_;
   std::optional<Time> announced_at_;
   Presence presence_;
   Time checked_at_{};
-  std::optional<DelayedDatagrams> delayed_;  ///< with impairment only
+  std::optional<DelayedDatagrams> delayed_;  ///< only with an impairment
 };
 
 transport::TransportInterface* UdpDescriptor::create_transport() const { return new UdpTransport(*this); }

@@ -13,16 +13,16 @@ namespace sidestep {
 /// A UDP transport that announces presence, and makes Fast DDS forget participants that have become silent
 /// (see Presence).
 ///
-/// `counts` counts what it drops. With an impairment it also loses, duplicates, delays and so reorders
-/// arriving datagrams. Discovery is exempt, because otherwise processes would not find each other for
-/// seconds. With a gate, what it does not let pass is dropped first. An operator's messages are exempt,
-/// because otherwise a fault could not be ended.
+/// Drops are counted in `counts`. With an impairment it also loses, duplicates, delays and thereby reorders
+/// arriving datagrams. Discovery is exempt, because otherwise processes would take seconds to find each
+/// other. An operator's messages are exempt, because otherwise a fault could not be ended. With a gate,
+/// datagrams that the gate rejects are dropped first.
 std::shared_ptr<fast_dds::transport::TransportDescriptorInterface> udp_transport(
     std::shared_ptr<fast_dds::transport::UDPv4TransportDescriptor> udp,
     std::shared_ptr<Impairment> impairment, std::shared_ptr<TransportCounts> counts,
     std::shared_ptr<Gate> gate);
 
-/// GUID prefix that marks this process as an operator's; unique to the process.
+/// A GUID prefix, unique to this process, that marks it as an operator's.
 fast_dds::rtps::GuidPrefix_t operator_prefix();
 
 }  // namespace sidestep

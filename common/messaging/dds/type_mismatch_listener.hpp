@@ -13,13 +13,14 @@
 
 namespace sidestep {
 
-/// Watches discovery. Logs endpoints that use one of our channels with another type, because DDS never
-/// matches them and reports nothing. Also records since when each channel has a writer. Thread-safe.
+/// Watches discovery. Logs endpoints that use one of our channels with a different type, because DDS never
+/// matches them and reports nothing. Also records when the writers of each channel were discovered.
+/// Thread-safe.
 class TypeMismatchListener : public fast_dds::DiscoveryListener {
  public:
   /// Registers a channel of ours and its type.
   void expect(const std::string& channel, const std::string& type);
-  /// When the channel's most recently discovered writer of our type was discovered; nullopt if there is no
+  /// Discovery time of the channel's most recently discovered writer of our type; nullopt if there is no
   /// writer.
   std::optional<Time> latest_writer_since(const std::string& channel) const;
 
@@ -30,8 +31,8 @@ class TypeMismatchListener : public fast_dds::DiscoveryListener {
   void compare(const DiscoveredEndpoint& endpoint);
 
   mutable std::mutex mutex_;
-  std::map<std::string, std::string> types_;  ///< by channel
-  /// By channel and type, then by the writer's GUID: time of discovery.
+  std::map<std::string, std::string> types_;  ///< type of each channel
+  /// Discovery times, indexed by channel and type, then by the writer's GUID.
   std::map<std::pair<std::string, std::string>, std::map<std::string, Time>> writers_;
 };
 

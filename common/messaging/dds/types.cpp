@@ -28,7 +28,7 @@ std::uint32_t size_of_empty(const MessageType& type) {
   return static_cast<std::uint32_t>(kEncapsulationSize + type.cdr_size(type.make().get()));
 }
 
-/// A message that Fast DDS owns: it knows only the address of the sample.
+/// A message owned by Fast DDS, which only knows the address of the sample.
 struct OwnedSample : GuardedType::Sample {
   explicit OwnedSample(std::shared_ptr<void> made) : owner(std::move(made)) { message = owner.get(); }
   std::shared_ptr<void> owner;
@@ -102,7 +102,7 @@ bool RawType::read(const Payload& payload, void* sample) {
 }
 
 bool RawType::key(const void*, InstanceHandle_t& handle) {
-  // The position of the key in the bytes is unknown. Unless the writer sends the key's hash, all samples
+  // The position of the key in the bytes is unknown. Unless the writer sends a hash of the key, all samples
   // belong to one instance.
   handle = InstanceHandle_t();
   handle.value[0] = 1;

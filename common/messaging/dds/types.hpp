@@ -11,7 +11,8 @@
 
 namespace sidestep {
 
-/// Fast DDS type support for one of our message types. Payloads are untrusted. Samples are `Sample`s.
+/// Fast DDS type support for one of our message types. Payloads are untrusted. Fast DDS sees samples of the
+/// type `Sample`.
 class GuardedType : public fast_dds::DataType {
  public:
   struct Sample {

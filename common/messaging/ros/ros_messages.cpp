@@ -9,10 +9,10 @@
 namespace sidestep::ros {
 namespace {
 
-// The longest name of a frame that is accepted.
+// Maximum length of an accepted frame name.
 constexpr std::size_t kMaxName = 256;
 
-/// Counts, writes or reads the members of a message in the order of its definition, as plain CDR.
+/// Counts the bytes of a message's members in the order of its definition, as plain CDR.
 class Counter {
  public:
   template <typename Number>
@@ -37,7 +37,7 @@ class Writer {
   template <typename Number>
   void number(const Number& value) {
     align(sizeof(Number));
-    std::memcpy(bytes_.data() + at_, &value, sizeof value);  // this machine is little-endian, as the message
+    std::memcpy(bytes_.data() + at_, &value, sizeof value);  // this machine is little-endian too
     at_ += sizeof value;
   }
   void text(const std::string& value) {
@@ -55,7 +55,7 @@ class Writer {
   std::size_t at_ = 0;
 };
 
-/// Of untrusted bytes: after an error everything that is read is zero.
+/// Reads untrusted bytes. After an error everything that it reads is zero.
 class Reader {
  public:
   Reader(std::span<const std::uint8_t> bytes, ByteOrder order) : bytes_(bytes), order_(order) {}
@@ -81,7 +81,7 @@ class Reader {
     value.assign(reinterpret_cast<const char*>(bytes_.data() + at_), size - 1);
     at_ += size;
   }
-  /// All bytes are read, up to padding, without error.
+  /// Whether all bytes except padding were read without error.
   bool is_complete() const { return is_valid_ && bytes_.size() - at_ <= 3; }
 
  private:
@@ -100,7 +100,7 @@ void numbers(Coder& coder, Numbers& values) {
   for (auto& value : values) coder.number(value);
 }
 
-/// The members in the order of the definition; `Message` is const for those that do not read.
+/// Visits the members in the order of the definition. `Message` is const unless the coder reads.
 template <typename Coder, typename Message>
 void visit(Coder& coder, Message& m) {
   if constexpr (std::is_same_v<std::remove_const_t<Message>, Twist>) {

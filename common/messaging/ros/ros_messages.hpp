@@ -26,16 +26,16 @@ struct Odometry {
   std::array<double, 36> twist_covariance{};
 };
 
-/// The topic of a robot's base as ROS 2 names it over DDS: "rt/robot3/cmd_vel" for the prefix "robot".
+/// The DDS name of a robot base's ROS 2 topic: "rt/robot3/cmd_vel" for the prefix "robot".
 std::string command_channel(const std::string& prefix, std::uint32_t robot);
 std::string odometry_channel(const std::string& prefix, std::uint32_t robot);
 
-/// Rows as those of the topic table, with ROS 2's type names. They are not in the table, because these
-/// messages have none of our headers: use Bus::relay() and Bus::observe_channel().
-/// Readers are best effort, so that they match every writer.
+/// Topic descriptions with ROS 2's type names. They are not in the topic table, because these messages lack
+/// our headers: use Bus::relay() and Bus::observe_channel(). Readers are best effort, so that they match
+/// every writer.
 extern const TopicInfo kTwist;
 extern const TopicInfo kOdometry;
-/// For writers: reliable, as ROS 2's subscriptions ask by default.
+/// The topic for writers: reliable, as ROS 2's subscriptions request by default.
 TopicInfo reliable(TopicInfo topic);
 
 }  // namespace sidestep::ros

@@ -13,8 +13,8 @@ namespace sidestep {
 
 /// Identity and clock of a simulated process.
 struct SimProcessSpec {
-  ProcessId process = 0;  ///< identifies its links
-  ClockError clock{};     ///< the network's time is the true one
+  ProcessId process = 0;  ///< identifies the process's links
+  ClockError clock{};     ///< error relative to the network's time, which is true time
 };
 
 /// One instance of a simulated process, and its access to a SimNetwork. Destroying it simulates kill -9: its
@@ -28,22 +28,22 @@ class SimBus : public Bus {
   SimBus(const SimBus&) = delete;
   SimBus& operator=(const SimBus&) = delete;
 
-  /// By the process's own clock.
+  /// The time by the process's own clock.
   Time now() const override;
   void at(Time when, std::function<void()> callback) override;
   MessageAttachment* attachment(const void* message) override;
 
-  /// From now on, receives all messages without delay or loss. For audit and metrics, which are not part of
-  /// the system.
+  /// From now on, receives all messages without delay or loss. Only for audit and metrics, which are not part
+  /// of the system.
   void become_observer();
   /// From now on, observers receive nothing that this process sends. For hostile senders: audit and metrics
-  /// judge what the others say.
+  /// judge the other processes' messages.
   void hide_from_observers();
   /// Sets the process's clock. Timers keep their true times.
   void set_clock(const ClockError& clock) { clock_ = clock; }
   /// Simulates SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are
-  /// queued. Further ones are lost, as when a socket buffer is full. At the end, all queued messages and
-  /// timers are delivered at the same time. A pause within another one can only prolong it.
+  /// queued. Further ones are lost, like datagrams that find a full socket buffer. At the end, all queued
+  /// messages and timers are delivered at the same time. A pause within another one can only prolong it.
   void pause(Time until, std::size_t max_queued);
 
  protected:

@@ -82,7 +82,7 @@ class EventQueue {
   }
 
  private:
-  static constexpr int kSlotBits = 10;        // log2 of a slot's length in ns
+  static constexpr int kSlotBits = 10;        // log2 of the length of a slot in ns
   static constexpr int kRevolutionBits = 11;  // log2 of the number of slots in a revolution
   static constexpr std::int64_t kRevolutions = 256;
 
@@ -113,7 +113,7 @@ class EventQueue {
     }
   }
 
-  /// If no event is due, advances to the next slot that has events and loads them.
+  /// If no event is due, advances to the next slot that has events and loads its events.
   void load_due() {
     if (!due_.empty()) return;
     if (next_slot() > last_slot()) begin_next_revolution();
@@ -146,12 +146,12 @@ class EventQueue {
   std::size_t count_ = 0;
   std::uint64_t order_ = 0;
   std::int64_t revolution_ = INT64_MIN >> (kSlotBits + kRevolutionBits);
-  std::int64_t slot_ = revolution_ << kRevolutionBits;      // the slot of due_
-  std::vector<Entry> due_;                                  // latest first
-  Wheel<Entry, std::int64_t{1} << kRevolutionBits> slots_;  // of this revolution
-  Wheel<Entry, kRevolutions> revolutions_;                  // the following ones
+  std::int64_t slot_ = revolution_ << kRevolutionBits;      // the slot that due_ was loaded from
+  std::vector<Entry> due_;                                  // latest event first
+  Wheel<Entry, std::int64_t{1} << kRevolutionBits> slots_;  // slots of the current revolution
+  Wheel<Entry, kRevolutions> revolutions_;                  // the revolutions after it
   std::vector<Entry> arriving_;                             // scratch of begin_next_revolution()
-  std::vector<Entry> later_;                                // heap
+  std::vector<Entry> later_;                                // a heap
 };
 
 }  // namespace sidestep

@@ -19,13 +19,13 @@ class SimLinks {
   /// Whether set() was ever called.
   bool any() const { return width_ > 0; }
   void set(ProcessId from, ProcessId to, const LinkQuality& quality, Time now);
-  /// Null for a link that was never set.
+  /// Returns null for a link that was never set.
   const LinkQuality* find(ProcessId from, ProcessId to) const;
   /// Precondition: find(from, to).
   MessageCopies send(ProcessId from, ProcessId to, Rng& rng);
-  /// Delay of a reliable message. Precondition: find(from, to).
+  /// Draws the delay of a reliable message. Precondition: find(from, to).
   Duration delay(ProcessId from, ProcessId to, Rng& rng) const;
-  /// Of both directions.
+  /// The reachability in both directions.
   Reachability reachability(ProcessId a, ProcessId b) const;
 
  private:
@@ -38,7 +38,7 @@ class SimLinks {
   const Link& at(ProcessId from, ProcessId to) const { return links_[from * width_ + to]; }
 
   std::size_t width_ = 0;
-  std::vector<Link> links_;  // width_ x width_, by sender, then receiver
+  std::vector<Link> links_;  // width_ x width_ links, indexed by sender, then receiver
 };
 
 }  // namespace sidestep

@@ -9,7 +9,7 @@ namespace sidestep {
 namespace {
 
 constexpr std::uint64_t kReliableSeed = 0x9e3779b97f4a7c15;
-// README.md: measured over DDS.
+// Measured over DDS, see README.md.
 constexpr double kMinMatching_s = 0.03, kMaxMatching_s = 0.15;
 constexpr double kMinMatchingAnew_s = 0.3, kMaxMatchingAnew_s = 1.6;
 
@@ -38,8 +38,8 @@ bool SimNetwork::step(Time limit) {
   return true;
 }
 
-// A callback may add timers and messages, and so move the pools' elements: a timer is therefore removed
-// before it is called, and a message, which has its own allocation, is released after its delivery.
+// Callbacks may add timers and messages, which moves the pools' elements. Therefore a timer is removed before
+// it is called, and a message, which has its own allocation, is released after its delivery.
 void SimNetwork::run(const Event& event) {
   if (event.is_timer) {
     timers_.remove(event.index)();
@@ -66,7 +66,7 @@ void SimNetwork::release(std::uint32_t sent) {
 void SimNetwork::postpone(const Event& event) {
   SimProcessInstance& instance = *event.subscription->instance;
   if (instance.queued_until <= now_) {
-    // The pause begins, or goes on after the first of two: all events that are due now follow in their order.
+    // The pause begins, or continues after an earlier one: all events that are due now follow in order.
     instance.queued_until = instance.paused_until;
     instance.queued = 0;
   }
@@ -111,7 +111,7 @@ void SimNetwork::send(Writer& writer, const void* message) {
 
 void SimNetwork::send_event(Writer& writer, SimSubscription& reader, std::uint32_t sent) {
   const ProcessId from = writer.instance().process, to = reader.instance->process;
-  // Drawn whatever becomes of this message, so that the delays of others do not depend on it.
+  // Always drawn, whatever happens to this message, so that it does not change the delays of other messages.
   const Duration delay = event_delay(from, to, rng_);
   const std::shared_ptr<ReliableStream>& stream = writer.stream_to(reader, begin_, [&] {
     return ReliableStream::Delays{
@@ -151,7 +151,8 @@ void SimNetwork::schedule_heartbeat(Writer& writer, const std::shared_ptr<Reliab
 void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
   const ProcessId from = writer.instance().process, to = stream.reader().instance->process;
   if (!is_matched(writer, stream) || !arrives(from, to)) return;
-  // The heartbeat says what is lost for good, so that the reader does not wait for it.
+  // The heartbeat tells the reader which messages are lost for good, so that the reader does not wait for
+  // them.
   give_arrived(stream, event_delay(from, to, reliable_rng_));
   if (stream.waiting().empty() || !arrives(to, from)) return;
   Duration delay{0};
@@ -160,14 +161,14 @@ void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
     sample.has_arrived = arrives(from, to);
     delay = std::max(delay, event_delay(from, to, reliable_rng_));
   }
-  // A heartbeat, the answer, and the messages.
+  // A heartbeat, the reader's answer, and the resent messages.
   give_arrived(stream, event_delay(from, to, reliable_rng_) + event_delay(to, from, reliable_rng_) + delay);
 }
 
 void SimNetwork::give_arrived(ReliableStream& stream, Duration delay) {
   std::vector<ReliableStream::Sample> arrived;
   while (const auto next = stream.take_arrived()) arrived.push_back(*next);
-  // As Fast DDS gives a reader what waits for it.
+  // In the order in which Fast DDS passes waiting messages to a reader.
   std::ranges::stable_sort(arrived, {}, &ReliableStream::Sample::key);
   for (const ReliableStream::Sample& sample : arrived) {
     deliver_event(stream.reader(), delay, sample.sent);

@@ -28,33 +28,33 @@ struct SimProcessInstance {
   bool is_alive = true;
   bool is_observer = false;
   Time paused_until = Time::min();
-  Reachability reachability{};  ///< with all others, because of its pauses; see reachability_of()
+  Reachability reachability{};  ///< limited by its pauses; see reachability_of()
   Time queued_until =
-      Time::min();  ///< when queued events are due; earlier than the above after a second pause
-  std::size_t queued = 0, max_queued = 0;  ///< messages that wait for the end of the pause
-  std::uint64_t lost = 0;                  ///< messages to it that the network has lost
-  std::uint64_t overflowed = 0;            ///< messages to it that found its queue full
+      Time::min();  ///< when queued events are due; earlier than the end of the pause after a second pause
+  std::size_t queued = 0, max_queued = 0;  ///< number of messages that wait for the end of the pause
+  std::uint64_t lost = 0;                  ///< number of messages to this process that the network has lost
+  std::uint64_t overflowed = 0;            ///< number of messages to this process that found its queue full
 };
 
-/// One subscription of one process instance. The instance's timers refer to one without a callback.
+/// One subscription of one process instance. The instance's timers use a subscription without a callback.
 struct SimSubscription {
   SimProcessInstance* instance;
   std::function<void(const void*)> callback;
   Time begin = Time::min();
-  Time last_event{};  ///< arrival of the last kEvent message, which keeps such messages in order
+  Time last_event{};  ///< arrival of the last kEvent message; keeps such messages in order
 };
 
 /// Runs many processes in one thread under virtual time: an event queue ordered by (time, order of
 /// scheduling), and a network between the processes that delays, loses, duplicates and reorders messages. The
 /// same seed gives the same run, bit for bit. Channels with Qos::kEvent are reliable and in order, as over
-/// DDS: a writer sends again what a link has lost, but only to readers that it knew when it wrote, only while
-/// its process lives, and not more than its history holds (README.md).
+/// DDS: a writer resends lost messages, but only to readers that it knew at the time of writing, only while
+/// its process lives, and only messages that its history still holds (README.md).
 class SimNetwork {
  public:
   SimNetwork(std::uint64_t seed, Time begin, const NetworkSpec& network);
 
   Time now() const { return now_; }
-  /// Runs the next event. If there is none until `limit`, advances now() to the limit and returns false.
+  /// Runs the next event. If there is none before `limit`, advances now() to the limit and returns false.
   bool step(Time limit);
   /// Runs all events until `limit`.
   void run_until(Time limit) {
@@ -62,7 +62,7 @@ class SimNetwork {
     }
   }
 
-  /// Allocates the id of another process.
+  /// Allocates a new process id.
   ProcessId new_process() { return next_process_++; }
   /// From now on, `quality` replaces the NetworkSpec for this link.
   void set_link(ProcessId from, ProcessId to, const LinkQuality& quality) {
@@ -74,13 +74,13 @@ class SimNetwork {
   class Writer;
   struct SentMessage {
     std::shared_ptr<const void> message;
-    std::uint32_t references = 0;  ///< deliveries still to come, plus one while it is being sent
+    std::uint32_t references = 0;  ///< number of pending deliveries, plus one during sending
     MessageAttachment attachment{};
   };
   struct Event {
     SimSubscription* subscription;
-    std::uint32_t index;  ///< in timers_ or sent_
-    bool is_timer;        ///< the subscription then only names the timer's instance
+    std::uint32_t index;  ///< index in timers_ or sent_
+    bool is_timer;        ///< if true, the subscription only identifies the timer's instance
     bool is_droppable;    ///< counts towards max_queued of a paused process
   };
   struct Channel {
@@ -95,17 +95,17 @@ class SimNetwork {
   void postpone(const Event& event);
   void send(Writer& writer, const void* message);
   void send_event(Writer& writer, SimSubscription& subscription, std::uint32_t sent);
-  /// Appends a message that has not arrived at once, and forgets what the writer's history cannot hold.
+  /// Stores a message that did not arrive at once, and drops what exceeds the writer's history.
   void keep(Writer& writer, const std::shared_ptr<ReliableStream>& stream, std::uint32_t sent,
             bool has_arrived);
-  /// Sends again what has not arrived, if a heartbeat arrives and its answer too.
+  /// Resends lost messages, provided that a heartbeat and the answer to it both arrive.
   void heartbeat(Writer& writer, ReliableStream& stream);
   void schedule_heartbeat(Writer& writer, const std::shared_ptr<ReliableStream>& stream);
   void give_arrived(ReliableStream& stream, Duration delay);
-  /// Whether writer and reader know each other. If not, what waits is lost.
+  /// Whether writer and reader know each other. If not, the waiting messages are lost.
   bool is_matched(const Writer& writer, ReliableStream& stream);
   void lose_waiting(ReliableStream& stream);
-  /// Whether one of the datagrams of reliable messages arrives.
+  /// Whether a single datagram of a reliable message arrives.
   bool arrives(ProcessId from, ProcessId to);
   Duration event_delay(ProcessId from, ProcessId to, Rng& rng);
   void deliver_event(SimSubscription& subscription, Duration delay, std::uint32_t sent);
@@ -114,17 +114,17 @@ class SimNetwork {
   Duration sample_delay(Rng& rng) const;
 
   Rng rng_;
-  Rng reliable_rng_;  ///< for losses of reliable messages, so that they do not change those of others
+  Rng reliable_rng_;  ///< for reliable messages, so that their losses do not change others'
   const Time begin_;
   Time now_;
   NetworkSpec spec_;
   SimLinks links_;
   ProcessId next_process_ = 0;
-  std::set<ProcessId> hidden_;  ///< from observers
+  std::set<ProcessId> hidden_;  ///< processes hidden from observers
   EventQueue<Event> events_;
   Pool<std::function<void()>> timers_;
   Pool<SentMessage> sent_;
-  std::optional<std::uint32_t> delivering_;  ///< in sent_
+  std::optional<std::uint32_t> delivering_;  ///< index in sent_
   std::deque<SimProcessInstance> instances_;
   std::deque<SimSubscription> subscriptions_;
   std::map<std::string, std::unique_ptr<Channel>> channels_;

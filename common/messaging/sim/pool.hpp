@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Values addressed by index. The index freed last is reused first; nothing is allocated while indices are
-/// free.
+/// Values addressed by index. The most recently freed index is reused first; nothing is allocated while free
+/// indices remain.
 template <typename Value>
 class Pool {
  public:

@@ -11,10 +11,11 @@
 
 namespace sidestep {
 
-/// A simulated process's writer of one channel. What its readers have not received is lost with it.
+/// A simulated process's writer for one channel. Messages that its readers have not received are lost when it
+/// is destroyed.
 class SimNetwork::Writer : public RawWriter {
  public:
-  /// `timers` belongs to the process.
+  /// `timers` is the subscription of the process's timers.
   Writer(SimNetwork& network, SimSubscription& timers, const TopicInfo& topic, Channel& channel)
       : network_(network), timers_(timers), topic_(topic), channel_(channel), begin_(network.now()) {}
   ~Writer() override {
@@ -30,11 +31,11 @@ class SimNetwork::Writer : public RawWriter {
   SimSubscription& timers() const { return timers_; }
   const TopicInfo& topic() const { return topic_; }
   Channel& channel() const { return channel_; }
-  /// Points to null when the writer is destroyed.
+  /// Its value becomes null when the writer is destroyed.
   std::shared_ptr<Writer*> alive() const { return alive_; }
 
-  /// The stream to a reader. `delays` is called for a new one. Processes that exist at `network_begin` have
-  /// found each other before.
+  /// The stream to a reader. `delays` is called to create one. Processes that exist at `network_begin` have
+  /// already discovered each other.
   template <typename MakeDelays>
   const std::shared_ptr<ReliableStream>& stream_to(SimSubscription& reader, Time network_begin,
                                                    MakeDelays delays) {

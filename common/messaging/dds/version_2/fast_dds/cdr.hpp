@@ -22,7 +22,7 @@ class CdrCoder {
                                             : eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS,
              eprosima::fastcdr::Cdr::CORBA_CDR) {}
 
-  /// These throw a std::exception if the bytes do not suffice or hold no such message.
+  /// These throw a std::exception if there are too few bytes or they do not encode such a message.
   template <typename Message>
   void write(const Message& message) {
     message.serialize(cdr_);
@@ -35,7 +35,7 @@ class CdrCoder {
   void read(Message& message) {
     message.deserialize(cdr_);
   }
-  /// Bytes written or read so far.
+  /// Number of bytes written or read so far.
   std::size_t position() const { return cdr_.getSerializedDataLength(); }
 
  private:
@@ -43,7 +43,7 @@ class CdrCoder {
   eprosima::fastcdr::Cdr cdr_;
 };
 
-/// Bytes that the message takes.
+/// Number of bytes that the encoded message takes.
 template <typename Message>
 std::size_t cdr_size(const Message& message) {
   return Message::getCdrSerializedSize(message);

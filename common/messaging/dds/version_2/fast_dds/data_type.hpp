@@ -10,13 +10,13 @@
 
 namespace sidestep::fast_dds {
 
-/// Base of our type supports: has the same virtual functions for every version of Fast DDS. What Fast DDS
-/// calls data are pointers to the derived class's samples.
+/// Base of our type supports. It has the same virtual functions for every version of Fast DDS. Fast DDS's
+/// `data` pointers point to samples of the derived class.
 class DataType : public dds::TopicDataType {
  public:
   using Payload = rtps::SerializedPayload_t;
 
-  /// `initial_size` is that of the payloads in Fast DDS's pools, which grow on demand.
+  /// `initial_size` is the initial size of payloads in Fast DDS's pools, which grow on demand.
   DataType(const std::string& name, bool is_keyed, std::uint32_t initial_size) {
     setName(name.c_str());
     m_isGetKeyDefined = is_keyed;
@@ -27,7 +27,7 @@ class DataType : public dds::TopicDataType {
 
   virtual void* make_sample() = 0;
   virtual void delete_sample(void* sample) = 0;
-  /// Bytes of the sample's payload, including the encapsulation header.
+  /// Number of bytes in the sample's payload, including the encapsulation header.
   virtual std::uint32_t payload_size(const void* sample) = 0;
   [[nodiscard]] virtual bool write(const void* sample, Payload& payload) = 0;
   [[nodiscard]] virtual bool read(const Payload& payload, void* sample) = 0;

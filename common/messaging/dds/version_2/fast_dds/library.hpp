@@ -15,13 +15,14 @@
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
-/// What differs between versions of Fast DDS: this is version 2. The files of all versions declare the same.
+/// The differences between versions of Fast DDS; this is version 2. The files for all versions declare the
+/// same names.
 namespace sidestep::fast_dds {
 
 namespace dds = eprosima::fastdds::dds;
-/// The wire protocol's types.
+/// Wire protocol types.
 namespace rtps = eprosima::fastrtps::rtps;
-/// The transports' types.
+/// Transport types.
 namespace transport = eprosima::fastdds::rtps;
 using eprosima::fastrtps::Duration_t;
 inline const Duration_t kInfiniteDuration = eprosima::fastrtps::c_TimeInfinite;
@@ -30,7 +31,7 @@ using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
 
 [[nodiscard]] inline bool is_ok(const ReturnCode& code) { return code == ReturnCode::RETCODE_OK; }
 
-/// `sample` is of the kind that the writer's DataType takes.
+/// Precondition: `sample` has the sample type of the writer's DataType.
 [[nodiscard]] inline bool write(dds::DataWriter& writer, void* sample) { return writer.write(sample); }
 
 inline void set_times(dds::DataWriterQos& qos, const Duration_t& heartbeat_period,
@@ -47,15 +48,16 @@ inline dds::DataRepresentationQosPolicy& representation(dds::DataReaderQos& qos)
   return qos.type_consistency().representation;
 }
 
-/// Endpoints of one process exchange messages by the network too. Call it before there is a participant.
+/// Makes endpoints of one process exchange messages over the network too. Call it before creating
+/// participants.
 inline void disable_intraprocess_delivery() {
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
-/// Does not announce the structure of types: Cyclone DDS drops endpoints that do. DataType does that in this
-/// version.
+/// Disables announcing the structure of types, because Cyclone DDS drops endpoints that do. In this version
+/// DataType does it.
 inline void disable_type_propagation(dds::DomainParticipantQos&) {}
 
 }  // namespace sidestep::fast_dds

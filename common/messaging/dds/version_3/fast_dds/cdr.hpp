@@ -18,7 +18,7 @@
 #include "idl/rulesCdrAux.hpp"
 #include "idl/visionCdrAux.hpp"
 
-/// Fast CDR 2 and the types that Fast DDS-Gen 4 generates. Their encoding is that of version 2 (XCDR 1).
+/// Fast CDR 2 and the types that Fast DDS-Gen 4 generates. They use the same encoding as version 2 (XCDR 1).
 namespace sidestep::fast_dds {
 
 enum class ByteOrder : std::uint8_t { kLittleEndian, kBigEndian };
@@ -35,7 +35,7 @@ class CdrCoder {
     cdr_.set_encoding_flag(eprosima::fastcdr::EncodingAlgorithmFlag::PLAIN_CDR);
   }
 
-  /// These throw a std::exception if the bytes do not suffice or hold no such message.
+  /// These throw a std::exception if there are too few bytes or they do not encode such a message.
   template <typename Message>
   void write(const Message& message) {
     eprosima::fastcdr::serialize(cdr_, message);
@@ -48,7 +48,7 @@ class CdrCoder {
   void read(Message& message) {
     eprosima::fastcdr::deserialize(cdr_, message);
   }
-  /// Bytes written or read so far.
+  /// Number of bytes written or read so far.
   std::size_t position() const { return cdr_.get_serialized_data_length(); }
 
  private:
@@ -56,7 +56,7 @@ class CdrCoder {
   eprosima::fastcdr::Cdr cdr_;
 };
 
-/// Bytes that the message takes.
+/// Number of bytes that the encoded message takes.
 template <typename Message>
 std::size_t cdr_size(const Message& message) {
   eprosima::fastcdr::CdrSizeCalculator calculator(eprosima::fastcdr::CdrVersion::XCDRv1);

@@ -21,11 +21,11 @@ class ChainedTransport : public transport::ChainingTransport {
  public:
   using ChainingTransport::ChainingTransport;
 
-  /// Called before a datagram, of which this is the first part, goes to everybody, as announcements of the
-  /// participant do: to a multicast address, or to all ports at which peers may be. The result is a datagram
-  /// to be sent there before it; empty: none.
+  /// Called before a datagram is sent to everybody, that is, to a multicast address or to all ports at which
+  /// peers may be; announcements of the participant are sent like that. Receives the first part of the
+  /// datagram. Returns another datagram to be sent there before it; empty: none.
   virtual std::vector<std::uint8_t> before_announcement(std::span<const std::uint8_t> first_part) = 0;
-  /// A datagram has arrived. `next` is what handles it unless it is dropped here.
+  /// Called when a datagram has arrived. `next` processes it unless it is dropped here.
   virtual void on_datagram(transport::TransportReceiverInterface& next,
                            std::span<const std::uint8_t> datagram, const rtps::Locator_t& local,
                            const rtps::Locator_t& remote) = 0;

@@ -19,14 +19,15 @@ namespace sidestep::fast_dds {
 /// Listener that reports discovery in plain structs.
 class DiscoveryListener : public dds::DomainParticipantListener {
  public:
-  /// A participant was discovered or has changed; or it has gone.
+  /// A participant was discovered, has changed or has gone.
   virtual void on_participant(const rtps::GuidPrefix_t&, const std::string& /*name*/, bool /*has_gone*/) {}
-  /// An endpoint was discovered; or it has changed; or it has gone.
+  /// An endpoint was discovered, has changed or has gone.
   virtual void on_endpoint(const rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                            EndpointChange change) = 0;
 
   /// Called when Fast DDS has accepted a participant's private key, certificate and permissions, or has
-  /// refused the former two; it does not tell if permissions are refused. Set it before the listener is used.
+  /// refused its private key or certificate. It is not called if permissions are refused. Set it before the
+  /// listener is used.
   std::function<void(const rtps::GuidPrefix_t&, bool is_genuine)> on_authentication;
 
   void onParticipantAuthentication(dds::DomainParticipant*,
@@ -63,7 +64,7 @@ class DiscoveryListener : public dds::DomainParticipantListener {
     return d == kInfiniteDuration ? Duration::max() : Duration{d.to_ns()};
   }
 
-  /// For PublicationBuiltinTopicData and SubscriptionBuiltinTopicData.
+  /// Converts PublicationBuiltinTopicData or SubscriptionBuiltinTopicData.
   template <typename TopicData>
   static DiscoveredEndpoint endpoint_of(const TopicData& data, bool is_writer) {
     DiscoveredEndpoint result;

@@ -15,13 +15,14 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
 
-/// What differs between versions of Fast DDS: this is version 3. The files of all versions declare the same.
+/// The differences between versions of Fast DDS; this is version 3. The files for all versions declare the
+/// same names.
 namespace sidestep::fast_dds {
 
 namespace dds = eprosima::fastdds::dds;
-/// The wire protocol's types.
+/// Wire protocol types.
 namespace rtps = eprosima::fastdds::rtps;
-/// The transports' types.
+/// Transport types.
 namespace transport = eprosima::fastdds::rtps;
 using eprosima::fastdds::dds::Duration_t;
 inline const Duration_t kInfiniteDuration = eprosima::fastdds::dds::c_TimeInfinite;
@@ -30,7 +31,7 @@ using ReturnCode = dds::ReturnCode_t;
 
 [[nodiscard]] inline bool is_ok(ReturnCode code) { return code == dds::RETCODE_OK; }
 
-/// `sample` is of the kind that the writer's DataType takes.
+/// Precondition: `sample` has the sample type of the writer's DataType.
 [[nodiscard]] inline bool write(dds::DataWriter& writer, void* sample) { return is_ok(writer.write(sample)); }
 
 inline void set_times(dds::DataWriterQos& qos, const Duration_t& heartbeat_period,
@@ -47,14 +48,15 @@ inline dds::DataRepresentationQosPolicy& representation(dds::DataReaderQos& qos)
   return qos.representation();
 }
 
-/// Endpoints of one process exchange messages by the network too. Call it before there is a participant.
+/// Makes endpoints of one process exchange messages over the network too. Call it before creating
+/// participants.
 inline void disable_intraprocess_delivery() {
   eprosima::fastdds::LibrarySettings settings;
   settings.intraprocess_delivery = eprosima::fastdds::INTRAPROCESS_OFF;
   dds::DomainParticipantFactory::get_instance()->set_library_settings(settings);
 }
 
-/// Does not announce the structure of types: Cyclone DDS drops endpoints that do.
+/// Disables announcing the structure of types, because Cyclone DDS drops endpoints that do.
 inline void disable_type_propagation(dds::DomainParticipantQos& qos) {
   qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
 }
