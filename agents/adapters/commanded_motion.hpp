@@ -7,22 +7,22 @@
 
 namespace sidestep {
 
-/// The velocities that a base has been commanded lately, and those that it has by them: it obeys each command
-/// after a fixed latency, until the next one.
+/// The velocities recently commanded to a base, and the velocities that result from them: the base obeys each
+/// command after a fixed latency, until the next one takes effect.
 class CommandedMotion {
  public:
   /// Precondition: 0 <= latency <= kMaxLatency.
   explicit CommandedMotion(Duration latency) : latency_(latency) {}
 
-  /// Precondition: `at` is later than at the last call.
+  /// Precondition: `at` is later than in the last call.
   void add(Time at, const BodyVelocity& velocity);
-  /// The mean velocity that the base has from `from` to `to`, both later than the oldest command remembered;
-  /// at rest before the first command.
+  /// The mean velocity of the base between `from` and `to`. Precondition: both are later than the oldest
+  /// remembered command. Before the first command the base is at rest.
   BodyVelocity mean(Time from, Time to) const;
-  /// The earliest time after `time` at which the base obeys another command of those sent; `latest` if that
-  /// would be later. Precondition: as for mean().
+  /// The earliest time after `time` at which the base starts to obey another command that was already sent,
+  /// but at most `latest`. Precondition: as for mean().
   Time next_change(Time time, Time latest) const;
-  /// The velocity once all commands are obeyed.
+  /// The velocity once all commands are in effect.
   BodyVelocity latest() const;
   Duration latency() const { return latency_; }
 

@@ -13,15 +13,16 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A base stops within this time of its last command, wherever that came from.
+// A base stops within this time after its last command, whoever sent it.
 constexpr Duration kStoppingTime = milliseconds(500);
-// First fixes of a robot at rest agree within this many standard deviations of one of them, and this.
+// First fixes of a robot at rest agree if they are within this many standard deviations of one of them, plus
+// this distance.
 constexpr double kAgreement = 5, kMinAgreement_m = 0.003;
-// After a longer pause of this process nobody knows what the base did.
+// After a longer pause of this process, the base's motion in the meantime is unknown.
 constexpr Duration kMaxPause = milliseconds(200);
 // Odometry that is older than this is no longer used.
 constexpr Duration kOdometryTimeout = milliseconds(150);
-// A base at rest within this distance of its reference is left there.
+// A base at rest within this distance of its reference is not corrected.
 constexpr double kRestTolerance_m = 0.001;
 
 robot::Settings<float> side_settings(const DriveSettings& settings) {
@@ -44,7 +45,7 @@ EstimatorSettings estimator_settings(const DriveSettings& settings) {
   return estimator;
 }
 
-/// By which odometry may be dated wrongly: at the speed limit that displaces the estimate by the drift bound.
+/// Maximum error of odometry dates: at the speed limit it displaces the estimate by the drift bound.
 Duration max_date_error(const DriveSettings& settings) {
   return from_seconds(drift_bound_m(settings.tracking_bound_m) / settings.limits.speed_mps);
 }
@@ -113,7 +114,7 @@ void DrivenRobot::on_odometry(const OdometryReport& report, Time now) {
 
 void DrivenRobot::on_malformed_command(Time now) { side_.on_malformed_command(to_ns(now)); }
 
-// A single fix may be wrong, and a base that is pushed is nowhere.
+// A single fix may be wrong, and a base that is being pushed has no settled position.
 void DrivenRobot::add_first_fix(const PoseFix& fix, Time now) {
   const bool is_usable =
       fix.captured_at > moved_at_ && fix.captured_at <= now &&
@@ -151,7 +152,7 @@ void DrivenRobot::forget_pose(Time now) {
 
 void DrivenRobot::advance(Time now) {
   if (now - estimator_.time() > kMaxPause) return forget_pose(now);
-  // The base's own measurement is better than what it was commanded, but comes later.
+  // The base's own measurement is more accurate than the commands, but arrives later.
   const bool is_measured = now - measured_.until() <= kOdometryTimeout;
   const Time until = is_measured ? std::min(now, measured_.until()) : now;
   while (estimator_.time() + kPeriod <= until) {
@@ -213,7 +214,7 @@ robot::MotionUnderWay<float> DrivenRobot::under_way(Time now, const Pose& pose) 
 }
 
 BodyVelocity DrivenRobot::track(Time now) const {
-  // The command acts from `begin` on, for a period.
+  // The command acts from `begin` on, for one period.
   const Time begin = now + settings_.latency, middle = begin + kPeriod / 2;
   const Pose pose = predicted(begin);
   const auto at_begin = robot::motion_at<float>(side_.planned(to_ns(begin)), to_ns(begin));

@@ -18,13 +18,13 @@ struct BodyVelocity {
   double turn_radps = 0;
 };
 
-/// What one robot is to do until the next command, about 10 ms later.
+/// The commanded velocity of one robot until the next command, about 10 ms later.
 struct BaseCommand {
   RobotId robot = 0;
   BodyVelocity velocity;
 };
 
-/// Where a base has moved by its own measurement, in a frame of its own in which errors accumulate.
+/// A base's measurement of its own motion, in its own frame, in which errors accumulate.
 struct OdometryReport {
   RobotId robot = 0;
   Time measured_at{};
@@ -32,20 +32,20 @@ struct OdometryReport {
   double heading_rad = 0;
 };
 
-/// Connects robots to whatever moves them: the commands go out, what the bases report comes in. All calls and
-/// callbacks are made in the thread of the process's bus. A base must stop by itself soon after the last
-/// command.
+/// Connects robots to the hardware or software that moves them: it sends commands and receives the bases'
+/// reports. All calls and callbacks are made in the thread of the process's bus. A base must stop by itself
+/// soon after the last command.
 class Driver {
  public:
   virtual ~Driver() = default;
 
   /// Sends the commands of all robots, once per control period.
   virtual void send(std::span<const BaseCommand> commands) = 0;
-  /// Sets the callback for odometry. A driver without odometry never calls it. Everything in a report is
-  /// checked: it is finite and of a robot of this driver. Its time is what the base says, by the process's
-  /// clock; DrivenRobot checks whether that can be true.
+  /// Sets the callback for odometry. A driver without odometry never calls it. Every report is checked: it is
+  /// finite and belongs to a robot of this driver. Its time is what the base reports, converted to the
+  /// process's clock; DrivenRobot checks whether it is plausible.
   virtual void on_odometry(std::function<void(const OdometryReport&)> /*callback*/) {}
-  /// Adds what the driver has dropped.
+  /// Adds the driver's own drop counts.
   virtual void count_drops(DropCounters& drops) const { (void)drops; }
 };
 

@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// Between reports that are farther apart the base may have done anything.
+// If reports are farther apart than this, the base's motion in between is unknown.
 constexpr Duration kMaxInterval = std::chrono::milliseconds(500);
 
 }  // namespace

@@ -8,15 +8,15 @@
 
 namespace sidestep {
 
-/// The velocities that a base has measured lately, from the differences of its odometry.
+/// The velocities that a base has recently measured, computed from differences of its odometry.
 class MeasuredMotion {
  public:
-  /// Precondition: the report is finite, and its date is believed.
+  /// Precondition: the report is finite and its date is trusted.
   void add(const OdometryReport& report);
   /// The time of the latest report; Time{} before the first.
   Time until() const { return last_ ? last_->measured_at : Time{}; }
-  /// The mean velocity from `from` to `to`; nullopt if the reports do not cover this time, or are not
-  /// remembered. Precondition: from < to.
+  /// The mean velocity from `from` to `to`; nullopt if the reports do not cover this interval or are no
+  /// longer remembered. Precondition: from < to.
   std::optional<BodyVelocity> mean(Time from, Time to) const;
 
  private:

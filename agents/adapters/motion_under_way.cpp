@@ -15,19 +15,19 @@ namespace {
 using UnderWay = robot::MotionUnderWay<float>;
 
 constexpr std::size_t kMaxParts = UnderWay::kMaxParts;
-/// At most so many points of the path are tried as ends of parts.
+/// Maximum number of points of the path that are tried as ends of parts.
 constexpr std::size_t kMaxTried = 30;
-/// Of the squared deviation of velocities from their mean, in units of the squared duration: it decides where
-/// the path does not.
+/// Weight of the squared deviation of velocities from their mean, in units of the squared duration. It
+/// decides where the path does not.
 constexpr double kRegularisation = 1e-8;
-/// Of numbers in single precision.
+/// Rounding error of numbers in single precision.
 constexpr double kRounding_m = 1e-6;
 
 constexpr Duration kMinPart = std::chrono::milliseconds(2);
-/// Of a part. Receivers would refuse more, and compute it from numbers in single precision.
+/// Maximum acceleration of a part. Receivers refuse more, and compute it from numbers in single precision.
 constexpr double kMaxPartAcceleration_mps2 = 0.9 * kMaxAcceleration_mps2;
 
-using Ends = std::array<std::size_t, kMaxParts + 1>;  ///< of the parts, as points of the path
+using Ends = std::array<std::size_t, kMaxParts + 1>;  ///< ends of the parts, as points of the path
 using Weights = Eigen::Matrix<double, static_cast<int>(kMaxParts) + 1, 1>;
 
 /// The distance moved is a weighted sum of the velocities at the ends of the parts.
@@ -44,7 +44,8 @@ Weights weights_at(std::span<const PathPoint> path, const Ends& ends, std::size_
   return weights;
 }
 
-/// The velocities at the ends of the parts that fit the path best, by least squares; the last one is given.
+/// The velocities at the ends of the parts that fit the path best, by least squares; the last velocity is
+/// given.
 UnderWay fitted(std::span<const PathPoint> path, const Vec2& last_velocity_mps, const Ends& ends,
                 std::size_t parts) {
   const int last = static_cast<int>(parts);
@@ -75,8 +76,8 @@ UnderWay fitted(std::span<const PathPoint> path, const Vec2& last_velocity_mps, 
   return motion;
 }
 
-/// Between two points the path is straight and even, and the motion's distance from the straight line between
-/// its own places at those times is at most a t² / 8.
+/// Between two points the path is straight with constant velocity. The distance between the motion and the
+/// straight line through its own positions at those times is at most a t² / 8.
 double max_error_m(std::span<const PathPoint> path, const Ends& ends, const UnderWay& motion) {
   double largest_m = 0, error_m = 0;
   Vec2 place_m = path.front().position_m, velocity_mps(motion.from_mps.x, motion.from_mps.y);
@@ -121,7 +122,7 @@ bool are_accelerations_small(const UnderWay& motion) {
   return true;
 }
 
-/// The last velocity all the time, for paths that take too short a time to fit anything.
+/// The last velocity throughout, for paths that are too short in time to fit anything.
 UnderWay constant(std::span<const PathPoint> path, const Vec2& velocity_mps) {
   UnderWay motion;
   motion.from_mps = {static_cast<float>(velocity_mps.x()), static_cast<float>(velocity_mps.y())};
@@ -143,7 +144,7 @@ robot::MotionUnderWay<float> fit_motion_under_way(std::span<const PathPoint> pat
     if (!are_long_enough(path, ends, parts)) return;
     UnderWay motion = fitted(path, last_velocity_mps, ends, parts);
     motion.error_m = static_cast<float>(max_error_m(path, ends, motion));
-    // A NaN is not better.
+    // A NaN does not count as better.
     if (motion.error_m < best.error_m && are_accelerations_small(motion)) best = motion;
   };
   const std::size_t stride = (steps + kMaxTried - 1) / kMaxTried;

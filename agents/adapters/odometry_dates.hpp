@@ -7,19 +7,19 @@
 
 namespace sidestep {
 
-/// Whether the dates of a base's odometry can be believed. A report cannot arrive before it was measured. A
-/// base whose clock is behind cannot be told from a slow connection. So dates are believed for kBeliefPeriod
-/// after a report that arrived within `max_error` of its date, and none that is much older. What comes from
-/// the future ends the belief.
+/// Decides whether the dates of a base's odometry can be trusted. A report cannot arrive before it was
+/// measured. But a base whose clock is behind cannot be distinguished from a slow connection. So dates are
+/// trusted for kBeliefPeriod after a report that arrived within `max_error` of its date; reports that are
+/// much older are never trusted. A report from the future ends the trust.
 class OdometryDates {
  public:
   static constexpr Duration kBeliefPeriod = std::chrono::milliseconds(500);
-  /// Of `max_error`: a single report may be so late.
+  /// Multiple of `max_error` by which a single report may be late.
   static constexpr int kMaxLateness = 5;
 
   explicit OdometryDates(Duration max_error) : max_error_(max_error) {}
 
-  /// Called once for each report, in the order of arrival.
+  /// Call it once for each report, in order of arrival.
   [[nodiscard]] bool is_believed(Time measured_at, Time arrived_at);
 
  private:

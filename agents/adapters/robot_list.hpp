@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The robots of a scenario that a text names: "all", or numbers and ranges separated by commas, such as
-/// "0-10,16". Throws std::invalid_argument that says what is wrong.
+/// Parses a selection of a scenario's robots: "all", or numbers and ranges separated by commas, such as
+/// "0-10,16". Throws std::invalid_argument with what is wrong.
 [[nodiscard]] std::vector<RobotId> select_robots(const Scenario& scenario, const std::string& text);
 
 }  // namespace sidestep

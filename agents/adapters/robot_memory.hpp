@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// Held by the one process that drives a robot, until it ends however.
+/// A lock held by the only process that drives a robot, until the process ends in any way.
 class MemoryLock {
  public:
   /// Throws std::runtime_error if another process holds it.
@@ -26,12 +26,13 @@ class MemoryLock {
 class RobotMemory final : public robot::StableMemory {
  public:
   /// Reads the file if it exists, and creates the folder. Throws std::runtime_error with the file, the line
-  /// and the reason if the file cannot be read or is not a robot's memory: a robot that had forgotten whom it
-  /// obeys must not drive. Also if another process has this robot's memory: only one may drive a robot.
+  /// and the reason if the file cannot be read or is not a robot's memory, because a robot that has forgotten
+  /// whom it obeys must not drive. Also throws if another process has this robot's memory, because only one
+  /// may drive a robot.
   RobotMemory(const std::string& folder, RobotId robot);
 
   const robot::DurableState& state() const { return state_; }
-  /// Replaces the file as a whole and waits until it is on the disk.
+  /// Replaces the file atomically and waits until it is on the disk.
   [[nodiscard]] bool store(const robot::DurableState& state) override;
 
  private:

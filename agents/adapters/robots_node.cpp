@@ -48,7 +48,7 @@ RobotsNode::RobotsNode(Bus& bus, const Scenario& scenario, const std::vector<Rob
   bus.at(begin, [this] { tick(); });
 }
 
-// Never goes back, so that reported facts stay true.
+// This clock never goes back, so that reported facts stay true.
 Time RobotsNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
 
 void RobotsNode::tick() {
@@ -61,7 +61,7 @@ void RobotsNode::tick() {
     publish_if_changed(entry, now);
     if (entry.feedback_due <= now) publish(entry, now);
   }
-  // Periods that were missed are not made up for.
+  // Missed periods are not made up for.
   next_tick_ = std::max(next_tick_ + DrivenRobot::kPeriod, now);
   bus_.at(next_tick_, [this] { tick(); });
 }

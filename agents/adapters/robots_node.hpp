@@ -15,12 +15,11 @@
 
 namespace sidestep {
 
-/// The robots that a driver moves, on a bus: receives their commands, drives them, and publishes their
-/// feedback at every change and at least once per cycle. The bus must make no callback after the node's
-/// destruction.
+/// Runs the robots that a driver moves: receives their commands, drives them, and publishes their feedback at
+/// every change and at least once per cycle. The bus must make no callback after the node's destruction.
 class RobotsNode {
  public:
-  /// Precondition: `robots` are of the scenario. Throws as RobotMemory does.
+  /// Precondition: `robots` belong to the scenario. Throws if RobotMemory does.
   RobotsNode(Bus& bus, const Scenario& scenario, const std::vector<RobotId>& robots, Incarnation incarnation,
              const DriveSettings& settings, Driver& driver, const std::string& memory_folder);
   RobotsNode(const RobotsNode&) = delete;
@@ -31,10 +30,10 @@ class RobotsNode {
     events_.set_listener(min_level, std::move(callback));
   }
   void count_drops(DropCounters& drops) const;
-  /// Whether a robot obeys an agent by this process's clock.
+  /// Whether any robot obeys an agent, by this process's clock.
   bool is_commanded() const;
-  /// Takes no commands from now on, so that all robots come to rest at the ends of their versions. Returns
-  /// whether they have.
+  /// From now on accepts no commands, so that all robots come to rest at the ends of their versions. Returns
+  /// whether they have done so.
   bool come_to_rest();
   const DrivenRobot& robot(std::size_t index) const { return *robots_[index].robot; }
 
@@ -45,7 +44,7 @@ class RobotsNode {
     Writer<msg::Feedback> feedback;
     Time feedback_due{};
     Time watched_start{};  ///< the version start for which a timer is set
-    // As reported last.
+    // As last reported.
     VersionNumber executing = 0;
     Incarnation incarnation = 0;
     Epoch epoch = 0;

@@ -111,7 +111,7 @@ void Agent::begin_if_changed(std::uint64_t revision) {
 
 bool Agent::is_unserved(Time now) const {
   if (negotiation_.is_unserved(now)) return true;
-  // Vision works, but the coordinator does not hear it.
+  // Vision works, but the coordinator does not receive it.
   const auto is_recent = [&](Time t, Duration max_age) { return std::chrono::abs(now - t) <= max_age; };
   return negotiation_.wait_reason(now) == WaitReason::kNone && !negotiation_.is_absent() &&
          is_recent(last_fix_, settings_.max_fix_age) && !is_recent(watched_until_, settings_.max_watch_age);
@@ -132,7 +132,7 @@ Registration Agent::registration() {
 }
 
 void Agent::on_world(const WorldObservations& world, Time now, bool is_robot_clock_known) {
-  // The robot's clock was ahead when that fix was accepted.
+  // The robot's clock was ahead when the last fix was accepted.
   if (is_robot_clock_known && last_fix_ > now + max_clock_difference_) last_fix_ = {};
   if (!world.self) return;
   const Time captured_at = world.self->captured_at;

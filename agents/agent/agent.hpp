@@ -29,48 +29,50 @@
 
 namespace sidestep {
 
-/// A desired motion: the query for the safety search, and the base and intent to propose with its result.
+/// A desired motion: the query for the safety search, and the base and intent that are proposed with its
+/// result.
 struct MotionPlan {
   SearchQuery query;
   VersionNumber base = 0;  ///< the version that the motion continues
   Intent intent;           ///< what the robot intends after the motion
 };
 
-/// The decisions of one robot, once per cycle: from observations and messages to proposals and commands. All
-/// messages that it takes are decoded for the robot, and those that it returns are encoded by the caller. All
-/// times are by the robot's clock, as estimated by the caller.
+/// Makes the decisions of one robot, once per cycle: it turns observations and messages into proposals and
+/// commands. All messages passed to it are already decoded for the robot, and the caller encodes those that
+/// it returns. All times are by the robot's clock, as estimated by the caller.
 class Agent {
  public:
   /// The consequences of a verdict.
   struct VerdictResult {
-    std::optional<Command> command;      ///< forwards the granted version
-    std::optional<Duration> round_trip;  ///< from the proposal to its verdict
+    std::optional<Command> command;      ///< the command that forwards the granted version
+    std::optional<Duration> round_trip;  ///< time from the proposal to its verdict
   };
 
-  /// Precondition: `scenario` contains the robot, and `scratch` was made for the scenario.
+  /// Precondition: `scenario` contains the robot, and `scratch` was made for this scenario.
   Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
         std::shared_ptr<PlanningScratch> scratch, const PlanningSettings& settings = {});
 
-  /// Returns whether the agent should propose again immediately, because the robot does not execute the
-  /// version that the last proposal was based on.
+  /// Processes feedback. Returns whether the agent should propose again immediately, because the robot does
+  /// not execute the version that the last proposal was based on.
   bool on_feedback(const Feedback& feedback);
-  /// `now`: upper bound of the time by the robot's clock. If that clock has not been measured yet, the
-  /// observation is only forwarded: a robot that has lost its pose reports nothing before it gets one.
+  /// Processes a world state. `now` is an upper bound of the time by the robot's clock. If that clock has not
+  /// been measured yet, the observation is only forwarded, because a robot that has lost its pose reports
+  /// nothing until it gets one.
   void on_world(const WorldObservations& world, Time now, bool is_robot_clock_known = true);
-  /// `now`: upper bound of the time by the robot's clock.
+  /// Processes a list of obstacles. `now` is an upper bound of the time by the robot's clock.
   void on_obstacles(const ObstacleObservations& list, Time now) {
     obstacles_.on_list(list, estimate_.position_m, now);
   }
-  /// A scan of the robot's laser. `now`: upper bound of the time by the robot's clock.
+  /// Processes a scan of the robot's laser. `now` is an upper bound of the time by the robot's clock.
   void on_scan(const LaserScan& scan, Time now);
   void on_page(const ReceivedPage& page) { neighbours_.on_page(page); }
-  /// Learns where the lifted robot is to be put down.
+  /// Records where the lifted robot is to be put down.
   void on_placement(const Vec2& position_m) { placement_m_ = position_m; }
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
-  /// Orders that a coordinator remembers.
+  /// Processes orders that a coordinator remembers.
   void on_orders(std::shared_ptr<const OrderPage> page);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
-  /// Closes the cycle that ends now: abandons its proposals that have no verdict.
+  /// Closes the cycle that ends now: abandons this agent's proposals that have no verdict yet.
   void close_cycle(Time now) { negotiation_.close_cycle(now); }
 
   // State of the negotiation; see Negotiation.
@@ -80,15 +82,15 @@ class Agent {
   bool must_ask_robot() const { return negotiation_.must_ask_robot(); }
   bool needs_registration() const { return negotiation_.needs_registration(); }
   bool is_fenced() const { return negotiation_.is_fenced(); }
-  /// Whether the coordinator in charge has told all orders that this agent remembers. The agent registers
-  /// only then: so no order is lost that an agent remembers.
+  /// Whether the active coordinator has announced all orders that this agent remembers. Only then does the
+  /// agent register, so that no order that an agent remembers is lost.
   bool is_told_all_orders() const;
   bool may_propose(Time now) const { return negotiation_.may_propose(now); }
   bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
   Registration registration();
   void on_request(Time now) { negotiation_.on_request(now); }
-  /// Whether the coordinator does not serve this agent, so that the agent should ask for another one.
+  /// Whether the coordinator does not serve this agent, so that the agent should ask for another coordinator.
   bool is_unserved(Time now) const;
   /// See Negotiation.
   Registration epoch_notice() const { return negotiation_.epoch_notice(); }
@@ -103,94 +105,97 @@ class Agent {
   /// recently. `max_speed_mps`: the speed that the clocks allow.
   [[nodiscard]] std::optional<MotionPlan> plan(
       Time now, Time start, double max_speed_mps = std::numeric_limits<double>::infinity());
-  /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; then the robot brakes.
+  /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
-  /// Why plan() returns nothing at this time, as far as it is not because of the robot's own versions.
+  /// Why plan() returns nothing at this time, unless the reason lies in the robot's own versions.
   WaitReason wait_reason(Time now) const;
   AgentActivity activity(Time now) const;
 
-  /// Whether the robot is off the floor, and a rest version may be proposed where it is to be put down.
+  /// Whether the robot is off the floor and a rest version may be proposed at the place where it is to be put
+  /// down.
   bool needs_rest_version(Time now) const;
-  /// The proposal of that rest version. Precondition: needs_rest_version().
+  /// The proposal for that rest version. Precondition: needs_rest_version().
   [[nodiscard]] Proposal propose_rest_version(Time now, Time start);
 
-  /// The command of the cycle. It fences the robot, forwards the latest observation, and repeats a granted
-  /// version until its start.
+  /// The command of this cycle. It fences the robot, forwards the latest observation, and repeats a granted
+  /// version until that version starts.
   Command command(Time now);
 
   const Assignment& assignment() const { return assignment_; }
-  /// Goes on to the next order if the robot has finished one.
+  /// Starts the next order if the robot has finished one.
   void choose_order();
   /// See Assignment.
   std::vector<RememberedOrder> take_missing_orders() { return assignment_.take_missing(); }
-  /// Without the remaining time.
+  /// The report on the robot's order, without the remaining time.
   OrderReport order_report() const;
-  /// Estimate for all goals that are left; nullopt: unknown.
+  /// Estimated time to reach all remaining goals; nullopt: unknown.
   std::optional<double> remaining_s() const;
 
   void count_drops(DropCounters& drops) const;
-  /// Without the durations, which the caller measures.
+  /// The agent's status, without the durations, which the caller measures.
   msg::AgentStatus status(Time now) const;
 
  private:
-  /// A corner around which somebody may come, and until when routes avoid it.
+  /// A corner from behind which a person may appear, and the time until which routes avoid it.
   struct OccludedCorner {
     Vec2 at_m{0, 0};
     Time until{};
   };
-  /// Where no speed was safe, and since when the robot has not come away from there.
+  /// A place at which no speed was safe, and the time since which the robot has not moved away from it.
   struct Standstill {
     Vec2 at_m{0, 0};
     Time since{};
   };
   /// Stores the robot's own state estimate.
   void update_estimate(const Feedback& feedback);
-  /// Advances to the next goal when the robot has arrived. Precondition: the robot is fenced.
+  /// Switches to the next goal when the robot has arrived. Precondition: the robot is fenced.
   void update_goal(const Feedback& feedback);
   /// Precondition: the robot has an order.
   const Goal& goal() const { return *assignment_.goal(); }
-  /// Begins with another goal if it has changed since this revision of the assignment.
+  /// Starts a new goal if the goal has changed since this revision of the assignment.
   void begin_if_changed(std::uint64_t revision);
-  /// Where the robot is to go: to its goal or, without one, nowhere.
+  /// The robot's target: its goal, or the rest position if it has no goal.
   Vec2 target_m(const Vec2& rest_m) const { return assignment_.goal() ? goal().position_m : rest_m; }
-  /// Begins a new route for another target or if zones have changed and, unless the last one is free and not
-  /// old, if stationary robots or moving obstacles have.
+  /// Starts a new route if the target or the zones have changed. Also starts one if stationary robots or
+  /// moving obstacles have changed, unless the last route is free and recent.
   void update_route_planner(const Vec2& target_m, Time now);
   std::vector<TemporaryObstacle> temporary_obstacles(const Vec2& target_m, Time now);
   std::vector<Circle> moving_obstacles(const Vec2& target_m, Time now);
-  /// Whether a robot at rest will not leave by itself.
+  /// Whether a robot at rest will not move away by itself.
   bool is_to_stay(const Neighbours::Stationary& other) const;
-  /// Remembers since when the target cannot be reached.
+  /// Records since when the target has been unreachable.
   void update_blockage(const Route& route, Time now);
   /// Required distance of the robot's centre from the edge of an obstacle.
   double required_separation_m() const { return rules_.radius_m + rules_.margin_m; }
-  /// By which routes prefer to keep clear of obstacles, descending.
+  /// Preferred extra clearances of routes from obstacles, in descending order.
   std::span<const double> extra_clearances_m() const;
   /// Preferred distance of the robot's centre from the edge of an obstacle.
   double planning_separation_m() const;
   /// Whether the robot is at rest at the end of `base`, where vision agrees with its own position estimate. A
   /// version from there has no inflation.
   bool may_end_inflation(const Version& base, Time start) const;
-  /// Versions that start farther apart than this cannot conflict.
+  /// Distance between start positions beyond which versions cannot conflict.
   double search_horizon_m() const;
-  /// As search_horizon_m(), plus the distance that robots drive while a ledger page ages.
+  /// Like search_horizon_m(), plus the distance that robots drive while a ledger page ages.
   double page_horizon_m() const;
-  /// The robot's clock was set back: what began by it before has begun at a time that is not known.
+  /// The robot's clock was set back, so it is unknown how long ago the recorded times were: restarts all
+  /// timers.
   void restart_timers(Time now);
-  /// Leaves a passage to a robot with the right of way, if this robot makes no progress.
+  /// If this robot makes no progress, lets it leave a passage for a robot with the right of way.
   void decide_whether_to_give_way(Time now);
   /// The robots to which this one may have to give way.
   std::vector<OtherRobot> others_in_passages(Time now);
-  /// The intent for a robot that will be in `at_start` at `start`, given the intents of others.
+  /// The intent, given the intents of other robots, of this robot if it is in the state `at_start` at
+  /// `start`.
   Intent steer(const State& at_start, Time start, const Route& route);
-  /// As steer(), with the planner's local methods. Fills preferred_mps_.
+  /// Like steer(), but uses the planner's local methods. Fills preferred_mps_.
   Intent steer_locally(const State& at_start, Time start, Route route);
-  /// The accelerations that reach the velocities in preferred_mps_; empty without local methods.
+  /// The accelerations that lead to the velocities in preferred_mps_; empty without local methods.
   std::span<const Vec2> preferred_accelerations(const Vec2& velocity_mps, Duration hold);
-  /// Adds what a robot at a position would see of the map to the steering.
+  /// Adds the walls of the map that a robot at a position would see to the steering.
   void add_walls(const Vec2& position_m);
-  /// How long an acceleration may be held: from min_hold() to max_hold().
+  /// The time for which an acceleration may be held: from min_hold() to max_hold().
   Duration min_hold() const { return std::max(cycle_, settings_.min_hold); }
   Duration max_hold() const { return std::max(min_hold(), cycle_ * negotiation_.lead()); }
   /// The acceleration towards a place.
@@ -198,17 +203,17 @@ class Agent {
                                    const MotionLimits& limits) const;
   AccelerationCommand follow(const Intent& intent, const State& at_start, const Route& route,
                              double max_speed_mps) const;
-  /// As follow(), at the highest speed at which the robot is at rest before anybody who was hidden can touch
-  /// it; nearly 0 if there is none.
+  /// Like follow(), but limited to the highest speed at which the robot comes to rest before anybody who was
+  /// hidden can touch it; almost 0 if there is no such speed.
   AccelerationCommand follow_in_sight(const Intent& intent, const State& at_start, Time start,
                                       const Route& route, double max_speed_mps, const HiddenSpace& hidden);
-  /// Away from where somebody may step out, so slowly that the robot counts as being at rest.
+  /// Moves away from where somebody may step out, so slowly that the robot counts as being at rest.
   AccelerationCommand creep_away(const State& at_start, const HiddenSpace& hidden) const;
-  /// What the laser did not see in its last scan; nothing without a laser.
+  /// The floor that the laser did not see in its last scan; empty without a laser.
   HiddenSpace hidden_space() const;
-  /// Remembers the corner that the robot cannot pass at any speed, if it has stood before one for a while.
+  /// Remembers a corner that the robot cannot pass at any speed, if it has waited there for a while.
   void update_occlusion(const Intent& intent, const State& at_start, const HiddenSpace& hidden, Time now);
-  /// What the laser sees standing that the rules do not know, and corners that the robot could not pass.
+  /// Obstacles that the laser sees but the rules do not contain, and corners that the robot could not pass.
   std::vector<TemporaryObstacle> obstacles_in_sight(const Vec2& target_m) const;
   /// The direction of the route, turned right by deadlock recovery as far as obstacles allow.
   Vec2 recovery_direction(const Vec2& position_m, const Route& route) const;
@@ -217,7 +222,8 @@ class Agent {
   const PlanningSettings settings_;
   const std::shared_ptr<PlanningScratch> scratch_;
   const FloorRules& rules_;
-  const Duration max_clock_difference_;  // of two clocks that both stay within the clock bound
+  // Maximum difference between two clocks that both stay within the clock bound.
+  const Duration max_clock_difference_;
   const Duration cycle_;
   const double drift_bound_m_;
   const double goal_tolerance_m_;
@@ -228,17 +234,17 @@ class Agent {
   std::optional<LaserSight> sight_;  // nullopt: the robot has no laser
   const double max_person_speed_mps_;
   const Duration scan_period_;
-  std::vector<Circle> seen_robots_;  // at the time of the last scan
+  std::vector<Circle> seen_robots_;  // the robots at the time of the last scan
   std::optional<Standstill> standstill_;
-  bool is_creeping_ = false;  // no speed was safe when it last planned
+  bool is_creeping_ = false;  // no speed was safe at the last planning
   std::vector<OccludedCorner> occluded_corners_;
   std::uint64_t future_scans_ = 0;
   Time watched_until_{};  // the coordinator's last comparison of the robots' places with their versions
   LastChoice last_choice_;
   Rng rng_;
   Assignment assignment_;
-  bool robot_has_moved_ = false;  // ever, by a granted version
-  /// The coordinator that was heard last in its epoch.
+  bool robot_has_moved_ = false;  // the robot has executed a granted version
+  /// The coordinator that was last heard in its epoch.
   struct Charge {
     std::uint32_t coordinator = 0;
     Incarnation incarnation = 0;
@@ -250,15 +256,16 @@ class Agent {
   NamedPlanner planner_;
   std::optional<LocalDriver> local_driver_;  // nullopt: planner_ has no local methods
   std::vector<Circle> bodies_nearby_;
-  std::vector<Vec2> preferred_mps_, preferred_mps2_;  // by the local methods, in this cycle
+  std::vector<Vec2> preferred_mps_, preferred_mps2_;  // chosen by the local methods in this cycle
   std::optional<RouteObstacles> route_obstacles_;
-  std::optional<RoutePlanner> route_planner_;  // by planner_, around route_obstacles_
-  bool has_route_ = false;                     // since the target or zones have changed
+  std::optional<RoutePlanner> route_planner_;  // uses planner_ and route_obstacles_
+  bool has_route_ = false;                     // has a route since the target or zones last changed
   bool is_route_outdated_ = false;             // obstacles have changed since routed_at_
   Time routed_at_{};
-  double route_length_m_ = 0;         // of the last route
-  double remaining_to_goal_m_ = 0;    // of the last route; infinity: it leads elsewhere
-  std::optional<Blockage> blockage_;  // of the target
+  double route_length_m_ = 0;  // length of the last route
+  // Remaining length of the last route; infinite if it does not lead to the goal.
+  double remaining_to_goal_m_ = 0;
+  std::optional<Blockage> blockage_;  // what blocks the target
   std::optional<Time> blocked_since_;
   Time last_plan_{};
   DeadlockRecovery recovery_;
@@ -266,16 +273,17 @@ class Agent {
   GiveWay give_way_;
   bool is_escaping_ = false;  // the last search has found only an escape from a conflict
   bool arrived_ = false;
-  State estimate_;                   // the robot's own
+  State estimate_;                   // the robot's own estimate
   double max_dead_reckoning_m_ = 0;  // how far the robot may drive from estimate_ without being observed
-  std::optional<PoseFix> fix_;       // observed, not yet forwarded
+  std::optional<PoseFix> fix_;       // observed but not yet forwarded
   Time last_fix_{};
   Vec2 last_fix_m_{0, 0};
   std::optional<Version> forwarded_;
-  std::optional<Vec2> placement_m_;     // where the robot is to be put down
-  std::uint64_t invalid_ = 0;           // observations from the future
-  std::uint64_t reference_losses_ = 0;  // number of times that the robot stopped off its reference
-  VersionNumber last_own_stop_ = 0;     // newest of those stops
+  std::optional<Vec2> placement_m_;  // where the robot is to be put down
+  std::uint64_t invalid_ = 0;        // number of observations from the future
+  // Number of times that the robot has stopped because it was off its reference.
+  std::uint64_t reference_losses_ = 0;
+  VersionNumber last_own_stop_ = 0;  // newest of those stops
   Time last_steered_start_{};
 };
 

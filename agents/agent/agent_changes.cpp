@@ -13,10 +13,10 @@
 namespace sidestep {
 namespace {
 
-/// A new limit is reported if it differs from the reported one by more than this share.
+/// A new limit is reported if it differs from the reported one by more than this fraction.
 constexpr double kLimitChange = 0.2;
 
-/// Whether something that was reported at `last` may be reported again; if so, notes the time.
+/// Whether something last reported at `last` may be reported again. If so, records the time.
 bool may_report(std::optional<Time>& last, Time now) {
   if (last && now - *last < AgentChanges::kMinInterval) return false;
   last = now;
@@ -73,7 +73,7 @@ void AgentChanges::report_wait(WaitReason reason, Time now) {
 }
 
 void AgentChanges::report_speed_limit(const ClockSpeedLimit& limit, Time now) {
-  // Without a measurement the agent waits, and says so.
+  // Without a measurement the agent waits and reports that instead.
   const bool is_limited = limit.offset && limit.speed_mps < limit.robot_limit_mps;
   if (is_limited != limited_since_.has_value())
     limited_since_ = is_limited ? std::optional(now) : std::nullopt;
@@ -109,7 +109,7 @@ void AgentChanges::on_feedback(const Feedback& feedback) {
   was_lifted_ = feedback.is_lifted;
 }
 
-// A robot that restarts counts from zero.
+// A robot's counters restart from zero after a restart.
 void AgentChanges::report_restart(std::uint64_t activated) {
   const bool has_restarted = activated < activated_;
   activated_ = activated;
@@ -124,7 +124,7 @@ void AgentChanges::on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinato
 }
 
 void AgentChanges::on_denial(const Verdict& verdict) {
-  // One candidate may have been denied for another reason than the next; the first one is the desired motion.
+  // Candidates may have been denied for different reasons; the first candidate is the desired motion.
   ++denials_[static_cast<std::size_t>(verdict.reasons.front())];
   ++denial_count_;
   if (verdict.reasons.front() == msg::Reason::REASON_CONFLICT) blocker_ = verdict.blockers.front();

@@ -12,29 +12,29 @@
 
 namespace sidestep {
 
-/// What an agent is doing, for its log.
+/// An agent's current activity, for its log.
 struct AgentActivity {
   bool is_fenced = false;
   bool is_superseded = false;
   Incarnation incarnation = 0;
   bool is_registered = false;
-  Epoch epoch = 0;  ///< 0: none known
+  Epoch epoch = 0;  ///< 0: no epoch is known
   WaitReason waits_for = WaitReason::kNone;
   std::size_t goal_index = 0;
-  bool has_arrived = false;  ///< at that goal, which is the last one
+  bool has_arrived = false;  ///< at the current goal, which is the last one
   bool is_recovering = false;
   bool is_escaping = false;
 };
 
-/// The speed that the clocks allow, and the offset that limits it.
+/// The speed limit that results from clock uncertainty, and the offset that causes it.
 struct ClockSpeedLimit {
   double speed_mps = 0;
-  double robot_limit_mps = 0;  ///< the robot's own
+  double robot_limit_mps = 0;  ///< the robot's own limit
   std::optional<OffsetInterval> offset;
 };
 
-/// Reports what changes in the work of one agent. What may change in every cycle is reported once it has
-/// lasted for kSettlingTime, and at most once per kMinInterval.
+/// Reports changes in the work of one agent. A condition that may change in every cycle is reported once it
+/// has lasted for kSettlingTime, and at most once per kMinInterval.
 class AgentChanges {
  public:
   static constexpr Duration kSettlingTime{250'000'000};
@@ -44,11 +44,11 @@ class AgentChanges {
 
   /// Call it once per cycle.
   void update(const AgentActivity& activity, const ClockSpeedLimit& limit, Time now);
-  /// A fact of the obeyed agent's robot.
+  /// Processes a fact from a robot that obeys the agent.
   void on_feedback(const Feedback& feedback);
-  /// The agent has adopted an epoch of which `coordinator` has told it; nullopt: its robot has.
+  /// The agent has adopted an epoch that `coordinator` announced; nullopt: its robot did.
   void on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinator);
-  /// A proposal was denied.
+  /// Processes the denial of a proposal.
   void on_denial(const Verdict& verdict);
 
  private:
@@ -62,23 +62,23 @@ class AgentChanges {
   const EventReporter& events_;
   const RobotId robot_;
   AgentActivity last_;
-  // Waiting.
+  // State for reports about waiting.
   WaitReason waits_for_ = WaitReason::kNone, reported_wait_ = WaitReason::kNone;
   Time waits_since_{};
-  // Speed limit.
+  // State for reports about the speed limit.
   std::optional<Time> limited_since_, limit_reported_at_;
   double reported_limit_mps_ = 0;
-  // Motion.
+  // State for reports about motion.
   std::optional<Time> escape_reported_at_, recovery_reported_at_;
-  // Facts.
+  // State for reports about facts.
   Time latest_fact_{};
   bool was_off_reference_ = false, was_lifted_ = false;
   VersionNumber own_stop_ = 0;
   std::uint64_t activated_ = 0;
-  // Denials since the last report.
+  // Number of denials since the last report, by reason.
   std::array<std::uint64_t, static_cast<std::size_t>(msg::Reason::REASON_HELD) + 1> denials_{};
   std::uint64_t denial_count_ = 0;
-  RobotId blocker_ = 0;  // of the last conflict
+  RobotId blocker_ = 0;  // robot of the last conflict
   Time denials_reported_at_{};
 };
 

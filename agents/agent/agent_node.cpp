@@ -17,13 +17,13 @@ namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
-// Registrations that only measure a clock are farther apart than those that ask for another coordinator, see
+// Registrations that only measure a clock are less frequent than those that ask for another coordinator, see
 // FleetReception::kMaxRequestGap.
 constexpr Duration kBetweenMeasurements{500'000'000};
-// An agent that asks for another coordinator may do so for long.
+// An agent may have to ask for another coordinator for a long time.
 constexpr int kCyclesBetweenRequests = 6;
 constexpr Duration kOrderStatusPeriod{1'000'000'000};
-// Announced orders are repeated to the coordinator at once, but not more often than this.
+// Announced orders are repeated to the coordinator at once, but at most at this interval.
 constexpr Duration kConfirmationPeriod{100'000'000};
 
 /// Offset of the robot's cycles from multiples of the cycle time.
@@ -88,7 +88,8 @@ void AgentNode::on_feedback(const msg::Feedback& message) {
   const Epoch last_epoch = agent_.epoch();
   const bool was_fenced = agent_.is_fenced();
   const bool is_contradicted = agent_.on_feedback(*feedback);
-  // The robot's first acknowledgement is answered at once by the epoch: nothing moves before it obeys it.
+  // Responds to the robot's first acknowledgement immediately by sending the epoch: nothing moves before the
+  // robot obeys it.
   if (!was_fenced && agent_.is_fenced() && agent_.epoch() != 0) publish_command(agent_.command(robot_now()));
   publish_order_status();
   changes_.on_feedback(*feedback);
@@ -112,7 +113,7 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
 
 void AgentNode::on_world(const msg::WorldState& message) {
   WorldObservations world = world_.decode(message);
-  // The robot would take the place for that of another time.
+  // Otherwise the robot would take the place for its place at another time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
   agent_.on_world(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
 }
@@ -186,7 +187,7 @@ void AgentNode::on_orders(const msg::OrderMemory& message) {
     const bool concerns = order.order.robot == robot_ || order.order.robot == kAllRobots;
     return concerns && order.order.kind == msg::OrderKind::ORDER_HOLD;
   };
-  // The coordinator waits for an agent that remembers the hold before it confirms it.
+  // The coordinator confirms a hold only after an agent has reported that it remembers it.
   if (page->count == 0 && std::ranges::any_of(page->orders, holds)) order_status_at_ = {};
   publish_order_status();
   if (agent_.needs_registration() && agent_.is_told_all_orders()) registration_wait_ = 0;
@@ -226,7 +227,7 @@ void AgentNode::report_changes() {
 
 Time AgentNode::robot_now() const { return bus_.now() + clocks_.robot_offset(); }
 
-// A time in the future was read before this process's clock was set back.
+// A time in the future was recorded before this process's clock was set back.
 bool AgentNode::has_elapsed(Duration period, Time since) const {
   return std::chrono::abs(bus_.now() - since) >= period;
 }
@@ -267,7 +268,7 @@ void AgentNode::measure_coordinator_clock(Duration since_last) {
 
 bool AgentNode::clocks_agree() {
   clocks_.on_epoch(agent_.epoch());
-  // As long as nobody answers, the agent asks.
+  // The agent keeps asking as long as nobody answers.
   if (clocks_.is_measurement_due(bus_.now())) measure_coordinator_clock(kCyclesBetweenRegistrations * cycle_);
   return clocks_.allows_motion(bus_.now());
 }

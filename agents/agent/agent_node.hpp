@@ -14,10 +14,10 @@
 
 namespace sidestep {
 
-/// Connects an agent to the bus and runs its control cycle. Decodes and checks every message, once, and
-/// counts those that are invalid. The cycles of all robots are spread evenly over the cycle time, so that
-/// their proposals do not coincide. Versions start and end by the robot's clock, so the agent uses the
-/// robot's time: the bus's time plus the measured offset.
+/// Connects an agent to the bus and runs its control cycle. Decodes and checks every message once, and counts
+/// invalid ones. The cycles of all robots are spread evenly over the cycle time, so that their proposals do
+/// not coincide. Versions start and end by the robot's clock, so the agent uses the robot's time: the bus's
+/// time plus the measured offset.
 class AgentNode {
  public:
   AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
@@ -30,8 +30,9 @@ class AgentNode {
     events_.set_listener(min_level, std::move(callback));
   }
   void count_drops(DropCounters& drops) const;
-  /// Whether this agent must keep its clock although the host's has been set: it can drive its robot by it,
-  /// or would come back as a later agent than the one that its robot obeys.
+  /// Whether this agent must keep its clock although the host's clock has been set: either the agent can
+  /// drive its robot by its clock, or a restart would turn it into a later agent than the one that its robot
+  /// obeys.
   bool uses_clock() const {
     return agent_.is_superseded() || clocks_.robot_coordinator_offset(bus_.now()).has_value();
   }
@@ -47,9 +48,9 @@ class AgentNode {
   void on_coordinator_state(const msg::CoordinatorState& message);
   void on_disturbance(const msg::Disturbance& message);
   void on_orders(const msg::OrderMemory& message);
-  /// The decoded page, which all agents of this process share; null if it is not valid.
+  /// The decoded page, which all agents in this process share; null if it is invalid.
   std::shared_ptr<const OrderPage> shared_page(const msg::OrderMemory& message);
-  /// Whether a message could be decoded. Counts the others.
+  /// Whether a message could be decoded. Counts messages that could not.
   template <typename Value>
   bool accept(const std::optional<Value>& decoded, DropReason reason) {
     if (!decoded) drops_.count(reason);
@@ -57,17 +58,17 @@ class AgentNode {
   }
   void begin_cycle();
   void register_if_due();
-  /// Registers once more, because the coordinator's answer measures its clock, unless the last registration
-  /// is younger than this.
+  /// Registers again, because the coordinator's answer measures its clock. Does nothing if the last
+  /// registration is more recent than this.
   void measure_coordinator_clock(Duration since_last);
   /// Whether the clocks allow proposals. Requests a measurement if one is due.
   bool clocks_agree();
   void measure_robot_clock(const Feedback& feedback);
-  /// The speed that the clocks allow, at most the robot's limit.
+  /// The speed that the clocks allow, but at most the robot's limit.
   double speed_limit_mps() const;
   void report_changes();
   Time robot_now() const;
-  /// Whether so much time has passed since a time by this process's clock.
+  /// Whether this duration has passed since a time by this process's clock.
   bool has_elapsed(Duration period, Time since) const;
   /// The start of this robot's first cycle after a time.
   Time cycle_after(Time now) const;
@@ -80,7 +81,7 @@ class AgentNode {
   void publish(const Registration& registration);
   void publish_proposal(const Proposal& proposal);
   void publish_status();
-  /// Tells coordinators of orders that one lacks.
+  /// Announces orders that a coordinator lacks to the coordinators.
   void publish_orders(std::span<const RememberedOrder> orders);
   /// Repeats the orders that coordinators have announced: they answer a client once another process remembers
   /// its order.
@@ -91,7 +92,7 @@ class AgentNode {
   Bus& bus_;
   RobotId robot_;
   Duration cycle_;
-  double max_speed_mps_;  // of the scenario
+  double max_speed_mps_;  // of the scenario's robots
   Agent agent_;
   ClockMonitor clocks_;
   WorldView world_;
@@ -100,10 +101,10 @@ class AgentNode {
   DropCounters drops_;             // messages that could not be decoded
   EventReporter events_;
   AgentChanges changes_;
-  Time next_cycle_;            // by the robot's clock, like all times passed to the agent
+  Time next_cycle_;            // by the robot's clock, like all times that are passed to the agent
   bool commanded_ = false;     // a command has been published in this cycle
-  int registration_wait_ = 0;  // cycles until the next registration
-  Time measured_at_{};         // the latest request for a clock measurement
+  int registration_wait_ = 0;  // number of cycles until the next registration
+  Time measured_at_{};         // time of the latest request for a clock measurement
   DurationHistogram negotiation_durations_, plan_durations_, search_durations_;
   Writer<msg::Command> command_writer_;
   Writer<msg::Registration> registration_writer_;
@@ -111,9 +112,9 @@ class AgentNode {
   Writer<msg::AgentStatus> status_writer_;
   Writer<msg::OrderMemory> order_writer_;
   Writer<msg::OrderStatus> order_status_writer_;
-  OrderReport order_report_;  // published last
+  OrderReport order_report_;  // as last published
   Time order_status_at_{}, orders_confirmed_at_{};
-  OrderBook announced_;  // by coordinators, and not repeated yet
+  OrderBook announced_;  // announced by coordinators and not repeated yet
   CounterPublisher counters_;
 };
 

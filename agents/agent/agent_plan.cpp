@@ -49,7 +49,8 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   decide_whether_to_give_way(now);
   const bool gives_way = give_way_.place_m().has_value();
   const Vec2 target = give_way_.place_m().value_or(target_m(rest));
-  // Inflation ends only at rest. A robot that drove on with it might never fit where it has to go.
+  // Inflation ends only when the robot is at rest. If it drove on with inflation, it might never fit where it
+  // has to go.
   if (base.inflation_m > 0 && !may_end_inflation(base, start)) return std::nullopt;
   const auto ends_at = [&](const Vec2& place) {
     return (rest - place).norm() < settings_.at_goal_m && base.inflation_m == 0;
@@ -122,7 +123,7 @@ std::vector<OtherRobot> Agent::others_in_passages(Time now) {
     const OtherAssignment orders = assignment_.other(version->robot);
     if (version->intent && !orders.is_held) {
       other.goals_m = {version->intent->goal_m, version->intent->target_m};
-      // A route across a large floor would take too long.
+      // A route across a large floor would take too long to plan.
       for (std::optional<Vec2>& goal : other.goals_m)
         if ((*goal - other.position_m).norm() > settings_.longest_trip_m) goal = version->intent->waypoint_m;
       other.has_right_of_way = assignment_.yields_to({version->robot, orders.number}, now, passage_period_);
@@ -139,7 +140,7 @@ std::vector<OtherRobot> Agent::others_in_passages(Time now) {
 
 AccelerationCommand Agent::follow(const Intent& intent, const State& at_start, const Route& route,
                                   double max_speed_mps) const {
-  // If it is not observed again, the robot comes to rest before its drift exceeds the tracking bound.
+  // If the robot is not observed again, it comes to rest before its drift exceeds the tracking bound.
   const double dead_reckoning_m =
       std::max(0.0, max_dead_reckoning_m_ - (at_start.position_m - estimate_.position_m).norm());
   const double length = std::min(route.length_m, dead_reckoning_m);

@@ -23,8 +23,8 @@ std::vector<Circle> Agent::moving_obstacles(const Vec2& target, Time now) {
     found.push_back({centre, radius + std::clamp(max_inflation, 0.0, inflation)});
   };
   if (sight_) {
-    // Routes keep a large distance from walls in order to see early, but need not from people. If people
-    // are in the way, the robot waits rather than squeezing past along a wall.
+    // Routes keep a large distance from walls in order to see around corners early, but this is not needed
+    // near people. If people are in the way, the robot waits rather than squeezing past along a wall.
     const double less_m = settings_.clearances_in_sight_m.front() - settings_.extra_clearance_m;
     for (const LaserTrack& track : sight_->tracks())
       add({track.position_m, std::max(0.05, track.radius_m - less_m), track.seen_at, 0});
@@ -41,7 +41,8 @@ std::vector<Circle> Agent::moving_obstacles(const Vec2& target, Time now) {
 bool Agent::is_to_stay(const Neighbours::Stationary& other) const {
   const OtherAssignment orders = assignment_.other(other.robot);
   if (orders.is_held || !orders.has_to_go) return true;
-  // It waits as near to its goal as it can get. But if this robot is what is in its way, one has to move.
+  // The other robot waits as near to its goal as it can get. But if this robot is what blocks it, one of the
+  // two must move.
   const bool waits =
       other.intent && (other.position_m - other.intent->goal_m).norm() < settings_.neighbour_at_goal_m;
   return waits && orders.goal_m &&
@@ -53,7 +54,7 @@ std::vector<TemporaryObstacle> Agent::temporary_obstacles(const Vec2& target, Ti
   for (const Circle& circle : moving_obstacles(target, now)) found.push_back({circle});
   for (const Neighbours::Stationary& other : neighbours_.find_stationary(
            now - settings_.stationary_after, estimate_.position_m, settings_.max_stationary)) {
-    // A robot on the target that is going to leave is no reason to go elsewhere.
+    // A robot that stands on the target but is going to leave is no reason to go elsewhere.
     const bool covers = (other.position_m - target).norm() <= rules_.radius_m + required_separation_m();
     if (!covers || is_to_stay(other)) found.push_back({{other.position_m, rules_.radius_m}, other.robot});
   }
@@ -68,7 +69,7 @@ void Agent::update_route_planner(const Vec2& target, Time now) {
   }
   is_route_outdated_ |= route_obstacles_->set_temporary(temporary_obstacles(target, now));
   const bool is_new = !has_route_ || target != route_planner_->goal_m();
-  // A route that is still free is kept for a while, although there may be a shorter one.
+  // A route that is still free is kept for a while, even if there might be a shorter one.
   const Duration max_age = from_seconds(to_seconds(settings_.max_route_age) * route_planner_->effort());
   const bool is_old = std::chrono::abs(now - routed_at_) >= max_age;
   if (is_new || (is_route_outdated_ && (is_old || !route_planner_->is_free_from(estimate_.position_m)))) {

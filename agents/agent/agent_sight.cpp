@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-/// The place of a robot at a time, also shortly before its version starts.
+/// The position of a robot at a time, which may be shortly before its version starts.
 Vec2 position_at(const Trajectory& trajectory, Time t) {
   if (t >= trajectory.start()) return trajectory.state_at(t).position_m;
   const State& first = trajectory.at_start();
@@ -108,7 +108,7 @@ void Agent::update_occlusion(const Intent& intent, const State& at_start, const 
   const auto is_of = [&](const Circle& disc) {
     return (disc.centre_m - corner).norm() < disc.radius_m + settings_.corner_slack_m;
   };
-  // Somebody who is in the way will leave.
+  // If a person is in the way, the person will leave.
   const bool is_of_person = std::ranges::any_of(sight_->tracks(), [&](const LaserTrack& track) {
     return is_of({track.position_m, track.radius_m});
   });

@@ -11,8 +11,8 @@
 namespace sidestep {
 namespace {
 
-/// The state of a robot that does not brake: at a time on its trajectory, with the velocity at the end of the
-/// first phase.
+/// The state at a time on a robot's trajectory, assuming that it does not brake: the velocity is that at the
+/// end of the first phase.
 State state_if_continued(const Trajectory& trajectory, Time t) {
   State state = trajectory.state_at(t);
   if (trajectory.phases().empty() || t >= trajectory.end()) return state;
@@ -21,7 +21,7 @@ State state_if_continued(const Trajectory& trajectory, Time t) {
   return state;
 }
 
-/// What remains of a version's intent at a time; nullopt if the robot will stay at its goal.
+/// The rest of a version's intent at a time; nullopt if the robot will stay at its goal.
 std::optional<Intent> intent_at(const Version& version, Time t, double at_goal_m) {
   if (!version.intent) return std::nullopt;
   const bool is_at_rest = t >= version.trajectory.end();
@@ -62,7 +62,8 @@ Intent Agent::steer(const State& at_start, Time start, const Route& route) {
     steering.add_stationary(zone.centre_m, zone.radius_m + required_separation_m());
   const double elapsed_s = std::max(0.0, to_seconds(start - last_steered_start_));
   last_steered_start_ = start;
-  // On an open floor, the rest of the way is as short from anywhere. Walls would lie between.
+  // On an open floor, the rest of the way is equally short from anywhere. With a map, walls may be in
+  // between.
   const bool is_open = !rules_.map && std::ranges::all_of(rules_.obstacles, [](const Shape& obstacle) {
     return std::holds_alternative<Circle>(obstacle);
   });

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array kFromHighestRank{Rank::kOperator, Rank::kReferee, Rank::kClient, Rank::kScenario};
 
-// With more, they are put together to one.
+// If there are more pages, they are merged into one.
 constexpr std::size_t kMaxPages = msg::MAX_MEMORY_ORDERS * 8;
 
 bool is_zone(const Order& order) {
@@ -105,7 +105,7 @@ void Assignment::compare(const Round& round) {
     told_by_.erase(last.process);
   else
     told_by_[last.process] = last.incarnation;
-  // What this coordinator lacks stays remembered.
+  // Orders that this coordinator lacks stay remembered.
   told_ = round;
   changes_.clear();
   has_progressed_ = false;
@@ -176,7 +176,7 @@ void Assignment::choose() {
     return;
   }
   if (stands()) return;
-  // An earlier agent of this robot has finished an order, and the robot is to stay there.
+  // An earlier agent of this robot has finished an order, and the robot must stay there.
   for (const Rank rank : kFromHighestRank) {
     const RememberedOrder* order = book_.drive_order(robot_, rank);
     if (order && order->progress.state == msg::OrderState::ORDER_ARRIVED) return take(*order);

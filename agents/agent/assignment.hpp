@@ -15,61 +15,63 @@
 
 namespace sidestep {
 
-/// What is known of another robot's orders.
+/// What is known about another robot's orders.
 struct OtherAssignment {
   bool is_held = false;
-  bool has_to_go = false;        ///< it has an order to drive that it has not finished
-  OrderNumber number = 0;        ///< of that order
-  std::optional<Vec2> goal_m{};  ///< of that order; nullopt if only the scenario states it
+  bool has_to_go = false;        ///< it has an unfinished order to drive
+  OrderNumber number = 0;        ///< number of that order
+  std::optional<Vec2> goal_m{};  ///< goal of that order; nullopt if only the scenario states it
 };
 
-/// Which order a robot carries out: of those that it has not finished, the one of the highest rank. A robot
-/// without one stays where it is, and returns there if something moves it away.
+/// Decides which order a robot carries out: among its unfinished orders, the one of the highest rank. A robot
+/// without an order stays where it is, and returns there if something moves it away.
 class Assignment {
  public:
-  /// `scenario_goals`: of orders that the scenario gives. Orders of robots that are not on the roster are
-  /// not remembered; empty: all are.
+  /// `scenario_goals` are the goals of orders given by the scenario. Orders of robots that are not on the
+  /// roster are ignored; if the roster is empty, all orders are remembered.
   Assignment(RobotId robot, std::vector<Goal> scenario_goals, std::vector<RobotId> roster = {});
 
-  /// Orders that a coordinator remembers.
+  /// Processes orders that a coordinator remembers.
   void on_page(std::shared_ptr<const OrderPage> page);
-  /// The robot is at rest at its goal. Precondition: goal().
+  /// Records that the robot is at rest at its goal. Precondition: goal() is not null.
   void on_arrival();
-  /// Chooses the order to carry out. A finished one remains the robot's order until this is called, so that
-  /// its end can be reported.
+  /// Chooses the order to carry out. A finished order remains the robot's order until this is called, so that
+  /// its completion can be reported.
   void choose();
 
-  /// Whether a coordinator with a complete memory has been heard. Nothing is ordered before.
+  /// Whether a coordinator with a complete memory has been heard. Until then the robot has no orders.
   bool is_known() const { return is_known_; }
   bool is_held() const { return is_held_; }
-  /// nullptr: the robot has no order.
+  /// nullptr if the robot has no order.
   const Goal* goal() const { return goals_.empty() ? nullptr : &goals_[progress_.goal_index]; }
   std::size_t goal_index() const { return progress_.goal_index; }
   /// Increases with every change of goal().
   std::uint64_t revision() const { return revision_; }
-  /// The goals from goal() on.
+  /// The remaining goals, starting with goal().
   std::span<const Goal> goals_left() const {
     return std::span(goals_).subspan(std::min(progress_.goal_index, goals_.size()));
   }
-  /// Number 0: the robot has no order. Without what only the agent knows.
+  /// The report on the robot's order, without what only the agent knows. Number 0: the robot has no order.
   OrderReport report() const;
-  /// The orders of the zones on the floor.
+  /// The orders for zones that are in force.
   const std::vector<Order>& zones() const { return zones_; }
   /// Increases with every change of zones().
   std::uint64_t zone_revision() const { return zone_revision_; }
-  /// What is remembered of another robot.
+  /// What is known about another robot's orders.
   OtherAssignment other(RobotId robot) const;
-  /// Whether the other robot comes first where the two cannot pass each other; see may_pass_first().
+  /// Whether the other robot goes first where the two cannot pass each other; see may_pass_first().
   bool yields_to(const Passer& other, Time t, Duration period) const;
 
-  /// All orders, also of other robots, whose agents may have restarted together with all coordinators. What
-  /// a coordinator's memory lacks is not forgotten: that coordinator may have been cut off.
+  /// All orders, including those of other robots, whose agents may have restarted together with all
+  /// coordinators. An order that a coordinator's memory lacks is not forgotten, because that coordinator may
+  /// have been cut off.
   std::vector<RememberedOrder> all() const { return whole_book().all(); }
   bool remembers_nothing() const { return told_.empty() && changes_.empty() && book_.empty(); }
-  /// Orders of all robots that the coordinator lacked whose memory has been heard last; then none.
+  /// Removes and returns the orders of all robots that were missing in the latest memory heard from a
+  /// coordinator.
   std::vector<RememberedOrder> take_missing() { return std::exchange(missing_, {}); }
-  /// Whether this run of a coordinator has told every order that is remembered. It has not forgotten any
-  /// since: coordinators do not forget.
+  /// Whether this run of a coordinator has announced every order that is remembered here. It has not
+  /// forgotten any since, because coordinators do not forget orders.
   bool is_told_by(std::uint32_t coordinator, Incarnation incarnation) const;
 
  private:
@@ -78,31 +80,31 @@ class Assignment {
   bool concerns(const RememberedOrder& order) const {
     return order.order.robot == robot_ || order.order.robot == kAllRobots;
   }
-  /// Adds a page of a coordinator's whole memory.
+  /// Adds a page of a coordinator's complete memory.
   void add(std::shared_ptr<const OrderPage> page);
   void add_changes(std::shared_ptr<const OrderPage> page);
-  /// Compares a coordinator's whole memory with what is remembered.
+  /// Compares a coordinator's complete memory with this one.
   void compare(const Round& round);
   template <typename Use>
   void for_each(Use use) const;
   OrderBook whole_book() const;
   void take(const RememberedOrder& order);
   void drop();
-  /// Whether the order still stands.
+  /// Whether the order is still in force.
   bool stands() const;
 
   const RobotId robot_;
   const std::vector<Goal> scenario_goals_;
-  OrderBook book_;  // of the robot
+  OrderBook book_;  // orders of all robots
   bool is_known_ = false, is_held_ = false;
-  std::vector<RobotId> roster_;                   // ascending
-  Round told_;                                    // the last whole memory of a coordinator
-  Round changes_;                                 // what that lacked, and what has changed since
-  bool has_progressed_ = false;                   // the robot, since that memory was heard
-  std::map<std::uint32_t, Round> rounds_;         // by coordinator: whole memories while their pages arrive
+  std::vector<RobotId> roster_;                   // robot numbers, ascending
+  Round told_;                                    // the last complete memory of a coordinator
+  Round changes_;                                 // orders that told_ lacks, and later changes
+  bool has_progressed_ = false;                   // the robot has progressed since that memory was heard
+  std::map<std::uint32_t, Round> rounds_;         // by coordinator: memories whose pages are still arriving
   std::map<std::uint32_t, Incarnation> told_by_;  // see is_told_by()
   std::vector<RememberedOrder> missing_;
-  // The order that the robot carries out, or has carried out last.
+  // The order that the robot carries out or has carried out last.
   ClientId client_ = 0;
   OrderNumber number_ = 0;
   std::vector<Goal> goals_;

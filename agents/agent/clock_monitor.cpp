@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// What a smaller change of this process's clock spoils is over as soon.
+// Measurements spoiled by a smaller change of this process's clock expire within that time anyway.
 constexpr Duration kMinSetback{10'000'000};
 
 }  // namespace

@@ -10,14 +10,14 @@
 
 namespace sidestep {
 
-/// Knows in which region the agent has learned of all obstacles that vision sees, and when. Vision states how
-/// far from the robots its list is complete; where the robot then was is in the world state of the same time.
-/// So an incomplete list counts only together with that world state. A list that never counts is like a lost
-/// one.
+/// Determines in which region, and at which time, the agent knew all obstacles that vision sees. Vision
+/// states how far from the robots its list is complete; the world state of the same time says where this
+/// robot was. So an incomplete list is usable only together with that world state. A list that never becomes
+/// usable is like a lost one.
 class CompletenessMonitor {
  public:
-  /// `max_speed_mps`: upper bound of every obstacle's speed. `max_clock_difference`: upper bound of the
-  /// difference between the cameras' clock and the robot's.
+  /// `max_speed_mps` is an upper bound of every obstacle's speed. `max_clock_difference` is an upper bound of
+  /// the difference between the cameras' clock and the robot's.
   CompletenessMonitor(double max_speed_mps, Duration max_clock_difference)
       : max_speed_mps_(max_speed_mps), max_clock_difference_(max_clock_difference) {
     seen_.radius_m = 0;
@@ -26,15 +26,15 @@ class CompletenessMonitor {
   void on_world(const WorldObservations& world);
   /// Precondition: all obstacles of the list were stored.
   void on_list(const ObstacleObservations& list);
-  /// Until a time, obstacles beyond this region are no longer known.
+  /// Until a given time, obstacles outside this region are no longer known.
   void on_forgotten(const SeenRegion& rest, Time until);
 
-  /// The time of the latest list that counts; Time{} if none has counted.
+  /// The time of the latest usable list; Time{} if there is none.
   Time complete_at() const { return complete_at_; }
   SeenRegion seen(Time now) const;
 
  private:
-  /// A list that does not count yet.
+  /// A list that is not usable yet.
   struct Pending {
     Incarnation vision = 0;
     Time valid_at{};
@@ -50,8 +50,8 @@ class CompletenessMonitor {
 
   double max_speed_mps_;
   Duration max_clock_difference_;
-  std::array<OwnPosition, 16> positions_{};  // of the latest world states: a quarter of a second
-  std::size_t position_count_ = 0;           // stored so far
+  std::array<OwnPosition, 16> positions_{};  // positions in the latest world states: a quarter of a second
+  std::size_t position_count_ = 0;           // number of positions stored so far
   std::optional<Pending> pending_;
   SeenRegion seen_;
   Time complete_at_{};

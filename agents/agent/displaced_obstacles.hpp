@@ -10,15 +10,16 @@
 
 namespace sidestep {
 
-/// Other robots that are not where their versions say, or have fallen silent while they drive, as the
-/// coordinator names them. What moves them is not known.
+/// Other robots that are not where their versions say, or that have fallen silent while driving, as reported
+/// by the coordinator. It is unknown what moves them.
 class DisplacedObstacles {
  public:
-  /// A displaced robot that vision has lost for longer is dropped: by then its reach covers half a floor.
+  /// A displaced robot that vision has not seen for longer than this is dropped: by then it could have
+  /// reached half of the floor.
   static constexpr Duration kMaxObservationAge = ObservedObstacles::kMaxObservationAge;
 
-  /// `margin_m`: the safety margin. `max_speed_mps`: upper bound of a displaced robot's speed.
-  /// `max_clock_difference`: upper bound of the difference between the cameras' clock and the robot's.
+  /// `margin_m` is the safety margin. `max_speed_mps` is an upper bound of a displaced robot's speed.
+  /// `max_clock_difference` is an upper bound of the difference between the cameras' clock and the robot's.
   DisplacedObstacles(RobotId self, double radius_m, double margin_m, double max_speed_mps,
                      Duration max_clock_difference)
       : self_(self),
@@ -27,9 +28,9 @@ class DisplacedObstacles {
         max_speed_mps_(max_speed_mps),
         max_clock_difference_(max_clock_difference) {}
 
-  /// Replaces all by those that the heartbeat names at `now`.
+  /// Replaces all bodies with those that the heartbeat reports at `now`.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
-  /// Those that vision has not lost. Valid until the next call.
+  /// The bodies that vision has seen recently enough. Valid until the next call.
   std::span<const UncontrolledBody> recent(Time now);
 
  private:

@@ -21,7 +21,7 @@ struct LedgerView {
   /// Decodes an untrusted page. Allocates nothing once warm.
   void assign(const msg::LedgerPage& page);
 
-  // All in the order of the page's versions.
+  // In the order of the page's versions.
   std::vector<Entry> entries;
   std::vector<Version> versions;
   std::vector<TrajectoryBounds> bounds;

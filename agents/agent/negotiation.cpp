@@ -7,22 +7,22 @@
 namespace sidestep {
 namespace {
 
-// A coordinator that has been silent for longer does not count as granting.
+// A coordinator that has been silent for longer than this does not count as granting.
 constexpr Duration kCoordinatorTimeout{500'000'000};
-// So long after a request an answer is overdue, even on slow networks.
+// After this time an answer to a request is overdue, even on slow networks.
 constexpr Duration kMaxAnswerTime{400'000'000};
 // An agent that knows no epoch waits for its coordinator to start.
 constexpr Duration kMaxStartTime{2'000'000'000};
-// A version that starts later was proposed by a wrong clock.
+// A version that starts later than this was proposed by a wrong clock.
 constexpr Duration kMaxAhead{2'000'000'000};
-// Facts in a row of an earlier incarnation of the robot, after which the fact of the later one was false.
-// Late ones are fewer.
+// Number of consecutive facts of the robot's earlier incarnation after which the fact of the later one must
+// have been false. Delayed facts are fewer.
 constexpr int kFactsOfOneIncarnation = 60;
 constexpr int kMaxProposalsPerStart = 4;
-// For as many cycles beyond its lead an agent proposes although it hears nothing from its robot. A robot
-// without power rolls on, while others count on its versions.
+// Number of cycles beyond its lead for which an agent proposes although it hears nothing from its robot. It
+// is limited because a robot without power rolls on while others rely on its versions.
 constexpr int kMaxSilentCycles = 1;
-// Two agents that both restart above the same incarnation add different increments below this bound.
+// If two agents both restart above the same incarnation, they add different increments below this bound.
 constexpr Incarnation kIncarnationSpread = 1'000'003;
 
 }  // namespace
@@ -30,7 +30,7 @@ constexpr Incarnation kIncarnationSpread = 1'000'003;
 Negotiation::Negotiation(RobotId robot, Incarnation incarnation, Duration cycle)
     : robot_(robot), incarnation_(incarnation), cycle_(cycle), next_number_(incarnation), pacing_(cycle) {}
 
-// A later incarnation's clock may be behind. One false fact must not exclude all true ones for good.
+// A later incarnation's clock may be behind. A single false fact must not exclude all true ones permanently.
 bool Negotiation::update_incarnation(const Feedback& feedback) {
   if (feedback.robot_incarnation == robot_incarnation_) {
     facts_of_earlier_incarnation_ = 0;
@@ -57,8 +57,8 @@ void Negotiation::on_feedback(const Feedback& feedback) {
     return;
   }
   if (feedback.obeyed_incarnation < incarnation_) return;  // does not acknowledge this agent
-  // A robot never obeys an earlier agent again, so a later fact that acknowledges this agent shows that the
-  // one about another agent was false.
+  // A robot never returns to an earlier agent, so a later fact that acknowledges this agent proves that the
+  // fact about another agent was false.
   if (superseded_at_ && is_current && feedback.valid_at > *superseded_at_) superseded_at_.reset();
   silent_cycles_ = 0;
   pacing_.set_robot_lead(feedback.lead);
@@ -88,7 +88,8 @@ void Negotiation::apply_fact(const Feedback& feedback, bool is_current) {
     executing_ = executing.number;
     if (has_advanced) pacing_.on_version_taken();
   } else {
-    // A later fact about an older version shows that an earlier fact was false: robots never go back.
+    // A later fact about an older version proves that an earlier fact was false: robots never return to older
+    // versions.
     const auto is_older = [&](const Version& held) { return held.number < executing.number; };
     if (!std::ranges::any_of(held_.versions(), is_older) && (!is_current || at <= latest_fact_)) {
       ++counts_.late_facts;
@@ -128,8 +129,8 @@ void Negotiation::finish_fencing(const Feedback& feedback) {
   number_above(feedback.executing);
 }
 
-// A robot off the floor names its last version as the base: the stop that it made before it was lifted may
-// never have been reported.
+// A robot off the floor reports its last version as the base, because the stop that it made before it was
+// lifted may never have been reported.
 void Negotiation::number_above(const Version& executing) {
   next_number_ = std::max({next_number_, executing.number + 1, executing.base + 1});
 }
@@ -165,11 +166,11 @@ void Negotiation::check_assumptions() {
 }
 
 void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
-  if (heartbeat.epoch == 0) return;  // a standby
+  if (heartbeat.epoch == 0) return;  // the coordinator is a standby
   if (heartbeat.epoch < epoch_) {
     ++counts_.old_epochs;
-    // This coordinator does not know the highest epoch, and no other one is alive: a registration tells it
-    // the epoch.
+    // This coordinator does not know the highest epoch, and no other coordinator is alive: a registration
+    // informs it of the epoch.
     if (!hears_coordinator(now)) registration_pending_ = true;
     return;
   }
@@ -286,7 +287,7 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
     return !a.answered && a.number() == verdict.proposal_number;
   });
   if (sent == proposals_.end()) {
-    // The answer to a registration has no number.
+    // The answer to a registration has no proposal number.
     counts_.unexpected_verdicts += verdict.proposal_number != 0;
     return {};
   }
@@ -318,7 +319,8 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
   return {*granted, round_trip};
 }
 
-// A coordinator that does not hear the robot has a full ledger, and does not know the latest versions.
+// If a coordinator does not hear the robot, its list of the robot's versions fills up, and it does not know
+// the latest ones.
 void Negotiation::observe_knowledge(const Verdict& verdict, Time now) {
   const msg::Reason reason = verdict.reasons.front();
   const bool is_unknown =

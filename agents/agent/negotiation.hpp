@@ -14,22 +14,23 @@
 namespace sidestep {
 
 /// The agent's side of the safety protocol (coordinator/PROTOCOL.md): fences its robot, registers with the
-/// coordinator, proposes, and forwards granted versions only. When no verdict arrives in time it does
-/// nothing, and the robot brakes. It takes messages that are decoded for its robot. The caller sends those
-/// that it returns, and sets their time of sending.
+/// coordinator, proposes, and forwards only granted versions. If no verdict arrives in time it does nothing,
+/// and the robot brakes. Messages passed to it are already decoded for its robot. The caller sends the
+/// messages that it returns, and sets their send time.
 class Negotiation {
  public:
-  /// What a verdict means for the agent.
+  /// The consequences of a verdict for the agent.
   struct VerdictResult {
-    std::optional<Version> granted;      ///< to be forwarded to the robot; only if granted in time
-    std::optional<Duration> round_trip;  ///< of the proposal that the verdict grants or denies
+    /// Version to be forwarded to the robot; only if it was granted in time.
+    std::optional<Version> granted;
+    std::optional<Duration> round_trip;  ///< round trip of the proposal that the verdict grants or denies
   };
   struct Counts {
     std::uint64_t proposals = 0, grants = 0, denials = 0;
-    std::uint64_t cycles = 0;  ///< cycles for which the agent has proposed
-    std::uint64_t missed = 0;  ///< cycles without a verdict in time
-    std::uint64_t lost = 0;    ///< forwarded versions that the robot did not activate
-    // Messages that were not used.
+    std::uint64_t cycles = 0;  ///< number of cycles in which the agent has proposed
+    std::uint64_t missed = 0;  ///< number of cycles without a verdict in time
+    std::uint64_t lost = 0;    ///< number of forwarded versions that the robot did not activate
+    // Counts of messages that were not used.
     std::uint64_t unproposed_grants = 0, unexpected_verdicts = 0, late_facts = 0, old_epochs = 0;
   };
 
@@ -40,70 +41,77 @@ class Negotiation {
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
 
-  /// The incarnation that commands carry, and the highest epoch that is known. The incarnation changes only
-  /// before the robot has acknowledged this agent.
+  /// The incarnation sent with commands, and the highest known epoch. The incarnation changes only before the
+  /// robot has acknowledged this agent.
   Incarnation incarnation() const { return incarnation_; }
   Epoch epoch() const { return epoch_; }
-  /// The epoch that commands carry: none before the robot has acknowledged this agent, so that the
+  /// The epoch sent with commands: 0 before the robot has acknowledged this agent, so that the
   /// acknowledgement shows which epoch the robot obeyed before.
   Epoch command_epoch() const { return fenced_ ? epoch_ : 0; }
-  /// The epoch that the robot obeyed when it acknowledged this agent; 0: none, or it has not acknowledged it.
+  /// The epoch that the robot obeyed when it acknowledged this agent. 0: none, or it has not acknowledged it
+  /// yet.
   Epoch former_epoch() const { return former_epoch_; }
 
   bool is_fenced() const { return fenced_; }
-  /// The robot is off the floor and executes nothing, although it may still take a rest version.
+  /// Whether the robot is off the floor and executes nothing. It may still accept a rest version.
   bool is_absent() const { return fenced_ && !held_.find(executing_); }
-  /// The robot obeys a later agent: this one stays silent.
+  /// Whether the robot obeys a later agent, so that this one stays silent.
   bool is_superseded() const { return superseded_at_.has_value(); }
-  /// The last that the robot has said is that it obeys a later agent, and it has been silent for half a
-  /// second. Commands go on: they carry the fixes without which a robot cannot say whom it obeys. If it does
-  /// obey a later agent, it refuses them.
+  /// Whether the robot last said that it obeys a later agent, and has then been silent for half a second.
+  /// Commands continue in this case: they carry the fixes without which a robot cannot say whom it obeys. If
+  /// it does obey a later agent, it refuses them.
   bool must_ask_robot() const { return is_superseded() && unheard_cycles_ * cycle_ > kMaxUnheard; }
-  /// The agent registers only after the robot has acknowledged the epoch. So an agent that the robot does not
-  /// obey cannot register for it, and no later agent of the robot can return to an older coordinator.
+  /// Whether the agent must register. It registers only after the robot has acknowledged the epoch. So an
+  /// agent that the robot does not obey cannot register for it, and no later agent of the robot can return to
+  /// an older coordinator.
   bool needs_registration() const {
     return fenced_ && !is_superseded() && epoch_ != 0 && robot_epoch_ == epoch_ &&
            (registration_pending_ || missing_);
   }
   /// Whether the coordinator may grant a proposal at this time.
   bool may_propose(Time now) const { return wait_reason(now) == WaitReason::kNone; }
-  /// Why not, as far as the negotiation knows.
+  /// Why it may not, as far as the negotiation knows.
   WaitReason wait_reason(Time now) const;
-  /// The coordinator has registered this agent in the epoch, as far as is known.
+  /// Whether the coordinator has registered this agent in the epoch, as far as is known.
   bool is_registered() const {
     return fenced_ && epoch_ != 0 && robot_epoch_ == epoch_ && !registration_pending_ && !missing_ &&
            last_heartbeat_at_ != Time{};
   }
-  /// Whether a version that starts after `now` is granted already, or awaits its verdict.
+  /// Whether a version that starts after `now` has been granted or awaits its verdict.
   bool has_upcoming_version(Time now) const;
-  /// The start of a version that should be proposed again because the answer is overdue.
+  /// The start of a version that should be proposed again because its answer is overdue.
   std::optional<Time> retry_start(Time now) const;
-  /// Number of cycles ahead to propose, and upper bound of the cycles for which to hold an acceleration.
+  /// Number of cycles to propose ahead, and upper bound of the number of cycles for which an acceleration is
+  /// held.
   int lead() const { return pacing_.lead(); }
-  /// Feedback since the last proposal shows that the robot does not execute the version that was assumed.
+  /// Whether feedback since the last proposal shows that the robot does not execute the version that was
+  /// assumed.
   bool is_contradicted() const { return contradicted_; }
 
-  /// Whether the agent should ask for another coordinator, by repeating its registration: it hears none that
-  /// is active, or has no answer from it, or the coordinator does not know what the robot executes.
+  /// Whether the agent should ask for another coordinator by repeating its registration. It should if it
+  /// hears no active coordinator, gets no answer from it, or if the coordinator does not know what the robot
+  /// executes.
   bool is_unserved(Time now) const;
 
   Registration registration();
-  /// A request that the coordinator answers has been sent.
+  /// Records that a request which the coordinator will answer has been sent.
   void on_request(Time now);
-  /// A registration that registers nobody: it asks the coordinator of the epoch to tell all orders, and tells
-  /// others the epoch.
+  /// A registration without a robot. It asks the coordinator of the epoch to announce all orders, and informs
+  /// others of the epoch.
   Registration epoch_notice() const { return {robot_, incarnation_, epoch_, Time{}, std::nullopt}; }
   /// The version that the robot is expected to execute at a time. Precondition: is_fenced() and not
   /// is_absent().
   const Version& base_at(Time start) const;
-  /// The version that the robot executed by its latest fact. Precondition: is_fenced() and not is_absent().
+  /// The version that the robot executes according to its latest fact. Precondition: is_fenced() and not
+  /// is_absent().
   const Version& executing() const { return *held_.find(executing_); }
-  /// Precondition: 1 to MAX_CANDIDATES candidates with the same start, which all continue `base`; for an
-  /// absent robot, a rest version on base 0. They have no inflation: if the base has one, they begin at rest.
+  /// Creates a proposal. Precondition: 1 to MAX_CANDIDATES candidates with the same start, all of which
+  /// continue `base`; for an absent robot, a rest version on base 0. Candidates have no inflation: if the
+  /// base has one, they start at rest.
   [[nodiscard]] Proposal propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
                                  const std::optional<Intent>& intent = std::nullopt);
 
-  /// Closes the cycle that ends now: abandons its proposals that have no verdict, and counts them as missed.
+  /// Closes the cycle that ends now: abandons its proposals without a verdict, and counts them as missed.
   void close_cycle(Time now);
 
   const Counts& counts() const { return counts_; }
@@ -121,20 +129,20 @@ class Negotiation {
     Time start() const { return candidates.front().trajectory.start(); }
   };
   void number_above(const Version& executing);
-  /// Whether the fact is of the robot's current incarnation.
+  /// Returns whether the fact belongs to the robot's current incarnation.
   bool update_incarnation(const Feedback& feedback);
   void finish_fencing(const Feedback& feedback);
   void apply_fact(const Feedback& feedback, bool is_current);
-  /// Replaces all versions by one that the robot executes and this agent does not know.
+  /// Replaces all versions with one that the robot executes but this agent did not know.
   void rebase(const Version& executing);
   /// Learns from a verdict whether the coordinator knows what the robot executes.
   void observe_knowledge(const Verdict& verdict, Time now);
   bool has_base_of(const Version& version) const;
   void adopt_epoch(Epoch epoch);
   void check_assumptions();
-  /// Start of the last version that the robot is expected to take soon.
+  /// Start of the last version that the robot is expected to receive soon.
   Time last_start(Time now) const;
-  /// Whether a heartbeat of the active coordinator has arrived lately.
+  /// Whether a heartbeat of the active coordinator has arrived recently.
   bool hears_coordinator(Time now) const;
   void close_proposals();
   const SentProposal& newest_proposal() const {
@@ -145,24 +153,24 @@ class Negotiation {
   Incarnation incarnation_;
   Duration cycle_;
   bool fenced_ = false, contradicted_ = false;
-  std::optional<Time> superseded_at_;        // latest fact that acknowledges a later agent
-  Epoch epoch_ = 0;                          // highest that was received
-  Epoch robot_epoch_ = 0;                    // highest that the robot has acknowledged
-  Epoch former_epoch_ = 0;                   // that it obeyed when it acknowledged this agent
+  std::optional<Time> superseded_at_;        // time of the latest fact that acknowledges a later agent
+  Epoch epoch_ = 0;                          // highest epoch received
+  Epoch robot_epoch_ = 0;                    // highest epoch that the robot has acknowledged
+  Epoch former_epoch_ = 0;                   // epoch that it obeyed when it acknowledged this agent
   bool registration_pending_ = true;         // not registered in this epoch, or the registration was lost
-  bool missing_ = false, granting_ = false;  // by the coordinator's last heartbeat
+  bool missing_ = false, granting_ = false;  // according to the coordinator's last heartbeat
   Time last_heartbeat_at_{};                 // when that heartbeat arrived
   std::optional<Time> fenced_at_;            // when the robot acknowledged this agent
-  std::optional<Time> unanswered_since_;     // the first request since the last answer
+  std::optional<Time> unanswered_since_;     // time of the first request since the last answer
   std::optional<Time> unknown_since_;        // since when the coordinator has not known the robot's versions
   static constexpr Duration kMaxUnheard{500'000'000};
-  int unheard_cycles_ = 0;  // since the robot's last fact
-  int silent_cycles_ = 0;   // since the last fact that acknowledges this agent
-  VersionSet held_;         // what the robot may be executing, now or later
+  int unheard_cycles_ = 0;  // number of cycles since the robot's last fact
+  int silent_cycles_ = 0;   // number of cycles since the last fact that acknowledges this agent
+  VersionSet held_;         // versions that the robot may be executing, now or later
   VersionNumber executing_ = 0;
   Time latest_fact_{};                    // by the robot's clock
-  Incarnation robot_incarnation_ = 0;     // times of different ones are not compared
-  int facts_of_earlier_incarnation_ = 0;  // in a row
+  Incarnation robot_incarnation_ = 0;     // fact times of different incarnations are not compared
+  int facts_of_earlier_incarnation_ = 0;  // number of consecutive ones
   VersionNumber next_number_;
   std::array<SentProposal, 8> proposals_;
   std::size_t proposal_count_ = 0;

@@ -18,27 +18,27 @@ class Neighbours {
  public:
   explicit Neighbours(RobotId self) : self_(self) {}
 
-  /// Pages that arrive from now on are filtered: versions that begin farther than `horizon_m` from `centre_m`
-  /// are dropped.
+  /// Filters pages that arrive from now on: versions that start farther than `horizon_m` from `centre_m` are
+  /// dropped.
   void set_horizon(const Vec2& centre_m, double horizon_m);
-  /// Stores a page of the ledger, unless a newer message of that page is known. Decodes its versions only if
-  /// it is within the horizon.
+  /// Stores a page of the ledger, unless a newer message of that page is already stored. Decodes its versions
+  /// only if the page is within the horizon.
   void on_page(const ReceivedPage& received);
 
-  /// Fills the index with the versions that begin within `horizon_m` of `centre_m`. Valid until the next
+  /// Fills the index with the versions that start within `horizon_m` of `centre_m`. Valid until the next
   /// page.
   void collect(const Vec2& centre_m, double horizon_m, TrajectoryIndex& index) const;
   /// The newest version of each robot that has versions within `horizon_m`. Valid until the next page or
   /// call.
   std::span<const Version* const> newest(const Vec2& centre_m, double horizon_m);
-  /// A robot at rest, and where it intends to go; nullptr: nowhere.
+  /// A robot at rest, and where it intends to go; nullptr if nowhere.
   struct Stationary {
     RobotId robot = 0;
     Vec2 position_m{0, 0};
     const Intent* intent = nullptr;
   };
-  /// The robots that have been at rest since `since` and hold no version that moves later. Returns the
-  /// `max_count` nearest ones, ordered by robot id. Valid until the next page or call.
+  /// The robots that have been at rest since `since` and have no later version that moves. Returns the
+  /// `max_count` nearest ones, sorted by robot id. Valid until the next page or call.
   std::span<const Stationary> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
   /// Number of versions within the horizon that could not be decoded.
   std::uint64_t invalid() const { return invalid_; }
@@ -49,13 +49,13 @@ class Neighbours {
     Epoch epoch = 0;
     std::uint64_t number = 0;
     std::shared_ptr<LedgerView> view;
-    std::vector<std::uint32_t> nearby;  // indices into the view of the versions within the horizon
+    std::vector<std::uint32_t> nearby;  // indices of the versions within the horizon, as stored in the view
   };
   void store(const ReceivedPage& received, Page& page);
-  /// Whether any of the robot's versions ends after `since`.
+  /// Whether any version of the robot ends after `since`.
   bool is_moving(RobotId robot, Time since) const;
 
-  /// Whether the page is out of range and nothing is stored of its previous message.
+  /// Whether the page is out of range and nothing is stored from its previous message.
   bool can_skip(const ReceivedPage& received) const;
 
   // Most pages are out of range. The members that can_skip() reads come first, to share a cache line.

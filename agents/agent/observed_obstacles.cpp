@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-/// How near the obstacle can have come to a position by a time.
+/// Lower bound of the obstacle's distance from a position at a time.
 double min_distance_m(const MovingObstacle& obstacle, const Vec2& position_m, Time t) {
   return (obstacle.position_m - position_m).norm() - obstacle.reach_m(t);
 }

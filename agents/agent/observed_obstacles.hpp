@@ -11,31 +11,31 @@
 
 namespace sidestep {
 
-/// The latest observations of obstacles that do not take part in the protocol, and the region in which they
-/// are all there are. An observation is kept until a newer one of the same track replaces it, because an
-/// occluded obstacle may still approach. It is dropped after kMaxObservationAge, because a false track must
-/// not stop all robots: by then its reach covers half a field, and about sixty frames of vision have not
-/// confirmed it. Allocates only in the constructor.
+/// The latest observations of obstacles that do not take part in the protocol, and the region for which they
+/// are complete. An observation is kept until a newer one of the same track replaces it, because an occluded
+/// obstacle may still approach. It is dropped after kMaxObservationAge, because a false track must not stop
+/// all robots: by then the obstacle could have reached half of the field, and about sixty frames of vision
+/// have not confirmed it. Allocates only in the constructor.
 class ObservedObstacles {
  public:
   static constexpr std::size_t kCapacity = std::size_t{2} * msg::MAX_OBSTACLES;
   static constexpr Duration kMaxObservationAge{1'000'000'000};
 
-  /// `max_speed_mps`: upper bound of every obstacle's speed. `max_clock_difference`: upper bound of the
-  /// difference between the cameras' clock and the robot's.
+  /// `max_speed_mps` is an upper bound of every obstacle's speed. `max_clock_difference` is an upper bound of
+  /// the difference between the cameras' clock and the robot's.
   ObservedObstacles(double max_speed_mps, Duration max_clock_difference);
 
   void on_world(const WorldObservations& world) { completeness_.on_world(world); }
-  /// Stores observations that may have been made by now. If the capacity is exceeded, forgets the obstacles
-  /// that are farthest from the robot. `robot_m`: its position.
+  /// Stores observations whose times are not in the future. If the capacity is exceeded, forgets the
+  /// obstacles that are farthest from the robot. `robot_m` is the robot's position.
   void on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now);
   /// The observations that are younger than kMaxObservationAge. Valid until the next call.
   std::span<const MovingObstacle> recent(Time now);
-  /// Where there are no obstacles but the recent ones.
+  /// The region in which there are no obstacles except the recent ones.
   SeenRegion seen(Time now) const { return completeness_.seen(now); }
-  /// The time for which this is known; Time{}: for none.
+  /// The time for which this is known; Time{} if never.
   Time complete_at() const { return completeness_.complete_at(); }
-  /// Number of lists and observations from the future.
+  /// Number of lists and observations with times in the future.
   std::uint64_t invalid() const { return invalid_; }
 
  private:
@@ -45,21 +45,22 @@ class ObservedObstacles {
     auto operator<=>(const Track&) const = default;
   };
   void store(const Track& track, const MovingObstacle& obstacle, const Vec2& robot_m, Time now);
-  /// Forgets the farthest obstacle, unless it is nearer than this one. Returns whether it has.
+  /// Forgets the farthest obstacle if it is farther away than this one. Returns whether it did.
   bool make_room_for(const MovingObstacle& obstacle, const Vec2& robot_m, Time now);
   void drop_old(Time now);
-  /// Whether something is remembered that was accepted when the robot's clock was ahead of now.
+  /// Whether any stored observation is later than `now`, because it was accepted when the robot's clock was
+  /// ahead.
   bool has_future(Time now) const;
-  /// Forgets everything. Lists count again when every forgotten obstacle would have been dropped.
+  /// Forgets everything. Lists count again only when every forgotten obstacle would have been dropped anyway.
   void forget(Time now);
 
   double max_speed_mps_;
   Duration max_clock_difference_;
   CompletenessMonitor completeness_;
-  std::vector<Track> tracks_;              // ascending
-  std::vector<MovingObstacle> obstacles_;  // of tracks_
+  std::vector<Track> tracks_;              // sorted by track number
+  std::vector<MovingObstacle> obstacles_;  // the obstacles in tracks_
   std::uint64_t invalid_ = 0;
-  Time incomplete_until_{};  // after forget()
+  Time incomplete_until_{};  // set by forget()
 };
 
 }  // namespace sidestep

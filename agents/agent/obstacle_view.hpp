@@ -17,15 +17,15 @@ struct ObservedObstacle {
   Time observed_at{};
   Vec2 position_m{0, 0};
   double radius_m = 0;
-  double position_variance_m2 = 0;  ///< per axis
+  double position_variance_m2 = 0;  ///< variance on each axis
 };
 
-/// A list of obstacles. All numbers are within bounds, but the times may be arbitrary.
+/// A list of obstacles. All numbers are within bounds, but times may be arbitrary.
 struct ObstacleObservations {
-  Incarnation vision = 0;  ///< of the vision process
+  Incarnation vision = 0;  ///< incarnation of the vision process
   Time valid_at{};
-  /// No other obstacle can be nearer than this to a robot of the world state of that time; see ObstacleList
-  /// in idl/vision.idl. kCompleteEverywhere_m: there are no others.
+  /// No unlisted obstacle is nearer than this to a robot of the world state of that time; see ObstacleList in
+  /// idl/vision.idl. kCompleteEverywhere_m: there are no unlisted obstacles.
   double complete_within_m = 0;
   std::span<const ObservedObstacle> obstacles{};
 };
@@ -35,8 +35,8 @@ class ObstacleView {
  public:
   ObstacleView() { obstacles_.reserve(msg::MAX_OBSTACLES); }
 
-  /// Returns nullopt if the list is not from vision, is too long, or contains an impossible number: without
-  /// one of its obstacles it would not be complete. Valid until the next call.
+  /// Returns nullopt if the list is not from vision, is too long, or contains an impossible number: dropping
+  /// a single obstacle would make the list incomplete. Valid until the next call.
   [[nodiscard]] std::optional<ObstacleObservations> decode(const msg::ObstacleList& message);
 
  private:

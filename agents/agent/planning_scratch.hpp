@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Working memory of planning, which holds nothing from one cycle to the next. The agents of a simulation run
-/// in one thread and share one instance, which therefore stays in the processor's caches.
+/// Working memory of planning, with no state that outlives a cycle. The agents of a simulation run in one
+/// thread and share one instance, which therefore stays in the processor's caches.
 struct PlanningScratch {
   explicit PlanningScratch(const Scenario& scenario)
       : rules(floor_rules(scenario)),

@@ -64,7 +64,7 @@ void ProposalPacing::reset() {
 Duration ProposalPacing::answer_timeout() const { return std::max(cycle_, slow_round_trip_); }
 
 void ProposalPacing::update() {
-  // The command to the robot takes another half of a round trip.
+  // The command to the robot takes another half round trip.
   const Duration needed = slow_round_trip_ + slow_round_trip_ / 2 + robot_lead_;
   const auto cycles =
       static_cast<int>(std::min<std::int64_t>(kMaxLead, (needed + cycle_ - Duration{1}) / cycle_));

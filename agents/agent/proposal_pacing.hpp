@@ -7,23 +7,23 @@
 
 namespace sidestep {
 
-/// Decides how many cycles ahead an agent proposes, which is also the upper bound of the cycles for which it
-/// holds an acceleration. The lead covers the network's round trips and the robot's own lead, plus spare
-/// cycles for retries if messages are lost often.
+/// Decides how many cycles ahead an agent proposes. This is also the upper bound of the number of cycles for
+/// which it holds an acceleration. The lead covers the network's round trip and the robot's own lead, plus
+/// spare cycles for retries if messages are often lost.
 class ProposalPacing {
  public:
   explicit ProposalPacing(Duration cycle) : cycle_(cycle) {}
 
-  /// Records the time from a proposal to its verdict, late verdicts included.
+  /// Records the time from a proposal to its verdict, including late verdicts.
   void on_round_trip(Duration duration);
   void on_version_taken();
   void on_version_late();
-  /// How long before its start the robot has to have a version.
+  /// Sets how long before a version's start the robot must have received it.
   void set_robot_lead(Duration lead);
-  /// Forgets all measured round trips, because another coordinator answers from now on.
+  /// Forgets all measured round trips, because another coordinator now answers.
   void reset();
 
-  /// Cycles.
+  /// The lead in cycles.
   int lead() const { return lead_; }
   /// How long to wait for an answer before proposing again.
   Duration answer_timeout() const;
@@ -36,7 +36,7 @@ class ProposalPacing {
   Duration robot_lead_{0};
   std::array<Duration, kHistorySize> round_trips_{};
   std::size_t count_ = 0;
-  Duration slow_round_trip_{0};  // at most one in eight round trips is longer; 0 before the first
+  Duration slow_round_trip_{0};  // exceeded by at most one in eight round trips; 0 before the first one
   int taken_in_a_row_ = 0, late_in_a_row_ = 0;
   int spare_cycles_ = 0;
   int lead_ = 1;

@@ -10,26 +10,26 @@
 
 namespace sidestep {
 
-/// A page of the ledger that has arrived. Its header is decoded and checked. Its versions are decoded on
-/// demand, because most pages are out of an agent's range. Valid as long as the message.
+/// A received page of the ledger. Its header is decoded and checked. Its versions are decoded on demand,
+/// because most pages are out of an agent's range. Valid as long as the message exists.
 class ReceivedPage {
  public:
   /// Returns nullopt if the untrusted page is not from a coordinator, its index is out of range, or its epoch
   /// is implausible at `now`. `attachment`, if not null, is the slot in which all readers of the message
-  /// share their decoded view of it.
+  /// share one decoded view of it.
   [[nodiscard]] static std::optional<ReceivedPage> decode(const msg::LedgerPage& message, Time now,
                                                           MessageAttachment* attachment = nullptr);
 
-  /// Below kMaxRobots.
+  /// At most kMaxRobots - 1.
   std::uint32_t index() const { return index_; }
   Epoch epoch() const { return epoch_; }
-  /// Orders the messages of one epoch.
+  /// Increases with each message of an epoch.
   std::uint64_t number() const { return number_; }
-  /// Contains the start positions of the page's versions, by the coordinator's statement. Not checked: may be
-  /// wrong, or NaN.
+  /// According to the coordinator, contains the start positions of the page's versions. Not checked: may be
+  /// wrong or NaN.
   const Box& bounds_m() const { return bounds_m_; }
 
-  /// Replaces a view by this page's: the shared one if there is one. Otherwise decodes the page, and reuses
+  /// Replaces a view with this page's view: the shared one if it exists. Otherwise decodes the page, reusing
   /// the old view's memory if it has no other readers.
   void update(std::shared_ptr<LedgerView>& view) const;
 

@@ -13,13 +13,13 @@
 
 namespace sidestep {
 
-/// An obstacle that routes lead around only for now: a robot at rest, or a moving obstacle.
+/// An obstacle that routes avoid only temporarily: a robot at rest, or a moving obstacle.
 struct TemporaryObstacle {
   Circle circle;
   std::optional<RobotId> robot{};
 };
 
-/// Everything that routes lead around. Temporary obstacles are moved; the world is not built again.
+/// All obstacles that routes avoid. Temporary obstacles are moved within the world, which is not rebuilt.
 class RouteObstacles {
  public:
   RouteObstacles(const FloorRules& rules, const ZoneMap& zones);
@@ -30,7 +30,7 @@ class RouteObstacles {
   const ObstacleWorld& world() const { return world_; }
   /// The world without the temporary obstacles.
   ObstacleWorld fixed_world() const;
-  /// What the obstacle is, if it covers a goal. Without the nearest place.
+  /// Describes the obstacle as the cause of a blocked goal, without the nearest place.
   Blockage blockage(ObstacleId obstacle) const;
 
  private:

@@ -15,8 +15,8 @@ class ScanView {
  public:
   ScanView(RobotId robot, const LaserSettings& laser);
 
-  /// Returns nullopt unless the robot sent the scan itself, it is one of this laser, its pose is finite and
-  /// plausible, and its time is plausible at `now`, by the local clock. Valid until the next call.
+  /// Returns nullopt unless the robot sent the scan itself, the scan fits this laser, its pose is finite and
+  /// plausible, and its time is plausible at `now` (by the local clock). Valid until the next call.
   [[nodiscard]] std::optional<LaserScan> decode(const msg::LaserScan& message, Time now);
 
  private:

@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// Why an agent proposes no motion. The first reason that holds, in this order.
+/// Why an agent proposes no motion. If several reasons apply, the first in this order is reported.
 enum class WaitReason : std::uint8_t {
   kNone,
   kNotFenced,            ///< the robot has not acknowledged this agent
@@ -14,16 +14,16 @@ enum class WaitReason : std::uint8_t {
   kEpochNotObeyed,       ///< the robot has not acknowledged the epoch
   kNotRegistered,        ///< the coordinator has not confirmed the registration
   kOthersNotRegistered,  ///< the coordinator does not grant yet
-  kRobotSilent,          ///< the robot reports nothing
-  kTooManyVersions,      ///< the robot may execute as many versions as can be tracked
+  kRobotSilent,          ///< the robot sends no facts
+  kTooManyVersions,      ///< the robot may execute the maximum number of versions that can be tracked
   kOrdersUnknown,        ///< no coordinator that remembers all orders has been heard
   kHeld,                 ///< an order holds the robot
   kNoOrder,              ///< the robot has no order
   kNotSeen,              ///< vision has lost the robot
-  kNoScan,               ///< no scan of the robot's laser has arrived lately
-  kNoObstacleList,       ///< no complete list of obstacles has arrived lately
-  kNotWatched,           ///< the coordinator has had no world state lately
-  kClockNotMeasured,     ///< an offset of the robot's clock from the coordinator's is not known
+  kNoScan,               ///< no laser scan has arrived recently
+  kNoObstacleList,       ///< no complete list of obstacles has arrived recently
+  kNotWatched,           ///< the coordinator has received no world state recently
+  kClockNotMeasured,     ///< the offset between the robot's clock and the coordinator's is unknown
   kClockOutOfBound,      ///< the clocks differ by more than the safety budget allows
 };
 

@@ -7,7 +7,7 @@ namespace sidestep::batch {
 namespace {
 
 void limit(const LimitSettings& s, AccelerationBlock* accelerations, std::size_t blocks) {
-  constexpr double kAtRest_mps = 1e-6;  // as in common/motion/robot_model.cpp
+  constexpr double kAtRest_mps = 1e-6;  // same value as in common/motion/robot_model.cpp
   const Vector one = broadcast(1), zero = broadcast(0);
   for (std::size_t block = 0; block < blocks; ++block) {
     AccelerationBlock& a = accelerations[block];

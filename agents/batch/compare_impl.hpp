@@ -62,7 +62,7 @@ void sample(const MotionBlock* motions, std::size_t blocks, double begin_s, doub
   }
 }
 
-/// Smallest differences so far between squared distances and the thresholds of "clear" and "blocked".
+/// Minimum differences so far between squared distances and the thresholds for "clear" and "blocked".
 /// Differences of chords are scaled by their squared lengths, which preserves the signs.
 struct Gaps {
   Vector clear, blocked;

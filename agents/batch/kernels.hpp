@@ -8,8 +8,8 @@
 
 namespace sidestep::batch {
 
-inline constexpr std::size_t kLanes = 8;  ///< lanes of a block, independent of the machine's vector width
-inline constexpr std::size_t kSteps = 8;  ///< steps into which a comparison divides its time span
+inline constexpr std::size_t kLanes = 8;  ///< lanes per block, independent of the machine's vector width
+inline constexpr std::size_t kSteps = 8;  ///< number of steps into which a comparison divides its time span
 inline constexpr std::size_t kSamples = kSteps + 1;
 
 /// One number for each lane of a block.
@@ -41,7 +41,7 @@ struct SeparationBlock {
 
 /// Thresholds of a comparison. A lane is clear if all chords of the relative motion stay farther away than
 /// the minimum separation plus `clear_slack_m`. It is blocked if a chord comes nearer than the minimum
-/// separation less `blocked_slack_m`. Both tests also allow for the largest deviation of the motion from its
+/// separation minus `blocked_slack_m`. Both tests also allow for the largest deviation of the motion from its
 /// chords.
 struct ComparisonSettings {
   double begin_s, step_s;    ///< on the lanes' time axis
@@ -59,9 +59,9 @@ struct AccelerationBlock {
   Row x, y, distance2;
 };
 
-/// State in which the accelerations begin, motion limits, and the desired acceleration.
+/// The state in which the accelerations start, the motion limits, and the desired acceleration.
 struct LimitSettings {
-  double forward_x, forward_y;  ///< x axis of the frame in which accelerations were sampled
+  double forward_x, forward_y;  ///< x axis of the frame in which accelerations are sampled
   double vx_mps, vy_mps;
   bool is_at_rest;
   double inverse_acceleration2, inverse_deceleration2, inverse_speed;
@@ -69,8 +69,8 @@ struct LimitSettings {
   double desired_x, desired_y;
 };
 
-/// State in which the accelerations begin, how long they are held, and the deceleration of the stop that
-/// follows.
+/// The state in which the accelerations start, how long they are held, and the deceleration of the subsequent
+/// stop.
 struct StopSettings {
   double x_m, y_m, vx_mps, vy_mps, hold_s, deceleration_mps2;
 };
@@ -80,7 +80,7 @@ struct ComparisonKernels {
   /// Sets bit k of a block's mask if the discs of lane k and of the query touch.
   void (*find_touching)(const Row* x_m, const Row* y_m, const Row* radius_m, std::size_t blocks, double x,
                         double y, double radius, std::uint8_t* masks);
-  /// Returns the latest time at which a motion comes to rest, among the motions that rest by `latest_s`, and
+  /// Returns the latest time at which a motion comes to rest, among the motions that rest by `latest_s`, but
   /// at least `earliest_s`. Sets the bits of motions that rest later than `latest_s`.
   double (*find_rest)(const MotionBlock* motions, std::size_t blocks, double earliest_s, double latest_s,
                       std::uint8_t* later);
@@ -96,7 +96,8 @@ struct ComparisonKernels {
   void (*decide)(const GapBlock* gaps, std::size_t blocks, std::uint8_t* clear, std::uint8_t* blocked);
 };
 
-/// Kernels that limit, expand and choose candidate accelerations. All instruction sets give the same bits.
+/// Kernels that limit, expand and choose candidate accelerations. All instruction sets give bit-identical
+/// results.
 struct ChoiceKernels {
   /// Rotates accelerations from the velocity's frame to the field's, limits them as limit_acceleration()
   /// does, and computes their squared distances from the desired acceleration.
@@ -145,7 +146,7 @@ struct DrivingSettings {
   float speed_mps, acceleration_mps2, deceleration_mps2;
 };
 
-/// Kernels that predict motions and rate them. All instruction sets give the same bits.
+/// Kernels that predict motions and rate them. All instruction sets give bit-identical results.
 struct PredictionKernels {
   void (*roll_out)(const DrivingSettings& settings, const CourseBlock* courses, std::size_t blocks,
                    PredictionBlock* predictions);

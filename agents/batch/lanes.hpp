@@ -13,7 +13,7 @@ inline constexpr double kMaxHorizon_s = 1.2;
 
 /// A set of trajectories that are compared with one trajectory at a time, several per instruction. All
 /// decisions are conservative with respect to the exact clearance: a lane that is neither clear nor blocked
-/// is undecided, and the caller has to ask is_clear().
+/// is undecided, and the caller must then use is_clear().
 class Lanes {
  public:
   explicit Lanes(const Kernels& kernels) : kernels_(&kernels) {}
@@ -23,7 +23,7 @@ class Lanes {
   void add(const TrajectoryBounds& bounds, double min_separation_m);
   std::size_t size() const { return count_; }
 
-  /// Prepares comparisons that begin at `begin` and cover at least `min_span_s`.
+  /// Prepares comparisons that start at `begin` and cover at least `min_span_s`.
   void sample(Time begin, double min_span_s);
   double step_s() const { return step_s_; }
   /// Compares all lanes with `reference`, which is sampled at the same times.
@@ -73,10 +73,10 @@ class Lanes {
 [[nodiscard]] ComparisonSettings comparison_settings(double begin_s, double step_s, double acceleration_mps2,
                                                      double extra_clearance_m);
 
-/// Samples of one lane.
+/// The samples of one lane.
 [[nodiscard]] Track track_of(const TrackBlock& tracks, std::size_t lane);
 
-/// Samples of a trajectory. Precondition: the bounds are batchable.
+/// The samples of a trajectory. Precondition: the bounds are batchable.
 [[nodiscard]] Track track_of(const TrajectoryBounds& bounds, Time begin, double step_s);
 
 }  // namespace sidestep::batch

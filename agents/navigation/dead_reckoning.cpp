@@ -7,8 +7,8 @@
 namespace sidestep {
 namespace {
 
-// Standard deviations that count. Among hundreds of robots one may have odometry that is three standard
-// deviations off, and it stays so until its filter has learned it.
+// Numbers of standard deviations used. Among hundreds of robots, one may have odometry that is three standard
+// deviations off, and it stays so until its filter has learned the error.
 constexpr double kFixDeviations = 3, kScaleDeviations = 4;
 constexpr double kMinScaleDeviation = 1e-6;
 

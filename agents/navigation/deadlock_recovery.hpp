@@ -6,7 +6,7 @@
 namespace sidestep {
 
 struct DeadlockRecoverySettings {
-  double blocked_speed_mps = 0.3;  ///< a robot denied its desired motion is blocked below this speed
+  double blocked_speed_mps = 0.3;  ///< a robot that was denied its desired motion is blocked below this speed
   double turn_rate_radps = 3;      ///< rate at which the angle grows while blocked and shrinks when free
   double activation_rad = 1;       ///< recovery is active while the angle exceeds this
   double release_delay_s = 0.5;    ///< how long an active recovery holds its angle once the robot is free
@@ -19,7 +19,7 @@ class DeadlockRecovery {
  public:
   explicit DeadlockRecovery(const DeadlockRecoverySettings& settings = {}) : settings_(settings) {}
 
-  /// Call once per decision, with its time. `is_free`: the robot got its desired motion.
+  /// Call once per decision, with the time since the last one. `is_free`: the robot got its desired motion.
   void update(bool is_free, double speed_mps, Time now);
   /// Angle to turn right of the route, from 0 to 2 pi.
   double angle_rad() const { return angle_rad_; }

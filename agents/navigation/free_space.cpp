@@ -11,7 +11,7 @@ namespace {
 typedef float FourFloats __attribute__((vector_size(16)));
 typedef std::int32_t FourInts __attribute__((vector_size(16)));
 
-// Where empty lanes are: farther than any obstacle.
+// Position of empty lanes: farther away than any obstacle.
 constexpr float kNowhere_m = 1e15F, kNone_m2 = 1e30F;
 
 FourFloats load_floats(const float* lanes) {

@@ -10,20 +10,21 @@
 
 namespace sidestep {
 
-/// How far the nearest obstacle is from a position.
+/// The distance from a position to the nearest obstacle.
 struct FreeDistance {
   double distance_m = std::numeric_limits<double>::infinity();
-  Vec2 away{0, 0};  ///< unit vector from the nearest obstacle to the position; 0 if unknown
+  Vec2 away{0, 0};  ///< unit vector pointing away from the nearest obstacle; 0 if unknown
 };
 
-/// Obstacle points, e.g. of a laser, for distance queries. Kept in single precision, relative to the first
-/// position that they were set with, which costs at most a micrometre within ten metres.
+/// Obstacle points, for example of a laser, for distance queries. They are stored in single precision
+/// relative to the first position that they were set with, which costs at most a micrometre of accuracy
+/// within ten metres.
 class ObstaclePoints {
  public:
-  /// Points that are not finite are skipped. Does not allocate once warm.
+  /// Skips points that are not finite. Does not allocate once warm.
   void set(std::span<const Vec2> points_m, const Vec2& robot_m);
 
-  /// The nearest point that is at least `masked_m` away from the robot.
+  /// The nearest of the points that are at least `masked_m` away from the robot.
   FreeDistance operator()(const Vec2& at_m, double masked_m) const;
 
  private:

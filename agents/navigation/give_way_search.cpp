@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMaxPathSamples = 5000;
 
-/// Whether a robot that drives along this way, or stays at its only place, would be in the way of a route.
+/// Whether a robot that drives along this way, or stays at its only place, would block a route.
 bool is_on_route(const std::vector<Vec2>& route, const std::vector<Vec2>& way, double separation_m) {
   for (std::size_t i = 1; i < route.size(); ++i)
     for (std::size_t k = 0; k < way.size(); ++k)
@@ -25,7 +25,7 @@ bool is_place_on_route(const std::vector<Vec2>& route, const Vec2& place, double
   return false;
 }
 
-/// For heaps with the nearest place on top.
+/// Comparison for heaps with the nearest place on top.
 bool is_farther(const std::pair<double, Vec2>& a, const std::pair<double, Vec2>& b) {
   return a.first > b.first;
 }
@@ -78,7 +78,7 @@ void GiveWaySearch::check_passage(Rng& rng) {
   while (next_ < routes_.size()) {
     const Way& route = routes_[next_++];
     if (!is_place_on_route(route, query_.position_m, floor_.min_separation_m)) continue;
-    // Several robots together may close a way that each of them alone leaves open.
+    // Several robots together may close a way that each of them alone would leave open.
     std::vector<ObstacleId> robots{fixed_.add(disc_at(query_.position_m))};
     for (const Vec2& other : query_.others_m)
       if (other != route.front()) robots.push_back(fixed_.add(disc_at(other)));
@@ -92,7 +92,7 @@ void GiveWaySearch::check_passage(Rng& rng) {
 }
 
 void GiveWaySearch::begin_places() {
-  // They are never quite at rest.
+  // Robots are never exactly at rest.
   for (const Vec2& other : query_.others_m) {
     Circle disc = disc_at(other);
     disc.radius_m += settings_.clearance_m;
@@ -127,7 +127,7 @@ std::optional<Vec2> GiveWaySearch::next_place() {
       std::ranges::pop_heap(candidates_, is_farther);
       const Vec2 place = candidates_.back().second;
       candidates_.pop_back();
-      // What is connected with an unreachable place is unreachable too.
+      // Everything connected with an unreachable place is unreachable too.
       const bool is_unreachable = std::ranges::any_of(
           unreachable_, [&](const Vec2& other) { return !fixed_.touches(other, place, floor_.required_m); });
       if (!is_unreachable) return place;
@@ -143,7 +143,7 @@ std::optional<Vec2> GiveWaySearch::next_place() {
 }
 
 bool GiveWaySearch::is_candidate(const Vec2& place) {
-  // One of several that are near each other is enough.
+  // Of several places near each other, one is enough.
   const Vec2 cell = (place - query_.position_m) / (2 * floor_.radius_m);
   const std::pair key{std::lround(cell.x()), std::lround(cell.y())};
   if (taken_.contains(key)) return false;

@@ -11,51 +11,52 @@
 
 namespace sidestep {
 
-/// What a robot needs to know of the floor to give way on it.
+/// The properties of the floor that a robot needs to know to give way on it.
 struct GiveWayFloor {
   Field field;
   double radius_m;
   double required_m;        ///< distance of the robot's centre from obstacles
-  double min_separation_m;  ///< distance of the centres of two robots
+  double min_separation_m;  ///< distance between the centres of two robots
 };
 
 struct GiveWaySearchSettings {
-  double clearance_m = 0.02;   ///< beyond the minimum separation, from the routes of others
-  double grid_fraction = 0.5;  ///< spacing of the places, as a part of the robot's radius
-  std::size_t max_plans = 12;  ///< paths to places that are planned in one search
-  int max_places = 500;        ///< that one step examines
+  double clearance_m = 0.02;   ///< distance from other robots' routes beyond the minimum separation
+  double grid_fraction = 0.5;  ///< spacing of the examined places, as a fraction of the robot's radius
+  std::size_t max_plans = 12;  ///< maximum number of paths to places that are planned in one search
+  int max_places = 500;        ///< maximum number of places that one step examines
 };
 
-/// What to find out.
+/// The input of a search.
 struct GiveWayQuery {
   Vec2 position_m{0, 0};
-  std::vector<std::pair<Vec2, Vec2>> trips;  ///< of the robots with the right of way: from where to where
-  std::vector<Vec2> others_m;                ///< where all other robots are
-  std::vector<Vec2> way;              ///< along which the robot already gives way; empty: it does not yet
-  double range_m = 1;                 ///< how far away places may be
-  std::vector<Vec2> unreachable_m{};  ///< no places near these
+  /// Trips of the robots with the right of way: start and destination.
+  std::vector<std::pair<Vec2, Vec2>> trips;
+  std::vector<Vec2> others_m;  ///< positions of all other robots
+  /// Way along which the robot already gives way; empty: it does not give way yet.
+  std::vector<Vec2> way;
+  double range_m = 1;                 ///< maximum distance of places
+  std::vector<Vec2> unreachable_m{};  ///< places near these are not considered
 };
 
-/// Finds out whether a robot is in the way of others that cannot drive around it, and if so, the nearest
-/// place off their routes that it can reach. The search is divided into steps, each of which plans at most
-/// one path and examines a limited number of places, so that a control cycle has time for it.
+/// Determines whether a robot is in the way of others that cannot drive around it. If so, finds the nearest
+/// place off their routes that the robot can reach. The search is divided into steps, each of which plans at
+/// most one path and examines a limited number of places, so that it fits into a control cycle.
 class GiveWaySearch {
  public:
   explicit GiveWaySearch(const GiveWayFloor& floor, const GiveWaySearchSettings& settings = {});
 
-  /// Begins a search, and ends the last one. `fixed`: all obstacles but robots.
+  /// Starts a search and discards the last one. `fixed`: all obstacles except robots.
   void begin(GiveWayQuery query, ObstacleWorld fixed);
   void cancel() { stage_ = Stage::kIdle; }
   bool is_active() const { return stage_ != Stage::kIdle; }
   /// Precondition: is_active().
   void step(Rng& rng);
 
-  // Results, once a search is not active any more.
-  /// Whether the robot at its position is in the way of another one that cannot drive around it and all
-  /// others or, if it already gives way, whether it would be in the way of another one anywhere along its
-  /// way.
+  // Results, available once no search is active.
+  /// Whether the robot, at its position, is in the way of another robot that cannot drive around it and all
+  /// others. If it already gives way: whether it would be in the way of another robot anywhere along its way.
   bool is_in_the_way() const { return is_in_the_way_; }
-  /// The way to the place; empty if it is not needed, or if there is no such place.
+  /// The way to the place; empty if none is needed or there is no such place.
   const std::vector<Vec2>& way() const { return way_; }
 
  private:
@@ -66,15 +67,15 @@ class GiveWaySearch {
   void check_passage(Rng& rng);
   void begin_places();
   void search_places(Rng& rng);
-  /// Whether it is worth a path: free, off the routes, and none is known next to it.
+  /// Whether a path to it is worth planning: it is free, off the routes, and not next to a known place.
   bool is_candidate(const Vec2& place);
-  /// Examines the next places, up to the limit of a step. Returns the nearest one that is left; nullopt: not
-  /// known yet, or there is none any more.
+  /// Examines further places, up to the limit of a step. Returns the nearest remaining one; nullopt if it is
+  /// not known yet or there are none left.
   std::optional<Vec2> next_place();
-  /// The next place of the grid, in square rings around the robot; nullopt: all are examined.
+  /// The next place of the grid, in square rings around the robot; nullopt if all have been examined.
   std::optional<Vec2> next_of_grid();
   std::optional<Way> path(const Vec2& from_m, const Vec2& to_m, Rng& rng) const;
-  /// A robot, as an obstacle.
+  /// A robot at a position, as an obstacle.
   Circle disc_at(const Vec2& position_m) const;
 
   GiveWayFloor floor_;
@@ -83,11 +84,11 @@ class GiveWaySearch {
   Stage stage_ = Stage::kIdle;
   GiveWayQuery query_;
   ObstacleWorld fixed_;
-  std::vector<Way> routes_;  // of the robots with the right of way
-  std::size_t next_ = 0;     // trip or route
+  std::vector<Way> routes_;  // routes of the robots with the right of way
+  std::size_t next_ = 0;     // index of the next trip or route
   bool is_in_the_way_ = false;
   Way way_;
-  // Places: those that are known to be free, by distance, and what has been examined.
+  // Places: the known free ones, sorted by distance, and what has been examined.
   std::vector<std::pair<double, Vec2>> candidates_;
   std::set<std::pair<long, long>> taken_;
   std::vector<Vec2> unreachable_;

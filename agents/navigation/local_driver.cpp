@@ -10,7 +10,7 @@ namespace {
 
 // Paths may touch the obstacles that they lead around.
 constexpr double kTolerance_m = 0.002;
-// The end of a band is on the path if it is not farther away.
+// The end of a band is on the path if it is within this distance.
 constexpr double kOnPath_m = 1e-6;
 
 double length_m(const Vec2& from_m, std::span<const Vec2> path_m) {
@@ -55,7 +55,7 @@ LocalChoice LocalDriver::choose(const LocalQuery& query) {
 }
 
 double LocalDriver::distance_m(const LocalQuery& query, const Vec2& at) const {
-  // The centre keeps only its radius from the border.
+  // The robot's centre only keeps its radius from the border.
   const double beyond_m = separation_m_ - radius_m_;
   const double border_m =
       beyond_m + std::min(field_.length_m / 2 - std::abs(at.x()), field_.width_m / 2 - std::abs(at.y()));

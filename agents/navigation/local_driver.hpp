@@ -17,63 +17,65 @@
 namespace sidestep {
 
 struct LocalDriverSettings {
-  // On a polyline or band: steers for the first of these distances that is free on a straight line.
+  // With a polyline or band: the robot steers to the first of these distances along it that is free in a
+  // straight line.
   std::array<double, 4> look_ahead_m{0.8, 0.4, 0.2, 0.1};
-  double final_approach_m = 0.25;  ///< nearer to the goal, a window's grid of velocities is too coarse
-  std::size_t rays = 64;           ///< on which the window sees the nearest obstacles
-  double range_m = 1.6;            ///< of the rays
-  double reaction_s = 0.35;        ///< velocities that are reachable in this time are considered
-  double min_progress_mps = 0.3;   ///< towards the target, of a velocity worth choosing
-  std::size_t max_preferred = 4;   ///< velocities offered besides the best one
-  // A band is started again if it is longer than the path by this factor plus this length.
+  /// Nearer to the goal than this, a window's grid of velocities is too coarse.
+  double final_approach_m = 0.25;
+  std::size_t rays = 64;          ///< number of rays along which the window sees the nearest obstacles
+  double range_m = 1.6;           ///< length of the rays
+  double reaction_s = 0.35;       ///< velocities that can be reached in this time are considered
+  double min_progress_mps = 0.3;  ///< minimum speed towards the target of a useful velocity
+  std::size_t max_preferred = 4;  ///< velocities offered besides the best one
+  // A band is restarted if it is longer than this factor times the path's length plus this length.
   double max_detour = 1.2, max_detour_m = 0.3;
-  double band_m = 10;  ///< of a longer path, only the beginning becomes a band
-  /// On a path chosen by a planner, the heading counts most. The table would only round times down.
+  double band_m = 10;  ///< only the beginning of a longer path becomes a band
+  /// On a path chosen by a planner, the heading matters most. The table would only round times down.
   DiscWindowSettings window{.method = CollisionMethod::kExact,
                             .weights = {.distance = 0.2, .heading = 0.5, .speed = 0.3}};
 };
 
-/// Turns to the right around whatever is ahead, so that two robots that meet do not push each other.
+/// Turns right around obstacles ahead, so that two robots that meet do not push each other back and forth.
 inline constexpr PotentialFieldSettings kDrivingField{.reach_m = 0.4, .rotation = 0.6};
 
-/// What local methods decide on. Must outlive the call only.
+/// The input of the local methods. Needs to exist only during the call.
 struct LocalQuery {
   State at;
   std::span<const Vec2> path_m{};  ///< from the next waypoint to the end; not empty
   const ObstacleWorld* world = nullptr;
-  std::span<const Circle> others{};  ///< bodies that are not in the world
+  std::span<const Circle> others{};  ///< bodies that the world does not contain
   double cycle_s = 1.0 / 60;
 };
 
 struct LocalChoice {
   Vec2 target_m{0, 0};  ///< the point to steer to
-  /// What the window or the field chose. None: without them, near the goal, too near to an obstacle, or if
-  /// that velocity makes no progress.
+  /// The velocity chosen by the window or the field. nullopt if there is neither, near the goal, too near to
+  /// an obstacle, or if the chosen velocity makes no progress.
   std::optional<Vec2> velocity_mps{};
   std::span<const Vec2> preferred_mps{};  ///< the next best velocities; valid until the next call
 };
 
-/// Follows a planner's path with local methods: a band finds the point to steer to, a window or a
-/// potential field the velocity.
-/// Safety does not depend on it. Does not allocate once warm.
+/// Follows a planner's path with local methods: a band determines the point to steer to; a window or a
+/// potential field determines the velocity. Safety does not depend on it. Does not allocate once warm.
 class LocalDriver {
  public:
-  /// The robot's centre keeps `separation_m` from the edges of obstacles, and as much of the field's border
-  /// as `radius_m`. Throws std::invalid_argument if a distance, limit or setting is invalid.
+  /// The robot's centre keeps `separation_m` from the edges of obstacles and `radius_m` from the field's
+  /// border. Throws std::invalid_argument if a distance, limit or setting is invalid.
   LocalDriver(const LocalMethods& methods, const Field& field, double radius_m, double separation_m,
               const MotionLimits& limits, const LocalDriverSettings& settings = {});
 
   [[nodiscard]] LocalChoice choose(const LocalQuery& query);
 
-  /// None without a band or while the robot follows the path itself, because no band fits through.
+  /// The band's bubbles. Empty without a band, and while the robot follows the path itself because no band
+  /// fits through.
   std::span<const Bubble> bubbles() const;
 
  private:
-  /// From a position to the nearest obstacle, body or border; negative inside.
+  /// Distance from a position to the nearest obstacle, body or border; negative inside.
   double distance_m(const LocalQuery& query, const Vec2& at_m) const;
   bool is_line_free(const LocalQuery& query, const Vec2& to_m) const;
   void update_band(const LocalQuery& query);
-  /// Whether the band still leads to a place on the path that is far enough ahead, without a long detour.
+  /// Whether the band still leads to a place that is far enough ahead on the path, without a long detour.
   bool fits_path(const LocalQuery& query) const;
   Vec2 target_m(const LocalQuery& query) const;
   /// Fills points_m_ with the first obstacles on the rays, relative to the robot.

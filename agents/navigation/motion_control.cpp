@@ -14,9 +14,9 @@ AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2&
   const double seconds = to_seconds(hold);
   if (profile.along().duration_s() > seconds)
     return {(profile.velocity_after(seconds) - velocity_mps) / seconds, hold};
-  // The velocity between two holds that end at rest at the displacement.
+  // The velocity between two accelerations after which the robot rests at the displacement.
   Vec2 between_mps = displacement_m / seconds - 0.5 * velocity_mps;
-  // A robot that would have to turn back comes to rest first: the limit on speeding up after the turn would
+  // A robot that would have to turn back first comes to rest: the limit on accelerating after the turn would
   // also weaken the braking before it.
   const double along = between_mps.dot(velocity_mps);
   if (along < 0) between_mps -= along / velocity_mps.squaredNorm() * velocity_mps;

@@ -15,9 +15,9 @@ struct AccelerationCommand {
 
 /// Returns the first acceleration of the trapezoidal motion (Bruce 2006, appendix B) that comes to rest at
 /// `displacement_m` from the current position. It is held for the duration of the profile's first phase,
-/// clamped to [min_hold, max_hold]; min_hold > 0. If the motion is shorter than that, no single
-/// acceleration follows it: the result is the first of two that are held as long and come to rest there, or,
-/// if the robot would have to turn back, one that brings it to rest first.
+/// clamped to [min_hold, max_hold]; min_hold > 0. If the motion is shorter than that, no single acceleration
+/// achieves it. The result is then the first of two accelerations that are each held for min_hold and
+/// together come to rest there, or, if the robot would have to turn back, one that first brings it to rest.
 [[nodiscard]] AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2& velocity_mps,
                                                        const MotionLimits& limits, Duration min_hold,
                                                        Duration max_hold);

@@ -12,17 +12,17 @@ namespace sidestep {
 /// alternation, so that no robot always yields.
 [[nodiscard]] bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period);
 
-/// A robot that wants to pass, and the number of the order that it carries out: a clock reading, smaller for
-/// older orders.
+/// A robot that wants to pass, with the number of its order. The number is a clock reading, so older orders
+/// have smaller numbers.
 struct Passer {
   RobotId robot = 0;
   OrderNumber order = 0;
 };
 
-/// The same where robots cannot pass each other and may have to wait for whole periods. The older order comes
-/// first: no robot waits for more orders than were given before its own. Robots with the same number, and in
-/// every fourth period all robots, come in a random order that is drawn anew in each period, because the
-/// robot with the oldest order may be unable to drive.
+/// Whether a robot may pass first where robots cannot pass each other and may have to wait for whole periods.
+/// The older order goes first: no robot waits for more orders than were given before its own. Robots with the
+/// same number, and in every fourth period all robots, go in a random order that is drawn again in each
+/// period, because the robot with the oldest order may be unable to drive.
 [[nodiscard]] bool may_pass_first(const Passer& other, const Passer& self, Time t, Duration period);
 
 }  // namespace sidestep

@@ -9,17 +9,17 @@
 namespace sidestep {
 namespace {
 
-// A route is replanned if its remaining length exceeds the smallest one so far by more than this.
+// A route is replanned if its remaining length exceeds the smallest value so far by more than this.
 constexpr double kReplanIncrease_m = 0.05;
-// A waypoint that the robot has to pass is reached at this distance.
+// A waypoint that the robot must pass is reached at this distance.
 constexpr double kReached_m = 0.1;
 // A path that keeps clear of obstacles is straightened by at most this.
 constexpr double kAside_m = 0.02;
-// Random samples cost more, and are all spent when there is no path.
+// Random samples cost more, and all of them are spent if there is no path.
 constexpr std::size_t kMaxRandomSamples = 1500;
-// Of roadmaps, which would otherwise grow with each query that they do not solve.
+// Maximum number of nodes of roadmaps, which would otherwise grow with each query that they do not solve.
 constexpr std::size_t kMaxRandomNodes = 2000;
-// Where the last route is farther away than this, changes nearby do not change it.
+// Changes nearby do not affect the part of the last route that is farther away than this.
 constexpr double kFar_m = 20;
 
 }  // namespace
@@ -65,7 +65,7 @@ void RoutePlanner::remember_route() {
   has_last_tight_end_ = has_tight_end_;
 }
 
-/// The clearance applies to obstacles only: at the edge of the field it is the robot's radius.
+/// The clearance applies only to obstacles; at the edge of the field it is the robot's radius.
 Field RoutePlanner::extended_field() const {
   const double extra = 2 * (clearance_m_ - radius_m_);
   return {field_.length_m + extra, field_.width_m + extra};
@@ -264,7 +264,7 @@ std::optional<Route> RoutePlanner::continued_from(const Vec2& start) {
 
 bool RoutePlanner::may_skip_waypoint(const Vec2& start) const {
   if (planner_->keeps_clear && (start - waypoints_[next_waypoint_]).norm() > kReached_m) return false;
-  // The last leg must not be entered earlier: it would lead along obstacles.
+  // The last leg must not be entered earlier, because it would then lead along obstacles.
   const bool is_before_tight_end = has_tight_end_ && next_waypoint_ + 2 == waypoints_.size();
   if (is_before_tight_end && (start - waypoints_[next_waypoint_]).norm() > kReached_m) return false;
   return is_leg_free(start, next_waypoint_ + 1);

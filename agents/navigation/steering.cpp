@@ -14,10 +14,10 @@ using batch::kPredictionSamples;
 
 constexpr int kTurnsPerSide = 9;
 constexpr double kTurn_rad = 12 * std::numbers::pi / 180;
-// How long candidate velocities are held. For kSlowDuration_s, slow velocities are candidates too.
+// Times for which candidate velocities are held. For kSlowDuration_s, slow velocities are candidates too.
 constexpr std::array kDurations_s{0.18, 0.37, 0.87};
 constexpr double kSlowDuration_s = kDurations_s[1];
-constexpr double kSlowFraction = 0.38;  // of the speed limit
+constexpr double kSlowFraction = 0.38;  // as a fraction of the speed limit
 // Via points lie at these fractions of the distance to the goal, along the line to it and to either side.
 constexpr std::array kViaAlong{0.3, 0.5, 0.7};
 constexpr std::array kViaLateral{0.06, 0.12, 0.18, 0.25, 0.33, 0.45};
@@ -154,8 +154,8 @@ void Steering::add_via_point_candidates(const State& at, const Vec2& goal) {
 std::size_t Steering::first_reachable_sample(const Other& other, const Vec2& from_m) const {
   const double step_m = speed_mps_ * batch::kPredictionStep_s;
   std::size_t i = 0;
-  // Before sample i + 1 the robot travels at most i + 1 steps, and the other robot comes at most one step
-  // nearer than it is at that sample.
+  // Before sample i + 1, the robot travels at most i + 1 steps, and the other robot is at most one step
+  // nearer than at that sample.
   const auto max_reach_m = [&] { return other.min_separation_m + step_m * static_cast<double>(i + 2); };
   while (i < batch::kPredictionSteps && std::hypot(other.prediction.x_m[i + 1] - from_m.x(),
                                                    other.prediction.y_m[i + 1] - from_m.y()) > max_reach_m())

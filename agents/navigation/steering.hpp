@@ -10,29 +10,33 @@
 
 namespace sidestep {
 
-/// Costs in seconds, added to the predicted time to the goal, and preferred clearances.
+/// Costs in seconds that are added to the predicted time to the goal, and preferred clearances.
 struct SteeringSettings {
-  double danger_s = 1;                  ///< of sharing a robot's position during the first prediction step
+  /// Cost of sharing a robot's position during the first prediction step.
+  double danger_s = 1;
   double final_danger_fraction = 0.08;  ///< danger at the end of the prediction, as a fraction of `danger_s`
-  double danger_decay_exponent = 1.75;  ///< shape of the decay in between
-  double left_turn_penalty_s = 0.16;    ///< of turning left: robots that all turn right pass each other
-  double switch_penalty_s = 0.06;       ///< of giving up the previous detour for another candidate
-  double tolerable_danger_s = 0.02;     ///< below it, the previous detour is kept without comparing others
-  double extra_clearance_m = 0.035;     ///< preferred beyond the minimum separation from moving robots
-  double stationary_clearance_m = 0.016;  ///< the same for stationary obstacles
+  double danger_decay_exponent = 1.75;  ///< shape of the decay between the two
+  /// Cost of turning left: robots that all turn right can pass each other.
+  double left_turn_penalty_s = 0.16;
+  double switch_penalty_s = 0.06;    ///< cost of giving up the previous detour for another candidate
+  double tolerable_danger_s = 0.02;  ///< below this, the previous detour is kept without comparing others
+  /// Preferred clearance from moving robots beyond the minimum separation.
+  double extra_clearance_m = 0.035;
+  /// Preferred clearance from stationary obstacles beyond the minimum separation.
+  double stationary_clearance_m = 0.016;
 };
 
 /// A robot's previous choice.
 struct LastChoice {
-  std::optional<Intent> detour;  ///< a velocity that is held, or a via point; none: the direct path
+  std::optional<Intent> detour;  ///< a velocity that is held, or a via point; nullopt: the direct path
   std::uint64_t changes = 0;     ///< number of choices that did not continue the previous one
 };
 
-/// Chooses a robot's intent among other robots. The direct path is taken while it is predicted free.
-/// Otherwise candidate detours (velocities held for some time, and via points) are predicted against the
-/// intents of the other robots, and compared by time to goal and danger: how near they come to others, and
-/// how soon. The choice is published as the robot's own intent. Safety does not depend on it. Does not
-/// allocate once warm.
+/// Chooses a robot's intent among other robots. The direct path is chosen as long as it is predicted to be
+/// free. Otherwise candidate detours (velocities held for some time, and via points) are predicted together
+/// with the other robots' intents. They are compared by time to goal and by danger, that is, how near they
+/// come to others and how soon. The choice is published as the robot's own intent. Safety does not depend on
+/// it. Does not allocate once warm.
 class Steering {
  public:
   Steering(const Field& field, double radius_m, const MotionLimits& limits,
@@ -40,13 +44,13 @@ class Steering {
 
   /// Forgets the other robots and obstacles.
   void clear();
-  /// A moving robot to yield to; centres should stay `min_separation_m` apart.
+  /// Adds a moving robot to yield to. The distance between the centres should be at least `min_separation_m`.
   void add_moving(const State& state, const Intent& intent, double min_separation_m);
-  /// A stationary robot or obstacle.
+  /// Adds a stationary robot or obstacle.
   void add_stationary(const Vec2& position_m, double min_separation_m);
 
-  /// Chooses the intent from a state on. `elapsed_s` is the time since the state of the last choice. Updates
-  /// `last`; the last choice is kept unless another one is better by more than the switch penalty.
+  /// Chooses the intent from a given state on. `elapsed_s` is the time since the state of the last choice.
+  /// Updates `last`: the last choice is kept unless another is better by more than the switch penalty.
   [[nodiscard]] Intent choose(const State& at, const Vec2& waypoint_m, const Vec2& goal_m, double elapsed_s,
                               LastChoice& last);
 
@@ -76,11 +80,11 @@ class Steering {
   float half_length_m_, half_width_m_;
   float weights_[batch::kPredictionSamples] = {};
   MotionPredictor moving_;
-  std::vector<double> min_separations_m_;  // by lane of moving_
+  std::vector<double> min_separations_m_;  // indexed by lane of moving_
   std::vector<Other> others_;
   MotionPredictor candidates_;
-  std::vector<Intent> intents_;  // by lane of candidates_
-  std::vector<double> extra_s_;  // penalty by lane of candidates_, besides time and danger
+  std::vector<Intent> intents_;  // indexed by lane of candidates_
+  std::vector<double> extra_s_;  // penalty besides time and danger, indexed by lane of candidates_
   std::vector<batch::PredictionRow> dangers_;
 };
 

@@ -17,7 +17,7 @@ class TrapezoidalProfile {
   TrapezoidalProfile(double distance_m, double velocity_mps, const MotionLimits& limits);
 
   double duration_s() const;
-  /// Duration of a TrapezoidalProfile with these arguments, without building one.
+  /// Duration of a TrapezoidalProfile with these arguments, without constructing it.
   static double duration_s(double distance_m, double velocity_mps, const MotionLimits& limits);
   /// Duration of the first phase; 0 if the profile is empty.
   double first_phase_s() const { return count_ > 0 ? phases_[0].seconds : 0; }

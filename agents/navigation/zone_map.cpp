@@ -11,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-// Corners of the polygon around a circle.
+// Number of corners of the polygon around a circle.
 constexpr int kCircleCorners = 24;
 
 }  // namespace

@@ -5,11 +5,12 @@
 
 namespace sidestep {
 
-/// A piece of the border between what was seen free and the rest.
+/// A piece of the border between the floor that was seen free and the rest.
 struct Frontier {
   Segment segment;
-  /// A person beyond the segment can project over it by this much: at capture if the segment is open, at any
-  /// time if it is closed. Of a closed one, 0: nobody who does can touch a robot.
+  /// How far a person whose centre is beyond the segment can project over it: at capture if the segment is
+  /// open, at any time if it is closed. 0 for a closed segment if nobody who projects over it can touch a
+  /// robot.
   double bulge_m = 0;
 };
 

@@ -6,12 +6,12 @@
 
 namespace sidestep {
 
-/// A scan, and where and when it was taken.
+/// A laser scan, with the place and time at which it was taken.
 struct LaserScan {
-  Vec2 at_m{0, 0};  ///< of the scanner
+  Vec2 at_m{0, 0};  ///< position of the scanner
   double heading_rad = 0;
   Time captured_at{};
-  std::span<const float> ranges_m;  ///< as LaserScanner::scan writes them; NaN is a dropout
+  std::span<const float> ranges_m;  ///< as written by LaserScanner::scan(); NaN is a dropout
 };
 
 enum class BeamEnd : std::uint8_t {
@@ -22,22 +22,23 @@ enum class BeamEnd : std::uint8_t {
 };
 
 struct Beam {
-  Vec2 direction{1, 0};  ///< of length 1, in the world
-  double free_m = 0;     ///< free from the scanner up to here; 0 if nothing is known
+  Vec2 direction{1, 0};  ///< unit vector in the world frame
+  double free_m = 0;     ///< free distance from the scanner; 0 if nothing is known
   BeamEnd end = BeamEnd::kUnknown;
 };
 
-/// The beams of the last scan, in the world's frame. Known robots are told apart, because they say themselves
-/// where they are. Does not allocate after the constructor.
+/// The beams of the last scan, in the world's frame. Known robots are distinguished, because they report
+/// their own positions. Does not allocate after the constructor.
 class LaserBeams {
  public:
-  /// A hit belongs to a robot if it is within its radius plus the tolerance. Throws std::invalid_argument for
-  /// invalid settings (see LaserScanner) or a tolerance that is negative or not finite.
+  /// A hit belongs to a robot if it is within the robot's radius plus the tolerance. Throws
+  /// std::invalid_argument for invalid settings (see LaserScanner), or if the tolerance is negative or not
+  /// finite.
   explicit LaserBeams(const LaserSettings& settings, double robot_tolerance_m = 0.1);
 
-  /// `robots`: the known ones at the time of the scan, without the one that carries the scanner. Throws
-  /// std::invalid_argument if the number of ranges is not that of the beams, a robot or the pose is not
-  /// finite, or a radius is negative. Finite ranges beyond the limits count as those limits.
+  /// `robots` are the known robots at the time of the scan, without the one that carries the scanner. Throws
+  /// std::invalid_argument if the number of ranges differs from the number of beams, a robot or the pose is
+  /// not finite, or a radius is negative. Finite ranges beyond the limits count as those limits.
   void read(const LaserScan& scan, std::span<const Circle> robots);
 
   std::span<const Beam> all() const { return beams_; }
@@ -48,7 +49,7 @@ class LaserBeams {
   const Vec2& at_m() const { return at_m_; }
   Time captured_at() const { return captured_at_; }
   const LaserSettings& settings() const { return scanner_.settings(); }
-  /// The angle from a beam, counter-clockwise, to the next one; from the last one, to the first.
+  /// The counter-clockwise angle from a beam to the next one; for the last beam, to the first.
   double gap_rad(int beam) const { return beam + 1 < count() ? spacing_rad_ : last_gap_rad_; }
 
  private:
@@ -57,7 +58,7 @@ class LaserBeams {
   LaserScanner scanner_;
   double robot_tolerance_m_;
   double spacing_rad_, last_gap_rad_;
-  std::vector<Vec2> directions_;  // by beam, relative to the heading
+  std::vector<Vec2> directions_;  // indexed by beam; relative to the heading
   std::vector<Beam> beams_;
   Vec2 at_m_{0, 0};
   Time captured_at_{};

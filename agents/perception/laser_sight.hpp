@@ -14,43 +14,46 @@
 namespace sidestep {
 
 struct LaserSightSettings {
-  // Bounds of the errors of a scan's pose. The robot's own place is off by no more than the tracking bound.
+  // Bounds of the errors of a scan's pose. The error of the robot's own position is at most the tracking
+  // bound.
   double position_error_m = SafetyBudget{}.tracking_bound_m;
   double heading_error_rad = 0.02;
-  /// The grid takes scans at most this often: it takes most of the time, and nothing stands up as quickly.
+  /// Minimum interval between scans that are added to the grid. This takes most of the time, and nothing
+  /// appears on the floor that quickly.
   Duration grid_period{90'000'000};
-  double unknown_cell_m = 0.2;          ///< side of the squares that report what stands but is not on the map
-  double unknown_range_m = 2.5;         ///< squares farther away are ignored
-  std::size_t max_unknown = 48;         ///< number of nearest squares
+  double unknown_cell_m = 0.2;   ///< side of the squares that report unknown standing obstacles
+  double unknown_range_m = 2.5;  ///< squares farther away are ignored
+  /// Cells that have been occupied for longer than this count as standing.
+  std::size_t max_unknown = 48;
   Duration unknown_after{500'000'000};  ///< cells that were occupied for longer stand
 };
 
-/// What a robot makes of the scans of its own laser: where people may step out, who moves, and what stands
-/// although it is not on the map. Only what the rules know to stand limits where people may be.
+/// Interprets the scans of a robot's own laser: where people may step out, who moves, and which standing
+/// obstacles are not on the map. Only obstacles that the rules know to stand limit where people may be.
 class LaserSight {
  public:
-  /// `rules` must outlive this.
+  /// `rules` must outlive this object.
   LaserSight(const LaserSpec& laser, const FloorRules& rules, const LaserSightSettings& settings = {});
 
   const LaserSettings& laser() const { return beams_.settings(); }
-  /// Takes a scan. `robots`: the known ones at the time of the scan. Returns false, and changes nothing, if
-  /// it is not newer than the last one.
+  /// Processes a scan. `robots` are the known robots at the time of the scan. Returns false and changes
+  /// nothing if the scan is not newer than the last one.
   bool update(const LaserScan& scan, std::span<const Circle> robots);
 
-  /// Of the last scan; Time{}: none.
+  /// Time of the last scan; Time{} if there is none.
   Time captured_at() const { return captured_at_; }
   const LaserBeams& beams() const { return beams_; }
   const LocalGrid& grid() const { return grid_; }
   const Visibility& visibility() const { return visibility_; }
   std::span<const LaserTrack> tracks() const { return tracks_.tracks(); }
-  /// Squares in which something stands that the rules do not know, the nearest ones.
+  /// Squares with a standing obstacle that the rules do not know; the nearest ones.
   std::span<const Circle> unknown() const { return unknown_; }
 
  private:
   void find_unknown();
 
   LaserSightSettings settings_;
-  double explained_within_m_;  // how far a hit on what the rules know can seem to be from it
+  double explained_within_m_;  // maximum distance of a hit from the known obstacle that explains it
   ObstacleWorld shapes_;
   KnownFloor floor_;
   LaserBeams beams_;

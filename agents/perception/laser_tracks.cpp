@@ -6,10 +6,11 @@
 namespace sidestep {
 namespace {
 
-/// The hits on a disc lie this much nearer than its centre, in radii: the mean of sqrt(1 - y²) over y.
+/// The mean of the hits on a disc is this much nearer than its centre, in radii: the mean of sqrt(1 - y²)
+/// over y.
 constexpr double kMeanDepth = std::numbers::pi / 4;
 constexpr double kRadiusGain = 0.2;
-/// A hit this far beyond the radius of a track may belong to it.
+/// A hit may belong to a track if it is at most this far beyond the track's radius.
 constexpr double kTrackSlack_m = 0.15;
 
 void check(const LaserTrackSettings& settings) {
@@ -73,7 +74,7 @@ bool LaserTracks::is_explained(const Vec2& hit, const LocalGrid& grid) const {
   return is_found;
 }
 
-/// Whether a track that has moved may have brought what is there.
+/// Whether a track that has moved may have brought the object that was hit.
 bool LaserTracks::is_of_mover(const Vec2& hit, Time occupied_since) const {
   return std::ranges::any_of(entries_, [&](const Entry& entry) {
     const double reach_m = entry.radius_m + kTrackSlack_m;

@@ -9,44 +9,47 @@
 namespace sidestep {
 
 struct LaserTrackSettings {
-  double explained_within_m = 0.12;        ///< a hit this near to what stands belongs to it
-  Duration standing_after{2'000'000'000};  ///< cells that were occupied for so long stand
-  double join_m = 0.15;                    ///< hits this near to each other are one object
-  int min_hits = 2;                        ///< of a cluster
-  double max_radius_m = 0.6;               ///< larger clusters are no people
-  double noise_m = 0.03;                   ///< standard deviation of a cluster's centre, per axis
-  double partial_noise_m = 0.1;            ///< the same if a part is hidden
+  double explained_within_m = 0.12;        ///< a hit this near to something standing belongs to it
+  Duration standing_after{2'000'000'000};  ///< cells that have been occupied for this long count as standing
+  double join_m = 0.15;                    ///< hits this near to each other belong to one object
+  int min_hits = 2;                        ///< minimum number of hits in a cluster
+  double max_radius_m = 0.6;               ///< larger clusters are not people
+  double noise_m = 0.03;                   ///< standard deviation of a cluster's centre, on each axis
+  double partial_noise_m = 0.1;            ///< the same standard deviation if part of the cluster is hidden
   MotionNoise motion{0.15, 1};
-  double start_speed_mps = 1;  ///< standard deviation of a new track's velocity, per axis
-  double gate_m = 0.4;         ///< largest distance of a cluster from the prediction
+  double start_speed_mps = 1;  ///< standard deviation of a new track's velocity, on each axis
+  double gate_m = 0.4;         ///< maximum distance of a cluster from the prediction
   int confirm_scans = 4;
   Duration drop_after{1'000'000'000};  ///< time without an observation after which a track ends
-  double min_speed_mps = 0.25;         ///< slower tracks do not move
-  double speed_deviations = 2.5;       ///< nor do those whose speed is not that many deviations
-  double min_moved_m = 0.3;            ///< nor those that have come less far
-  Duration memory{10'000'000'000};     ///< for how long floor counts as seen free after a beam crossed it
-  double crossed_part = 0.8;           ///< part of a place that beams have to cross, so that it was seen free
+  double min_speed_mps = 0.25;         ///< tracks slower than this do not move
+  double speed_deviations = 2.5;       ///< nor do tracks whose speed is below this many standard deviations
+  double min_moved_m = 0.3;            ///< nor do tracks that have moved less than this
+  Duration memory{10'000'000'000};     ///< how long a place counts as seen free after a beam crossed it
+  /// Fraction of a place that beams must cross for it to count as seen free.
+  double crossed_part = 0.8;
 };
 
-/// Something that is not known to stand.
+/// An object that is not known to stand.
 struct LaserTrack {
   std::uint32_t number = 0;
-  Vec2 position_m{0, 0};  ///< of the centre, at seen_at
+  Vec2 position_m{0, 0};  ///< position of the centre at seen_at
   Vec2 velocity_mps{0, 0};
   double radius_m = 0;
-  double position_error_m = 0, velocity_error_mps = 0;  ///< standard deviations, per axis
+  double position_error_m = 0, velocity_error_mps = 0;  ///< standard deviations, on each axis
   Time seen_at{};
   bool is_moving = false;
 };
 
-/// Separates what moves from what stands. Hits that neither the map nor the standing part of the local grid
-/// explains form clusters, and these update tracks (the nearest pair first, constant-velocity Kalman filter).
+/// Distinguishes moving from standing objects. Hits that neither the map nor the standing part of the local
+/// grid explains form clusters, and these update tracks (the nearest pair first, constant-velocity Kalman
+/// filter).
 ///
-/// As a robot drives, it sees other parts of walls, which look like something that moves: through a door, or
-/// beside a person. Therefore speed does not suffice. A track moves only if it has also come some way, and
-/// either the place where it is was seen free before, or the place where it began was seen free afterwards. A
-/// part of a wall looks like a disc that is half inside the wall, where no beam ever is. A person who stops
-/// keeps the track, and is not taken for a wall while it lasts.
+/// As a robot drives, it sees changing parts of walls, for example through a door or beside a person, and
+/// these look like moving objects. Therefore speed alone is not enough. A track counts as moving only if it
+/// has also covered some distance, and either its current place was seen free earlier, or its first place was
+/// seen free later. A part of a wall does not meet this condition: it looks like a disc that is half inside
+/// the wall, where no beam ever passes. A person who stops keeps the track, and is not taken for a wall while
+/// it lasts.
 class LaserTracks {
  public:
   static constexpr std::size_t kMaxTracks = 256;
@@ -54,13 +57,13 @@ class LaserTracks {
   /// Throws std::invalid_argument for numbers that are not positive and finite.
   explicit LaserTracks(const LaserTrackSettings& settings = {});
 
-  /// Takes a scan. The grid must not have taken it yet. Returns false, and changes nothing, if the scan is
-  /// not newer than the last one. Does not allocate once warm.
+  /// Processes a scan, which the grid must not have processed yet. Returns false and changes nothing if the
+  /// scan is not newer than the last one. Does not allocate once warm.
   bool update(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor = {});
 
   /// The confirmed tracks.
   std::span<const LaserTrack> tracks() const { return listed_; }
-  /// Whether the hit of a beam of the last scan belongs to something that stands.
+  /// Whether the hit of a beam in the last scan belongs to something standing.
   bool is_standing(int beam) const { return kinds_[static_cast<std::size_t>(beam)] == kStanding; }
 
  private:
@@ -69,11 +72,11 @@ class LaserTracks {
   struct Entry {
     std::uint32_t number = 0;
     int scans = 0;
-    int evidence = 0;  // scans that show that it has moved
+    int evidence = 0;  // number of scans that show that it has moved
     Time started_at{}, seen_at{};
     double radius_m = 0;
-    ConstantVelocityFilter<2> filter;  // at seen_at
-    Vec2 start_m{0, 0};                // at started_at
+    ConstantVelocityFilter<2> filter;  // state at seen_at
+    Vec2 start_m{0, 0};                // position at started_at
     bool has_moved() const { return evidence >= kEvidence; }
     static constexpr int kEvidence = 3;
   };
@@ -103,8 +106,8 @@ class LaserTracks {
   std::vector<Entry> entries_;
   std::vector<LaserTrack> listed_;
   // Working memory.
-  std::vector<std::uint8_t> kinds_, is_loose_;      // by beam
-  std::vector<std::uint8_t> is_used_, is_updated_;  // by cluster, by entry
+  std::vector<std::uint8_t> kinds_, is_loose_;      // indexed by beam
+  std::vector<std::uint8_t> is_used_, is_updated_;  // indexed by cluster, indexed by entry
   std::vector<Pair> pairs_;
 };
 

@@ -26,7 +26,7 @@ void check(const LocalGridSettings& settings) {
   require(settings.decay_s > 0 && std::isfinite(settings.decay_s), "the decay must be positive and finite");
 }
 
-/// One coordinate of a ray on its way through the cells.
+/// One axis of a ray on its way through the cells.
 struct CellAxis {
   CellAxis(double from, double direction, double resolution_m)
       : index(static_cast<int>(std::floor(from / resolution_m))), step(direction > 0 ? 1 : -1) {
@@ -41,7 +41,8 @@ struct CellAxis {
 
   int index, step;
   double per_cell_m = std::numeric_limits<double>::infinity();
-  double next_m = std::numeric_limits<double>::infinity();  // where the ray leaves the column or row
+  // Distance at which the ray leaves the column or row.
+  double next_m = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
@@ -95,7 +96,7 @@ void LocalGrid::move_window(const Cell& centre) {
 
 void LocalGrid::decay(Duration passed) {
   const auto factor = static_cast<float>(std::exp(-to_seconds(passed) / settings_.decay_s));
-  constexpr float kNegligible = 1e-3F;  // keeps denormal numbers away, which are slow
+  constexpr float kNegligible = 1e-3F;  // avoids denormal numbers, which are slow
   for (float& odds : log_odds_) odds = std::abs(odds) < kNegligible ? 0 : odds * factor;
 }
 

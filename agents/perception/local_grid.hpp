@@ -6,23 +6,24 @@
 
 namespace sidestep {
 
-/// Evidence is counted in log odds: ln(p / (1 - p)) for the probability p of being occupied, 0 if unknown.
+/// Settings. Evidence is counted in log odds: ln(p / (1 - p)), where p is the probability that a cell is
+/// occupied; 0 means unknown.
 struct LocalGridSettings {
   int side_cells = 256;        ///< cells per side, a power of two from 16 to 4,096
   double resolution_m = 0.05;  ///< side of a cell, kMinResolution_m to kMaxResolution_m
   float hit = 0.85F;           ///< added to a cell with hits, once per scan
   float miss = 0.4F;           ///< subtracted from a cell that beams cross, once per scan
-  float limit = 3.5F;          ///< evidence saturates here, both ways, so that changes are noticed soon
-  float occupied_from = 1.2F;  ///< at least this: occupied
-  float free_up_to = -0.6F;    ///< at most this: free; everything between is unknown
-  double decay_s = 20;         ///< without observations, evidence shrinks to 1/e in this time
+  float limit = 3.5F;          ///< evidence saturates at ± this value, so that changes are noticed soon
+  float occupied_from = 1.2F;  ///< a cell with at least this evidence is occupied
+  float free_up_to = -0.6F;    ///< a cell with at most this evidence is free; in between it is unknown
+  double decay_s = 20;         ///< time in which evidence decays to 1/e without observations
 };
 
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
-/// What a robot's own laser says about the floor around it: an occupancy grid (Moravec, Elfes 1985) that
-/// moves along with the robot by whole cells. Cells are numbered in the world: cell (0, 0) has its lower left
-/// corner at the world's origin. Those outside the window are unknown. Does not allocate after the
+/// The floor around a robot as seen by its own laser: an occupancy grid (Moravec, Elfes 1985) that moves
+/// along with the robot by whole cells. Cells are numbered in the world: cell (0, 0) has its lower left
+/// corner at the world's origin. Cells outside the window are unknown. Does not allocate after the
 /// constructor.
 class LocalGrid {
  public:
@@ -31,8 +32,9 @@ class LocalGrid {
 
   /// Moves the window to the scanner, lets old evidence decay, and adds that of a scan. Beams clear the cells
   /// up to their hit, or up to the maximum range. A cell with a hit is not cleared by other beams of the same
-  /// scan. Known robots leave no hits, and dropouts nothing. Returns false, and changes nothing, if the scan
-  /// is not newer than the last one. Throws std::invalid_argument for positions beyond kMaxMapOrigin_m.
+  /// scan. Hits on known robots are not added, and dropouts change nothing. Returns false and changes nothing
+  /// if the scan is not newer than the last one. Throws std::invalid_argument for positions beyond
+  /// kMaxMapOrigin_m.
   bool update(const LaserBeams& beams);
 
   const LocalGridSettings& settings() const { return settings_; }
@@ -46,7 +48,7 @@ class LocalGrid {
     return in_window(cell.column, first_.column) && in_window(cell.row, first_.row);
   }
 
-  /// 0 outside the window.
+  /// Evidence of a cell; 0 outside the window.
   float log_odds(const Cell& cell) const { return has(cell) ? log_odds_[index(cell)] : 0; }
   CellState state(const Cell& cell) const {
     const float odds = log_odds(cell);
@@ -54,12 +56,12 @@ class LocalGrid {
     return odds <= settings_.free_up_to ? CellState::kFree : CellState::kUnknown;
   }
   CellState state_at(const Vec2& p) const { return state(cell_at(p)); }
-  /// For how long a cell has been occupied without interruption; 0 if it is not.
+  /// How long a cell has been occupied without interruption; 0 if it is not occupied.
   Duration occupied_for(const Cell& cell) const;
-  /// When a beam last crossed a cell; Time::min() if none did since the cell came into the window.
+  /// When a beam last crossed a cell; Time::min() if none has since the cell entered the window.
   Time crossed_at(const Cell& cell) const { return has(cell) ? crossed_at_[index(cell)] : Time::min(); }
 
-  /// Calls `call(cell)` for the occupied cells whose closed squares have a point in common with a box.
+  /// Calls `call(cell)` for the occupied cells whose closed squares intersect a box.
   template <typename Call>
   void for_each_occupied(const Box& box, const Call& call) const;
 
@@ -82,11 +84,11 @@ class LocalGrid {
   void clear_along(const Vec2& from_m, const Beam& beam);
 
   LocalGridSettings settings_;
-  Cell first_{};  // the window's lower left
+  Cell first_{};  // lower left cell of the window
   bool is_empty_ = true;
   Time updated_at_{};
   std::uint32_t scan_ = 0;
-  // By index: a ring in both directions.
+  // Indexed by a ring buffer in both directions.
   std::vector<float> log_odds_;
   std::vector<Time> occupied_since_;  // only for occupied cells
   std::vector<Time> crossed_at_;

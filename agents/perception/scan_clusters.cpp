@@ -4,7 +4,7 @@
 namespace sidestep {
 namespace {
 
-/// So many beams may be missing within a cluster, and beside one until what is there counts as unknown.
+/// Maximum number of missing beams within a cluster, and beside one before its surroundings count as unknown.
 constexpr int kMissing = 2;
 
 bool is_full_turn(const LaserBeams& beams) {
@@ -18,7 +18,7 @@ bool ScanClusters::joins(const LaserBeams& beams, const Beam& last, const Beam& 
   return (beams.end_m(last) - beams.end_m(next)).norm() <= join_m_ + spread_m;
 }
 
-/// Whether the beam next to an end of a cluster is nearer, so that more of the object may be behind.
+/// Whether the beam beside an end of a cluster is nearer, so that more of the object may be hidden.
 bool ScanClusters::is_hidden_beside(const LaserBeams& beams, int beam, int step) const {
   for (int i = 1; i <= kMissing + 1; ++i) {
     int beside = beam + i * step;
@@ -49,7 +49,7 @@ void ScanClusters::find(const LaserBeams& beams, std::span<const std::uint8_t> i
   clusters_.clear();
   const int count = beams.count();
   const auto selected = [&](int beam) { return is_selected[static_cast<std::size_t>(beam)] != 0; };
-  // A full turn begins outside a cluster, so that none is divided.
+  // A full turn starts outside a cluster, so that no cluster is divided.
   int start = 0;
   if (is_full_turn(beams))
     while (start < count && (selected(start) || beams[start].end == BeamEnd::kUnknown)) ++start;

@@ -5,28 +5,28 @@
 
 namespace sidestep {
 
-/// Neighbouring hits of a scan that may be one object.
+/// Neighbouring hits of a scan that may belong to one object.
 struct ScanCluster {
-  Vec2 mean_m{0, 0};    ///< of the hits
+  Vec2 mean_m{0, 0};    ///< mean of the hits
   Vec2 away{1, 0};      ///< unit vector from the scanner to the mean
-  double radius_m = 0;  ///< of a disc that is seen at this distance and angle
+  double radius_m = 0;  ///< radius of a disc that would be seen at this distance and angle
   int hits = 0;
-  bool is_partial = false;  ///< something nearer hides an end, or the field of view ends there
+  bool is_partial = false;  ///< a nearer object hides one end, or the field of view ends there
 };
 
-/// Finds the clusters among selected hits: consecutive ones that are at most `join_m` apart, and more at a
-/// distance, where beams diverge (adaptive breakpoints: Borges, Aldon 2004). Dropouts do not separate. Does
-/// not allocate once warm.
+/// Finds the clusters among selected hits: consecutive hits that are at most `join_m` apart, or more at
+/// larger distances, where beams diverge (adaptive breakpoints: Borges, Aldon 2004). Dropouts do not
+/// separate. Does not allocate once warm.
 class ScanClusters {
  public:
   explicit ScanClusters(double join_m) : join_m_(join_m) {}
 
-  /// `is_selected`, by beam: not 0 for the hits to be clustered.
+  /// `is_selected`, indexed by beam, is not 0 for the hits to be clustered.
   void find(const LaserBeams& beams, std::span<const std::uint8_t> is_selected);
   std::span<const ScanCluster> all() const { return clusters_; }
 
  private:
-  /// The hits of a cluster so far.
+  /// The hits of the current cluster.
   struct Run {
     int first = 0, last = 0, hits = 0;  // beams; last - first counts across the end of the scan
     Vec2 sum_m{0, 0};

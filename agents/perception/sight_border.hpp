@@ -11,22 +11,22 @@ namespace sidestep {
 /// The border of the region that rays prove free of hidden people; see Visibility for the derivation.
 class SightBorder {
  public:
-  /// `radius_m`: of the smallest person. `untouched_m`: no robot touches anybody nearer than this to what
-  /// stands. Does not allocate once warm.
+  /// `radius_m` is that of the smallest person. No robot touches anybody nearer than `untouched_m` to
+  /// something standing. Does not allocate once warm.
   void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double untouched_m);
 
   /// Whether a point is in the region. False within a nanometre of the border.
   [[nodiscard]] bool contains(const Vec2& p) const;
-  /// Where people may step out, counter-clockwise around the scanner.
+  /// Places where people may step out, sorted counter-clockwise around the scanner.
   std::span<const Frontier> frontiers() const { return frontiers_; }
-  /// Between things that stand; too narrow for people. The bulge is 0 where nobody who projects through the
-  /// gap can touch a robot.
+  /// Gaps between standing things that are too narrow for people. The bulge is 0 if nobody who projects
+  /// through the gap can touch a robot.
   std::span<const Frontier> closed_gaps() const { return closed_; }
 
  private:
-  /// What is seen between a ray and the next one: the offset along `normal` is at most `height_m`.
+  /// The region seen between a ray and the next one: the offset along `normal` is at most `height_m`.
   struct Wedge {
-    double angle_rad;  // of the ray
+    double angle_rad;  // angle of the ray
     Vec2 normal;
     double height_m;
   };

@@ -7,13 +7,13 @@
 namespace sidestep {
 namespace {
 
-/// Between rays at larger angles, nothing is dropped.
+/// Between rays at larger angles than this, nothing is dropped.
 constexpr double kMaxAngle_rad = std::numbers::pi / 2;
-/// Shorter gaps have no direction.
+/// Shorter gaps have no defined direction.
 constexpr double kShortestGap_m = 1e-9;
 
-/// Calls `count_dropped(first)` for each ray in turn, which says how many rays after this one to drop. Until
-/// the end, those have the length 0.
+/// Calls `count_dropped(first)` for each ray in turn, which returns the number of rays after this one to
+/// drop. Dropped rays have the length 0 until the end.
 template <typename CountDropped>
 void drop_runs(std::vector<SightRay>& rays, const CountDropped& count_dropped) {
   const std::size_t count = rays.size();
@@ -24,8 +24,8 @@ void drop_runs(std::vector<SightRay>& rays, const CountDropped& count_dropped) {
   std::erase_if(rays, [](const SightRay& ray) { return ray.free_m == 0; });
 }
 
-/// How far a disc that crosses neither of two rays of equal length stays from their common beginning, at
-/// least, if it lies beyond or between them.
+/// Lower bound of the distance between the common origin of two rays of equal length and a disc that crosses
+/// neither of them and lies beyond or between them.
 double proven_m(double length_m, double angle_rad, double radius_m) {
   const double half_sine = std::sin(angle_rad / 2);
   if (length_m * half_sine >= radius_m) return radius_m / half_sine - radius_m;
@@ -53,8 +53,8 @@ std::optional<ClosedGap> closed_gap(const SightRay& ray, const SightRay& next, d
   const Vec2 from = ray.free_m * ray.direction, to = next.free_m * next.direction;
   const double width_m = (to - from).norm();
   if (width_m >= 2 * radius_m || width_m < kShortestGap_m) return std::nullopt;
-  // The point of the line that is as far from one post as from the other: a disc around each post, which
-  // contains it and the end, contains all between them.
+  // The point of the line that is equally far from both posts: a disc around each post that contains this
+  // point and the end contains everything between them.
   const double nearer_to_post = (from - next_post).squaredNorm() - (from - post).squaredNorm();
   const double nearer_to_next = (to - post).squaredNorm() - (to - next_post).squaredNorm();
   const double sum = nearer_to_post + nearer_to_next;
@@ -75,7 +75,7 @@ void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m) {
   const std::size_t count = rays.size();
   drop_runs(rays, [&](std::size_t first) -> std::size_t {
     const SightRay& left = rays[first];
-    double nearer_m = 0;  // the longest of the rays between
+    double nearer_m = 0;  // length of the longest ray in between
     for (std::size_t last = first + 1; last < first + count; ++last) {
       const SightRay& right = rays[last % count];
       const double angle_rad = angle_between_rad(left, right);

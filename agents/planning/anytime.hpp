@@ -10,7 +10,7 @@
 namespace sidestep {
 
 /// Repeats another planner until the budget is spent, smooths each path, and keeps the shortest. The first
-/// path takes no longer than with the planner alone; the remaining time improves it.
+/// path takes no longer than with that planner alone; the remaining time is used to improve it.
 template <StraightDomain D, typename Planner>
 class Anytime {
  public:

@@ -26,7 +26,7 @@ namespace {
 
 using Trees = BidirectionalErrt<DiscDomain>;
 
-/// Rebuilds its graph when the world differs from that of the last plan.
+/// Rebuilds its graph if the world differs from that of the last plan.
 class FullVisibility {
  public:
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget&, Rng&) {
@@ -79,7 +79,7 @@ PlanDrawing drawing_of(NavigationPlanner& planner) {
 PlanDrawing drawing_of(QuadTree& planner) { return {{}, {}, planner.cells().cells, {}}; }
 PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, planner.cells().cells, {}}; }
 
-/// The settings that the agents use.
+/// The settings used by the agents.
 DiscDomainSettings shipped_domain(const Field&, double) { return {}; }
 /// Settings that match OMPL: its range, and uniform samples only.
 DiscDomainSettings namesake_domain(const Field& field, double radius) {
@@ -136,7 +136,7 @@ BidirectionalErrtSettings rrt_connect_with(void (*change)(BidirectionalErrtSetti
   return settings;
 }
 
-/// Leads paths through the middle of passages that are up to a metre wider than the robot.
+/// Leads paths through the middle of passages if these are up to a metre wider than the robot.
 constexpr NavigationSettings kKeepsClear{.field = {.clearance_m = 0.5, .contact_cost = 4}};
 
 struct Entry {
@@ -197,7 +197,7 @@ std::vector<Entry> other_planners() {
       {"trapezoids", shipped<TrapezoidalDecomposition>()}};
 }
 
-/// Planners that only drive: another one's paths, followed by local methods.
+/// Planners that drive robots but plan no paths: local methods that follow another planner's paths.
 struct LocalEntry {
   std::string_view name, path_planner;
   LocalMethods methods;

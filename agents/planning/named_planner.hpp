@@ -14,13 +14,13 @@
 
 namespace sidestep {
 
-/// What a planner explored, for pictures.
+/// The parts of the world that a planner explored, for pictures.
 struct PlanDrawing {
-  std::vector<Segment> tree;       ///< or roadmap, or tangents
-  std::vector<Segment> goal_tree;  ///< or lines of equal cost
+  std::vector<Segment> tree;       ///< a search tree, a roadmap, or tangents
+  std::vector<Segment> goal_tree;  ///< a tree from the goal, or lines of equal cost
   std::vector<ConvexPolygon> cells;
   std::vector<Vec2> cache;
-  std::vector<Circle> band{};  ///< the bubbles along the path, of a local method with a band
+  std::vector<Circle> band{};  ///< the bubbles along the path, for a local method with a band
 };
 
 enum class PlannerKind {
@@ -29,19 +29,19 @@ enum class PlannerKind {
   kAnytime,      ///< improves its path until the budget is used up
 };
 
-/// The local methods that follow a planner's path; agents/navigation/local_driver.hpp runs them.
+/// The local methods that follow a planner's path. agents/navigation/local_driver.hpp runs them.
 struct LocalMethods {
   bool uses_band = false;     ///< the path becomes a bubble band
   bool uses_window = false;   ///< a dynamic window chooses the velocity
-  bool uses_field = false;    ///< a potential field chooses it
+  bool uses_field = false;    ///< a potential field chooses the velocity
   bool ignores_path = false;  ///< the window or field heads for the end of the path
 };
 
-/// A planner of agents/planning, chosen by name, and the domain settings that belong to it.
+/// A planner of agents/planning, selected by name, with its domain settings.
 struct NamedPlanner {
   std::string name;
   PlannerKind kind = PlannerKind::kForAnyWorld;
-  /// The planner that this one is a variant of, or adds one feature to; empty: none.
+  /// The planner that this one modifies or adds a feature to; empty: none.
   std::string baseline;
   /// Valid until the planner's next plan.
   std::function<const Plan<Vec2>&(const DiscDomain&, const Vec2& start, const Budget&, Rng&)> plan;
@@ -49,8 +49,8 @@ struct NamedPlanner {
   std::function<DiscDomainSettings(const Field&, double radius_m)> domain_settings;
   bool is_shortest = false;             ///< its paths cannot be shortened
   bool keeps_clear = false;             ///< its paths keep away from obstacles, which shortcuts would undo
-  bool is_random = false;               ///< grows by random samples, and never knows that there is no path
-  std::optional<LocalMethods> local{};  ///< none: steering among the other robots follows the path
+  bool is_random = false;               ///< grows by random samples, and cannot detect that there is no path
+  std::optional<LocalMethods> local{};  ///< nullopt: steering among the other robots follows the path
 };
 
 /// The settings that OMPL's RRT and RRTConnect and our planners of the same names share in comparisons.
@@ -59,13 +59,13 @@ inline constexpr double kNamesakeGoalBias = 0.05;
 /// (ompl::magic::MAX_MOTION_LENGTH_AS_SPACE_EXTENT_FRACTION).
 [[nodiscard]] double namesake_range_m(const Field& field, double radius_m);
 
-/// The names that make_planner knows, in the order of the benchmark's table.
+/// The names that make_planner() knows, in the order of the benchmark's table.
 const std::vector<std::string>& planner_names();
 
-/// Throws std::invalid_argument for another name.
+/// Throws std::invalid_argument for unknown names.
 [[nodiscard]] NamedPlanner make_planner(const std::string& name);
 
-/// One of kDrivingPlanners. Throws std::invalid_argument for another name.
+/// `name` must be one of kDrivingPlanners. Throws std::invalid_argument for other names.
 [[nodiscard]] NamedPlanner make_driving_planner(const std::string& name);
 
 }  // namespace sidestep

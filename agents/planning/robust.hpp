@@ -9,10 +9,10 @@
 namespace sidestep {
 
 /// Plans to the goal or, if the goal touches an obstacle, to the nearest free position that the planner can
-/// reach. A start that touches obstacles is handled by the domain. `planner` is any planner with
-/// plan(domain, start, budget, rng). The goal itself gets the whole budget; the positions share as many
-/// samples again, because planners that sample at random spend all of them on each position that cannot be
-/// reached.
+/// reach. The domain handles a start that touches obstacles. `planner` is any planner with plan(domain,
+/// start, budget, rng). The goal itself gets the whole budget. The alternative positions share the same
+/// number of samples again, because planners with random samples spend all of them on each unreachable
+/// position.
 template <typename Planner>
 const Plan<Vec2>& plan_robustly(Planner& planner, const DiscDomain& domain, const Vec2& start,
                                 const Budget& budget, Rng& rng) {

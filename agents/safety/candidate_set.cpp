@@ -15,7 +15,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t blocks_for(std::size_t count) { return (count + kLanes - 1) / kLanes; }
 
-/// Settings with which batch::ChoiceKernels::limit limits sampled accelerations as limit_acceleration() does.
+/// Settings with which batch::ChoiceKernels::limit limits sampled accelerations in the same way as
+/// limit_acceleration().
 batch::LimitSettings limit_settings(const Vec2& velocity, const Vec2& desired, const MotionLimits& limits,
                                     Duration duration) {
   const double seconds = to_seconds(duration);

@@ -12,20 +12,21 @@
 
 namespace sidestep {
 
-/// The candidate accelerations of one search, eight to a block. They are sampled, compared with nearby
+/// The candidate accelerations of one search, eight per block. They are sampled, compared with nearby
 /// trajectories, and taken in order of their distance from the desired acceleration.
 class CandidateSet {
  public:
   CandidateSet(int samples, const MotionLimits& limits, const batch::Kernels& kernels);
 
-  /// Makes the desired acceleration candidate 0, and fills the rest with samples of A(v), limited to what may
-  /// be held for `hold_time` at this maximum speed. Precondition: the desired acceleration obeys the limits.
+  /// Makes the desired acceleration candidate 0, and fills the rest with samples of A(v), limited so that
+  /// they may be held for `hold_time` at this maximum speed. Precondition: the desired acceleration obeys the
+  /// limits.
   void sample_accelerations(const Vec2& velocity_mps, const Vec2& desired_mps2, Duration hold_time,
                             double max_speed_mps, Rng& rng);
-  /// Replaces samples by these accelerations, which are taken in this order after the desired one.
-  /// Precondition: as for the desired one.
+  /// Replaces samples with these accelerations, which are taken in this order after the desired one.
+  /// Precondition: they obey the limits, like the desired one.
   void prefer(std::span<const Vec2> accelerations_mps2);
-  /// Prepares for compare(): samples the motions that begin in `at_start`, hold an acceleration for `hold_s`,
+  /// Prepares for compare(): samples the motions that start in `at_start`, hold an acceleration for `hold_s`,
   /// and then stop.
   void sample_motions(const State& at_start, double hold_s, double step_s);
   /// Excludes candidates that certainly come nearer than `min_separation_m` to the track, which begins at
@@ -36,7 +37,7 @@ class CandidateSet {
   /// Removes the candidate nearest to the desired acceleration and returns its index. Also removes all
   /// candidates nearer than `spread_mps2` to the accepted one, if accept() was called since the last call.
   std::optional<std::size_t> take_nearest(double spread_mps2);
-  /// Accepts the candidate that was taken last.
+  /// Accepts the candidate that was last taken.
   void accept(std::size_t index) { accepted_ = index; }
 
   Vec2 acceleration(std::size_t index) const;

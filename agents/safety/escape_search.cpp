@@ -46,7 +46,7 @@ Surroundings find_surroundings(const SearchQuery& query, const Version& base, co
   }
   if (check_workspace(remaining_trajectory(base.trajectory, query.start), rules) != Validity::kValid) {
     found.is_in_conflict = true;
-    found.away -= position.stableNormalized();  // towards the centre of the field
+    found.away -= position.stableNormalized();  // away from the edge: towards the centre of the field
   }
   return found;
 }

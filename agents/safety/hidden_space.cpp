@@ -8,13 +8,14 @@ namespace sidestep {
 namespace {
 
 constexpr double kRounding_m = 1e-9;
-/// The bulge of a closed gap is this at least, or 0 if nobody who projects through it can touch a robot.
+/// Minimum bulge of a closed gap, unless its bulge is 0 because nobody who projects through it can touch a
+/// robot.
 constexpr double kTouching_m = 1e-6;
-/// A trajectory that comes this near to being unsafe counts as unsafe.
+/// A trajectory within this distance of being unsafe counts as unsafe.
 constexpr double kTolerance_m = 1e-3;
 
-/// The smallest distance to a segment less the bulge, up to `limit_m`. Segments with a smaller bulge than
-/// `min_bulge_m` do not count.
+/// The minimum over segments of the distance minus the bulge, at most `limit_m`. Segments with a bulge
+/// smaller than `min_bulge_m` are ignored.
 double nearest_m(const Vec2& p, std::span<const Frontier> frontiers, double min_bulge_m, double limit_m) {
   for (const Frontier& frontier : frontiers) {
     const double within_m = limit_m + frontier.bulge_m;
@@ -61,7 +62,7 @@ bool is_passively_safe_from_hidden(const Trajectory& trajectory, const HiddenSpa
     if (phase.duration <= Duration::zero()) continue;
     const double seconds = to_seconds(phase.duration);
     const State end = state_after(state, phase.acceleration_mps2, seconds);
-    // The speed is convex in time.
+    // The speed is a convex function of time.
     const double closing_mps =
         (1 + hidden.heading_error_rad) * std::max(state.velocity_mps.norm(), end.velocity_mps.norm()) +
         hidden.speed_mps;

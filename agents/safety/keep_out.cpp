@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kRounding_m = 1e-9;
 
-/// The path, with a chord for each phase, which is off by less than a millimetre.
+/// Approximates the path by a chord for each phase; the error is less than a millimetre.
 bool touches(const Trajectory& candidate, const Shape& zone, double radius) {
   Time t = candidate.start();
   Vec2 from = candidate.state_at(t).position_m;

@@ -10,16 +10,16 @@
 
 namespace sidestep {
 
-/// Zones that a disc keeps out of. One that is in zones already, because they were drawn there, or because it
-/// stops in them, may only come to rest where it is in none of them deeper than it is now in the deepest, or
-/// nearer to its way out of all of them.
+/// Zones that a disc must keep out of. A disc may already be in zones, because they were drawn there or
+/// because it stops in them. It may then only come to rest where it is in no zone deeper than it is now in
+/// its deepest one, or nearer to its way out of all zones.
 class KeepOut {
  public:
-  /// The zones that a candidate from `start_m` within `reach` may enter. `way_out_m`: a place outside zones
-  /// that overlap at the start. `zones` must outlive their use.
+  /// Finds the zones that a candidate from `start_m` within `reach` may enter. `way_out_m` is a place outside
+  /// zones that overlap at the start. `zones` must outlive their use.
   void find(std::span<const Shape> zones, const Vec2& start_m, const std::optional<Vec2>& way_out_m,
             const Circle& reach, double radius_m);
-  /// Whether the candidate, which begins at the start, enters no zone, or goes no deeper.
+  /// Whether the candidate, which starts at the start, enters no zone, or goes no deeper into one.
   [[nodiscard]] bool allows(const Trajectory& candidate) const;
 
  private:
@@ -31,7 +31,7 @@ class KeepOut {
   double radius_m_ = 0;
   std::optional<Vec2> way_out_m_;
   double start_to_way_out_m_ = 0;
-  double start_depth_m_ = 0;  // in the zone that the disc is in most deeply
+  double start_depth_m_ = 0;  // depth in the zone that the disc is deepest in
 };
 
 }  // namespace sidestep

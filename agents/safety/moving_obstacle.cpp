@@ -13,7 +13,7 @@ constexpr double kRounding_m = 1e-9;
 // A phase that is still undecided after this many halvings counts as unsafe.
 constexpr int kMaxHalvings = 24;
 
-/// Bernstein coefficients of a quartic on [0, 1]. The quartic lies within their range, begins at the first
+/// Bernstein coefficients of a quartic on [0, 1]. The quartic lies within their range, starts at the first
 /// and ends at the last.
 using Quartic = std::array<double, 5>;
 
@@ -30,8 +30,8 @@ bool is_positive(const Quartic& q, int halvings) {
   return is_positive(left, halvings + 1) && is_positive(right, halvings + 1);
 }
 
-/// Squared distance less squared reach over a phase in which the reach grows linearly from `reach0` to
-/// `reach1`.
+/// The squared distance minus the squared reach over a phase in which the reach grows linearly from `reach0`
+/// to `reach1`.
 Quartic squared_gap(const Vec2& from, const Vec2& velocity, const Vec2& acceleration, double seconds,
                     double reach0, double reach1) {
   const Vec2& b0 = from;
@@ -61,7 +61,8 @@ bool is_passively_safe(const Trajectory& trajectory, const MovingObstacle& obsta
   for (const MotionPhase& phase : trajectory.phases()) {
     if (phase.duration <= Duration::zero()) continue;
     const double seconds = to_seconds(phase.duration);
-    // The reach is convex in time, so linear interpolation between its ends bounds it from above.
+    // The reach is a convex function of time, so linear interpolation between its end values is an upper
+    // bound.
     const double reach0 = separation + obstacle.reach_m(t),
                  reach1 = separation + obstacle.reach_m(t + phase.duration);
     const Quartic quartic = squared_gap(state.position_m - obstacle.position_m, state.velocity_mps,

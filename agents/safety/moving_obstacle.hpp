@@ -9,15 +9,15 @@
 
 namespace sidestep {
 
-/// An opponent or a person, which does not take part in the protocol, as last observed. After the observation
-/// it may be anywhere within reach of its maximum speed.
+/// An opponent or a person as last observed. It does not take part in the protocol. After the observation it
+/// may be anywhere that it can reach at its maximum speed.
 struct MovingObstacle {
   Vec2 position_m{0, 0};
   double radius_m = 0;  ///< includes the uncertainty of the position
   Time observed_at{};
-  double speed_mps = 0;  ///< upper bound
+  double speed_mps = 0;  ///< upper bound of the speed
 
-  /// Largest possible distance of the obstacle's edge from position_m at a time, also before the observation.
+  /// Maximum distance of the obstacle's edge from position_m at a time, which may be before the observation.
   [[nodiscard]] double reach_m(Time t) const;
 };
 
@@ -26,8 +26,9 @@ struct MovingObstacle {
 /// possible position of the obstacle's edge. Conservative: never falsely true; false negatives only within 1
 /// µm.
 ///
-/// Squared distance less squared reach is a quartic in each phase. The smallest coefficient of its Bernstein
-/// form is a lower bound, which converges to the quartic as the phase is halved (Lane, Riesenfeld 1981).
+/// The squared distance minus the squared reach is a quartic in each phase. The smallest coefficient of its
+/// Bernstein form is a lower bound, which converges to the quartic as the phase is halved (Lane, Riesenfeld
+/// 1981).
 [[nodiscard]] bool is_passively_safe(const Trajectory& trajectory, const MovingObstacle& obstacle,
                                      double min_separation_m);
 [[nodiscard]] bool is_passively_safe_from_all(const Trajectory& trajectory,

@@ -25,7 +25,7 @@ double max_acceleration_mps2(const MotionLimits& limits) {
   return kRoundingFactor * std::max(limits.acceleration_mps2, limits.deceleration_mps2);
 }
 
-/// Upper bound of the time that a candidate takes to stop after its acceleration has been held.
+/// Upper bound of the time that a candidate needs to stop after its acceleration has been held.
 double max_stop_s(const SearchQuery& query, const MotionLimits& limits) {
   const double speed = query.at_start.velocity_mps.norm();
   const double gained = max_acceleration_mps2(limits) * to_seconds(query.hold_time);
@@ -157,7 +157,7 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
 void SafetySearch::find_cells(const Circle& disc) {
   cells_.clear();
   if (!rules_.map || rules_.map->field().lower_bound_m(disc.centre_m) > disc.radius_m) return;
-  // The disc of a path of unknown length is huge. Boxes of such size would lose all precision.
+  // The disc of a path of unknown length is huge, and boxes of that size would lose all precision.
   constexpr double kMaxReach_m = 1e5;
   const Vec2 half_m = Vec2::Constant(std::min(disc.radius_m, kMaxReach_m));
   rules_.map->cells().for_each_box({disc.centre_m - half_m, disc.centre_m + half_m}, [&](const Box& box) {
@@ -178,7 +178,7 @@ void SafetySearch::find_moving(const SearchQuery& query, const Circle& disc) {
 }
 
 void SafetySearch::find_hidden(const SearchQuery& query, const Circle& disc) {
-  constexpr double kTolerance_m = 0.01;  // more than that of the check
+  constexpr double kTolerance_m = 0.01;  // exceeds the tolerance of the check
   const HiddenSpace& hidden = query.hidden;
   const Time latest_end = query.start + query.hold_time + from_seconds(max_stop_s(query, rules_.limits));
   const double turned_m =

@@ -25,22 +25,24 @@ struct SearchQuery {
   Time start{};
   State at_start;
   Vec2 desired_mps2{0, 0};
-  Duration hold_time{};                              ///< how long the acceleration is held before the stop
+  /// Time for which the acceleration is held before the stop.
+  Duration hold_time{};
   std::span<const MovingObstacle> moving{};          ///< obstacles that the robot must be passively safe from
   std::span<const UncontrolledBody> uncontrolled{};  ///< bodies to stay clear of
   const Trajectory* stop =
-      nullptr;  ///< what the robot follows otherwise; not null if `uncontrolled` is not empty
+      nullptr;  ///< the motion that the robot follows otherwise; not null if `uncontrolled` is not empty
   std::optional<RobotId> robot{};  ///< if set, this robot's versions in the index are ignored
-  /// Below the speed limit if the clocks require it. A robot that is faster already slows down.
+  /// Below the speed limit if the clocks require it. A robot that is already faster slows down.
   double max_speed_mps = std::numeric_limits<double>::infinity();
-  SeenRegion seen{};                   ///< where there are no obstacles but those in `moving`
-  HiddenSpace hidden{};                ///< what the robot's laser did not see
+  SeenRegion seen{};                   ///< region in which there are no obstacles except those in `moving`
+  HiddenSpace hidden{};                ///< floor that the robot's laser did not see
   std::span<const Shape> keep_outs{};  ///< zones that the robot must not enter
-  std::optional<Vec2> way_out_m{};     ///< out of zones that overlap at the start
-  /// Tried in this order after the desired one, before random ones; at most as many as are sampled.
+  std::optional<Vec2> way_out_m{};     ///< place outside the zones that overlap at the start
+  /// Tried in this order after the desired one and before random ones; their number is at most that of the
+  /// samples.
   std::span<const Vec2> preferred_mps2{};
 
-  /// The motion limits, with the lower of both speeds.
+  /// The motion limits with the lower of the two speed limits.
   MotionLimits limited(MotionLimits limits) const {
     limits.speed_mps = std::min(limits.speed_mps, max_speed_mps);
     return limits;
@@ -48,21 +50,21 @@ struct SearchQuery {
 };
 
 struct SearchSettings {
-  int samples = 48;          ///< accelerations sampled from A(v) in addition to the desired one
+  int samples = 48;          ///< number of accelerations sampled from A(v) in addition to the desired one
   double spread_mps2 = 0.5;  ///< minimum difference between the accelerations of two candidates
 };
 
-/// Clear trajectories in order of their distance from the desired acceleration, nearest first.
+/// Clear trajectories, sorted by their distance from the desired acceleration.
 struct SearchResult {
   static constexpr std::size_t kMaxCandidates = 5;
   std::array<Trajectory, kMaxCandidates> candidates;
   std::size_t count = 0;
   bool desired_is_clear = false;  ///< the first candidate is the desired acceleration itself
-  int checks = 0;                 ///< pairs of trajectories compared
+  int checks = 0;                 ///< number of pairs of trajectories compared
 };
 
 /// Dynamics safety search (Bruce, CMU-CS-06-181, ch. 5). Tests the desired acceleration and random ones from
-/// A(v). Each is held for `hold_time` and followed by the stop manoeuvre. The search keeps the candidates
+/// A(v). Each is held for `hold_time` and followed by the stop manoeuvre. The search keeps those candidates
 /// that stay on the field and clear of the obstacles and of every version that other robots may be executing.
 /// Allocates nothing once warm.
 class SafetySearch {
@@ -73,20 +75,20 @@ class SafetySearch {
   [[nodiscard]] SearchResult search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng);
 
  private:
-  /// A trajectory or a static obstacle that a candidate may come near to; one of them is null.
+  /// A trajectory or a static obstacle that a candidate may come near to; one of the two pointers is null.
   struct Other {
     const Trajectory* trajectory;
     const Shape* obstacle;
-    double min_separation_m;  // of an obstacle: from its edge
+    double min_separation_m;  // for an obstacle: distance from its edge
     bool is_clear(const Trajectory& candidate) const;
   };
   /// Collects everything that a candidate within the disc may come near to.
   void find_nearby(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others);
-  /// Collects the blocked cells of the map that meet a disc.
+  /// Collects the blocked cells of the map that intersect a disc.
   void find_cells(const Circle& disc);
   /// Collects the moving obstacles that could reach a candidate within the disc before it is at rest.
   void find_moving(const SearchQuery& query, const Circle& disc);
-  /// Collects the frontiers from which somebody could reach such a candidate.
+  /// Collects the frontiers from which somebody could reach a candidate within the disc before it is at rest.
   void find_hidden(const SearchQuery& query, const Circle& disc);
   void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m,
                int& checks);
@@ -94,20 +96,21 @@ class SafetySearch {
 
   FloorRules rules_;
   SearchSettings settings_;
-  std::vector<TrajectoryBounds> obstacles_;  // as rules_.obstacles; of a circle: at rest at its centre
+  // Parallel to rules_.obstacles; a circle is at rest at its centre.
+  std::vector<TrajectoryBounds> obstacles_;
   CandidateSet candidates_;
   std::vector<std::uint32_t> found_indices_;
-  batch::Lanes lanes_;         // lane i: others_[i]
+  batch::Lanes lanes_;         // lane i corresponds to others_[i]
   std::vector<Other> others_;  // all trajectories and circles that may be near
   std::vector<Other> edges_;   // all other obstacles that may be near
-  std::vector<Shape> cells_;   // blocked cells of the map that may be near, as few boxes; in edges_ too
+  std::vector<Shape> cells_;   // blocked cells of the map that may be near, as a few boxes; also in edges_
   std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;
-  std::vector<MovingObstacle> moving_;             // the subset of the query's that may be near
-  std::vector<Frontier> frontiers_, closed_gaps_;  // the subset of the query's that may be near
+  std::vector<MovingObstacle> moving_;             // those of the query that may be near
+  std::vector<Frontier> frontiers_, closed_gaps_;  // those of the query that may be near
   KeepOut keep_out_;
-  std::vector<Vec2> preferred_;  // the query's, limited
+  std::vector<Vec2> preferred_;  // those of the query, limited
 };
 
 /// An acceleration that is held for `hold_time`, followed by the stop manoeuvre.

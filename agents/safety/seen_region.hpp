@@ -9,18 +9,19 @@
 
 namespace sidestep {
 
-/// The disc of the floor in which every obstacle that vision sees is known. Right beyond its edge an unknown
-/// one may stand and approach, so the disc shrinks at the maximum speed of obstacles.
+/// The disc of the floor in which every obstacle that vision sees is known. An unknown obstacle may stand
+/// just beyond its edge and approach, so the disc shrinks at the obstacles' maximum speed.
 struct SeenRegion {
   Vec2 centre_m{0, 0};
-  double radius_m = std::numeric_limits<double>::infinity();  ///< at observed_at; infinite: all are known
+  /// Radius at observed_at; infinite: all obstacles are known.
+  double radius_m = std::numeric_limits<double>::infinity();
   Time observed_at{};
-  double speed_mps = 0;  ///< upper bound, of obstacles
+  double speed_mps = 0;  ///< upper bound of obstacles' speed
 
   [[nodiscard]] bool is_everywhere() const { return radius_m == std::numeric_limits<double>::infinity(); }
-  /// The radius at a time, also before observed_at; negative if nothing is left.
+  /// The radius at a time, which may be before observed_at; negative if nothing is left.
   [[nodiscard]] double radius_at_m(Time t) const;
-  /// The largest disc around the same centre that lies in the other region too.
+  /// The largest concentric disc that also lies in the other region.
   [[nodiscard]] SeenRegion limited_by(const SeenRegion& other) const;
 };
 

@@ -18,9 +18,9 @@ class TrajectoryIndex {
   explicit TrajectoryIndex(const batch::Kernels& kernels = batch::best_kernels()) : kernels_(&kernels) {}
 
   void clear();
-  /// Stores a reference: the version must stay valid until clear() or assign().
+  /// Stores a reference to the version, which must stay valid until clear() or assign().
   void add(const Version& version) { add(version, trajectory_bounds(version.trajectory)); }
-  /// The same for a version whose bounds are known.
+  /// Like above, for a version whose bounds are already known.
   void add(const Version& version, const TrajectoryBounds& bounds);
   void assign(std::span<const Version> versions);
 
@@ -48,8 +48,9 @@ class TrajectoryIndex {
   double cell_m_ = 1;
   std::size_t columns_ = 1, rows_ = 1;
   double max_radius_m_ = 0;
-  std::vector<std::uint32_t> cell_of_;            // by version
-  std::vector<std::uint32_t> cell_begin_;         // by cell, into order_; one entry more than cells
+  std::vector<std::uint32_t> cell_of_;  // indexed by version
+  // Indexed by cell: first index into order_; has one more entry than there are cells.
+  std::vector<std::uint32_t> cell_begin_;
   std::vector<std::uint32_t> order_;              // indices of versions, sorted by cell in row-major order
   std::vector<batch::Row> x_m_, y_m_, radius_m_;  // discs in the order of order_
   std::vector<std::uint8_t> masks_;

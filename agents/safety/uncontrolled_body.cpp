@@ -11,11 +11,11 @@ namespace {
 constexpr double kSpread = 0.1;
 // Covers errors of the expected motion.
 constexpr double kAllowance_m = 0.03;
-// A robot that cannot avoid the body altogether leaves its stop only for this much more distance.
+// A robot that cannot avoid the body completely deviates from its stop only if it gains this much distance.
 constexpr double kGain_m = 0.01;
-// A body whose direction is not known may begin to move in any.
+// A body with an unknown direction may start to move in any direction.
 constexpr double kUnknownDirection_m = 0.4;
-// Two bodies of 4 m/s relative speed come 2 cm closer in this time.
+// Two bodies with a relative speed of 4 m/s approach by 2 cm in this time.
 constexpr Duration kSampling{5'000'000};
 constexpr Duration kDrivingOnStep{50'000'000}, kMaxDrivingOn{400'000'000};
 
@@ -41,7 +41,7 @@ double spare_distance_m(const Trajectory& trajectory, Time from, const Uncontrol
     const double distance_m = (trajectory.state_at(t).position_m - body_m).norm();
     spare_m = std::min(spare_m, distance_m - body.separation_m - kAllowance_m);
   }
-  // From then on the body may still have its way before it, or have passed.
+  // From then on, the body may still be approaching, or may already have passed.
   UncontrolledBody later = body;
   later.reach.position_m +=
       to_seconds(std::max(from, trajectory.end()) - body.reach.observed_at) * body.velocity_mps;
@@ -52,8 +52,7 @@ double spare_distance_m(const Trajectory& trajectory, Time from, const Uncontrol
 
 namespace {
 
-/// Whether the robot keeps this distance to spare if it drives on for a while after the candidate's first
-/// phase.
+/// Whether the robot keeps this spare distance if it drives on for a while after the candidate's first phase.
 bool avoids_by_driving_on(const Trajectory& candidate, const UncontrolledBody& body, double min_spare_m,
                           double deceleration_mps2) {
   if (candidate.phases().empty()) return spare_distance_m(candidate, candidate.start(), body) >= min_spare_m;

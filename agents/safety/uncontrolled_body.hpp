@@ -9,31 +9,31 @@
 
 namespace sidestep {
 
-/// A body that nothing controls, such as a robot without power. It may hit a robot that rests, so passive
-/// safety does not suffice: a robot must not come to rest where the body is going.
+/// A body that nothing controls, such as a robot without power. It may hit a resting robot, so passive safety
+/// is not enough: a robot must not come to rest where the body is going.
 struct UncontrolledBody {
-  MovingObstacle reach;     ///< where it can be
-  Vec2 velocity_mps{0, 0};  ///< with which it is expected to move on; zero: it stands, or this is not known
-  double separation_m = 0;  ///< of the centres at which it touches the robot, plus the margin
+  MovingObstacle reach;     ///< the positions that it can reach
+  Vec2 velocity_mps{0, 0};  ///< expected velocity; zero: it stands, or its velocity is unknown
+  double separation_m = 0;  ///< distance between centres at contact with the robot, plus the margin
 
-  /// Distance of a position from the middle of the body's path: straight on without end, or, if the velocity
-  /// is zero, from the body.
+  /// Distance of a position from the centre line of the body's path, which is straight and endless; if the
+  /// velocity is zero, from the body.
   [[nodiscard]] double distance_from_path_m(const Vec2& position_m) const;
-  /// Distance from the middle that a robot must keep which rests at this position. It grows by a tenth of
+  /// Required distance from the centre line for a robot that rests at this position. It grows by a tenth of
   /// the distance from the body, because the direction is not exact.
   [[nodiscard]] double required_distance_m(const Vec2& position_m) const;
 };
 
-/// By how much more than required the body, if it moves as expected, stays away from a robot that follows the
-/// trajectory from a time on and then rests. Negative: it may touch the robot.
+/// The excess over the required distance between the body, if it moves as expected, and a robot that follows
+/// the trajectory from a time on and then rests. Negative: it may touch the robot.
 [[nodiscard]] double spare_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body);
 
-/// Which candidates a robot may follow that otherwise follows `stop`. What follows from the stop alone is
-/// decided once, in the constructor.
+/// Decides which candidates a robot may follow if it otherwise follows `stop`. What depends only on the stop
+/// is computed once, in the constructor.
 class UncontrolledBodies {
  public:
-  /// All candidates begin at `start`. `stop` is not null if there are bodies, of which there is at most one
-  /// per robot. Both must outlive this object.
+  /// All candidates start at `start`. `stop` must not be null if there are bodies; there is at most one body
+  /// per robot. `bodies` and `stop` must outlive this object.
   UncontrolledBodies(std::span<const UncontrolledBody> bodies, const Trajectory* stop, Time start);
 
   /// Whether the candidate, with respect to every body,
@@ -48,7 +48,7 @@ class UncontrolledBodies {
  private:
   std::span<const UncontrolledBody> bodies_;
   const Trajectory* stop_;
-  std::array<double, kMaxRobots> stop_spare_m_;  ///< spare distance of the stop, by body
+  std::array<double, kMaxRobots> stop_spare_m_;  ///< indexed by body: spare distance of the stop
 };
 
 }  // namespace sidestep

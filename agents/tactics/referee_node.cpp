@@ -24,7 +24,7 @@ RefereeNode::RefereeNode(Bus& bus, const Scenario& scenario, const RefereeSettin
       heard_at_(bus.now()) {
   client_.on_change([this](const SentOrder& sent) {
     if (sent.phase == OrderPhase::kRefused) warn(bus_.now(), "a coordinator has refused an order");
-    // Holds and resumes replace each other, too.
+    // Holds and resumes also replace each other.
     if (sent.phase == OrderPhase::kReplaced && sent.order.kind == msg::OrderKind::ORDER_ZONE)
       warn(bus_.now(), "another referee has replaced a zone");
   });

@@ -19,16 +19,16 @@
 namespace sidestep {
 
 /// Turns the referee's commands into orders to all robots. HALT is ordered at once, and everything else in
-/// steps of kPeriod, so that no packets can cause a flood of orders. Without packets, what the last one
-/// demanded stays in force, and the zone around the ball still follows it; if the ball is lost, the zone
-/// stays where the ball was seen last.
+/// steps of kPeriod, so that packets cannot cause a flood of orders. Without packets, the last packet's
+/// demands stay in force, and the zone around the ball still follows the ball. If the ball is lost, the zone
+/// stays where the ball was last seen.
 class RefereeNode {
  public:
   RefereeNode(Bus& bus, const Scenario& scenario, const RefereeSettings& settings);
   RefereeNode(const RefereeNode&) = delete;
   RefereeNode& operator=(const RefereeNode&) = delete;
 
-  /// Takes an untrusted datagram.
+  /// Processes an untrusted datagram.
   void on_datagram(std::span<const std::byte> bytes, const league::Endpoint& from);
   /// Calls back for each event of at least this level.
   void on_event(LogLevel min_level, OnLogEvent listener) {
@@ -36,14 +36,14 @@ class RefereeNode {
   }
 
   static constexpr Duration kPeriod{50'000'000};
-  /// How long the referee may be silent before the log says so.
+  /// Silence of the referee after which the log reports it.
   static constexpr Duration kSilenceTimeout{2'000'000'000};
 
  private:
   void on_world(const msg::WorldState& world);
   void update_periodically();
   void report_silence();
-  /// Orders what differs from what was ordered last.
+  /// Orders the differences from what was last ordered.
   void update();
   void update_zone(std::uint32_t number, const RefereeDemands& demands);
   void warn(Time now, const std::string& text);
@@ -52,11 +52,11 @@ class RefereeNode {
   RefereeRules rules_;
   RefereeStream stream_;
   OrderClient client_;
-  std::optional<league::RefereePacket> packet_;  ///< the last one that counts
+  std::optional<league::RefereePacket> packet_;  ///< the last accepted packet
   std::optional<BallState> ball_;
   std::optional<bool> is_held_;                         ///< as ordered; nullopt: nothing was ordered
   std::map<std::uint32_t, std::optional<Zone>> zones_;  ///< as ordered; nullopt: removed
-  Time heard_at_;                                       ///< or started
+  Time heard_at_;                                       ///< time of the last packet, or of the start
   bool is_silent_ = false;
   RateLimit warnings_{5, std::chrono::seconds(10)};
   EventReporter events_;

@@ -13,15 +13,15 @@ namespace {
 
 using league::RefereeCommand;
 
-/// So that the limit also holds for robots that were carried off the field.
+/// So large that the limit also holds for robots that were carried off the field.
 constexpr double kFloorMargin_m = 1;
 
 bool is_in_play(RefereeCommand command) {
   return command == RefereeCommand::kNormalStart || command == RefereeCommand::kForceStart;
 }
 
-/// Whether the rules for stopped play hold. In a timeout there may be people on the field. After a hold ends,
-/// no robot is fast before the next command is known.
+/// Whether the rules for stopped play apply. They also apply in a timeout, when people may be on the field,
+/// and after a hold ends, so that no robot is fast before the next command is known.
 bool is_stopped(RefereeCommand command) {
   switch (command) {
     case RefereeCommand::kHalt:
@@ -57,7 +57,7 @@ RefereeRules::RefereeRules(const Field& field, const RefereeSettings& settings) 
 
 bool RefereeRules::keeps_off_ball(RefereeCommand command) const {
   if (is_stopped(command)) return true;
-  const auto team = team_of(command);  // that places or kicks the ball
+  const auto team = team_of(command);  // the team that places or kicks the ball
   if (is_placement(command)) return team != settings_.team;
   return team && settings_.team && team != settings_.team;
 }

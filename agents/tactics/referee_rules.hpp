@@ -14,22 +14,22 @@
 namespace sidestep {
 
 struct RefereeSettings {
-  /// The only team whose robots obey; nullopt: both teams, or neither.
+  /// The only team whose robots obey. nullopt: both teams do, or neither.
   std::optional<Team> team{};
-  /// Keep all robots, goalkeepers too, out of both defence areas.
+  /// Whether to keep all robots, including goalkeepers, out of both defence areas.
   bool closes_defence_areas = false;
-  /// Below the rules' 1.5 m/s, because a robot is at times a little faster than its reference.
+  /// Below the rules' 1.5 m/s, because a robot is sometimes slightly faster than its reference.
   double speed_limit_mps = 1.4;
-  /// Between the edges of robot and ball, as in the rules.
+  /// Required distance between the edges of robot and ball, as in the rules.
   double ball_distance_m = 0.5;
-  /// For the error of the ball's position, and for its motion until all robots know of it.
+  /// Allowance for the error of the ball's position, and for its motion until all robots know of it.
   double ball_allowance_m = 0.03;
-  /// Robots also leave the line along which the ball will roll within this time, up to a length.
+  /// Robots also leave the line along which the ball will roll within this time, up to a maximum length.
   double ball_lookahead_s = 1;
   double max_ball_path_m = 2;
-  /// Slower, the ball is at rest: its measured velocity is noise.
+  /// A slower ball counts as being at rest, because its measured velocity is noise.
   double min_ball_speed_mps = 0.1;
-  double area_distance_m = 0.2;  ///< from defence areas, while the ball is not in play
+  double area_distance_m = 0.2;  ///< distance from defence areas while the ball is not in play
 };
 
 /// The ball as last seen.
@@ -38,9 +38,9 @@ struct BallState {
   Vec2 velocity_mps{0, 0};
 };
 
-/// What the referee demands of the robots.
+/// The referee's demands on the robots.
 struct RefereeDemands {
-  bool holds = false;  ///< all robots
+  bool holds = false;  ///< all robots must stop
   std::map<std::uint32_t, Zone> zones{};
 };
 
@@ -49,26 +49,27 @@ inline constexpr std::uint32_t kFloorZone = 1, kBallZone = 2, kBallPathZone = 3,
                                kRightAreaZone = 5;
 inline constexpr std::array kRefereeZones{kFloorZone, kBallZone, kBallPathZone, kLeftAreaZone,
                                           kRightAreaZone};
-/// A zone stays where it is until a corner of the one demanded is farther away than this.
+/// A zone is moved only if a corner of the demanded zone is farther away than this.
 inline constexpr double kZoneTolerance_m = 0.02;
 
-/// What robots have to do at a command, by the rules of the Small Size League. Zones apply to all robots, so
-/// that a rule for one team only is enforced if that is the team whose robots obey; see README.md.
+/// Determines what robots must do at a command, by the rules of the Small Size League. Zones apply to all
+/// robots. A rule for one team only is therefore enforced only if it is the team whose robots obey; see
+/// README.md.
 class RefereeRules {
  public:
   RefereeRules(const Field& field, const RefereeSettings& settings);
 
-  /// `ball`: nullopt if it has never been seen.
+  /// `ball` is nullopt if the ball has never been seen.
   RefereeDemands demands(const league::RefereePacket& packet, const std::optional<BallState>& ball) const;
 
  private:
   bool keeps_off_ball(league::RefereeCommand command) const;
   Zone around_ball(std::vector<Vec2> corners_m) const;
-  /// nullopt: neither the ball nor the place for it is known.
+  /// nullopt if neither the ball nor its designated place is known.
   std::optional<Zone> ball_zone(const league::RefereePacket& packet,
                                 const std::optional<BallState>& ball) const;
-  /// Robots in it have time to leave. It is apart from the zone around the ball, so that they leave by ways
-  /// that do not pass the ball. nullopt: the ball rests.
+  /// The zone along the ball's predicted path. Robots in it have time to leave. It is separate from the zone
+  /// around the ball, so that they leave without passing the ball. nullopt if the ball rests.
   std::optional<Zone> ball_path_zone(const BallState& ball) const;
 
   RefereeSettings settings_;
@@ -76,7 +77,8 @@ class RefereeRules {
   std::array<Zone, 2> areas_;
 };
 
-/// Whether one zone may stand for the other: equal except for corners up to kZoneTolerance_m apart.
+/// Whether one zone can stand in for the other: they are equal except that corners may be up to
+/// kZoneTolerance_m apart.
 bool are_close(const Zone& a, const Zone& b);
 
 }  // namespace sidestep

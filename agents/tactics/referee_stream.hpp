@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Selects the packets that count: those of one referee, in the order in which it sent them. HALT counts even
+/// Selects the packets to use: those of one referee, in the order in which they were sent. HALT counts even
 /// if it arrives late. After kSilence without a packet in order, any packet counts: the referee was
 /// restarted, its clock was set back, or another has taken over.
 class RefereeStream {
@@ -16,14 +16,14 @@ class RefereeStream {
   enum class Outcome {
     kAccepted,
     kLate,    ///< sent before the last accepted packet
-    kForeign  ///< of another sender, while the one that was heard first still sends
+    kForeign  ///< from another sender, while the first one is still sending
   };
 
   Outcome add(const league::RefereePacket& packet, const league::Endpoint& from, Time now);
-  /// The sender whose packets count; nullopt: none has been heard.
+  /// The sender whose packets are used; nullopt if none has been heard.
   const std::optional<league::Endpoint>& referee() const { return referee_; }
 
-  /// A referee sends ten packets a second or more.
+  /// A referee sends at least ten packets a second.
   static constexpr Duration kSilence{500'000'000};
 
  private:

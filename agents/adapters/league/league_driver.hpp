@@ -15,30 +15,31 @@
 
 namespace sidestep {
 
-/// Where a league simulator receives the commands of each team.
+/// Ports on which a league simulator receives the commands of each team.
 struct LeaguePorts {
   league::Endpoint blue, yellow;
 };
 
-/// Drives robots by the Small Size League's simulation protocol: one datagram per team and period, with local
-/// velocities, which all simulators accept. The simulator's answers report errors only.
+/// Drives robots through the Small Size League's simulation protocol. It sends one datagram per team and
+/// period, with velocities in the robot's frame, which all simulators accept. The simulator's answers only
+/// report errors.
 class LeagueDriver : public Driver {
  public:
-  /// Precondition: `robots` are of the scenario. Throws std::invalid_argument if two of its robots share team
-  /// and number.
+  /// Precondition: `robots` belong to the scenario. Throws std::invalid_argument if two of the robots have
+  /// the same team and number.
   LeagueDriver(const Scenario& scenario, const std::vector<RobotId>& robots, const LeaguePorts& ports);
 
   void send(std::span<const BaseCommand> commands) override;
   void count_drops(DropCounters& drops) const override;
 
-  /// The descriptor becomes readable when an answer has arrived; then receive() is to be called.
+  /// Becomes readable when an answer has arrived; then call receive().
   int descriptor() const { return socket_.descriptor(); }
   void receive();
 
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
-  /// Answers received so far.
+  /// Number of answers received so far.
   std::uint64_t answers() const { return answers_; }
 
  private:
@@ -51,7 +52,7 @@ class LeagueDriver : public Driver {
   LeaguePorts ports_;
   league::UnicastSocket socket_{std::nullopt};
   std::unordered_map<RobotId, Name> names_;
-  std::array<league::TeamCommands, 2> packets_;  ///< by team
+  std::array<league::TeamCommands, 2> packets_;  ///< indexed by team
   EventReporter events_;
   std::uint64_t answers_ = 0, malformed_ = 0, errors_ = 0;
   std::uint64_t next_error_report_ = 1;

@@ -15,7 +15,8 @@ SkeletonDriver::SkeletonDriver(const std::vector<RobotId>& robots, std::function
 void SkeletonDriver::send(std::span<const BaseCommand> commands) {
   const Time now = now_();
   for (const BaseCommand& command : commands) {
-    // Send command.velocity to the base of command.robot here, without waiting. This is what a base does:
+    // Send command.velocity to the base of command.robot here, without waiting. The code below simulates what
+    // a base does:
     const auto base = std::ranges::find(bases_, command.robot, &OdometryReport::robot);
     if (base == bases_.end()) continue;
     const double elapsed_s = to_seconds(now - base->measured_at);

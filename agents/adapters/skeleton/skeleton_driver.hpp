@@ -7,16 +7,17 @@
 
 namespace sidestep {
 
-/// A driver to start from. As it is, it drives ideal bases, which move exactly as commanded and report that.
+/// A template for new drivers. As it stands, it drives ideal bases, which move exactly as commanded and
+/// report their motion.
 class SkeletonDriver : public Driver {
  public:
-  /// `now` is the process's clock.
+  /// `now` returns the process's time.
   SkeletonDriver(const std::vector<RobotId>& robots, std::function<Time()> now);
 
   void send(std::span<const BaseCommand> commands) override;
   void on_odometry(std::function<void(const OdometryReport&)> callback) override;
 
-  /// Where a base is, in its own frame: at the origin at first.
+  /// The pose of a base in its own frame, initially the origin.
   const OdometryReport& base(RobotId robot) const;
 
  private:

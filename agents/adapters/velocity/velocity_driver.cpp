@@ -6,8 +6,8 @@
 namespace sidestep {
 namespace {
 
-// A base whose clock is farther off shows another time, such as a simulator's. The time of arrival dates its
-// odometry then.
+// If a base's clock is off by more than this, it shows a different time, for example a simulator's. Its
+// odometry is then dated by its time of arrival.
 constexpr Duration kMaxClockError = std::chrono::seconds(1);
 constexpr double kMaxCoordinate_m = 1e6, kMaxNormError = 0.1;
 

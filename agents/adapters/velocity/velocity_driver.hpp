@@ -12,11 +12,12 @@
 
 namespace sidestep {
 
-/// Drives bases by velocities over DDS, with the names and types of ROS 2: twists on rt/robot3/cmd_vel,
-/// odometry from rt/robot3/odom. A base must be able to drive in every direction (linear.x and linear.y).
+/// Drives bases by velocity commands over DDS, with ROS 2's names and types: twists on rt/robot3/cmd_vel,
+/// odometry from rt/robot3/odom. A base must be able to drive in any direction (linear.x and linear.y).
 class VelocityDriver : public Driver {
  public:
-  /// `prefix`: "robot" for rt/robot3/cmd_vel. The bus must make no callback after the driver's destruction.
+  /// `prefix` is for example "robot" for rt/robot3/cmd_vel. The bus must make no callback after the driver's
+  /// destruction.
   VelocityDriver(Bus& bus, const std::vector<RobotId>& robots, const std::string& prefix);
 
   void send(std::span<const BaseCommand> commands) override;

@@ -9,21 +9,22 @@ namespace sidestep {
 struct Bubble {
   Vec2 centre_m{0, 0};
   double radius_m = 0;
-  Vec2 away{0, 0};    ///< unit vector from the nearest obstacle; 0 if unknown
-  double path_m = 0;  ///< length of the band up to the centre
+  Vec2 away{0, 0};    ///< unit vector pointing away from the nearest obstacle; 0 if unknown
+  double path_m = 0;  ///< path length along the band up to the centre
 };
 
-/// The forces on a bubble are displacements. The gains and the reach of obstacles are those of Philippsen
-/// (EPFL thesis 3146, ch. 3), whose robots are about 0.7 m wide; scale the internal force with the robot.
+/// The forces on a bubble are displacements. The default gains and the default reach of obstacles are from
+/// Philippsen (EPFL thesis 3146, ch. 3), whose robots are about 0.7 m wide; scale the internal force with the
+/// robot's size.
 struct BubbleForces {
   double internal_m = 0.1;  ///< towards each neighbour
-  double external = 0.5;    ///< per metre by which the bubble is smaller than the reach of obstacles
+  double external = 0.5;    ///< per metre by which the bubble's radius is below the reach of obstacles
   double reach_radii = 2;   ///< reach of obstacles, in robot radii
   double max_step = 0.5;    ///< longest displacement, as a fraction of the bubble's radius
 };
 
 /// The displacement of a bubble: towards its neighbours, which shortens the band, and away from the nearest
-/// obstacle. Both forces shrink with bubbles smaller than the reach of obstacles. As a displacement is
+/// obstacle. Both forces shrink with bubbles smaller than the reach of obstacles. Since a displacement is
 /// shorter than the radius, a bubble never jumps over an obstacle.
 [[nodiscard]] Vec2 displacement_m(const Vec2& previous_m, const Bubble& bubble, const Vec2& next_m,
                                   double robot_radius_m, const BubbleForces& forces);

@@ -87,7 +87,8 @@ void BubbleBand::follow(const Vec2& robot_m) {
 void BubbleBand::step(const Query& free) {
   constexpr int kAttempts = 3;
   const double needed_m = settings_.broken_below * 2 * robot_radius_m_;
-  // Each bubble moves with regard to where the previous one has moved: neighbours do not overshoot together.
+  // Each bubble takes into account where the previous one has moved, so that neighbours do not overshoot
+  // together.
   for (std::size_t i = 1; i + 1 < bubbles_.size(); ++i) {
     const Bubble &before = bubbles_[i - 1], &after = bubbles_[i + 1];
     Bubble& bubble = bubbles_[i];
@@ -110,7 +111,8 @@ bool BubbleBand::is_superfluous(const Bubble& before, const Bubble& bubble, cons
   if (without_m >= settings_.remove_at * diameter_m) return true;
   const double apart_m = (before.centre_m - after.centre_m).norm();
   if (without_m >= settings_.insert_below * diameter_m) return apart_m <= settings_.crowded * robot_radius_m_;
-  // In narrow passages: so close together that insertion would not put it back.
+  // In narrow passages a bubble is only removed if its neighbours are so close together that insertion would
+  // not put it back.
   return apart_m < 2 * settings_.min_spacing * robot_radius_m_ &&
          without_m >= std::min(passage_m(before, bubble), passage_m(bubble, after));
 }

@@ -8,32 +8,32 @@
 
 namespace sidestep {
 
-/// Defaults: Philippsen, EPFL thesis 3146, ch. 3.
+/// Settings. The defaults are from Philippsen, EPFL thesis 3146, ch. 3.
 struct BubbleBandSettings {
   BubbleForces forces{};
   // Passages between bubbles, in diameters of the robot.
   double remove_at = 1.8;      ///< removes a bubble if its neighbours leave at least this passage
   double insert_below = 1.2;   ///< inserts a bubble where the passage is smaller
   double broken_below = 1;     ///< the band is broken where the passage is smaller
-  double max_radius_m = 2;     ///< of bubbles far from obstacles
-  double min_spacing = 0.125;  ///< closest centres of bubbles that are inserted, in robot radii
-  double crowded = 1;          ///< distance of a bubble's neighbours at which it may be removed, likewise
+  double max_radius_m = 2;     ///< maximum radius of bubbles far from obstacles
+  double min_spacing = 0.125;  ///< minimum distance between centres of inserted bubbles, in robot radii
+  double crowded = 1;          ///< if a bubble's neighbours are closer, it may be removed; in robot radii
   std::size_t max_bubbles = 400;
   /// Far along the band, obstacles near the robot are ignored: they may have moved when the robot gets there.
-  /// The distance from the robot grows from 0 at the first path length to `max_masked_m` at the second. With
-  /// 0, nothing is ignored; Philippsen: 4.
+  /// The distance from the robot within which they are ignored grows from 0 at the first path length to
+  /// `max_masked_m` at the second. With 0, nothing is ignored; Philippsen uses 4.
   double max_masked_m = 0;
   double masked_from_m = 2, masked_fully_from_m = 10;
 };
 
 /// A band of overlapping free bubbles from the robot to its goal (Quinlan, Khatib 1993; Philippsen, EPFL
-/// thesis 3146, ch. 3). Begins as a planner's path. Each update moves the bubbles: internal forces shorten
+/// thesis 3146, ch. 3). It starts as a planner's path. Each update moves the bubbles: internal forces shorten
 /// the band, external ones keep it away from obstacles. While the band is not broken, a disc of the robot's
-/// radius can follow the polyline of the centres, free of all obstacles that are not masked. Once broken, the
-/// band has to be started again with a new path.
+/// radius can follow the polyline of the centres, free of all obstacles that are not masked. A broken band
+/// must be restarted with a new path.
 ///
-/// `FreeSpace` is ObstaclePoints, DistanceFunction, or any function of a position and the masked distance
-/// that returns a FreeDistance. Does not allocate once warm.
+/// `FreeSpace` is ObstaclePoints, DistanceFunction, or any function that takes a position and the masked
+/// distance and returns a FreeDistance. Does not allocate once warm.
 class BubbleBand {
  public:
   /// Throws std::invalid_argument if the radius or a setting is out of range.
@@ -47,7 +47,7 @@ class BubbleBand {
     measure_all(Query(free));
     fit(Query(free));
   }
-  /// Moves the band's beginning to the robot, and its bubbles by one step. Throws std::invalid_argument if
+  /// Moves the start of the band to the robot, and the bubbles by one step. Throws std::invalid_argument if
   /// the position is not finite or start() was not called.
   template <typename FreeSpace>
   void update(const Vec2& robot_m, const FreeSpace& free) {
@@ -57,19 +57,20 @@ class BubbleBand {
     fit(Query(free));
   }
 
-  /// Whether the robot does not fit through the band somewhere: plan a new path.
+  /// Whether there is a place in the band that the robot does not fit through. A new path must then be
+  /// planned.
   bool is_broken() const { return is_broken_; }
-  /// From the robot to the goal.
+  /// The bubbles, from the robot to the goal.
   std::span<const Bubble> bubbles() const { return bubbles_; }
   double length_m() const { return bubbles_.empty() ? 0 : bubbles_.back().path_m; }
-  /// The position on the band at a path length from the robot; the goal if the band is shorter. Precondition:
-  /// the band was started.
+  /// The position on the band at a path length from the robot, or the goal if the band is shorter.
+  /// Precondition: the band was started.
   Vec2 position_m(double ahead_m) const;
-  /// Near this distance from the robot or nearer, a bubble at a path length ignores obstacles.
+  /// A bubble at a path length ignores obstacles up to this distance from the robot.
   double masked_m(double path_m) const;
 
  private:
-  /// Refers to a FreeSpace.
+  /// A reference to a FreeSpace.
   class Query {
    public:
     template <typename FreeSpace>
@@ -88,15 +89,15 @@ class BubbleBand {
 
   void begin(std::span<const Vec2> path_m);
   void follow(const Vec2& robot_m);
-  /// Moves the bubbles, none of them so far that the robot no longer fits through.
+  /// Moves the bubbles, but none so far that the robot would no longer fit through.
   void step(const Query& free);
-  /// Removes and inserts bubbles, and checks the passages.
+  /// Removes and inserts bubbles, and checks the passages between them.
   void fit(const Query& free);
   void measure(Bubble& bubble, const Query& free) const;
   void measure_all(const Query& free);
   bool is_superfluous(const Bubble& before, const Bubble& bubble, const Bubble& after) const;
   void remove_superfluous();
-  /// Appends bubbles after the last one of kept_ until the passage to `next` is wide enough or the spacing
+  /// Appends bubbles after the last one in kept_ until the passage to `next` is wide enough or the spacing
   /// too small.
   void insert_before(const Bubble& next, const Query& free);
 

@@ -17,13 +17,13 @@ Vec2 seen_after(const Vec2& point_m, const ArcMotion& motion, double seconds) {
 
 Crossing first_crossing(const Vec2& point_m, double offset_m, const Vec2& normal, const ArcMotion& motion) {
   const double v = motion.speed_mps, w = motion.turn_rate_radps;
-  // The distance from the line is (a s² + b s + offset) / (1 + (w s / 2)²), and b its initial rate.
+  // The distance from the line is (a s² + b s + offset) / (1 + (w s / 2)²), where b is its initial rate.
   const double b = normal.x() * (w * point_m.y() - v) - normal.y() * w * point_m.x();
   const double a = w * (w * (offset_m - 2 * normal.dot(point_m)) + 2 * normal.y() * v) / 4;
   const double under_root = b * b - 4 * a * offset_m;
   if (under_root < 0) return {};
   const double root = std::sqrt(under_root);
-  // s = over / under is the root at which the distance decreases, in the form without cancellation.
+  // s = over / under is the root at which the distance decreases, in a form without cancellation.
   double over = b < 0 ? 2 * offset_m : -b - root;
   double under = b < 0 ? root - b : 2 * a;
   if (over < 0 || (over == 0 && under < 0)) {

@@ -11,14 +11,14 @@
 
 namespace sidestep {
 
-/// Square cells around the robot, in its frame.
+/// A grid of square cells around the robot, in the robot's frame.
 struct ObstacleGrid {
   Vec2 min_m{0, 0};
   double cell_m = 0;
   int columns = 0, rows = 0;
 
-  /// The cells that cover an area. Throws std::invalid_argument if the side of a cell is not positive, or
-  /// there are more than a million cells.
+  /// A grid that covers an area. Throws std::invalid_argument if the side of a cell is not positive or there
+  /// would be more than a million cells.
   static ObstacleGrid covering(const Box& area_m, double cell_m);
 
   std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
@@ -29,7 +29,7 @@ struct ObstacleGrid {
   /// The corner at which the cell (column, row) begins.
   Vec2 corner_m(int column, int row) const { return min_m + cell_m * Vec2(column, row); }
   Box cell(int column, int row) const { return {corner_m(column, row), corner_m(column + 1, row + 1)}; }
-  /// The cell of a point; none if it lies outside or is not finite.
+  /// The cell that contains a point; nullopt if the point lies outside or is not finite.
   std::optional<std::size_t> cell_of(const Vec2& point_m) const {
     const double x = (point_m.x() - min_m.x()) / cell_m, y = (point_m.y() - min_m.y()) / cell_m;
     if (!(x >= 0 && y >= 0 && x < columns && y < rows)) return std::nullopt;
@@ -38,12 +38,13 @@ struct ObstacleGrid {
 };
 
 /// For each cell and each velocity, the minimum of the exact times to collision over all points of the cell.
-/// Times are computed for an outline larger by kCellPadding_m, which exceeds all rounding errors.
+/// Times are computed for an outline that is enlarged by kCellPadding_m, which exceeds all rounding errors.
 struct CellTimes {
   ObstacleGrid grid;
-  float horizon_s = 0;           ///< stands for all later times
-  std::vector<float> times_s;    ///< by cell, then slot; the horizon for velocities beyond the limits
-  std::vector<bool> is_on_hull;  ///< by cell: has points that touch the outline at rest; its times are 0
+  float horizon_s = 0;         ///< represents all later times too
+  std::vector<float> times_s;  ///< indexed by cell, then slot; the horizon for velocities beyond the limits
+  /// Indexed by cell: has points that touch the outline at rest, so its times are 0.
+  std::vector<bool> is_on_hull;
 
   std::span<float> of(std::size_t cell) { return std::span(times_s).subspan(cell * kSlots, kSlots); }
   std::span<const float> of(std::size_t cell) const {

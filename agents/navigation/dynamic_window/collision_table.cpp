@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-// Sixteen bytes: the width of SSE2 and NEON, of which a tile has four.
+// Sixteen bytes, the width of SSE2 and NEON; a tile has four of these.
 typedef std::uint8_t SixteenBytes __attribute__((vector_size(16)));
 constexpr std::size_t kVectors = kTileSlots / sizeof(SixteenBytes);
 

@@ -7,15 +7,15 @@
 
 namespace sidestep {
 
-/// How times to collision are found.
+/// How times to collision are computed.
 enum class CollisionMethod {
-  kExact,         ///< every point against every velocity: the reference
-  kUniformTable,  ///< a table of one byte an entry, in even steps
-  kLloydMaxTable  ///< the same, with steps fitted to the times (Lloyd, Max)
+  kExact,         ///< every point against every velocity; the reference method
+  kUniformTable,  ///< a table with one byte per entry, in uniform steps
+  kLloydMaxTable  ///< a table with steps adapted to the times (Lloyd, Max)
 };
 
-/// The minimum times to collision with points, for the velocities of a window. `Outline` is the robot:
-/// `touches(point)`, and `time_to_collision_s(point, slot)` for a velocity that it may use.
+/// The minimum times to collision with points, for the velocities of a window. `Outline` represents the
+/// robot. It provides `touches(point)`, and `time_to_collision_s(point, slot)` for each permitted velocity.
 template <typename Outline>
 class CollisionTimes {
  public:
@@ -30,9 +30,9 @@ class CollisionTimes {
                               : Quantiser::lloyd_max(cells.times_s, horizon_s));
   }
 
-  /// Computes the times for the velocities of a window, at most the horizon. Velocities whose time is known
-  /// to be at most that in `needed_s` are inadmissible, and their times may be upper bounds. Returns false if
-  /// a point touches the outline. Skips points that are not finite. Does not allocate once warm.
+  /// Computes the times for the velocities of a window, up to the horizon. A velocity whose time is at most
+  /// that in `needed_s` is inadmissible; its computed time may be an upper bound only. Returns false if a
+  /// point touches the outline. Skips points that are not finite. Does not allocate once warm.
   [[nodiscard]] bool compute(std::span<const Vec2> points_m, const GridWindow& window,
                              const VelocityTimes& needed_s) {
     exact_.clear();
@@ -51,7 +51,7 @@ class CollisionTimes {
       for (const Vec2& point : exact_) {
         if (times_s_[slot] <= needed_s[slot]) break;
         const double time_s = outline_.time_to_collision_s(point, slot);
-        // Rounded down: never later than the exact time.
+        // Rounds down, so that it is never later than the exact time.
         if (time_s < static_cast<double>(times_s_[slot]))
           times_s_[slot] = std::nextafter(static_cast<float>(time_s), 0.0F);
       }
@@ -61,7 +61,7 @@ class CollisionTimes {
 
   float time_s(std::size_t slot) const { return times_s_[slot]; }
   const Outline& outline() const { return outline_; }
-  /// None with the exact method.
+  /// nullopt with the exact method.
   const std::optional<CollisionTable>& table() const { return table_; }
 
  private:
@@ -72,7 +72,7 @@ class CollisionTimes {
   std::vector<Vec2> exact_;
 };
 
-/// Forbids a velocity in CollisionTimes: no time to collision is long enough.
+/// Value in CollisionTimes that forbids a velocity, because no time to collision is long enough.
 inline constexpr float kForbidden_s = std::numeric_limits<float>::infinity();
 
 }  // namespace sidestep

@@ -6,19 +6,19 @@
 
 namespace sidestep {
 
-/// Speeds of the rims of two wheels, positive ahead.
+/// Rim speeds of the two wheels, positive ahead.
 struct WheelSpeeds {
   double left_mps = 0, right_mps = 0;
 };
 
-/// A robot with two wheels on a common axis; its frame begins in their middle, with the x axis ahead. The
-/// defaults are those of the Robox robots (Philippsen, EPFL thesis 3146).
+/// A robot with two wheels on a common axis. The origin of its frame is midway between them, with the x axis
+/// ahead. The defaults are those of the Robox robots (Philippsen, EPFL thesis 3146).
 struct DifferentialDrive {
   double wheel_base_m = 0.521;
-  double wheel_speed_mps = 0.572;          ///< maximum of each wheel
-  double wheel_acceleration_mps2 = 0.572;  ///< of each wheel, also when braking
-  double speed_mps = 0.5;                  ///< maximum of the robot
-  double turn_rate_radps = 2;              ///< maximum of the robot
+  double wheel_speed_mps = 0.572;          ///< maximum for each wheel
+  double wheel_acceleration_mps2 = 0.572;  ///< maximum for each wheel, also when braking
+  double speed_mps = 0.5;                  ///< maximum for the robot
+  double turn_rate_radps = 2;              ///< maximum for the robot
 
   ArcMotion motion(const WheelSpeeds& wheels) const {
     return {(wheels.left_mps + wheels.right_mps) / 2, (wheels.right_mps - wheels.left_mps) / wheel_base_m};
@@ -32,11 +32,11 @@ struct DifferentialDrive {
     return std::abs(motion.speed_mps) <= speed_mps + kRounding &&
            std::abs(motion.turn_rate_radps) <= turn_rate_radps + kRounding;
   }
-  /// Until both wheels rest. They slow down in proportion, so that the robot stays on its arc.
+  /// Time until both wheels are at rest. They slow down in proportion, so that the robot stays on its arc.
   double time_to_brake_s(const WheelSpeeds& wheels) const {
     return std::max(std::abs(wheels.left_mps), std::abs(wheels.right_mps)) / wheel_acceleration_mps2;
   }
-  /// The wheel speeds after braking in proportion for a time.
+  /// The wheel speeds after braking in proportion for some time.
   WheelSpeeds braked(const WheelSpeeds& wheels, double seconds) const;
 };
 

@@ -5,16 +5,16 @@
 
 namespace sidestep {
 
-/// The time after which a disc at the origin, which moves straight, touches a point; 0 if it does already,
-/// infinite if it never does.
+/// The time after which a disc that starts at the origin and moves in a straight line touches a point. 0 if
+/// it already touches it, infinite if it never does.
 [[nodiscard]] double disc_time_to_collision_s(const Vec2& point_m, double radius_m, const Vec2& velocity_mps);
 
-/// Rows of the velocity grid are velocities along x, columns those along y.
+/// Rows of the velocity grid are velocities along x; columns are velocities along y.
 inline Vec2 grid_velocity(int row, int column, double speed_mps) {
   return {grid_speed(row, speed_mps), grid_speed(column, speed_mps)};
 }
 
-/// Whether a velocity of the grid is within the speed limit, which the grid's corners exceed.
+/// Whether a velocity of the grid is within the speed limit. The grid's corners exceed it.
 inline bool is_within_speed(const Vec2& velocity_mps, double speed_mps) {
   constexpr double kRounding = 1e-9;
   return velocity_mps.squaredNorm() <= speed_mps * speed_mps * (1 + kRounding);

@@ -9,23 +9,24 @@
 namespace sidestep {
 
 struct DiscWindowSettings {
-  /// Times to collision beyond it make no difference. Velocities that need as long to brake are inadmissible.
+  /// Later collisions make no difference. Velocities that need this long to brake are inadmissible.
   double horizon_s = 0.7;
-  double cell_m = 0.04;  ///< side of the cells of the table
+  double cell_m = 0.04;  ///< cell size of the table
   CollisionMethod method = CollisionMethod::kUniformTable;
   ObjectiveWeights weights{};
 };
 
-/// What a window decides on, relative to the robot's position.
+/// The input of a window's decision, relative to the robot's position.
 struct DiscWindowQuery {
-  std::span<const Vec2> points_m{};  ///< obstacles; those that are not finite are skipped
+  std::span<const Vec2> points_m{};  ///< obstacle points; those that are not finite are skipped
   Vec2 velocity_mps{0, 0};           ///< current velocity
   Vec2 goal_m{0, 0};
-  double cycle_s = 1.0 / 60;         ///< until the next decision
-  std::optional<double> window_s{};  ///< considers velocities reachable in this time; default: the cycle
+  double cycle_s = 1.0 / 60;  ///< time until the next decision
+  /// Velocities that can be reached in this time are considered; default: the cycle.
+  std::optional<double> window_s{};
 };
 
-/// An admissible velocity: if it is held for a cycle, the robot can stop before it touches a point.
+/// An admissible velocity: if it is held for a cycle, the robot can still stop before it touches a point.
 struct RatedVelocity {
   Vec2 velocity_mps{0, 0};
   float time_to_collision_s = 0;  ///< never later than the exact time; at most the horizon
@@ -34,32 +35,32 @@ struct RatedVelocity {
 };
 
 struct DiscWindowChoice {
-  std::vector<RatedVelocity> admissible;  ///< best first; empty: the robot has to brake
+  std::vector<RatedVelocity> admissible;  ///< sorted by value, best first; empty: the robot must brake
   bool is_touching = false;               ///< a point lies within the disc
 };
 
 /// The dynamic window of an omnidirectional disc, whose motions are straight. Its admissible velocities can
 /// be desired motions for a safety search. Considers the velocities of a grid that the robot's accelerations
 /// reach within a cycle (see is_admissible) or, if the grid is too coarse for that, those next to the current
-/// one. Otherwise as DynamicWindow, except that the heading objective is about the direction of the velocity,
-/// and the speed objective prefers the speed at which the robot can just stop at its goal. Does not allocate
-/// once warm.
+/// one. Otherwise it works like DynamicWindow, except that the heading objective rates the direction of the
+/// velocity, and the speed objective prefers the speed at which the robot can just stop at its goal. Does not
+/// allocate once warm.
 class DiscWindow {
  public:
   /// Throws std::invalid_argument if a dimension, limit or setting is invalid.
   DiscWindow(double radius_m, const MotionLimits& limits, const DiscWindowSettings& settings = {});
 
   /// The result belongs to this object and is valid until the next call. Throws std::invalid_argument if the
-  /// velocity, goal, cycle or window are not finite, or the cycle is not positive.
+  /// velocity, goal, cycle or window is not finite, or the cycle is not positive.
   const DiscWindowChoice& choose(const DiscWindowQuery& query);
 
-  /// None with the exact method.
+  /// nullopt with the exact method.
   const std::optional<CollisionTable>& table() const { return times_.table(); }
 
  private:
   struct Outline {
     double radius_m;
-    std::vector<Vec2> velocities_mps;  // by slot
+    std::vector<Vec2> velocities_mps;  // indexed by slot
 
     bool touches(const Vec2& point_m) const { return point_m.norm() <= radius_m; }
     double time_to_collision_s(const Vec2& point_m, std::size_t slot) const {
@@ -69,8 +70,8 @@ class DiscWindow {
 
   void prepare(double cycle_s);
   GridWindow window_around(const Vec2& velocity_mps, double window_s) const;
-  /// Fills reachable_ with the velocities of a window that the robot's accelerations reach within a time or,
-  /// if there are none, with all.
+  /// Fills reachable_ with the velocities of a window that the robot's accelerations reach within a time; if
+  /// there are none, with all velocities of the window.
   void find_reachable(const GridWindow& window, const Vec2& velocity_mps, double window_s);
   bool is_reachable(std::size_t slot, const Vec2& velocity_mps, double window_s) const;
   Objectives rate(std::size_t slot, const Vec2& goal_m) const;
@@ -78,7 +79,7 @@ class DiscWindow {
   MotionLimits limits_;
   DiscWindowSettings settings_;
   CollisionTimes<Outline> times_;
-  double cycle_s_ = 0;  // that needed_s_ was computed for
+  double cycle_s_ = 0;  // cycle that needed_s_ was computed for
   VelocityTimes needed_s_{};
   std::vector<std::size_t> reachable_;  // slots
   DiscWindowChoice choice_;

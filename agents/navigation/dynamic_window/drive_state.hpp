@@ -7,11 +7,11 @@
 
 namespace sidestep {
 
-/// What a differential drive does on its way to a goal.
+/// The phases of a differential drive's way to a goal.
 enum class DriveState {
   kTurn,   ///< turns on the spot until the goal lies ahead
-  kGo,     ///< drives to the goal, the faster the better
-  kAim,    ///< the goal is no longer ahead: drives on, the slower the better, until it is again
+  kGo,     ///< drives to the goal as fast as possible
+  kAim,    ///< the goal is no longer ahead: drives on as slowly as possible until it is ahead again
   kAlign,  ///< at the goal: turns to the goal's heading
   kStop    ///< at the goal: rests
 };
@@ -19,16 +19,18 @@ enum class DriveState {
 /// A goal in the robot's frame.
 struct DriveGoal {
   Vec2 position_m{0, 0};
-  std::optional<double> heading_rad{};  ///< none: any heading
+  std::optional<double> heading_rad{};  ///< nullopt: any heading
   double radius_m = 0.1;                ///< distance at which the position counts as reached; > 0
 };
 
-/// Defaults: Philippsen, EPFL thesis 3146.
+/// Settings. The defaults are from Philippsen, EPFL thesis 3146.
 struct DriveStateSettings {
-  double go_within_rad = 10 * std::numbers::pi / 180;     ///< directions to the goal that count as ahead
-  double aim_beyond_rad = 45 * std::numbers::pi / 180;    ///< directions at which the robot has to aim again
+  /// Maximum angle of the goal's direction that counts as ahead.
+  double go_within_rad = 10 * std::numbers::pi / 180;
+  /// Angle of the goal's direction beyond which the robot must aim again.
+  double aim_beyond_rad = 45 * std::numbers::pi / 180;
   double align_within_rad = 10 * std::numbers::pi / 180;  ///< tolerance of the heading at the goal
-  double rest_mps = 0.01;                                 ///< speeds below it count as rest
+  double rest_mps = 0.01;                                 ///< slower speeds count as rest
 };
 
 /// Throws std::invalid_argument unless 0 < go_within_rad <= aim_beyond_rad, and the others are positive.

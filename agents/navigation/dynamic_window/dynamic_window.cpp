@@ -33,7 +33,7 @@ std::vector<ArcMotion> motions_of(const DifferentialDrive& drive) {
 /// Half the number of grid steps by which the robot's speed differs from 0.
 int steps_from_rest(int row, int column) { return std::abs(row + column - (kGridSide - 1)); }
 
-/// Whether the robot should change its heading only.
+/// Whether the robot should change only its heading.
 bool turns_on_spot(DriveState state) { return state == DriveState::kTurn || state == DriveState::kAlign; }
 
 }  // namespace
@@ -96,7 +96,7 @@ Objectives DynamicWindow::rate(std::size_t slot, const DriveGoal& goal) const {
 }
 
 void DynamicWindow::add_admissible(const WindowQuery& query, const GridWindow& window) {
-  int steps = kGridSide;  // of the slowest speeds in the window
+  int steps = kGridSide;  // steps of the slowest speeds in the window
   if (turns_on_spot(choice_.state)) {
     for_each_velocity(window, [&](int row, int column, std::size_t) {
       steps = std::min(steps, steps_from_rest(row, column));

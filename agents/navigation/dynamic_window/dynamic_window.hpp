@@ -11,24 +11,25 @@ namespace sidestep {
 
 struct DynamicWindowSettings {
   double padding_m = 0.02;  ///< distance that the hull should keep from points
-  /// Times to collision beyond it make no difference. Velocities that need as long to brake are inadmissible.
+  /// Later collisions make no difference. Velocities that need this long to brake are inadmissible.
   double horizon_s = 1;
-  double cell_m = 0.03;  ///< side of the cells of the table
+  double cell_m = 0.03;  ///< cell size of the table
   CollisionMethod method = CollisionMethod::kUniformTable;
   ObjectiveWeights weights{};
   DriveStateSettings states{};
 };
 
-/// What a dynamic window decides on, in the robot's frame.
+/// The input of a window's decision, in the robot's frame.
 struct WindowQuery {
-  std::span<const Vec2> points_m{};  ///< obstacles; those that are not finite are skipped
+  std::span<const Vec2> points_m{};  ///< obstacle points; those that are not finite are skipped
   WheelSpeeds wheels{};              ///< current speeds
   DriveGoal goal{};
-  double cycle_s = 0.1;              ///< until the next decision
-  std::optional<double> window_s{};  ///< considers speeds that are reachable in this time; default: the cycle
+  double cycle_s = 0.1;  ///< time until the next decision
+  /// Speeds that can be reached in this time are considered; default: the cycle.
+  std::optional<double> window_s{};
 };
 
-/// An admissible velocity: if it is held for a cycle, the robot can stop on its arc before it touches a
+/// An admissible velocity: if it is held for a cycle, the robot can still stop on its arc before it touches a
 /// point.
 struct RatedWheelSpeeds {
   WheelSpeeds wheels;
@@ -40,16 +41,17 @@ struct RatedWheelSpeeds {
 struct WindowChoice {
   DriveState state = DriveState::kTurn;
   std::vector<RatedWheelSpeeds> admissible;
-  std::optional<std::size_t> best;  ///< index of the best admissible one; none: the robot has to brake
-  WheelSpeeds command;              ///< the best speeds, or those after braking for a cycle
-  bool is_touching = false;         ///< a point lies within the padded hull
+  std::optional<std::size_t> best;  ///< index of the best admissible pair; nullopt: the robot must brake
+  /// The best speeds; if there are none, the speeds after braking for a cycle.
+  WheelSpeeds command;
+  bool is_touching = false;  ///< a point lies within the padded hull
 };
 
 /// The dynamic window of a robot with two wheels and a convex hull (Fox, Burgard, Thrun 1997; Philippsen,
 /// EPFL thesis 3146, ch. 3). Considers the wheel speeds of a grid that are reachable within a cycle. A pair
-/// of speeds is admissible if the time to collision along its arc is longer than the time to brake and a
-/// cycle; the best has the highest weighted sum of distance, heading and speed objectives. Does not allocate
-/// once warm.
+/// of speeds is admissible if the time to collision along its arc exceeds the braking time plus a cycle; the
+/// best pair has the highest weighted sum of distance, heading and speed objectives. Does not allocate once
+/// warm.
 class DynamicWindow {
  public:
   /// Building the table takes seconds. Throws std::invalid_argument if a dimension, limit or setting
@@ -58,23 +60,23 @@ class DynamicWindow {
                 const DynamicWindowSettings& settings = {});
 
   /// The result belongs to this object and is valid until the next call. Throws std::invalid_argument if the
-  /// wheel speeds, goal, cycle or window are not finite, or the cycle or the goal's radius is not positive.
+  /// wheel speeds, goal, cycle or window is not finite, or the cycle or the goal's radius is not positive.
   const WindowChoice& choose(const WindowQuery& query);
 
-  /// None with the exact method.
+  /// nullopt with the exact method.
   const std::optional<CollisionTable>& table() const { return times_.table(); }
 
  private:
   struct Outline {
     Hull hull;
-    std::vector<ArcMotion> motions;  // by slot
+    std::vector<ArcMotion> motions;  // indexed by slot
 
     bool touches(const Vec2& point_m) const { return hull.contains(point_m); }
     double time_to_collision_s(const Vec2& point_m, std::size_t slot) const {
       return hull.time_to_collision_s(point_m, motions[slot]);
     }
   };
-  /// The pose at which the robot rests, if it brakes after a cycle.
+  /// The pose at which the robot comes to rest if it brakes after one cycle.
   struct Standstill {
     float x_m, y_m, cosine, sine;
   };
@@ -87,9 +89,9 @@ class DynamicWindow {
   DifferentialDrive drive_;
   DynamicWindowSettings settings_;
   CollisionTimes<Outline> times_;
-  double cycle_s_ = 0;  // that needed_s_ and standstills_ were computed for
+  double cycle_s_ = 0;  // cycle that needed_s_ and standstills_ were computed for
   VelocityTimes needed_s_{};
-  std::vector<Standstill> standstills_;  // by slot
+  std::vector<Standstill> standstills_;  // indexed by slot
   WindowChoice choice_;
 };
 

@@ -16,7 +16,7 @@ ConvexPolygon padded(const ConvexPolygon& polygon, double padding_m) {
   append_arcs(polygon, padding_m, arcs);
   ConvexPolygon result;
   for (const TangentArc& arc : arcs) {
-    // The direction of the edge that ends at the corner, and the turn to the edge that begins there.
+    // The direction of the edge that ends at the corner, and the turn to the edge that starts there.
     const Vec2 along = left_of(arc.first);
     append_vertices(arc, Side::kLeft, along, turn_rad(Side::kLeft, arc.first, arc.last),
                     std::numbers::pi / 2 + 1e-6, result.corners_m);

@@ -9,13 +9,13 @@
 
 namespace sidestep {
 
-/// A polygon that contains all points within `padding_m` of the given one; its edges are the edges of the
-/// given one, moved outwards, and cut corners. Throws std::invalid_argument if the polygon is invalid (see
+/// A polygon that contains all points within `padding_m` of the given one; its edges are the given edges
+/// moved outwards, with the corners cut off. Throws std::invalid_argument if the polygon is invalid (see
 /// check(Shape)) or the padding is negative or not finite.
 [[nodiscard]] ConvexPolygon padded(const ConvexPolygon& polygon, double padding_m);
 
-/// The outline of a robot in its own frame, for exact collision times: the intersection of the arcs on which
-/// points approach the robot with the outline's edges.
+/// The outline of a robot in its own frame, for exact collision times, which are found by intersecting the
+/// outline's edges with the arcs on which points approach the robot.
 class Hull {
  public:
   /// Throws std::invalid_argument if the polygon is invalid.
@@ -23,8 +23,9 @@ class Hull {
 
   /// Whether the point lies inside or on the outline.
   bool contains(const Vec2& point_m) const;
-  /// The time after which a fixed point enters the outline of the moving robot; 0 if it is inside or on it,
-  /// infinite if it never enters. A point that passes a corner within a nanometre counts as entering.
+  /// The time after which a fixed point enters the moving robot's outline. 0 if it is inside or on the
+  /// outline, infinite if it never enters. A point that passes a corner within a nanometre counts as
+  /// entering.
   double time_to_collision_s(const Vec2& point_m, const ArcMotion& motion) const;
 
   std::span<const Vec2> corners_m() const { return corners_m_; }

@@ -10,13 +10,14 @@ namespace {
 
 void lower(float& least, double time_s) { least = std::min(least, static_cast<float>(time_s)); }
 
-/// Adds the cells that a corner of the hull passes through to the times of one velocity.
+/// Adds the cells that a corner of the hull passes through to one velocity's times.
 class CornerTrace {
  public:
   CornerTrace(CellTimes& times, std::size_t slot) : times_(times), slot_(slot) {}
 
   void add(const Vec2& corner_m, const ArcMotion& motion) {
-    // Seen from the ground, the corner moves as a fixed point does seen from a robot that moves backwards.
+    // Seen from the ground, the corner moves as a fixed point appears to move when seen from a robot that
+    // moves backwards.
     const ArcMotion backwards = motion.reversed();
     const double horizon_s = static_cast<double>(times_.horizon_s);
     events_s_.assign({0, horizon_s});
@@ -53,7 +54,7 @@ double outer_radius_m(std::span<const Vec2> corners_m) {
   return radius_m;
 }
 
-/// Adds the cells whose corners enter the hull to the times of one velocity.
+/// Adds the cells whose corners enter the hull to one velocity's times.
 void add_cell_corners(const Hull& hull, const ArcMotion& motion, std::size_t slot, CellTimes& times) {
   const ObstacleGrid& grid = times.grid;
   const double radius_m = outer_radius_m(hull.corners_m()), horizon_s = static_cast<double>(times.horizon_s);
@@ -82,7 +83,7 @@ bool overlap(const Box& cell, std::span<const Vec2> hull) {
   return signed_distance(hull[0], cell) <= 0;
 }
 
-/// The area that a point on the hull can reach within the horizon, with any allowed motion.
+/// The area that a point on the hull can reach within the horizon with any permitted motion.
 Box reachable_area(const DifferentialDrive& drive, std::span<const Vec2> corners_m, double horizon_s) {
   const double reach_m = outer_radius_m(corners_m) + drive.speed_mps * horizon_s;
   return {Vec2(-reach_m, -reach_m), Vec2(reach_m, reach_m)};

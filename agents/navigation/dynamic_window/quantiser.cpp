@@ -15,8 +15,8 @@ void check_horizon(float horizon_s) {
     throw std::invalid_argument("a quantiser's horizon has to be positive and finite");
 }
 
-/// A fine histogram of the times between 0 and the horizon. Its bins keep their smallest time, so that the
-/// minimum of an interval of whole bins is known exactly.
+/// A fine histogram of the times between 0 and the horizon. Each bin stores its smallest time, so that the
+/// minimum of an interval of complete bins is known exactly.
 class FineHistogram {
  public:
   FineHistogram(std::span<const float> times_s, float horizon_s)
@@ -43,7 +43,7 @@ class FineHistogram {
     return *std::min_element(least_s_.begin() + static_cast<std::ptrdiff_t>(from),
                              least_s_.begin() + static_cast<std::ptrdiff_t>(to));
   }
-  /// The first bin before which there are at least `fraction` of the times.
+  /// The first bin before which at least `fraction` of the times lie.
   std::size_t quantile(double fraction) const {
     const double wanted = fraction * count_before_.back();
     const auto found = std::lower_bound(count_before_.begin(), count_before_.end(), wanted);
@@ -54,11 +54,12 @@ class FineHistogram {
   static constexpr float kNone_s = std::numeric_limits<float>::infinity();
 
  private:
-  std::vector<double> count_before_, sum_before_s_;  // of the bins before a bin
+  std::vector<double> count_before_, sum_before_s_;  // cumulative values over the bins before each bin
   std::vector<float> least_s_;
 };
 
-/// The intervals' boundaries in bins, after Lloyd's iteration from intervals with equally many times.
+/// The intervals' boundaries in bins, found by Lloyd's iteration starting from intervals with equally many
+/// times.
 std::vector<std::size_t> lloyd_boundaries(const FineHistogram& histogram, std::size_t intervals,
                                           float horizon_s) {
   constexpr int kMaxIterations = 200;

@@ -7,8 +7,9 @@
 
 namespace sidestep {
 
-/// At most 256 ascending times, numbered by one byte. A time is stored as the number of the latest level that
-/// is not after it, so the stored time is never later than the true one, and numbers compare like times.
+/// Quantises times to at most 256 ascending levels, numbered by one byte. A time is stored as the number of
+/// the last level that is not after it. So the stored time is never later than the true one, and numbers
+/// compare like times.
 class Quantiser {
  public:
   static constexpr std::size_t kLevels = 256;
@@ -18,16 +19,16 @@ class Quantiser {
   static Quantiser uniform(float horizon_s);
   /// At most `levels` levels for these times (Lloyd 1982, Max 1960): intervals whose boundaries lie halfway
   /// between the means of neighbouring intervals. Unlike the original, each interval is represented by its
-  /// minimum (Philippsen, EPFL thesis 3146, ch. 3). The first level is 0, and the last one the horizon, for
-  /// all later times. Throws std::invalid_argument if there are fewer than three levels or more than kLevels,
-  /// or a time is negative.
+  /// minimum (Philippsen, EPFL thesis 3146, ch. 3). The first level is 0. The last one is the horizon, which
+  /// represents all later times. Throws std::invalid_argument if there are fewer than three levels or more
+  /// than kLevels, or a time is negative.
   static Quantiser lloyd_max(std::span<const float> times_s, float horizon_s, std::size_t levels = kLevels);
 
-  /// The number of the latest level that is not after the time, which must not be negative.
+  /// The number of the last level that is not after the time. Precondition: the time is not negative.
   std::uint8_t encode(float time_s) const;
   float decode(std::uint8_t number) const { return levels_s_[number]; }
 
-  /// The number of levels; the others repeat the last one.
+  /// The number of levels; the remaining entries repeat the last one.
   std::size_t size() const { return size_; }
 
  private:

@@ -7,15 +7,16 @@
 
 namespace sidestep {
 
-/// The velocities that a dynamic window chooses from form a square grid with two axes, e.g. the speeds of two
-/// wheels, each from minus to plus its maximum. Tables of the grid are stored in tiles of 7 × 9 velocities,
-/// so that one byte per velocity makes a tile a cache line, and a small window touches few of them.
+/// The velocities that a dynamic window chooses from form a square grid with two axes, for example the speeds
+/// of two wheels, each from minus its maximum to plus its maximum. Tables over the grid are stored in tiles
+/// of 7 × 9 velocities, so that a tile with one byte per velocity fits a cache line, and a small window
+/// touches few tiles.
 inline constexpr int kGridSide = 41;
 inline constexpr int kTileRows = 7, kTileColumns = 9, kTilesAcross = 5;
 inline constexpr std::size_t kTileSlots = 64, kTiles = 30;
-inline constexpr std::size_t kSlots = kTiles * kTileSlots;  ///< some are unused
+inline constexpr std::size_t kSlots = kTiles * kTileSlots;  ///< some slots are unused
 
-/// The place of the velocity (row, column) in tables; both are 0 .. kGridSide - 1.
+/// The slot of the velocity (row, column) in tables; both are 0 .. kGridSide - 1.
 constexpr std::size_t slot_of(int row, int column) {
   const int tile = row / kTileRows * kTilesAcross + column / kTileColumns;
   const int within = row % kTileRows * kTileColumns + column % kTileColumns;
@@ -28,13 +29,13 @@ constexpr double grid_speed(int index, double max_speed) {
   return max_speed * (index - kMiddle) / kMiddle;
 }
 
-/// Indices of an axis, the last one included.
+/// A range of indices on an axis, including the last one.
 struct IndexRange {
   int first = 0, last = -1;
 };
 
-/// The indices of speeds that differ from `speed` by at most `max_change`. If there are none, those next to
-/// `speed`: within the change, an axis can only begin to approach them.
+/// The indices of speeds that differ from `speed` by at most `max_change`. If there are none, the indices
+/// next to `speed`: in that case the axis can only begin to approach them.
 inline IndexRange reachable_indices(double speed, double max_change, double max_speed) {
   constexpr double kRounding = 1e-9;
   constexpr int kMiddle = kGridSide / 2;

@@ -45,7 +45,7 @@ bool PotentialField::makes_progress() const {
   const auto patience = static_cast<std::size_t>(settings_.patience);
   const std::vector<Vec2>& path = descent_.path_m;
   if (path.size() <= patience) return true;
-  // A robot in a minimum steps to and fro across it.
+  // A robot in a minimum steps back and forth across it.
   constexpr double kProgress = 0.05;
   const double advanced_m = (path.back() - path[path.size() - 1 - patience]).norm();
   return advanced_m > kProgress * settings_.step_m * settings_.patience;
@@ -71,7 +71,7 @@ void PotentialField::step(const Vec2& goal_m, const FreeDistance& free) {
   }
   const Vec2 at = descent_.path_m.back(), pull = force(at, goal_m, free);
   const double length = pull.norm();
-  // Half the gap at most: the path cannot step over an obstacle.
+  // At most half the gap, so that the path cannot step over an obstacle.
   const double longest_m =
       std::min({settings_.step_m, gap_m(free) / 2, std::max((goal_m - at).norm(), settings_.arrival_m)});
   descent_.path_m.push_back(length > 0 ? Vec2(at + longest_m / length * pull) : at);

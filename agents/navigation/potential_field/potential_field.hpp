@@ -8,34 +8,35 @@
 namespace sidestep {
 
 struct PotentialFieldSettings {
-  double attraction = 1;    ///< k of U = k/2 rho², rho: the distance to the goal
-  double repulsion = 0.01;  ///< k of U = k/2 (1/rho - 1/rho0)², rho: the distance to the nearest obstacle
-  double reach_m = 0.5;     ///< rho0: obstacles farther away do not repel
-  /// Force around the nearest obstacle, as a fraction of the repulsive force; positive: counter-clockwise. It
-  /// leads out of some local minima, and has no potential.
+  double attraction = 1;  ///< k in U = k/2 rho², where rho is the distance to the goal
+  /// K in U = k/2 (1/rho - 1/rho0)², where rho is the distance to the nearest obstacle.
+  double repulsion = 0.01;
+  double reach_m = 0.5;  ///< rho0: obstacles farther away do not repel
+  /// Force tangential to the nearest obstacle, as a fraction of the repulsive force; positive:
+  /// counter-clockwise. It leads out of some local minima. It has no potential.
   double rotation = 0;
-  double step_m = 0.01;     ///< length of a step of descend()
-  double arrival_m = 0.02;  ///< distance from the goal that counts as there
-  int patience = 200;       ///< steps without progress after which a local minimum is reported
+  double step_m = 0.01;     ///< step length of descend()
+  double arrival_m = 0.02;  ///< distance from the goal that counts as arrived
+  int patience = 200;       ///< number of steps without progress after which a local minimum is reported
 };
 
 /// Why a descent ended.
 enum class DescentEnd {
-  kArrived,       ///< at the goal
-  kLocalMinimum,  ///< the forces cancel: the robot hardly moves, but is not at the goal
-  kTouching,      ///< within the robot's radius of an obstacle
+  kArrived,       ///< the robot is at the goal
+  kLocalMinimum,  ///< the forces cancel: the robot hardly moves, although it is not at the goal
+  kTouching,      ///< an obstacle is within the robot's radius
   kStepsSpent
 };
 
 struct Descent {
   DescentEnd end = DescentEnd::kStepsSpent;
-  std::vector<Vec2> path_m;  ///< from the start on
+  std::vector<Vec2> path_m;  ///< starts at the start position
 };
 
 /// The potential field of a goal and of obstacles (Khatib 1986; Latombe 1991, ch. 7): a force that pulls to
 /// the goal, one that pushes away from the nearest obstacle, and one that pushes around it. The method is
-/// local: it can get stuck in minima other than the goal, and reports them. `FreeSpace` is as for BubbleBand;
-/// nothing is masked. Distances to obstacles are those of the robot's outline, a disc.
+/// local: it can get stuck in minima other than the goal, which it reports. For `FreeSpace` see BubbleBand;
+/// nothing is masked. Distances to obstacles are measured from the robot's outline, a disc.
 class PotentialField {
  public:
   /// Throws std::invalid_argument if the radius or a setting is out of range.
@@ -43,7 +44,7 @@ class PotentialField {
 
   /// The force at a position with this free distance, in newtons per unit of the gains.
   Vec2 force(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;
-  /// The potential, without that of rotation; infinite where the robot touches an obstacle.
+  /// The potential without the rotational force; infinite where the robot touches an obstacle.
   double potential(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;
 
   /// Follows the force in steps until the robot arrives, touches an obstacle or makes no more progress. The
@@ -63,7 +64,7 @@ class PotentialField {
   bool has_ended(const Vec2& goal_m, int max_steps);
   void step(const Vec2& goal_m, const FreeDistance& free);
   bool makes_progress() const;
-  /// Between the robot's outline and the nearest obstacle.
+  /// The distance between the robot's outline and the nearest obstacle.
   double gap_m(const FreeDistance& free) const { return free.distance_m - robot_radius_m_; }
 
   double robot_radius_m_;

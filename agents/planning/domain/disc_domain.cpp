@@ -153,8 +153,8 @@ bool DiscDomain::escapes(const Vec2& from, const Vec2& to) const {
     if (from_m > radius_m_) {
       if (squared_distance(Segment{from, to}, shape) <= radius_m_ * radius_m_) return false;
     } else if (signed_distance(from + step, shape) < from_m - kRounding_m) {
-      // Along a line, the distance from a convex shape is a convex function: if it does not shrink at first,
-      // it never does.
+      // Along a line, the distance from a convex shape is a convex function: if it does not decrease at
+      // first, it never does.
       return false;
     }
   }

@@ -14,14 +14,14 @@ namespace sidestep {
 
 struct DiscDomainSettings {
   double step_m = 2;  ///< maximum length of an extension
-  /// Fraction of samples close to an obstacle. Short paths follow obstacles, and narrow passages consist of
-  /// such positions only.
+  /// Fraction of samples close to an obstacle. Short paths follow obstacles, and narrow passages contain only
+  /// such positions.
   double contact_probability = 0.2;
 };
 
 /// The planning domain of a disc that moves in straight lines on a field with obstacles. All checks are exact
-/// and cover the whole motion. Refers to the world, which has to outlive it. Made for a single query;
-/// construction is cheap if start and goal are free.
+/// and cover the whole motion. Keeps a reference to the world, which must outlive it. A domain is made for a
+/// single query; construction is cheap if start and goal are free.
 ///
 /// A start that touches obstacles, or lies outside the field, may be left by motions that come no nearer to
 /// any obstacle it touches. Since shapes are convex, such a motion does not re-enter them. A goal that
@@ -33,7 +33,7 @@ class DiscDomain {
 
   DiscDomain(const ObstacleWorld& world, const Field& field, double radius_m, const Vec2& start_m,
              const Vec2& goal_m, const DiscDomainSettings& settings = {});
-  /// A domain without a goal: its goal is the start, and is not replaced if it is blocked.
+  /// Selects a domain without a goal: its goal is the start, and is not replaced if it is blocked.
   struct ForChecks {};
   DiscDomain(ForChecks, const ObstacleWorld& world, const Field& field, double radius_m, const Vec2& start_m,
              const DiscDomainSettings& settings = {});
@@ -57,11 +57,11 @@ class DiscDomain {
   bool start_is_blocked() const { return start_is_blocked_; }
   bool goal_is_blocked() const { return goal_is_blocked_; }
   /// The nearest free position that a blocked start can reach in a straight line without coming nearer to any
-  /// obstacle that it touches; none if there is no such position.
+  /// obstacle that it touches; nullopt if there is none.
   std::optional<Vec2> exit() const;
-  /// Free positions near a blocked goal, nearest first.
+  /// Free positions near a blocked goal, sorted by distance.
   std::vector<Vec2> free_positions_near_goal() const;
-  /// A copy with another free position as the replacement of a blocked goal.
+  /// A copy that uses another free position as the replacement of a blocked goal.
   DiscDomain with_goal_at(const Vec2& position_m) const;
 
   const ObstacleWorld& world() const { return *world_; }
@@ -75,10 +75,10 @@ class DiscDomain {
   /// Whether a motion, forwards or backwards, escapes from the blocked start.
   bool is_escape(const Vec2& from, const Vec2& to) const;
   bool escapes(const Vec2& from, const Vec2& to) const;
-  /// The projection out of the deepest obstacle: the nearest free position, if the projection is free.
+  /// The nearest position outside the deepest obstacle, if that position is free.
   std::optional<Vec2> projected_out(const Vec2& position) const;
   void measure_from_start();
-  /// nullopt: none that can be reached; see nearest_free_position().
+  /// nullopt: there is none that can be reached; see nearest_free_position().
   std::optional<Vec2> free_position_near(const Vec2& position,
                                          const std::function<bool(const Vec2&)>& can_reach = {}) const;
   Vec2 sample_uniform(Rng& rng) const;
@@ -90,7 +90,7 @@ class DiscDomain {
   Vec2 start_m_, requested_goal_m_, goal_m_;  // goal_m_ replaces a blocked requested goal
   bool start_is_blocked_, goal_is_blocked_;
   DiscDomainSettings settings_;
-  std::vector<double> start_distances_m_;  // of a blocked start from each obstacle of the world
+  std::vector<double> start_distances_m_;  // distance of a blocked start from each obstacle of the world
 };
 
 static_assert(EuclideanDomain<DiscDomain> && StraightDomain<DiscDomain>);

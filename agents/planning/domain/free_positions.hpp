@@ -9,17 +9,17 @@
 
 namespace sidestep {
 
-/// Finds the nearest free position in each of 64 directions, up to `max_distance_m` away, and returns them by
-/// distance, nearest first. `step_m` is the initial step of the search. The first position is refined between
-/// the directions: its distance is within one percent of the smallest possible one, unless obstacles are
-/// finer than the spacing of the directions.
+/// Finds the nearest free position in each of 64 directions, up to `max_distance_m` away, and returns them
+/// sorted by distance. `step_m` is the initial step of the search. The nearest one is refined between the
+/// directions: its distance is within one percent of the smallest possible one, unless obstacles are finer
+/// than the spacing of the directions.
 [[nodiscard]] std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m,
                                                     double max_distance_m,
                                                     const std::function<bool(const Vec2&)>& is_free);
 
-/// The first of free_positions_near(), without the others, which takes a fraction of the time. If `can_reach`
-/// is given, only positions that it accepts count. Precondition: it accepts no position behind one that it
-/// rejects in the same direction.
+/// Returns only the first position of free_positions_near(), in a fraction of the time. If `can_reach` is
+/// given, only positions that it accepts count. Precondition: if it rejects a position, it also rejects all
+/// positions behind it in the same direction.
 [[nodiscard]] std::optional<Vec2> nearest_free_position(
     const Vec2& position_m, double step_m, double max_distance_m,
     const std::function<bool(const Vec2&)>& is_free, const std::function<bool(const Vec2&)>& can_reach = {});

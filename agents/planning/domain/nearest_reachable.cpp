@@ -10,12 +10,12 @@ namespace sidestep {
 namespace {
 
 constexpr double kMaxCells = 4000;
-// How many of the nearest cells are starting points for the last bit.
+// Number of the nearest cells from which the last part is refined.
 constexpr std::size_t kRefinedCells = 4;
 constexpr int kDirections = 16;
 constexpr double kMinStep_m = 0.001;
 
-/// The positions that a flood from a free position reaches, on a grid around it.
+/// The positions reached by a flood fill from a free position, on a grid around it.
 std::vector<Vec2> flood(const DiscDomain& domain, const Vec2& origin, double spacing) {
   const Field& field = domain.field();
   const int half_columns = static_cast<int>(field.length_m / spacing) + 1;
@@ -45,7 +45,7 @@ std::vector<Vec2> flood(const DiscDomain& domain, const Vec2& origin, double spa
   return positions;
 }
 
-/// Moves a position nearer to the goal by ever smaller steps.
+/// Moves a position nearer to the goal in ever smaller steps.
 Vec2 slide(const DiscDomain& domain, Vec2 position, const Vec2& goal, double step) {
   while (step >= kMinStep_m) {
     const Vec2 ahead = (goal - position).stableNormalized();

@@ -11,10 +11,10 @@
 
 namespace sidestep {
 
-/// Limits of a planner's effort. The first limit reached ends planning.
+/// Limits of a planner's effort. Planning ends at the first limit reached.
 struct Budget {
-  std::size_t nodes = 20'000;    ///< states that the planner stores
-  std::size_t samples = 50'000;  ///< states that it samples or expands
+  std::size_t nodes = 20'000;    ///< maximum number of states that the planner stores
+  std::size_t samples = 50'000;  ///< maximum number of states that it samples or expands
   Time until = Time::max();      ///< deadline on `clock`; ignored without a clock
   std::function<Time()> clock = {};
 
@@ -30,11 +30,12 @@ enum class PlanReason {
   kSolved,       ///< path to the goal
   kImproved,     ///< path to the goal, shorter than the first one found
   kBudgetSpent,  ///< no path found within the budget; the states lead to the state nearest to the goal
-  kUnreachable,  ///< no path exists, or none on this planner's grid or graph; states as for kBudgetSpent
+  /// The path does not exist, or not on this planner's grid or graph; states as for kBudgetSpent.
+  kUnreachable,
 };
 [[nodiscard]] const char* name_of(PlanReason reason);
 
-/// A path whose motions from state to state are valid, and how it was found.
+/// A path whose motions from state to state are valid, with information on how it was found.
 template <typename State>
 struct Plan {
   PlanReason reason = PlanReason::kBudgetSpent;
@@ -42,10 +43,10 @@ struct Plan {
   bool start_blocked = false;
   /// The goal touches an obstacle: the path leads to a state near it instead.
   bool goal_blocked = false;
-  std::vector<State> states;  ///< beginning with the start; never empty
+  std::vector<State> states;  ///< starts with the start; never empty
   double length = 0;          ///< sum of the distances from state to state
-  std::size_t nodes = 0;      ///< states stored
-  std::size_t samples = 0;    ///< states sampled or expanded
+  std::size_t nodes = 0;      ///< number of states stored
+  std::size_t samples = 0;    ///< number of states sampled or expanded
 
   bool arrives() const { return reason == PlanReason::kSolved || reason == PlanReason::kImproved; }
 };
@@ -69,7 +70,8 @@ void begin_plan(const D& domain, const typename D::State& start, Plan<typename D
   plan.nodes = plan.samples = 0;
 }
 
-/// Fills in the straight path to the goal if it is free, as most are on an open floor; returns whether it is.
+/// Fills in the straight path to the goal if it is free, which is common on open floors. Returns whether it
+/// is free.
 template <PlanningDomain D>
 bool plan_straight(const D& domain, const typename D::State& start, Plan<typename D::State>& plan) {
   const typename D::State goal = domain.goal(start);

@@ -15,12 +15,12 @@ namespace sidestep {
 ///
 /// - `distance(a, b)`: cost of the motion from a to b without obstacles; 0 only if a and b are equivalent.
 /// - `extend(from, to)`: the state that a free motion from `from` towards `to` reaches: exactly `to`, or a
-///   state nearer to it; none if there is no progress. The motion may end after one step or continue until it
-///   is blocked.
+/// state nearer to it; nullopt if there is no progress. The motion may end after one step or continue until
+/// it is blocked.
 /// - `check(from, to)`: whether the whole motion is free; `check(a, a)` checks a state.
 /// - `sample(rng)`: a state to grow towards, free or not.
 /// - `goal(from)`: the goal state for a path from `from`. It may differ between states (the tangent of an
-///   orbit); a state has arrived if its distance from its goal is 0.
+/// orbit); a state has arrived if its distance from its goal is 0.
 template <typename D>
 concept PlanningDomain = requires(const D& domain, const typename D::State& a, Rng& rng) {
   requires std::copyable<typename D::State>;

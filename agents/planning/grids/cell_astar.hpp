@@ -9,9 +9,10 @@
 
 namespace sidestep {
 
-/// A lower bound of the remaining path, except kManhattan: with diagonal steps that one overestimates.
+/// Heuristics: lower bounds of the remaining path, except kManhattan, which overestimates if there are
+/// diagonal steps.
 enum class CellHeuristic {
-  kNone,       ///< Dijkstra's algorithm
+  kNone,       ///< no heuristic: Dijkstra's algorithm
   kStraight,   ///< the Euclidean distance
   kOctile,     ///< the exact length on a grid without obstacles
   kManhattan,  ///< not admissible with diagonal steps: paths may be longer than necessary
@@ -19,13 +20,13 @@ enum class CellHeuristic {
 
 /// A path from cell to cell.
 struct CellRoute {
-  std::vector<Cell> cells;  ///< from start to goal; empty: there is none
+  std::vector<Cell> cells;  ///< from start to goal; empty: there is no path
   double length_cells = 0;
-  std::size_t expanded = 0;  ///< cells whose neighbours were looked at
+  std::size_t expanded = 0;  ///< number of cells whose neighbours were examined
 };
 
-/// A* on the free cells of a grid with eight neighbours. A diagonal step needs both cells beside it free.
-/// With an admissible heuristic the path is a shortest one. Reuses its memory between searches.
+/// A* on the free cells of a grid with eight neighbours. A diagonal step requires both cells beside it to be
+/// free. With an admissible heuristic the path is a shortest one. Reuses its memory between searches.
 class CellAstar {
  public:
   explicit CellAstar(CellHeuristic heuristic = CellHeuristic::kOctile) : heuristic_(heuristic) {}
@@ -57,8 +58,8 @@ class CellAstar {
   CellHeuristic heuristic_;
   int columns_ = 0;
   Cell start_, goal_;
-  std::vector<double> cost_;         // by cell
-  std::vector<std::uint32_t> from_;  // by cell
+  std::vector<double> cost_;         // indexed by cell
+  std::vector<std::uint32_t> from_;  // indexed by cell
   std::vector<Open> open_;           // a heap
   CellRoute route_;
 };

@@ -47,8 +47,8 @@ void CellSearch::index_portals(const CellGraph& graph) {
   }
 }
 
-/// The cell that contains the position, or else the nearest visible one. The entry point lies slightly inside
-/// it, so that rounding does not exclude it.
+/// The cell that contains the position, or else the nearest visible cell. The entry point lies slightly
+/// inside it, so that rounding does not exclude it.
 std::optional<CellSearch::Entry> CellSearch::entry(const CellGraph& graph, const DiscDomain& domain,
                                                    const Vec2& position,
                                                    const std::optional<std::uint32_t>& location) const {
@@ -82,7 +82,7 @@ void CellSearch::expand(const CellGraph& graph, std::uint32_t cell, std::uint32_
   }
 }
 
-/// Returns the last portal before the goal, kStart if start and goal share a cell, or none.
+/// Returns the last portal before the goal, kStart if start and goal are in the same cell, or nullopt.
 std::optional<std::uint32_t> CellSearch::search(const CellGraph& graph, const Entry& from, const Entry& to,
                                                 const Budget& budget, Plan<Vec2>& plan) {
   came_from_.assign(graph.portals.size(), kNone);

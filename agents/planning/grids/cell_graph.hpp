@@ -10,9 +10,9 @@
 
 namespace sidestep {
 
-/// The point where paths cross from one cell into the next: the middle of their common border.
+/// The point where paths pass from one cell into the next: the midpoint of their common border.
 struct Portal {
-  std::uint32_t a, b;  ///< cells
+  std::uint32_t a, b;  ///< the two cells
   Vec2 middle_m;
 
   std::uint32_t other(std::uint32_t cell) const { return cell == a ? b : a; }
@@ -24,7 +24,7 @@ struct CellGraph {
   std::vector<Portal> portals;
 };
 
-/// The cells that contain a query's start and goal, if that is known.
+/// The cells that contain a query's start and goal, if known.
 struct CellLocations {
   std::optional<std::uint32_t> start, goal;
 };
@@ -33,9 +33,9 @@ struct CellLocations {
 struct CellPath {
   struct Step {
     std::uint32_t portal;
-    std::uint32_t cell;  ///< that it leads into
+    std::uint32_t cell;  ///< cell that it leads into
   };
-  Vec2 from_m{0, 0}, to_m{0, 0};  ///< in the first and in the last cell
+  Vec2 from_m{0, 0}, to_m{0, 0};  ///< offsets in the first and in the last cell
   std::vector<Step> steps;
 };
 
@@ -43,11 +43,11 @@ struct CellPath {
 /// goal outside all cells is joined to the nearest visible cell. Reuses its memory between queries.
 class CellSearch {
  public:
-  /// Fills in the plan, except its blocked flags. PlanReason::kUnreachable refers to these cells.
+  /// Fills in the plan, except its blocked flags. PlanReason::kUnreachable applies to these cells only.
   void plan(const CellGraph& graph, const DiscDomain& domain, const Vec2& start, const Budget& budget,
             Plan<Vec2>& plan, const CellLocations& locations = {});
 
-  /// The path of the last plan, if it arrives.
+  /// The path of the last plan, if it reaches the goal.
   const CellPath& path() const { return path_; }
 
  private:
@@ -57,7 +57,7 @@ class CellSearch {
     std::uint32_t cell;  // the cell that the portal leads into
     std::uint32_t from;  // the previous portal
   };
-  /// A cell, and the point where the path from a position outside enters it.
+  /// A cell, and the point at which the path from a position outside enters it.
   struct Entry {
     std::uint32_t cell;
     Vec2 at_m;
@@ -71,10 +71,10 @@ class CellSearch {
   std::optional<std::uint32_t> search(const CellGraph& graph, const Entry& from, const Entry& to,
                                       const Budget& budget, Plan<Vec2>& plan);
 
-  std::vector<std::uint32_t> first_portal_;  // by cell: its first entry in portals_by_cell_
+  std::vector<std::uint32_t> first_portal_;  // indexed by cell: its first entry in portals_by_cell_
   std::vector<std::uint32_t> portals_by_cell_;
-  std::vector<std::uint32_t> came_from_;   // previous portal, by portal
-  std::vector<std::uint32_t> leads_into_;  // cell, by portal that has a previous one
+  std::vector<std::uint32_t> came_from_;   // indexed by portal: the previous portal
+  std::vector<std::uint32_t> leads_into_;  // indexed by portal that has a previous one: the cell
   std::vector<Open> open_;
   CellPath path_;
 };

@@ -19,7 +19,7 @@ void write_shortest_through(const Vec2& from, std::span<const Gate> gates, const
                             std::vector<Vec2>& path) {
   path.assign(1, from);
   FunnelSide left{from, 0}, right{from, 0};
-  // The path turns at a side, from where the funnel begins anew.
+  // The path turns at this side, and the funnel restarts from there.
   const auto turn_at = [&](const FunnelSide& corner) {
     if (corner.at_m != path.back()) path.push_back(corner.at_m);
     const FunnelSide apex = corner;

@@ -18,8 +18,8 @@ struct GridSettings {
   double cell_m = 0.1;
 };
 
-/// Search on a regular 8-connected grid that has the start at the centre of a cell. Motions between cells are
-/// checked exactly. PlanReason::kUnreachable refers to this grid.
+/// Search on a regular 8-connected grid whose origin is chosen so that the start is the centre of a cell.
+/// Motions between cells are checked exactly. PlanReason::kUnreachable applies to this grid only.
 class GridPlanner {
  public:
   explicit GridPlanner(const GridSettings& settings = {}) : settings_(settings) {}

@@ -34,7 +34,7 @@ void QuadTree::subdivide(const DiscDomain& domain, int x, int y, int size) {
   const bool is_inside = domain.field().contains(centre, domain.radius_m() + half_m - 1e-9);
   if (is_inside && !domain.world().touches(centre, domain.radius_m() + circumradius_m))
     return add_cell(x, y, size);
-  // If even a disc smaller by the circumradius touches at the centre, the whole square is blocked.
+  // If even a disc that is smaller by the circumradius touches at the centre, the whole square is blocked.
   const bool is_blocked = circumradius_m < domain.radius_m() &&
                           domain.world().touches(centre, domain.radius_m() - circumradius_m);
   if (size == 1 || is_blocked) return;

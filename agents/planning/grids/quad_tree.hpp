@@ -6,11 +6,12 @@
 namespace sidestep {
 
 struct QuadTreeSettings {
-  int depth = 8;  ///< of the tree; side of the smallest cell: longer side of the free area / 2^depth
+  int depth = 8;  ///< depth of the tree; side of the smallest cell: longer side of the free area / 2^depth
 };
 
-/// Approximate cell decomposition: squares that are neither free nor blocked are divided into four, down to a
-/// smallest size; squares still undecided are dropped. Rebuilt for each query.
+/// Approximate cell decomposition: squares that are neither completely free nor completely blocked are
+/// divided into four, down to a minimum size; squares that are then still undecided are dropped. Rebuilt for
+/// each query.
 class QuadTree {
  public:
   explicit QuadTree(const QuadTreeSettings& settings = {}) : settings_(settings) {}
@@ -25,7 +26,7 @@ class QuadTree {
   void add_cell(int x, int y, int size);
   void join_neighbours();
   void join(int x, int y, int size, bool upwards);
-  /// Of a unit, in cell_at_.
+  /// Index of a unit square in cell_at_.
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x);
   }
@@ -36,9 +37,9 @@ class QuadTree {
   QuadTreeSettings settings_;
   double unit_m_ = 0;
   Vec2 origin_m_{0, 0};
-  int side_ = 0;                        // of the root square, in units of the smallest square
-  std::vector<std::uint32_t> cell_at_;  // by unit
-  std::vector<Square> squares_;         // by cell
+  int side_ = 0;                        // side of the root square, in units of the smallest square
+  std::vector<std::uint32_t> cell_at_;  // indexed by unit square
+  std::vector<Square> squares_;         // indexed by cell
   CellGraph graph_;
   CellSearch search_;
   Plan<Vec2> plan_;

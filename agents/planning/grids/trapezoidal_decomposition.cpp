@@ -12,10 +12,10 @@ namespace {
 
 using Index = TrapezoidalMap::Index;
 
-constexpr std::int32_t kMargin = 16;      // of the box around the field, in units of the grid
+constexpr std::int32_t kMargin = 16;      // margin of the box around the field, in grid units
 constexpr double kStandoff_m = 1e-6;      // or kStandoff, if that is longer
-constexpr double kStandoff = 4;           // in units; rounding moves boundaries by about one
-constexpr double kMinPortalHeight = 0.5;  // in units
+constexpr double kStandoff = 4;           // in grid units; rounding moves boundaries by about one unit
+constexpr double kMinPortalHeight = 0.5;  // in grid units
 constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
 
 /// The part of a convex polygon where sign * coordinate <= limit.
@@ -43,7 +43,7 @@ const Plan<Vec2>& TrapezoidalDecomposition::plan(const DiscDomain& domain, const
   cell_of_.clear();
   if (choose_grid(domain)) {
     add_boundaries(domain);
-    // Without a map, there are no cells: the goal is unreachable for this planner.
+    // Without a trapezoidal map there are no cells, so the goal is unreachable for this planner.
     if (divider_.divide(boundaries_)) add_cells();
   }
   search_.plan(graph_, domain, start, budget, plan_, {cell_at(start), cell_at(domain.goal(start))});
@@ -80,7 +80,7 @@ GridPoint TrapezoidalDecomposition::rounded(const Vec2& position) const {
 
 void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
   boundaries_.clear();
-  // Clockwise: what lies outside is covered.
+  // Clockwise, so that the outside counts as covered.
   const auto [x, y] = half_field_;
   CrossingDivider::append_boundary(std::array<GridPoint, 4>{GridPoint{-x, -y}, {-x, y}, {x, y}, {x, -y}},
                                    boundaries_);
@@ -92,7 +92,7 @@ void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
     vertices.clear();
     append_arcs(domain.world().shape(id), clearance_m, arcs);
     for (const TangentArc& arc : arcs) {
-      // Counter-clockwise along the arc, from its first direction.
+      // Runs counter-clockwise along the arc, starting at its first direction.
       const Vec2 from = arc.is_corner ? left_of(arc.first) : Vec2(0, 1);
       const double arc_turn_rad =
           arc.is_corner ? turn_rad(Side::kLeft, arc.first, arc.last) : 2 * std::numbers::pi;
@@ -127,7 +127,8 @@ void TrapezoidalDecomposition::add_cells() {
     if (cell_of_[i] != TrapezoidalMap::kNone) add_portals(i);
 }
 
-/// From the bottom of the box, which is outside the field, through neighbours and across segments.
+/// Starts at the bottom of the box, which is outside the field, and continues through neighbours and across
+/// segments.
 void TrapezoidalDecomposition::count_covers() {
   above_.assign(map_.segments().size(), TrapezoidalMap::kNone);
   below_.assign(map_.segments().size(), TrapezoidalMap::kNone);
@@ -154,7 +155,7 @@ void TrapezoidalDecomposition::count_covers() {
   }
 }
 
-/// No effect if it is known.
+/// No effect if the count is already known.
 void TrapezoidalDecomposition::cover(Index trapezoid, std::int32_t count) {
   if (trapezoid == TrapezoidalMap::kNone || covers_[trapezoid] != kUnknown) return;
   covers_[trapezoid] = count;
@@ -173,7 +174,7 @@ void TrapezoidalDecomposition::add_cell(Index i) {
     if (corners.empty() || (corner != corners.back() && corner != corners.front())) corners.push_back(corner);
 }
 
-/// To the cells on its right.
+/// Adds portals to the cells on its right.
 void TrapezoidalDecomposition::add_portals(Index i) {
   const TrapezoidalMap::Trapezoid& trapezoid = map_.trapezoids()[i];
   const GridPoint& wall = trapezoid.right;

@@ -108,7 +108,7 @@ void TrapezoidalMap::find_crossed(const GridSegment& segment) {
   }
 }
 
-/// The trapezoid into which a segment leads from its left end, which may be an end of others.
+/// The trapezoid that a segment enters at its left end, which may also be an end of other segments.
 TrapezoidalMap::Index TrapezoidalMap::locate_left_end(const GridSegment& segment) const {
   Index at = 0;
   while (nodes_[at].kind != Kind::kTrapezoid) {
@@ -142,7 +142,7 @@ void TrapezoidalMap::divide_crossed(Index s, Index left_part, Index right_part) 
   lower_.assign(1, lower);
   for (std::size_t i = 1; i < crossed_.size(); ++i) {
     const Trapezoid before = trapezoids_[crossed_[i - 1]], after = trapezoids_[crossed_[i]];
-    // The wall between them ends at the segment: it remains on the side of the end that causes it.
+    // The wall between them ends at the segment: it remains only on the side of the end that causes it.
     const GridPoint wall = before.right;
     if (height_above(segment, wall) > 0) {
       const Index next = new_trapezoid(s, after.top, wall, segment.right);

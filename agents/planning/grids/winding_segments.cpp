@@ -11,12 +11,12 @@ constexpr int kMaxRounds = 100;
 
 void append_edge(const GridPoint& from, const GridPoint& to, std::int32_t winding,
                  std::vector<WindingSegment>& segments) {
-  // The polygon lies to the left: above an edge that leads to the right.
+  // The polygon lies to the left, that is, above an edge that leads to the right.
   if (from < to) segments.push_back({{from, to}, winding});
   if (to < from) segments.push_back({{to, from}, -winding});
 }
 
-/// Joins equal segments, and drops those that separate nothing.
+/// Merges equal segments, and drops segments that separate nothing.
 void merge_equal(std::vector<WindingSegment>& segments) {
   std::sort(segments.begin(), segments.end());
   std::size_t kept = 0;
@@ -98,7 +98,7 @@ void CrossingDivider::compare(const std::vector<WindingSegment>& segments, std::
   cut(segments, k, at);
 }
 
-/// No effect at an end of the segment, or on its line outside of it.
+/// No effect at an end of the segment, or on its line beyond its ends.
 void CrossingDivider::cut(const std::vector<WindingSegment>& segments, std::size_t i, const GridPoint& at) {
   const GridSegment& segment = segments[i].segment;
   if (at == segment.left || at == segment.right || !is_within_bounds(at, segment)) return;

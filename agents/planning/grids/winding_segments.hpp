@@ -8,21 +8,20 @@
 
 namespace sidestep {
 
-/// A part of polygons' boundaries.
+/// A piece of a polygon's boundary.
 struct WindingSegment {
   GridSegment segment;
-  /// How many polygons more cover the side above the segment than the side below it.
+  /// Number of polygons that cover the side above the segment, minus the number that cover the side below.
   std::int32_t winding = 0;
   auto operator<=>(const WindingSegment&) const = default;
 };
 
-/// Divides segments where they cross, until they have no more than ends in common. Crossings are rounded to
-/// grid points, which moves segments by about a unit of the grid and can cause new crossings; these are
-/// divided as well (iterated snap rounding; Halperin and Packer 2002).
+/// Divides segments at their crossings, until they only have ends in common. Crossings are rounded to grid
+/// points. This moves segments by about one grid unit and can cause new crossings, which are divided as well
+/// (iterated snap rounding; Halperin and Packer 2002).
 class CrossingDivider {
  public:
-  /// Appends the boundary of a closed polygon with these corners. It covers what lies to the left of its
-  /// edges.
+  /// Appends the boundary of a closed polygon with these corners. The polygon lies to the left of its edges.
   static void append_boundary(std::span<const GridPoint> corners, std::vector<WindingSegment>& segments);
 
   /// Returns false if crossings remain after many rounds.
@@ -31,7 +30,7 @@ class CrossingDivider {
  private:
   struct Cut {
     std::size_t segment = 0;
-    std::int64_t along = 0;  // order of the cuts of a segment
+    std::int64_t along = 0;  // position along the segment, by which its cuts are sorted
     GridPoint at;
     auto operator<=>(const Cut&) const = default;
   };

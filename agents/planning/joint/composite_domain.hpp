@@ -10,16 +10,16 @@
 namespace sidestep {
 
 struct CompositeDomainSettings {
-  double step_m = 1;  ///< maximum motion of each robot in an extension
+  double step_m = 1;  ///< maximum motion of each robot in one extension
   /// Probabilities that a robot's part of a sample is its start, or its goal. Otherwise it is a random free
   /// position.
   double start_probability = 0.15, goal_probability = 0.15;
 };
 
-/// All robots planned as one (Bruce 2006, chapter 5): a state holds the positions of all robots, at rest. In
-/// a motion, all robots leave together, drive straight with the same speed profile, scaled to each one's
-/// distance, and arrive together. So they are on a straight line of the composite space, and every check is
-/// exact. Refers to the problem, which has to outlive it.
+/// Plans all robots as one (Bruce 2006, chapter 5). A state contains the positions of all robots, at rest. In
+/// a motion, all robots leave together, drive straight with the same speed profile scaled to their distances,
+/// and arrive together. So a motion is a straight line in the composite space, and every check is exact.
+/// Keeps a reference to the problem, which must outlive it.
 class CompositeDomain {
  public:
   using State = std::vector<Vec2>;
@@ -27,9 +27,9 @@ class CompositeDomain {
   explicit CompositeDomain(const JointProblem& problem, const CompositeDomainSettings& settings = {})
       : problem_(&problem), settings_(settings) {}
 
-  /// Euclidean in the composite space.
+  /// The Euclidean distance in the composite space.
   double distance(const State& a, const State& b) const;
-  /// One step, in which robots wait whose motion would touch another's.
+  /// Makes one step, in which robots wait if their motion would touch another robot's.
   std::optional<State> extend(const State& from, const State& to) const;
   bool check(const State& from, const State& to) const;
   State sample(Rng& rng) const;

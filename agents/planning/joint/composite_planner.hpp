@@ -14,15 +14,15 @@ struct CompositeSettings {
   SmoothingSettings smoothing{};
 };
 
-/// Plans all robots as one: two trees in the space of 2n dimensions, smoothed. The robots rest together at
-/// every state of the path. Probabilistically complete, but the space grows exponentially with the number of
-/// robots.
+/// Plans all robots as one, with two trees in a space of 2n dimensions and subsequent smoothing. All robots
+/// are at rest at every state of the path. Probabilistically complete, but the space grows exponentially with
+/// the number of robots.
 class CompositePlanner {
  public:
   explicit CompositePlanner(const CompositeSettings& settings = {})
       : settings_(settings), trees_(settings.trees), smoother_(settings.smoothing) {}
 
-  /// kUnreachable if starts or goals touch each other, an obstacle or the border. Throws
+  /// Returns kUnreachable if starts or goals touch each other, an obstacle or the border. Throws
   /// std::invalid_argument for problems that check() refuses.
   [[nodiscard]] JointPlan plan(const JointProblem& problem, const Budget& budget, Rng& rng);
 

@@ -8,18 +8,18 @@
 
 namespace sidestep {
 
-/// A robot's planned motion over all time: trajectories from rest to rest, each of which begins where the one
-/// before ends. Between them, before the first and after the last, the robot rests.
+/// A robot's planned motion over all time: a sequence of trajectories from rest to rest, each of which starts
+/// where the previous one ends. The robot rests between them, before the first and after the last.
 class Course {
  public:
   Course() = default;
-  /// At rest from `start` on.
+  /// Rests from `start` on.
   Course(Time start, const Vec2& position_m) : legs_{Trajectory::resting(start, position_m)} {}
 
-  /// Precondition: the leg begins at rest where the course ends, and not before it ends.
+  /// Precondition: the leg starts at rest where the course ends, and not earlier than it ends.
   void append(const Trajectory& leg) { legs_.push_back(leg); }
 
-  /// The first leg rests at the start.
+  /// The first leg is rest at the start.
   std::span<const Trajectory> legs() const { return legs_; }
   Time end() const { return legs_.back().end(); }
   Vec2 rest_position_m() const { return legs_.back().rest_position_m(); }
@@ -30,8 +30,8 @@ class Course {
 };
 
 /// Whether a robot that executes `motion` until a time, at which it may still be moving, keeps
-/// `min_separation_m` from one on this course, from the start of the motion on. `until` Time::max(): for all
-/// time. By the exact clearance of common/motion.
+/// `min_separation_m` from one on this course, from the start of the motion on. If `until` is Time::max(),
+/// checks all time. Uses the exact clearance of common/motion.
 [[nodiscard]] bool is_clear(const Course& course, const Trajectory& motion, Time until,
                             double min_separation_m);
 

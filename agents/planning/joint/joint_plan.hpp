@@ -11,9 +11,9 @@
 
 namespace sidestep {
 
-/// Robots at rest that all have to reach their goals. Plans begin at Time{}.
+/// Robots at rest that must all reach their goals. Plans start at Time{}.
 struct JointProblem {
-  const ObstacleWorld* world = nullptr;  ///< has to outlive the planning
+  const ObstacleWorld* world = nullptr;  ///< must outlive the planning
   Field field{};
   double radius_m = 0.09;
   double margin_m = 0.014;  ///< between two robots, and between robots and obstacles or the field's border
@@ -22,11 +22,12 @@ struct JointProblem {
 
   std::size_t robots() const { return starts_m.size(); }
   double min_separation_m() const { return 2 * radius_m + margin_m; }
-  /// Of a robot's centre.
+  /// Required distance of a robot's centre from obstacles.
   double distance_from_obstacles_m() const;
 };
 
-/// By which planners keep more than the required distances, for rounding when motions become trajectories.
+/// Distance that planners keep beyond the required ones, to allow for rounding when motions become
+/// trajectories.
 inline constexpr double kJointTolerance_m = 1e-6;
 
 inline double JointProblem::distance_from_obstacles_m() const {
@@ -36,14 +37,14 @@ inline double JointProblem::distance_from_obstacles_m() const {
 /// Throws std::invalid_argument unless there is a world, and a goal for each of at least one robot.
 void check(const JointProblem& problem);
 
-/// The motions of all robots, clear of each other and of obstacles over all time.
+/// The motions of all robots. They are clear of each other and of obstacles over all time.
 struct JointPlan {
   PlanReason reason = PlanReason::kBudgetSpent;
-  std::vector<Course> courses;  ///< one for each robot; empty unless the plan arrives
-  std::size_t samples = 0;      ///< that were expanded
+  std::vector<Course> courses;  ///< one per robot; empty unless the plan succeeds
+  std::size_t samples = 0;      ///< number of samples expanded
 
   bool arrives() const { return reason == PlanReason::kSolved; }
-  /// When the last robot arrives, in seconds; 0 without courses.
+  /// The arrival time of the last robot, in seconds; 0 without courses.
   double makespan_s() const;
 };
 

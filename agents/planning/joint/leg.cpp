@@ -14,7 +14,7 @@ Duration rounded_up(double seconds) { return Duration{static_cast<std::int64_t>(
 LegTimes leg_times(double distance_m, const MotionLimits& limits) {
   if (distance_m <= 0) return {};
   const double accelerate = limits.acceleration_mps2, brake = limits.deceleration_mps2;
-  // d = v² / 2F + v² / 2D without cruising.
+  // Without cruising, d = v² / 2F + v² / 2D.
   const double peak = std::sqrt(2 * distance_m * accelerate * brake / (accelerate + brake));
   const double speed = std::min(peak, limits.speed_mps);
   const double ramps_m = speed * speed / 2 * (1 / accelerate + 1 / brake);
@@ -25,7 +25,7 @@ LegTimes leg_times(double distance_m, const MotionLimits& limits) {
 Trajectory make_leg(Time start, const Vec2& from_m, const Vec2& to_m, const LegTimes& times) {
   Trajectory leg = Trajectory::resting(start, from_m);
   if (times.total() == Duration{0}) return leg;
-  // The speed that covers exactly this distance in these times.
+  // The speed at which exactly this distance is covered in these times.
   const double accelerate_s = to_seconds(times.accelerate), brake_s = to_seconds(times.brake);
   const Vec2 velocity = (to_m - from_m) / ((accelerate_s + brake_s) / 2 + to_seconds(times.cruise));
   leg.append(times.accelerate, velocity / accelerate_s);

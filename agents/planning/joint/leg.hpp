@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// How long a straight motion from rest to rest accelerates, cruises and brakes.
+/// The durations of acceleration, cruising and braking in a straight motion from rest to rest.
 struct LegTimes {
   Duration accelerate{0}, cruise{0}, brake{0};
   Duration total() const { return accelerate + cruise + brake; }
@@ -17,12 +17,12 @@ struct LegTimes {
 /// positive.
 [[nodiscard]] LegTimes leg_times(double distance_m, const MotionLimits& limits);
 
-/// The straight motion that begins at `start` and takes these times. It obeys the limits if the times are for
-/// this distance or a longer one.
+/// The straight motion that starts at `start` and takes these times. It obeys the limits if the times were
+/// computed for this distance or a longer one.
 [[nodiscard]] Trajectory make_leg(Time start, const Vec2& from_m, const Vec2& to_m, const LegTimes& times);
 
-/// The part of a trajectory from `from` to `until`; it stops dead there. Thus the clearance of two
-/// trajectories that are clipped to the same interval is their clearance within it. Precondition: from <=
+/// The part of a trajectory from `from` to `until`, where it stops abruptly. The clearance of two
+/// trajectories clipped to the same interval is therefore their clearance within it. Precondition: from <=
 /// until.
 [[nodiscard]] Trajectory clipped(const Trajectory& trajectory, Time from, Time until);
 

@@ -50,7 +50,7 @@ JointPlan PrioritisedPlanner::plan(const JointProblem& problem, const Budget& bu
 std::size_t PrioritisedPlanner::plan_in_order(const JointProblem& problem,
                                               const std::vector<std::size_t>& order, const Budget& budget,
                                               Rng& rng, JointPlan& result) {
-  std::vector<Course> planned;  // in the order
+  std::vector<Course> planned;  // in the order of planning
   for (std::size_t place = 0; place < order.size(); ++place) {
     if (is_spent(budget, result.samples)) return place;
     const std::size_t robot = order[place];

@@ -10,33 +10,36 @@ namespace sidestep {
 struct PrioritisedSettings {
   SpaceTimeSettings domain{};
   ErrtSettings tree{};
-  std::size_t plans_per_robot = 8;       ///< of which the one that arrives first is kept
-  std::size_t samples_per_robot = 1500;  ///< for one tree, before another order is tried
-  std::size_t max_orders = 1000;         ///< maximum number of orders that are tried
+  std::size_t plans_per_robot = 8;       ///< the one with the earliest arrival is kept
+  std::size_t samples_per_robot = 1500;  ///< for one tree, before another order of robots is tried
+  std::size_t max_orders = 1000;         ///< maximum number of orders of robots that are tried
 };
 
 /// Plans robots one after another (Erdmann and Lozano-Pérez 1987): each in space × time around the courses of
-/// those before it. A robot that finds no path becomes the first, and planning begins anew; if it was
-/// first already, the order is shuffled. Fast, but incomplete: those before a robot do not leave it room.
+/// those planned before. If a robot finds no path, it is moved to the front of the order and planning
+/// restarts; if it was already first, the order is shuffled. Fast, but incomplete: robots planned earlier
+/// leave no room for later ones.
 class PrioritisedPlanner {
  public:
   explicit PrioritisedPlanner(const PrioritisedSettings& settings = {}) : settings_(settings) {}
 
-  /// kUnreachable if starts or goals touch each other, an obstacle or the border. Of the budget, the samples
-  /// and the time count. Throws std::invalid_argument for problems that check() refuses.
+  /// Returns kUnreachable if starts or goals touch each other, an obstacle or the border. Only the budget's
+  /// sample and time limits apply. Throws std::invalid_argument for problems that check() refuses.
   [[nodiscard]] JointPlan plan(const JointProblem& problem, const Budget& budget, Rng& rng);
 
  private:
   using Tree = Errt<SpaceTimeDomain>;
-  /// Plans in this order; returns the place in it of the first robot without a path, or the number of robots.
+  /// Plans in this order. Returns the position in the order of the first robot without a path, or the number
+  /// of robots.
   std::size_t plan_in_order(const JointProblem& problem, const std::vector<std::size_t>& order,
                             const Budget& budget, Rng& rng, JointPlan& result);
-  /// The path of a robot that arrives first of several; empty if there is none. Counts samples.
+  /// Plans several paths for a robot and returns the one that arrives first; empty if there is none. Counts
+  /// samples.
   std::vector<SpaceTimeState> path_of(std::size_t robot, const SpaceTimeDomain& domain, const Budget& budget,
                                       Rng& rng, std::size_t& samples);
 
   PrioritisedSettings settings_;
-  std::vector<Tree> trees_;  // by robot: each one remembers its earlier paths
+  std::vector<Tree> trees_;  // indexed by robot; each remembers its earlier paths
 };
 
 }  // namespace sidestep

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// At rest at a position at a time.
+/// A robot at rest at a position at a time.
 struct SpaceTimeState {
   Vec2 at_m{0, 0};
   Time at{};
@@ -18,17 +18,18 @@ struct SpaceTimeState {
 };
 
 struct SpaceTimeSettings {
-  /// Probabilities that a sample is the start, or the goal, at a random time: to wait there, or to arrive
-  /// later.
+  /// Probabilities that a sample is the start (to wait there) or the goal (to arrive later), at a random
+  /// time.
   double start_probability = 0.1, goal_probability = 0.2;
-  /// Samples are up to this much later than the end of all courses, beyond twice the straight drive.
+  /// Samples are at most this much later than the end of all courses, in addition to twice the straight
+  /// drive.
   double spare_s = 1;
 };
 
-/// One robot among others that follow fixed courses: space × time. In a motion, the robot waits where it is,
-/// then drives straight from rest to rest, as fast as its limits allow, and arrives at the state's time. A
-/// motion to the goal is free only if the robot can stay there for ever. Time passes, so motions are one-way.
-/// Refers to the problem and the courses, which have to outlive it.
+/// Planning in space × time for one robot among others that follow fixed courses. In a motion, the robot
+/// waits where it is, then drives straight from rest to rest, as fast as its limits allow, and arrives at the
+/// state's time. A motion to the goal is free only if the robot can stay there for ever. Motions are one-way,
+/// because time passes. Keeps references to the problem and the courses, which must outlive it.
 class SpaceTimeDomain {
  public:
   using State = SpaceTimeState;
@@ -37,18 +38,19 @@ class SpaceTimeDomain {
                   const SpaceTimeSettings& settings = {});
 
   State start() const { return {problem_->starts_m[robot_], Time{}}; }
-  /// The time from a to b in seconds; more than a thousand if b is too early for that.
+  /// The time from a to b in seconds; more than a thousand if b is too early to be reached from a.
   double distance(const State& a, const State& b) const;
-  /// The motion to `to`, or later to its position if it is too early, or else to a position on the way.
+  /// The motion to `to`. If that is too early, to its position at a later time; otherwise to a position on
+  /// the way.
   std::optional<State> extend(const State& from, const State& to) const;
   bool check(const State& from, const State& to) const;
   State sample(Rng& rng) const;
-  /// The goal at the time at which the straight motion arrives.
+  /// The goal at the time at which the straight motion arrives there.
   State goal(const State& from) const;
 
-  /// The time at which a motion that begins at once arrives.
+  /// The arrival time of a motion that starts at once.
   Time earliest_arrival(const State& from, const Vec2& to_m) const;
-  /// Waiting, then driving. Precondition: the state is not too early.
+  /// The motion: waiting, then driving. Precondition: the state is not too early.
   Trajectory motion(const State& from, const State& to) const;
 
  private:

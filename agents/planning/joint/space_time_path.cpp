@@ -16,8 +16,8 @@ bool is_free(const SpaceTimeDomain& domain, const Path& path, std::size_t first)
   return true;
 }
 
-/// Leaves out the state `left_out` and brings what follows forward, by all the time that this saves or by a
-/// part of it; returns whether it succeeds.
+/// Removes the state `left_out` and moves everything after it forward in time, by all or part of the time
+/// saved. Returns whether it succeeded.
 bool leave_out(const SpaceTimeDomain& domain, Path& path, std::size_t left_out) {
   Path candidate = path;
   candidate.erase(candidate.begin() + static_cast<std::ptrdiff_t>(left_out));
@@ -35,7 +35,8 @@ bool leave_out(const SpaceTimeDomain& domain, Path& path, std::size_t left_out) 
   return false;
 }
 
-/// Brings the state `next` and what follows forward by as much of the wait before it as stays free.
+/// Moves the state `next` and everything after it forward in time, by as much of the wait before it as keeps
+/// the path free.
 void shorten_wait(const SpaceTimeDomain& domain, Path& path, std::size_t next) {
   constexpr int kHalvings = 6;
   Duration step = path[next].at - domain.earliest_arrival(path[next - 1], path[next].at_m);

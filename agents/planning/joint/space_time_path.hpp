@@ -7,10 +7,11 @@
 
 namespace sidestep {
 
-/// Leaves out states and shortens waits of a free path, as long as it stays free. Never arrives later.
+/// Removes states and shortens waits of a free path as long as it stays free. Never makes it arrive later.
 void shorten(const SpaceTimeDomain& domain, std::vector<SpaceTimeState>& path);
 
-/// The course of a robot along a path from its start on, without the waits.
+/// The course of a robot that follows a path from its start on. Waits are not legs: the robot rests between
+/// legs.
 [[nodiscard]] Course course_along(const std::vector<SpaceTimeState>& path, const MotionLimits& limits);
 
 }  // namespace sidestep

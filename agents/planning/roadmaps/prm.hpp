@@ -7,17 +7,18 @@
 namespace sidestep {
 
 struct PrmSettings {
-  std::size_t nodes = 200;  ///< sampled initially, and again while the roadmap does not solve the query
+  /// Number sampled initially, and again while the roadmap does not solve the query.
+  std::size_t nodes = 200;
   ConnectionSettings connection = {};
-  bool keep_roadmap = true;  ///< for the next query
-  /// The world may differ between queries: a motion is checked again when A* takes it from the queue.
+  bool keep_roadmap = true;  ///< kept for the next query
+  /// Allows the world to differ between queries: a motion is checked again when A* takes it from the queue.
   bool is_dynamic = false;
 };
 
-/// Builds a new roadmap for each query, which grows until there is a path.
+/// Settings for a new roadmap per query, which grows until there is a path.
 inline PrmSettings one_shot_prm() { return {.nodes = 40, .keep_roadmap = false}; }
-/// A roadmap for a world with moving obstacles, with radial connection (Dynamic PRM; Bruce 2006, section
-/// 4.4). It keeps blocked motions, so that it uses the space that obstacles leave.
+/// Settings for a world with moving obstacles, with radial connection (Dynamic PRM; Bruce 2006, section 4.4).
+/// The roadmap keeps blocked motions, so that it can use the space that obstacles leave.
 inline PrmSettings dynamic_prm() {
   return {.connection = {.method = Connection::kRadial, .neighbours = 8, .blocked_per_sector = 2},
           .is_dynamic = true};
@@ -68,7 +69,7 @@ class Prm {
     double estimate;
     double cost;
     Node node;
-    std::uint32_t edge;  // by which the node was reached
+    std::uint32_t edge;  // edge by which the node was reached
   };
   static bool has_higher_estimate(const Open& a, const Open& b) { return a.estimate > b.estimate; }
 
@@ -98,8 +99,8 @@ class Prm {
     return reached == to;
   }
 
-  /// A*, which checks a motion when it is taken from the queue. Returns the goal, or the node reached nearest
-  /// to it.
+  /// A* search, which checks a motion when it is taken from the queue. Returns the goal, or else the reached
+  /// node nearest to it.
   Node search(const D& domain, Node from, Node to) {
     reached_by_.assign(map_.size(), kNone);
     queue_.clear();
@@ -145,9 +146,9 @@ class Prm {
 
   PrmSettings settings_;
   Roadmap<D> map_;
-  std::size_t base_size_ = 0;              // nodes of the roadmap without start and goal of the last query
-  std::uint32_t version_ = 1;              // of the world; stays the same if it does not change
-  std::vector<std::uint32_t> reached_by_;  // edge, by node
+  std::size_t base_size_ = 0;              // number of nodes without the start and goal of the last query
+  std::uint32_t version_ = 1;              // version of the world; changes only if the world does
+  std::vector<std::uint32_t> reached_by_;  // indexed by node: the edge
   std::vector<Open> queue_;
   Plan<State> plan_;
 };

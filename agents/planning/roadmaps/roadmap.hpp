@@ -13,31 +13,30 @@
 
 namespace sidestep {
 
-/// The nodes that a new node is joined with.
+/// Which nodes a new node is joined with.
 enum class Connection {
   kNearest,  ///< the nearest ones (Kavraki et al. 1996)
   kRadial,   ///< the nearest visible one in each sector around the node, by the first two coordinates
-  kRadius,   ///< all within a radius
+  kRadius,   ///< all nodes within a radius
 };
 
 struct ConnectionSettings {
   Connection method = Connection::kNearest;
   std::size_t neighbours = 10;  ///< number of nearest nodes, or of sectors for kRadial
-  double radius = 1.5;          ///< for kRadius
-  /// For kRadial: number of blocked motions that are kept in each sector, to nodes nearer than the visible
-  /// one.
+  double radius = 1.5;          ///< used with kRadius
+  /// Used with kRadial: number of blocked motions kept in each sector, to nodes nearer than the visible one.
   std::size_t blocked_per_sector = 0;
 };
 
-/// A graph of states and of motions between them that were free when added. Blocked motions can be kept too,
-/// for the time when they are free. New nodes can be removed again, last in first out.
+/// A graph of states and of motions between them that were free when they were added. Blocked motions can be
+/// kept too, because they may become free. New nodes can be removed again, last in, first out.
 template <EuclideanDomain D>
 class Roadmap {
  public:
   using State = typename D::State;
   using Node = std::uint32_t;
 
-  /// A motion between two nodes. With a moving obstacle, it becomes blocked or free.
+  /// A motion between two nodes. A moving obstacle can block or free it.
   struct Edge {
     Node a = 0, b = 0;
     double length = 0;
@@ -88,7 +87,7 @@ class Roadmap {
 
   void clear() { shrink(0); }
 
-  /// Removes all but the first nodes, and their edges.
+  /// Removes all nodes except the first `nodes`, and their edges.
   void shrink(std::size_t nodes) {
     while (!edges_.empty() && std::max(edges_.back().a, edges_.back().b) >= nodes) {
       incident_edges_[edges_.back().a].pop_back();
@@ -124,7 +123,7 @@ class Roadmap {
     edges_.push_back({node, neighbour.node, neighbour.distance, version, is_free});
   }
 
-  /// Writes the nodes that a node may be joined with to candidates_, nearest first.
+  /// Writes the nodes that a node may be joined with to candidates_, sorted by distance.
   void find_candidates(const D& domain, Node node, const ConnectionSettings& settings) {
     const bool is_within = settings.method == Connection::kRadius;
     candidates_.clear();
@@ -148,10 +147,11 @@ class Roadmap {
   }
 
   std::vector<State> states_;
-  std::vector<std::vector<std::uint32_t>> incident_edges_;  // by node; may have unused entries at the end
+  // Indexed by node; may have unused entries at the end.
+  std::vector<std::vector<std::uint32_t>> incident_edges_;
   std::vector<Edge> edges_;
   std::vector<Neighbour> candidates_;
-  std::vector<Sector> sectors_;  // around the node that is being added
+  std::vector<Sector> sectors_;  // sectors around the node that is being added
 };
 
 }  // namespace sidestep

@@ -9,13 +9,14 @@
 namespace sidestep {
 
 struct SmoothingSettings {
-  std::size_t rounds = 6;    ///< maximum number of rounds, each forwards and backwards
-  double min_gain = 0.002;   ///< smaller relative reduction of the length ends smoothing
-  std::size_t halvings = 6;  ///< bisections of a motion to find the farthest state visible from the follower
+  std::size_t rounds = 6;   ///< maximum number of rounds; each runs forwards and backwards
+  double min_gain = 0.002;  ///< a smaller relative reduction of the length ends smoothing
+  /// Number of bisections of a motion to find the farthest state visible from the follower.
+  std::size_t halvings = 6;
 };
 
 /// Leader-follower smoothing (Bruce 2006, section 4.6.1): a leader advances along the path while the follower
-/// can reach it on a straight motion. Where it no longer can, the follower moves to the last visible state,
+/// can reach it on a straight motion. When it no longer can, the follower moves to the last visible state,
 /// and the leader advances again. Repeated forwards and backwards, this pulls the path tight around
 /// obstacles. Reuses its memory between plans.
 template <StraightDomain D>

@@ -7,14 +7,15 @@
 namespace sidestep {
 
 struct BidirectionalErrtSettings {
-  double waypoint_probability = 0.4;  ///< while the cache is not empty
+  double waypoint_probability = 0.4;  ///< used while the cache is not empty
   std::size_t cache_capacity = 50;    ///< 0: no cache
   CacheReplacement replacement = CacheReplacement::kRandom;
-  std::size_t growth_extensions = 100;   ///< maximum per turn of one tree towards its target; 1: RRT-Connect
-  std::size_t connect_extensions = 100;  ///< maximum per turn of the other tree towards the new node
-  std::size_t bridges = 1;               ///< planning ends when this many bridges are found
-  /// Try the straight path before the trees grow, and make the goal their first target. RRT-Connect does
-  /// neither.
+  /// Maximum number per turn of one tree towards its target; 1: RRT-Connect.
+  std::size_t growth_extensions = 100;
+  std::size_t connect_extensions = 100;  ///< maximum number per turn of the other tree towards the new node
+  std::size_t bridges = 1;               ///< number of bridges at which planning ends
+  /// Whether to try the straight path before the trees grow, and to make the goal their first target.
+  /// RRT-Connect does neither.
   bool tries_straight_line = true;
 };
 

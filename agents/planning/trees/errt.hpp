@@ -8,10 +8,11 @@ namespace sidestep {
 
 struct ErrtSettings {
   double goal_probability = 0.1;
-  double waypoint_probability = 0.4;  ///< while the cache is not empty
+  double waypoint_probability = 0.4;  ///< used while the cache is not empty
   std::size_t cache_capacity = 50;    ///< 0: a plain RRT (LaValle 1998)
   CacheReplacement replacement = CacheReplacement::kRandom;
-  bool tries_straight_line = true;  ///< to the goal, before the tree grows; a plain RRT does not
+  /// Whether to try a straight line to the goal first; a plain RRT does not.
+  bool tries_straight_line = true;
 };
 
 /// Extended rapidly-exploring random tree (Bruce and Veloso 2002): a tree from the start that grows towards

@@ -19,7 +19,7 @@ class KdTree {
 
   KdTree() { clear(); }
 
-  /// Keeps the allocated memory.
+  /// Removes all points but keeps the allocated memory.
   void clear() {
     splits_.clear();
     leaves_.clear();
@@ -59,7 +59,7 @@ class KdTree {
  private:
   static constexpr std::size_t kLeafCapacity = 16;
 
-  /// Index of a split, or the bitwise complement of the index of a leaf.
+  /// The index of a split, or the bitwise complement of the index of a leaf.
   struct Link {
     std::int32_t value;
     static Link to_leaf(std::size_t i) { return {~static_cast<std::int32_t>(i)}; }
@@ -150,7 +150,7 @@ class KdTree {
         distance2[i] += d * d;
       }
     }
-    // First the minimum, without branches: most leaves hold no nearer point.
+    // First computes the minimum without branches: most leaves contain no nearer point.
     double minima[4] = {distance2[0], distance2[1], distance2[2], distance2[3]};
     for (std::size_t i = 4; i < kLeafCapacity; ++i)
       minima[i % 4] = distance2[i] < minima[i % 4] ? distance2[i] : minima[i % 4];
@@ -164,14 +164,15 @@ class KdTree {
     }
   }
 
-  /// `offset`: distance of the point from the link's cell along each axis; `distance2`: its squared norm.
+  /// `offset` is the distance of the point from the link's cell along each axis; `distance2` is its squared
+  /// norm.
   void descend(Link link, const Point& point, Point offset, double distance2, Nearest& found) const {
     if (link.is_leaf()) return scan(leaves_[link.leaf()], point, found);
     const Split& split = splits_[link.split()];
     const double over = point[split.axis] - split.threshold;
     descend(over < 0 ? split.below : split.above, point, offset, distance2, found);
     const double far2 = distance2 - offset[split.axis] * offset[split.axis] + over * over;
-    // Reduced slightly, so that rounding does not exclude an equally near point.
+    // Slightly reduced, so that rounding does not exclude an equally near point.
     if (far2 * (1 - 1e-12) > found.distance2) return;
     offset[split.axis] = over;
     descend(over < 0 ? split.above : split.below, point, offset, far2, found);

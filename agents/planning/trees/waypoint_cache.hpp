@@ -12,12 +12,12 @@
 
 namespace sidestep {
 
-/// Replacement strategy: the waypoint that a full cache drops for a new one.
+/// Replacement strategy: which waypoint a full cache drops for a new one.
 enum class CacheReplacement {
   kRandom,             ///< a random one (Bruce and Veloso 2002)
   kOldest,             ///< the one stored first
   kLeastRecentlyUsed,  ///< the one least recently used as a growth target
-  kWholePlan,          ///< all of them: the cache holds the last plan
+  kWholePlan,          ///< all of them, so that the cache contains only the last plan
 };
 
 /// States of earlier plans that later plans grow towards, since good waypoints change little between
@@ -59,7 +59,7 @@ class WaypointCache {
  private:
   struct Entry {
     State state;
-    std::uint64_t stored, used;  // number of the plan that stored it, and of the last one that used it
+    std::uint64_t stored, used;  // number of the plan that stored it, and of the last plan that used it
   };
 
   std::size_t random_index(Rng& rng) const { return static_cast<std::size_t>(rng.below(entries_.size())); }
@@ -87,8 +87,8 @@ class WaypointCache {
   std::uint64_t now_ = 0;
 };
 
-/// The common part of planners with a cache: tries the straight path if `tries_straight_line`. Unless that is
-/// free, calls `grow`, which writes the plan. Stores the states of plans that arrive in the cache.
+/// The common part of planners with a cache. Tries the straight path if `tries_straight_line`. Unless that is
+/// free, calls `grow`, which writes the plan. Stores the states of successful plans in the cache.
 template <PlanningDomain D, typename Grow>
 void plan_and_remember(const D& domain, const typename D::State& start,
                        WaypointCache<typename D::State>& cache, Plan<typename D::State>& plan, Rng& rng,

@@ -17,11 +17,11 @@ class KnownObstacles {
  public:
   /// Removes all obstacles, keeping the allocated memory, and sets the radius of the moving disc.
   void clear(double radius_m);
-  /// The shape has to outlive this set.
+  /// The shape must outlive this set.
   void add(const Shape& shape);
   std::size_t size() const { return known_.size(); }
 
-  /// Whether the obstacle that blocked the last motion blocks this one. If not, ask blocks().
+  /// Whether the obstacle that blocked the last motion also blocks this one. If false, use blocks().
   bool last_blocks(const Segment& motion) const;
   /// Whether any obstacle blocks the motion.
   bool blocks(const Segment& motion);

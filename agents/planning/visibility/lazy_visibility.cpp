@@ -138,7 +138,7 @@ void LazyVisibility::add_candidates(const DiscDomain& domain, std::uint32_t arri
   const SidePair from_sides = SidePair::Constant(sign(at.side));
   SidePair slack =
       arc_slack(from, from_sides, tangents.along).min(arc_slack(to, kSideSigns, tangents.along)) + 1e-9;
-  // A path may leave a start, or reach a goal, within the standoff of an edge at a small angle to that edge.
+  // Within the standoff of an edge, a path may leave a start or reach a goal at a small angle to that edge.
   if (at.arc == kStart || arc == kGoal) slack += 2 * settings_.standoff_m / tangents.length_m;
   const SidePair across = from_sides * cross(at.along, tangents.along), ahead = dot(at.along, tangents.along);
   const SidePair turns_rad = min_turns_rad(at.along, tangents.along);

@@ -9,7 +9,7 @@
 namespace sidestep {
 
 struct LazyVisibilitySettings {
-  /// Clearance beyond the disc's radius, so that rounding does not cause contact.
+  /// Clearance in addition to the disc's radius, so that rounding does not cause contact.
   double standoff_m = 1e-4;
   double vertex_turn_rad = 0.35;  ///< maximum turn at a vertex of the path
 };
@@ -21,7 +21,7 @@ class LazyVisibility {
  public:
   explicit LazyVisibility(const LazyVisibilitySettings& settings = {}) : settings_(settings) {}
 
-  /// The result belongs to this planner and is valid until its next plan. Deterministic. Unreachable means
+  /// The result belongs to this planner and is valid until its next plan. Deterministic. kUnreachable means
   /// that no path keeps the standoff.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
 
@@ -29,18 +29,19 @@ class LazyVisibility {
   std::vector<Segment> explored_tangents() const;
 
  private:
-  /// A path to an arc, which arrives there in direction `along`.
+  /// A path to an arc on which it arrives in direction `along`.
   struct Arrival {
     std::uint32_t arc = 0;
     Side side = Side::kLeft;
     Vec2 along{0, 0};
     double cost_m = 0;           // length up to the tangent point
     double turn_rad = 0;         // turn along the parent's arc
-    double vertex_turn_rad = 0;  // maximum turn at a vertex there; 0: turn_rad is still a lower bound
-    std::uint32_t parent;        // arrival at the previous arc
-    std::uint32_t previous;      // previous arrival at this arc and side
+    double vertex_turn_rad = 0;  // maximum turn at a vertex of this arc; 0: turn_rad is still a lower bound
+    std::uint32_t parent;        // arrival at the previous arc of the path
+    std::uint32_t previous;      // previously found arrival at this arc and side
   };
-  /// A candidate that is not checked yet, and a lower bound of the length of a path through it to the goal.
+  /// A candidate that has not been checked yet, with a lower bound of the length of a path through it to the
+  /// goal.
   struct OpenEntry {
     double cost_m;
     std::uint32_t candidate;
@@ -70,17 +71,18 @@ class LazyVisibility {
   bool is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to);
   /// Adds the first obstacle that blocks a motion, if it is not known yet.
   void discover(const DiscDomain& domain, const Vec2& from, const Vec2& to);
-  /// Hides corners that lie in another obstacle or outside the field, since no shortest path turns at them:
-  /// corners of the newest obstacle, whose arcs begin at `first_arc`, and older corners that it covers.
+  /// Hides corners that lie in another obstacle or outside the field, since no shortest path turns at them.
+  /// These are corners of the newest obstacle, whose arcs start at `first_arc`, and older corners that it
+  /// covers.
   void hide_covered_corners(const Field& field, std::size_t first_arc);
   void write_plan(std::uint32_t arrival);
 
   LazyVisibilitySettings settings_;
   std::vector<TangentArc> arcs_;  // the start, the goal, then the arcs of the known obstacles
   KnownObstacles known_;
-  std::vector<std::uint8_t> is_hidden_;  // by arc: not needed by any shortest path
+  std::vector<std::uint8_t> is_hidden_;  // indexed by arc: not needed by any shortest path
   std::vector<Arrival> arrivals_;        // expanded so far
-  std::vector<std::uint32_t> last_;      // last arrival, by arc and side
+  std::vector<std::uint32_t> last_;      // indexed by arc and side: last arrival
   std::vector<Arrival> candidates_;
   std::vector<OpenEntry> queue_;          // a heap
   std::vector<std::uint32_t> promising_;  // arcs that may have a tangent from the expanded one

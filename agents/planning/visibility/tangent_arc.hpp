@@ -14,9 +14,9 @@ namespace sidestep {
 /// arcs around circles, or around corners of other shapes, at the distance of the disc's radius.
 struct TangentArc {
   Vec2 centre_m{0, 0};
-  double radius_m = 0;  ///< 0: a start or a goal
-  /// For a corner: the arc runs counter-clockwise from direction `first` to `last`, unit vectors from the
-  /// centre, and covers at most half a circle. Otherwise the arc is a full circle.
+  double radius_m = 0;  ///< 0 for a start or a goal
+  /// For a corner, the arc runs counter-clockwise from direction `first` to `last`, which are unit vectors
+  /// from the centre, and covers at most half a circle. Otherwise the arc is a full circle.
   bool is_corner = false;
   Vec2 first{0, 0}, last{0, 0};
 
@@ -49,8 +49,8 @@ inline bool snap_to_circle(bool is_point, double distance_m, double slack_m, dou
   return true;
 }
 
-/// The tangent that leaves `from` on `from_side` and reaches `to` on `to_side`; none if the circles overlap.
-/// Does not check whether corner arcs cover the tangent points.
+/// The tangent that leaves `from` on `from_side` and reaches `to` on `to_side`; nullopt if the circles
+/// overlap. Does not check whether corner arcs cover the tangent points.
 [[nodiscard]] inline std::optional<Tangent> tangent(const TangentArc& from, Side from_side,
                                                     const TangentArc& to, Side to_side, double slack_m) {
   const Vec2 between = to.centre_m - from.centre_m;
@@ -71,11 +71,11 @@ inline bool snap_to_circle(bool is_point, double distance_m, double slack_m, dou
 inline Vec2 tangent_point(const TangentArc& arc, Side side, const Vec2& along) {
   return arc.centre_m - sign(side) * arc.radius_m * left_of(along);
 }
-/// The direction of that point from the arc's centre.
+/// The direction from the arc's centre to that point.
 inline Vec2 tangent_point_direction(Side side, const Vec2& along) { return -sign(side) * left_of(along); }
 
 /// The turn towards a side from one direction to another, in [0, 2 pi). A turn to the other side within
-/// rounding counts as 0.
+/// rounding error counts as 0.
 inline double turn_rad(Side side, const Vec2& from, const Vec2& to) {
   const double across = sign(side) * cross(from, to), along = from.dot(to);
   const double angle = std::atan2(across, along);

@@ -13,8 +13,8 @@ struct TangentGraphSettings {
 };
 
 /// The visibility graph of a disc: all free tangents between arcs, and the parts of the arcs between them,
-/// built once for a world. Its paths are the shortest ones up to the standoff and the approximation of arcs
-/// by polylines: the reference for other planners.
+/// built once for a world. Its paths are shortest paths, except for the standoff and the approximation of
+/// arcs by polylines. They are the reference for other planners.
 class TangentGraph {
  public:
   TangentGraph(const ObstacleWorld& world, const Field& field, double radius_m,
@@ -23,7 +23,7 @@ class TangentGraph {
   /// The result belongs to this planner and is valid until its next plan.
   const Plan<Vec2>& plan(const Vec2& start, const Vec2& goal);
 
-  /// The length of the last plan's path with exact arcs; infinite if there is no path.
+  /// The length of the last plan's path with exact arcs instead of polylines; infinite if there is no path.
   double shortest_m() const { return shortest_m_; }
   /// The free tangents.
   std::vector<Segment> tangents() const;
@@ -31,11 +31,11 @@ class TangentGraph {
  private:
   /// The point at which a tangent leaves or reaches a ring, one side of an arc.
   struct Node {
-    std::uint32_t ring = 0;  // arc and side
+    std::uint32_t ring = 0;  // identifies the arc and side
     Vec2 along;
-    double angle_rad = 0;  // of the direction; increases along the ring
+    double angle_rad = 0;  // angle of the direction; increases along the ring
     std::uint32_t to = 0;  // node at the other end, for a tangent that leaves the ring
-    double length_m = 0;   // of the tangent
+    double length_m = 0;   // length of the tangent
     bool leaves = false;
   };
   struct Label {
@@ -70,11 +70,11 @@ class TangentGraph {
 
   TangentGraphSettings settings_;
   DiscDomain domain_;
-  std::vector<TangentArc> arcs_;  // the start, the goal, then those of the world
-  std::vector<Node> nodes_;       // those of the world, then those of the query
+  std::vector<TangentArc> arcs_;  // the start, the goal, then the arcs of the world
+  std::vector<Node> nodes_;       // nodes of the world, then those of the query
   std::size_t world_nodes_ = 0;
-  std::vector<std::vector<std::uint32_t>> rings_;  // nodes by ring, in order of angle_rad
-  std::vector<std::uint32_t> index_in_ring_;       // by node
+  std::vector<std::vector<std::uint32_t>> rings_;  // indexed by ring, sorted by angle_rad
+  std::vector<std::uint32_t> index_in_ring_;       // indexed by node
   std::vector<Label> labels_;
   std::vector<Open> queue_;
   std::vector<Vec2> vertices_;

@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// A number for each side of an arc, left and right: tangents to both sides are computed together.
+/// A number for each side of an arc, left and right. Tangents to both sides are computed together.
 using SidePair = Eigen::Array2d;
 inline const SidePair kSideSigns{1, -1};
 inline Side side_of(Eigen::Index lane) { return lane == 0 ? Side::kLeft : Side::kRight; }
@@ -63,8 +63,8 @@ inline bool may_have_tangent(const TangentArc& from, Side from_side, const Tange
              .maxCoeff() >= 0;
 }
 
-/// How far the tangent points of two directions lie inside an arc: approximately the angle in rad, negative
-/// outside.
+/// How far the tangent points of two directions lie inside an arc: approximately the angle in radians;
+/// negative outside.
 inline SidePair arc_slack(const TangentArc& arc, const SidePair& signs, const DirectionPair& along) {
   const DirectionPair touching{signs * along.y, -signs * along.x};
   return cross(arc.first, touching).min(-cross(arc.last, touching));

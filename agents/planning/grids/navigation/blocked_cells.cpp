@@ -15,7 +15,7 @@ void check_radius(double radius_m) {
     throw std::invalid_argument("the radius of a disc must be finite and not negative");
 }
 
-/// Whether a shape comes within a distance of a square cell.
+/// Whether a shape comes within a given distance of a square cell.
 bool is_near(const Shape& shape, const Box& shape_bounds, const Box& square, double distance_m) {
   if (const auto* circle = std::get_if<Circle>(&shape))
     return signed_distance(circle->centre_m, square) <= circle->radius_m + distance_m;
@@ -29,7 +29,7 @@ bool is_near(const Shape& shape, const Box& shape_bounds, const Box& square, dou
   return false;
 }
 
-/// The index of the cell that contains a coordinate, clipped to the grid.
+/// The index of the cell that contains a coordinate, clamped to the grid.
 std::uint32_t clipped(double in_cells, std::uint32_t count) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(in_cells), 0.0, static_cast<double>(count - 1)));
 }
@@ -59,7 +59,8 @@ void find_blocked_cells(const GridLayout& layout, const Shape& shape, double rad
          column <= clipped(last.x(), layout.columns); ++column) {
       const GridCell cell = layout.cell(column, row);
       const Vec2 centre = layout.centre_of(cell);
-      // The distance of the centre decides all cells but those near the border of the blocked region.
+      // The distance of the cell's centre decides for all cells except those near the border of the blocked
+      // region.
       const double centre_m = signed_distance(centre, shape);
       if (centre_m > distance_m + circumradius_m) continue;
       if (centre_m <= distance_m ||
@@ -74,14 +75,15 @@ void block_occupied(CostGrid& grid, std::span<const std::uint8_t> occupied, doub
   const GridLayout& layout = grid.layout();
   if (occupied.size() != layout.size()) throw std::invalid_argument("the bitmap and the grid differ in size");
   const double radius = (radius_m + kRounding_m) / layout.resolution_m;  // in cells
-  // A cell `up` rows away is within the radius up to this many columns beside the occupied cell.
+  // A cell that is `up` rows away is within the radius up to this many columns beside the occupied cell.
   const auto reach_at = [&](std::int64_t up) {
     const auto gap = static_cast<double>(std::max<std::int64_t>(up - 1, 0));
     if (gap > radius) return std::int64_t{-1};
     return static_cast<std::int64_t>(std::min(std::sqrt(radius * radius - gap * gap), 1e9)) + 1;
   };
   const std::int64_t columns = layout.columns, rows = layout.rows;
-  std::vector<std::int32_t> starts(layout.columns + 1);  // blocked runs that start, minus those that end
+  // Number of blocked runs that start, minus those that end.
+  std::vector<std::int32_t> starts(layout.columns + 1);
   for (std::int64_t row = 0; row < rows; ++row) {
     std::fill(starts.begin(), starts.end(), 0);
     const auto furthest = static_cast<std::int64_t>(std::min(radius, 1e9)) + 1;

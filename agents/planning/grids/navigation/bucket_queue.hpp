@@ -9,10 +9,10 @@
 
 namespace sidestep {
 
-/// Entries in the order of their keys, up to the width of a bucket (untidy priority queue: Yatziv,
-/// Bartesaghi, Sapiro 2006). Within a bucket they come in the order in which they were added. Entries are
-/// never removed before their turn: the user skips those whose keys have changed. Does not allocate once
-/// warm.
+/// A priority queue whose entries are sorted by key only up to the width of a bucket (untidy priority queue:
+/// Yatziv, Bartesaghi, Sapiro 2006). Within a bucket they come in the order in which they were added. Entries
+/// are never removed before their turn; the user skips entries whose keys have changed. Does not allocate
+/// once warm.
 ///
 /// A bucket has two lanes, for two kinds of entries: those with and without the flag kSecondLane.
 ///
@@ -45,8 +45,8 @@ class BucketQueue {
       later_.push_back(entry);
   }
 
-  /// Moves on to the next bucket that has entries; false if there is none. `key_of` gives an entry's current
-  /// key, infinite for one that need not be visited any more.
+  /// Advances to the next bucket that has entries; false if there is none. `key_of` returns an entry's
+  /// current key, which is infinite if the entry need not be visited any more.
   template <typename KeyOf>
   bool advance(const KeyOf& key_of) {
     while (true) {
@@ -60,7 +60,7 @@ class BucketQueue {
     }
   }
 
-  /// Moves back if necessary, so that keys from this one on can be added.
+  /// Moves back if necessary, so that keys from this one upwards can be added.
   template <typename KeyOf>
   void rewind(float key, const KeyOf& key_of) {
     if (key >= begin_) {
@@ -74,23 +74,23 @@ class BucketQueue {
     distribute(key, key_of);
   }
 
-  /// A lane of the current bucket. It grows when entries are pushed to it.
+  /// One lane of the current bucket. It grows when entries are pushed to it.
   std::vector<Entry>& first_lane() { return lanes_[2 * current_]; }
   std::vector<Entry>& second_lane() { return lanes_[2 * current_ + 1]; }
 
  private:
   static constexpr std::uint32_t kBuckets = 1024;
-  static constexpr float kPerUnit = 4;  // the inverse of a bucket's width
+  static constexpr float kPerUnit = 4;  // reciprocal of a bucket's width
   static constexpr float kNever = std::numeric_limits<float>::infinity();
 
-  /// The whole part is the key's bucket in the current window; keys of later windows give larger numbers.
+  /// The integer part is the key's bucket in the current window. Keys of later windows give larger numbers.
   float bucket_of(float key) const { return (key - begin_) * kPerUnit; }
 
   static std::uint32_t lane_of(float bucket, Entry entry) {
     return 2 * static_cast<std::uint32_t>(bucket) + (entry >= kSecondLane);
   }
 
-  /// Begins a window at this key, or at the lowest one in the list.
+  /// Starts a window at this key, or at the lowest key in the list.
   template <typename KeyOf>
   void distribute(float begin, const KeyOf& key_of) {
     for (const Entry entry : later_) begin = std::min(begin, key_of(entry));
@@ -110,7 +110,7 @@ class BucketQueue {
   std::array<std::vector<Entry>, 2 * kBuckets> lanes_;
   std::vector<Entry> later_;
   std::uint32_t current_ = 0;
-  float begin_ = 0;  // the window's lowest key
+  float begin_ = 0;  // lowest key of the window
 };
 
 }  // namespace sidestep

@@ -17,8 +17,9 @@ inline constexpr float kMaxCost = 1e6f;
 /// Throws std::invalid_argument unless the cost is 1 to kMaxCost, or kBlocked.
 void check_cost(float cost);
 
-/// The cost of travelling through each cell of a grid, per metre: 1 on free floor, more in regions that are
-/// better avoided, infinite in obstacles. Throws std::invalid_argument for invalid layouts, costs and cells.
+/// The cost of travelling through each cell of a grid, per metre: 1 on free floor, higher in regions that
+/// should be avoided, infinite in obstacles. Throws std::invalid_argument for invalid layouts, costs and
+/// cells.
 class CostGrid {
  public:
   /// All cells cost 1.

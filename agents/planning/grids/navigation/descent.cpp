@@ -8,10 +8,11 @@
 namespace sidestep {
 namespace {
 
-constexpr double kStep = 0.5;             // of a traced path, in cells
+constexpr double kStep = 0.5;             // step of a traced path, in cells
 constexpr double kDescent = 0.1 * kStep;  // minimum decrease of the value in each step
 
-/// The cells between whose centres a position lies, as far as they are reachable from it, and their weights.
+/// The cells between whose centres a position lies, as far as they can be reached from it, with their
+/// weights.
 struct Corners {
   std::array<GridCell, 4> cells{};
   std::array<double, 4> weights{};
@@ -25,7 +26,7 @@ bool is_reached(const EStar& field, std::int64_t column, std::int64_t row) {
   return !field.is_blocked(cell) && field.value(cell) < kBlocked;
 }
 
-/// None if the position's own cell is not reached. Positions in cells.
+/// Empty if the position's own cell is not reached. Positions are in cells.
 Corners corners_at(const EStar& field, const Vec2& at) {
   Corners corners;
   if (!(at.array().abs() < 1e9).all()) return corners;
@@ -50,14 +51,14 @@ Corners corners_at(const EStar& field, const Vec2& at) {
   return corners;
 }
 
-/// From the lower of two neighbours along an axis: the decrease towards it, with the sign of its direction.
+/// The decrease towards the lower of two neighbours on an axis, with the sign of its direction.
 double decrease(float value, float before, float after) {
   const float lowest = std::min(before, after);
   if (!(lowest < value)) return 0;
   return before <= after ? -(value - lowest) : value - lowest;
 }
 
-/// The direction of descent at the centre of a reached cell; of length 1, or 0 without lower neighbours.
+/// The direction of descent at the centre of a reached cell: a unit vector, or 0 without lower neighbours.
 Vec2 direction_of(const EStar& field, GridCell cell) {
   const GridLayout& layout = field.layout();
   const float value = field.value(cell);
@@ -107,7 +108,7 @@ GridCell lowest_neighbour(const EStar& field, GridCell cell) {
   return lowest;
 }
 
-/// Builds a path, in cells.
+/// Builds a path; positions are in cells.
 class Tracer {
  public:
   Tracer(const EStar& field, std::vector<Vec2>& path_m)
@@ -133,20 +134,20 @@ class Tracer {
     return layout_.cell(static_cast<std::uint32_t>(at_.x()), static_cast<std::uint32_t>(at_.y()));
   }
 
-  /// Ends the path if the rest of it is known exactly and as good as straight up to its first turn.
+  /// Ends the path if the rest of it is known exactly and is almost straight up to its first turn.
   bool arrive() {
     const GridCell from = cell();
     if (field_.value(from) != field_.exact_value(from)) return false;
     const float cost = field_.cost(from);
     const Vec2 target = layout_.in_cells(field_.exact_target_m(from));
-    // From a little beside a corner, towards this position.
+    // The direction from a point slightly beside a corner towards this position.
     const Vec2 end = target == goal_ ? target : Vec2(target + 1e-7 * (at_ - target));
     if (!sees(layout_, at_, end, [&](GridCell other) { return field_.cost(other) == cost; })) return false;
     field_.append_exact_path(from, path_m_);
     return true;
   }
 
-  /// One step along the gradient, or along an axis if an obstacle is in the way.
+  /// Makes one step along the gradient, or along an axis if an obstacle is in the way.
   bool descend() {
     const Vec2 step = kStep * direction_at(field_, layout_.origin_m + layout_.resolution_m * at_);
     const double value = value_at(field_, at_);
@@ -159,8 +160,8 @@ class Tracer {
     return false;
   }
 
-  /// From centre to centre until the value is lower; false if there is no lower cell, which means that the
-  /// values are not final.
+  /// Moves from centre to centre until the value is lower; false if there is no lower cell, which means that
+  /// the values are not final.
   bool descend_by_cells() {
     const double value = value_at(field_, at_);
     GridCell at = cell();
@@ -196,7 +197,7 @@ Vec2 direction_at(const EStar& field, const Vec2& position_m) {
   Vec2 sum(0, 0);
   for (std::size_t i = 0; i < corners.count && !is_at_goal; ++i)
     sum += corners.weights[i] * direction_of(field, corners.cells[i]);
-  // Directions that cancel out, between two equally good ways around an obstacle: choose one.
+  // The directions cancel out between two equally good ways around an obstacle: choose one of them.
   if (!is_at_goal && sum.norm() < 1e-9) sum = direction_of(field, corners.cells[0]);
   if (is_at_goal) sum = to_goal;
   const double length = sum.norm();

@@ -5,16 +5,17 @@
 
 namespace sidestep {
 
-/// The direction of steepest descent, interpolated between the centres of cells; of length 1. Zero at the
-/// goal, in blocked cells, outside the grid, and where the goal cannot be reached. Values must be final up to
-/// that of the position's cell.
+/// The direction of steepest descent as a unit vector, interpolated between the centres of cells. Zero at the
+/// goal, in blocked cells, outside the grid, and where the goal cannot be reached. Precondition: values up to
+/// that of the position's cell are final.
 [[nodiscard]] Vec2 direction_at(const EStar& field, const Vec2& position_m);
 
-/// Follows the field from a position to the goal and writes the vertices of the path, both ends included.
-/// The path crosses no blocked cell; it may touch one's corner. Returns whether it arrives: false, with an
-/// empty path, from outside the grid, from blocked cells, and from where the goal cannot be reached. Always
-/// ends, since every step lowers the interpolated value by a minimum: where the gradient does not, the path
-/// continues through the centres of cells, each lower than the last. Does not allocate once warm.
+/// Follows the field from a position to the goal and writes the vertices of the path, both ends included. The
+/// path crosses no blocked cell, but may touch a corner of one. Returns whether it arrives: false, with an
+/// empty path, if it starts outside the grid, in a blocked cell, or where the goal cannot be reached. It
+/// always terminates, because every step lowers the interpolated value by a minimum amount: where the
+/// gradient does not achieve that, the path continues through the centres of cells, each lower than the
+/// previous one. Does not allocate once warm.
 [[nodiscard]] bool trace(const EStar& field, const Vec2& from_m, std::vector<Vec2>& path_m);
 
 }  // namespace sidestep

@@ -12,8 +12,9 @@ namespace {
 
 constexpr std::uint32_t kEverywhere = 0xffffffff;
 
-// An entry of the queue is a cell whose value is lower than its neighbours know; with this flag, it is one
-// that waits to be raised. Their keys are the cell's value, or the one that it had.
+// An entry of the queue is a cell whose value is lower than its neighbours have taken into account. With this
+// flag, it is a cell that waits to be raised. The key of an entry is the cell's value, or its former value if
+// it waits to be raised.
 constexpr std::uint32_t kRaise = BucketQueue::kSecondLane;
 
 }  // namespace
@@ -46,12 +47,12 @@ void EStar::set_cost(GridCell cell, float cost) {
   if (is_in_disc(cell)) exact_is_stale_ = true;
 }
 
-/// Infinite for an entry without purpose.
+/// Infinite for an entry that has become obsolete.
 float EStar::key_of(Entry entry) const {
   return (entry & kRaise) ? raised_from_[entry & ~kRaise] : values_[entry];
 }
 
-/// Takes a cell's value away, so that its neighbours do not use it, until it is raised.
+/// Withdraws a cell's value, so that its neighbours do not use it until the cell is raised.
 void EStar::mark_unsupported(std::uint32_t at) {
   raised_from_[at] = values_[at];
   values_[at] = kBlocked;
@@ -100,7 +101,7 @@ float EStar::value_from_lower(std::uint32_t at, float limit) const {
   });
 }
 
-/// For a cell that one of its neighbours may lower, while no cell waits to be raised.
+/// Updates a cell whose value a neighbour may lower, while no cell waits to be raised.
 template <typename Kernel>
 void EStar::lower(std::uint32_t at) {
   if (Kernel::kReach > 1 && costs_[at] == kBlocked) return;  // beyond the border there are no neighbours
@@ -120,7 +121,7 @@ void EStar::lower_neighbours(std::uint32_t at) {
     if (values_[neighbour] > value) lower<Kernel>(neighbour);
 }
 
-/// For a cell whose neighbours, cost or exact value have changed.
+/// Updates a cell whose neighbours, cost or exact value have changed.
 template <typename Kernel>
 void EStar::update(std::uint32_t at) {
   const float before = known_value(at);
@@ -132,7 +133,7 @@ void EStar::update(std::uint32_t at) {
     return;
   }
   if (value == before && !is_unsupported) return;
-  // Its neighbours must learn of the value even if it is the old one, since they do not use it any more.
+  // Its neighbours must learn the value even if it is unchanged, since they have stopped using it.
   unsupported_ -= is_unsupported;
   raised_from_[at] = kBlocked;
   values_[at] = value;
@@ -145,13 +146,13 @@ void EStar::update_neighbours(std::uint32_t at) {
     if (known_value(neighbour) > values_[at]) update<Kernel>(neighbour);
 }
 
-/// Raises an unsupported cell to the value that lower cells support: theirs are final. Higher ones support it
-/// when their turn comes, if they have not been raised until then.
+/// Raises an unsupported cell to the value supported by lower cells, whose values are final. Higher cells
+/// support it when their turn comes, unless they have been raised before.
 template <typename Kernel>
 void EStar::raise(std::uint32_t at) {
   const float before = raised_from_[at], value = value_from_lower<Kernel>(at, before);
   // Neighbours that are lower than this do not depend on the cell. The value is lower than the old one if a
-  // neighbour has been lowered meanwhile and not been expanded yet.
+  // neighbour has been lowered meanwhile but has not been expanded yet.
   const float lowest = std::min(before, value);
   values_[at] = value;
   raised_from_[at] = kBlocked;
@@ -174,8 +175,8 @@ void EStar::apply_changes() {
   changed_.clear();
 }
 
-/// Expands cells in the order of their keys, until this cell, all lower ones, and those up to `beyond` higher
-/// are final.
+/// Expands cells in the order of their keys, until this cell, all lower cells, and those up to `beyond`
+/// higher are final.
 template <typename Kernel>
 void EStar::run(std::uint32_t until, float beyond) {
   apply_changes<Kernel>();
@@ -186,7 +187,7 @@ void EStar::run(std::uint32_t until, float beyond) {
 }
 
 /// Raises cells before it lowers others. Cells whose value has changed since they were added have been added
-/// again.
+/// a second time.
 template <typename Kernel>
 void EStar::expand_bucket() {
   auto &lowered = queue_.first_lane(), &unsupported = queue_.second_lane();

@@ -8,12 +8,12 @@
 namespace sidestep {
 
 enum class GridKernel {
-  kNf1,             ///< steps between the four neighbours
+  kNf1,             ///< number of steps between the four neighbours
   kAlpha,           ///< linear interpolation
   kLsm,             ///< fast marching: nearly Euclidean
-  kSecondOrderLsm,  ///< more exact on open floor, and slower
-  /// Exact lengths where all free cells cost the same; otherwise fast marching, bounded by exact lengths
-  /// through cells that cost as much as the goal's. Computes all these lengths anew when costs change.
+  kSecondOrderLsm,  ///< more accurate on open floor, but slower
+  /// Exact lengths if all free cells have the same cost. Otherwise fast marching, bounded by exact lengths
+  /// through cells with the goal's cost. Recomputes all these lengths when costs change.
   kLineOfSight,
 };
 
@@ -26,10 +26,9 @@ struct EStarSettings {
 };
 
 /// E* (Philippsen 2004, EPFL thesis 3146, chapter 6): the cost of the cheapest path to the goal from every
-/// cell of a grid, interpolated between cells, so that a robot drives to the goal by descending. When costs
-/// change, only cells whose value changes are computed again. The result equals a field computed from
-/// scratch, bit by bit, since it is the only one that satisfies the kernel (kernels.hpp). Does not allocate
-/// once warm.
+/// cell of a grid, interpolated between cells, so that a robot reaches the goal by descending. When costs
+/// change, only cells whose values change are recomputed. The result is bit-identical to a field computed
+/// from scratch, because only one field satisfies the kernel (kernels.hpp). Does not allocate once warm.
 ///
 /// Bookkeeping follows D* Lite (Koenig, Likhachev 2002): cells are expanded in the order of the lower of
 /// their old and new values, and a cell that loses its support is raised before it can support others. Two
@@ -41,14 +40,14 @@ class EStar {
  public:
   explicit EStar(const CostGrid& grid, const EStarSettings& settings = {});
 
-  /// Begins a new field. The goal must lie in the grid; one in a blocked cell cannot be reached.
+  /// Starts a new field. The goal must lie in the grid; a goal in a blocked cell cannot be reached.
   void set_goal(const Vec2& goal_m);
   /// Changes the cost of a cell. Values are out of date until they are propagated.
   void set_cost(GridCell cell, float cost);
-  /// Computes all values that are out of date.
+  /// Updates all values that are out of date.
   void propagate();
-  /// Computes until the value of this cell, and all lower ones, are final, and those that are at most
-  /// `beyond` higher; the rest can be computed later.
+  /// Updates values until those of this cell, of all lower cells, and of cells that are at most `beyond`
+  /// higher are final; the rest can be updated later.
   void propagate_until(GridCell cell, float beyond = 0);
 
   const GridLayout& layout() const { return layout_; }
@@ -57,18 +56,18 @@ class EStar {
   bool is_blocked(GridCell cell) const { return cost(cell) == kBlocked; }
   /// The cost of the path from the cell's centre to the goal, in cells of cost 1; infinite if there is none.
   float value(GridCell cell) const { return values_[padded(cell)]; }
-  /// The exact distance to the goal in cells, times the cost, if the cell has one; otherwise infinite.
+  /// The exact distance to the goal in cells, times the cost; infinite if the cell has no exact value.
   float exact_value(GridCell cell) const { return exact_at(padded(cell)); }
-  /// For a cell whose value is the exact one: where the shortest path first leads, in a straight line.
+  /// For a cell whose value is exact: the first point to which the shortest path leads in a straight line.
   Vec2 exact_target_m(GridCell cell) const;
-  /// Likewise: appends all turns of the shortest path and the goal.
+  /// For a cell whose value is exact: appends all turns of the shortest path, and the goal.
   void append_exact_path(GridCell cell, std::vector<Vec2>& path_m) const;
   /// The number of cells expanded since construction.
   std::uint64_t expansions() const { return expansions_; }
 
  private:
   using Entry = BucketQueue::Entry;
-  /// The cells around the goal, the last ones included.
+  /// The square of cells around the goal, including the last ones.
   struct Square {
     std::uint32_t first_column = 0, last_column = 0, first_row = 0, last_row = 0;
   };
@@ -87,7 +86,7 @@ class EStar {
   float exact_distance(GridCell cell) const;
   void compute_exact_values();
   float key_of(Entry entry) const;
-  /// The value, or the one that a cell had before it lost its support.
+  /// The cell's value, or the value that it had before it lost its support.
   float known_value(std::uint32_t at) const { return std::min(values_[at], raised_from_[at]); }
   void mark_unsupported(std::uint32_t at);
 
@@ -120,19 +119,22 @@ class EStar {
   GridLayout layout_;
   EStarSettings settings_;
   std::uint32_t stride_;
-  std::vector<float> costs_, values_;  // padded
-  std::vector<float> raised_from_;     // padded: the value that was too low of cells that wait to be raised
+  std::vector<float> costs_, values_;  // with padding
+  // With padding: for cells that wait to be raised, the value that was too low.
+  std::vector<float> raised_from_;
   std::size_t unsupported_ = 0;
   BucketQueue queue_;
-  std::vector<std::uint32_t> changed_;  // padded cells whose cost or exact value has changed
+  std::vector<std::uint32_t> changed_;  // padded indices of cells whose cost or exact value has changed
   Vec2 goal_m_{0, 0};
   GridCell goal_ = 0;
   Square disc_;
-  std::vector<float> exact_;       // of the padded rows around the goal, infinite where there is none
-  std::uint32_t exact_begin_ = 0;  // the first of these cells
+  // For the padded rows around the goal; infinite where there is no exact value.
+  std::vector<float> exact_;
+  std::uint32_t exact_begin_ = 0;  // first of these cells
   bool exact_is_stale_ = false;
-  std::vector<SightLengths> sight_;  // one, or none
-  bool is_of_one_cost_ = true;       // all cells that are not blocked; only with lines of sight
+  std::vector<SightLengths> sight_;  // one element or none
+  // Whether all cells that are not blocked have the same cost; only with lines of sight.
+  bool is_of_one_cost_ = true;
   std::uint64_t expansions_ = 0;
 };
 

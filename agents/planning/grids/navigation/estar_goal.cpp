@@ -38,7 +38,7 @@ bool EStar::is_in_disc(GridCell cell) const {
          row <= disc_.last_row;
 }
 
-/// In cells, times the cost; infinite if the cell has no exact value.
+/// The exact distance in cells, times the cost; infinite if the cell has no exact value.
 float EStar::exact_distance(GridCell cell) const {
   const float cost_there = cost(goal_);
   if (cost_there == kBlocked) return kBlocked;
@@ -54,7 +54,7 @@ float EStar::exact_distance(GridCell cell) const {
   return static_cast<float>(distance) * cost_there;
 }
 
-/// Cells of another cost are closed to lines of sight.
+/// Cells with a different cost block lines of sight.
 void EStar::compute_sight() {
   const float cost_there = cost(goal_);
   bool is_of_one_cost = true;
@@ -63,7 +63,7 @@ void EStar::compute_sight() {
     sight_[0].set_open(cell, here < kBlocked && here == cost_there);
     is_of_one_cost = is_of_one_cost && (here == kBlocked || here == cost_there);
   }
-  if (is_of_one_cost != is_of_one_cost_)  // another equation holds in all cells
+  if (is_of_one_cost != is_of_one_cost_)  // a different equation holds in all cells
     for (GridCell cell = 0; cell < layout_.size(); ++cell) changed_.push_back(padded(cell));
   is_of_one_cost_ = is_of_one_cost;
   sight_[0].compute(layout_.in_cells(goal_m_));

@@ -11,7 +11,7 @@ namespace sidestep {
 /// A cell of a regular grid: row * columns + column.
 using GridCell = std::uint32_t;
 
-/// Where the square cells of a regular grid lie.
+/// The position and size of a regular grid of square cells.
 struct GridLayout {
   std::uint32_t columns = 0;  ///< along x
   std::uint32_t rows = 0;     ///< along y
@@ -25,7 +25,7 @@ struct GridLayout {
   }
   /// A position in cells from the origin.
   Vec2 in_cells(const Vec2& position_m) const { return (position_m - origin_m) / resolution_m; }
-  /// The cell that contains a position; none outside the grid.
+  /// The cell that contains a position; nullopt outside the grid.
   std::optional<GridCell> cell_at(const Vec2& position_m) const {
     const Vec2 at = in_cells(position_m);
     if (!(at.x() >= 0 && at.y() >= 0 && at.x() < columns && at.y() < rows)) return std::nullopt;

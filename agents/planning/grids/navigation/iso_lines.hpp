@@ -6,8 +6,8 @@
 
 namespace sidestep {
 
-/// Where a field's values are multiples of a spacing (marching squares between the centres of four reached
-/// cells), for pictures. Throws std::invalid_argument for a spacing that is not positive.
+/// The lines on which a field's values are multiples of a spacing, for pictures (marching squares between the
+/// centres of four reached cells). Throws std::invalid_argument if the spacing is not positive.
 [[nodiscard]] std::vector<Segment> iso_lines(const EStar& field, double spacing_cells);
 
 }  // namespace sidestep

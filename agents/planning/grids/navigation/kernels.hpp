@@ -13,15 +13,15 @@ namespace sidestep {
 // below the result do not influence it. A field that satisfies the kernel everywhere is therefore unique, so
 // the order of computation does not matter.
 
-// `kReach` is how many cells away the neighbours are that a kernel uses.
+// `kReach` is the distance in cells of the farthest neighbours that a kernel uses.
 
-/// Exceeds 1 by so little that a product with it rounds to the next greater value or the one after it.
+/// Exceeds 1 by so little that multiplying by it rounds to the next greater number or the one after.
 inline constexpr float kNextUp = 1 + 0x1p-23f;
 
 /// The step from the lowest neighbour alone.
 inline float straight_step(float low, float cost) { return std::max(low + cost, low * kNextUp); }
 
-/// An interpolated value where both axes contribute, and a straight step where the other axis is too high.
+/// An interpolated value if both axes contribute; a straight step if the other axis is too high.
 inline float interpolated_step(float low, float high, float cost, float interpolated) {
   const float straight = straight_step(low, cost);
   return std::min(straight, std::max(std::min(straight, high * kNextUp), interpolated));
@@ -54,17 +54,17 @@ struct AlphaKernel {
 struct LsmKernel {
   static constexpr int kReach = 1;
   static float value(float low, float high, float cost) {
-    const float gap = std::min(cost, high - low);  // the cost if high - low is not a number
+    const float gap = std::min(cost, high - low);  // the cost, if high - low is NaN
     return interpolated_step(low, high, cost, low + 0.5f * (gap + std::sqrt(2 * cost * cost - gap * gap)));
   }
 };
 
-/// The same with second-order differences where the second neighbour of an axis is not above the first
-/// (Sethian 1999, Level Set Methods and Fast Marching Methods, section 8.4).
+/// Like LsmKernel, but with second-order differences where the second neighbour on an axis is not above the
+/// first (Sethian 1999, Level Set Methods and Fast Marching Methods, section 8.4).
 struct SecondOrderLsmKernel {
   static constexpr int kReach = 2;
 
-  /// The lower side of an axis: on it, the derivative is sqrt(weight) * (value - origin).
+  /// The lower side of an axis. There the derivative is sqrt(weight) * (value - origin).
   struct Axis {
     float nearest, origin, weight;
   };

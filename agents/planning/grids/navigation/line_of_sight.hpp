@@ -8,9 +8,9 @@
 namespace sidestep {
 
 /// Whether `passes(cell)` holds for all cells that a straight segment passes through. A segment through a
-/// common corner of four cells needs one of the two cells beside it, besides the two on it, so a segment may
-/// touch a cell's corner but not squeeze between two cells. Positions in cells from the grid's origin; false
-/// if one of them lies outside the grid.
+/// common corner of four cells requires, besides the two cells that it crosses, one of the other two. So a
+/// segment may touch a cell's corner but not squeeze between two cells. Positions are in cells from the
+/// grid's origin; returns false if one lies outside the grid.
 template <typename Passes>
 bool sees(const GridLayout& layout, const Vec2& from, const Vec2& to, const Passes& passes) {
   constexpr double kCorner = 1e-9;  // crossings of two borders this close together are one corner
@@ -27,7 +27,7 @@ bool sees(const GridLayout& layout, const Vec2& from, const Vec2& to, const Pass
   if (!inside(x, y)) return false;
   const Vec2 along = to - from;
   const int step_x = along.x() > 0 ? 1 : -1, step_y = along.y() > 0 ? 1 : -1;
-  // Fractions of the segment at the next crossings, in each direction.
+  // Fractions of the segment at its next crossings, for each axis.
   const auto crossing = [](double at, double start, double speed, int step) {
     return speed == 0 ? kNever : (at + (step > 0 ? 1 : 0) - start) / speed;
   };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kFields = 2;
 
-/// How far a disc has to move at least to be within the field and touch nothing.
+/// Minimum distance that a disc must move to be within the field and touch nothing.
 double depth_of(const DiscDomain& domain, const Vec2& position) {
   const double x_m = std::abs(position.x()) + domain.radius_m() - domain.field().length_m / 2;
   const double y_m = std::abs(position.y()) + domain.radius_m() - domain.field().width_m / 2;
@@ -39,7 +39,7 @@ const Plan<Vec2>& NavigationPlanner::plan(const DiscDomain& domain, const Vec2& 
   return plan_;
 }
 
-/// The function for the domain's floor and radius, moved to the front; none if the floor has no cells.
+/// The function for the domain's floor and radius, moved to the front; null if the floor has no cells.
 WorldField* NavigationPlanner::field_of(const DiscDomain& domain) {
   const auto known = std::ranges::find_if(
       fields_, [&](const auto& field) { return field->is_for(domain.field(), domain.radius_m()); });
@@ -61,8 +61,8 @@ std::optional<GridCell> NavigationPlanner::free_cell_at(const Vec2& position) co
   return cell && !values.is_blocked(*cell) ? cell : std::nullopt;
 }
 
-/// The position itself if its cell is free, and the centres of free cells nearby, nearest first. Motions to
-/// them are not checked yet.
+/// Finds the position itself if its cell is free, and the centres of free cells nearby, sorted by distance.
+/// Motions to them are not checked yet.
 void NavigationPlanner::find_joins(const DiscDomain& domain, const Vec2& position,
                                    std::vector<Join>& joins) const {
   joins.clear();
@@ -86,7 +86,7 @@ void NavigationPlanner::find_joins(const DiscDomain& domain, const Vec2& positio
   });
 }
 
-/// Tries start and goal in their own cells first, which nearly always do.
+/// Tries start and goal in their own cells first, which succeeds in most cases.
 void NavigationPlanner::search(const DiscDomain& domain, const Vec2& start, const Budget& budget) {
   const Vec2 goal = domain.goal(start);
   const auto start_cell = free_cell_at(start);
@@ -130,8 +130,8 @@ bool NavigationPlanner::descend(const DiscDomain& domain, const Vec2& start, con
   return false;
 }
 
-/// Removes the cells from which the function leads to its goal: it does not lead there from the start, so
-/// they are cut off from the start as well.
+/// Removes the cells from which the function leads to its goal. Since it does not lead there from the start,
+/// these cells are not connected with the start either.
 void NavigationPlanner::forget_reached(std::vector<Join>& joins) const {
   const EStar& values = fields_.front()->values();
   joins.erase(joins.begin());

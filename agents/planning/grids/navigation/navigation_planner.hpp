@@ -11,17 +11,17 @@ namespace sidestep {
 
 struct NavigationSettings {
   WorldFieldSettings field = {};
-  /// A start or goal whose cell is blocked is joined to the centre of a cell at most this far away, or this
-  /// far beyond the border of the obstacles that it touches.
+  /// Maximum distance at which a start or goal in a blocked cell is joined to the centre of a free cell;
+  /// measured from the border of the obstacles if the position touches any.
   double join_m = 0.5;
 };
 
 /// Plans paths that descend a navigation function. Keeps the functions of the last two radii or floors: a
 /// replan for the same goal computes only what the start, and obstacles that have changed, require. The path
-/// equals that of a planner without a past. Cells are blocked conservatively, so a passage has to be up to
-/// three cells wider than the disc; PlanReason::kUnreachable refers to these cells. Their number limits the
-/// effort. Of the budget, only the time counts: once it is over, no further way to join the goal to the grid
-/// is tried. Does not allocate once warm.
+/// is the same as that of a newly created planner. Cells are blocked conservatively, so a passage must be up
+/// to three cells wider than the disc; PlanReason::kUnreachable applies to these cells only. Their number
+/// limits the effort. Only the time limit of the budget applies: once it is over, no further way to join the
+/// goal to the grid is tried. Does not allocate once warm.
 class NavigationPlanner {
  public:
   explicit NavigationPlanner(const NavigationSettings& settings = {}) : settings_(settings) {}
@@ -31,11 +31,11 @@ class NavigationPlanner {
 
   /// Short lines along the directions in which the last function descends.
   std::vector<Segment> directions() const;
-  /// Lines of equal cost of the last function, where it has been computed; 0.25 m of free floor apart.
+  /// Lines of equal cost of the last function, as far as it was computed, spaced by 0.25 m of free floor.
   std::vector<Segment> iso_lines() const;
 
  private:
-  /// A position on a path between start or goal and the grid.
+  /// A position on the grid that a start or goal is joined to.
   struct Join {
     Vec2 at_m{0, 0};
     GridCell cell = 0;
@@ -50,7 +50,7 @@ class NavigationPlanner {
   void forget_reached(std::vector<Join>& joins) const;
 
   NavigationSettings settings_;
-  std::vector<std::unique_ptr<WorldField>> fields_;  // the last one used first
+  std::vector<std::unique_ptr<WorldField>> fields_;  // most recently used first
   std::vector<Join> start_joins_, goal_joins_;
   std::vector<Vec2> descent_m_;
   Plan<Vec2> plan_;

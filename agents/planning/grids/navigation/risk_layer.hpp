@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// A person, or anything else that moves on: a disc at time 0, with constant velocity.
+/// A person or other moving object: a disc with a position at time 0 and a constant velocity.
 struct MovingDisc {
   Vec2 position_m{0, 0}, velocity_mps{0, 0};
   double radius_m = 0.3;
@@ -13,10 +13,10 @@ struct MovingDisc {
 
 struct RiskSettings {
   double robot_radius_m = 0.25;
-  double robot_speed_mps = 1;  ///< how fast the robot advances, to estimate when it reaches a cell
-  double horizon_s = 5;        ///< how long the disc is predicted to keep its velocity
+  double robot_speed_mps = 1;  ///< speed of the robot, to estimate when it reaches a cell
+  double horizon_s = 5;        ///< time for which the disc is predicted to keep its velocity
   double spread_s = 1;         ///< standard deviation of the robot's time of arrival at a cell
-  double cost = 20;            ///< added to the cost of a cell that both certainly occupy at the same time
+  double cost = 20;            ///< cost added to a cell that both certainly occupy at the same time
 };
 
 /// Adds the risk of meeting moving discs to the costs of a grid (the co-occurrence of Philippsen, Kolski,
@@ -44,14 +44,14 @@ class RiskLayer {
   };
   struct Layer {
     std::uint32_t id;
-    std::vector<Risk> risks;  // by cell
+    std::vector<Risk> risks;  // indexed by cell
   };
 
   float risk_cost(const MovingDisc& disc, const Vec2& robot_m, const Vec2& cell_m) const;
 
   CostGrid grid_;
   RiskSettings settings_;
-  std::vector<Layer> layers_;  // by id
+  std::vector<Layer> layers_;  // indexed by disc id
   std::vector<GridCell> changed_;
   std::uint32_t next_id_ = 0;
 };

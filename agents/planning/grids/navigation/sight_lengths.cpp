@@ -8,7 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kTouch = 1e-9;  // positions this close to the edge of a cone are on it
+constexpr double kTouch = 1e-9;  // positions this close to the edge of a cone count as on it
 
 std::int64_t floor_of(double x) { return static_cast<std::int64_t>(std::floor(x)); }
 std::int64_t ceil_of(double x) { return static_cast<std::int64_t>(std::ceil(x)); }
@@ -77,7 +77,7 @@ void SightLengths::reach_corner(std::int64_t x, std::int64_t y, Corner from, con
   queue_.push(static_cast<float>(length), corner);
 }
 
-/// The free cells of the goal's row, and all that is seen through their lower and upper borders.
+/// Reaches the free cells in the goal's row, and everything seen through their lower and upper borders.
 void SightLengths::look_from_goal() {
   const std::int64_t column = floor_of(goal_.x()), row = floor_of(goal_.y());
   if (is_closed(column, row)) return;
@@ -98,28 +98,28 @@ void SightLengths::look_from_goal() {
   }
 }
 
-/// A path that turns at a corner bends around its closed cell: between its straight continuation and the
-/// cell's edge.
+/// A path that turns at a corner bends around its closed cell, into directions between its straight
+/// continuation and the cell's edge.
 void SightLengths::look_from(Corner corner) {
   const std::int64_t x = corner % (columns_ + 1), y = corner / (columns_ + 1);
   const int closed_x = is_closed(x, y) || is_closed(x, y - 1) ? 1 : -1;
   const int closed_y = is_closed(x, y) || is_closed(x - 1, y) ? 1 : -1;
   const Vec2 at = position(corner), back = position(parents_[corner]) - at;
-  // As if the closed cell were at the upper right.
+  // Transformed as if the closed cell were at the upper right.
   const double u = back.x() * closed_x, v = back.y() * closed_y;
   const auto look_into = [&](int step_x, int step_y, const Cone& cone) {
     cast({corner, at, step_x > 0 ? x : x - 1, step_y > 0 ? y : y - 1, step_x, step_y, 0, 0}, cone);
   };
-  if (u <= 0 && v > 0) {  // from the upper left
+  if (u <= 0 && v > 0) {  // the path comes from the upper left
     look_along(x, y, closed_x, 0, corner);
     look_into(closed_x, -closed_y, {-u / v, kInfinite});
-  } else if (u > 0 && v <= 0) {  // from the lower right
+  } else if (u > 0 && v <= 0) {  // the path comes from the lower right
     look_along(x, y, 0, closed_y, corner);
     look_into(-closed_x, closed_y, {0, v < 0 ? -u / v : kInfinite});
   }
 }
 
-/// Reaches the corners on a line of the grid, as far as it is open on one side.
+/// Reaches the corners on a grid line, as far as it is open on one side.
 void SightLengths::look_along(std::int64_t x, std::int64_t y, std::int64_t step_x, std::int64_t step_y,
                               Corner from) {
   const Vec2 position = this->position(from);

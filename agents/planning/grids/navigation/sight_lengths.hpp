@@ -9,10 +9,11 @@
 
 namespace sidestep {
 
-/// Exact lengths of the shortest paths of a point from the centres of open cells to a goal. Such paths turn
-/// only at corners with one closed cell beside them (taut paths, as in Anya: Harabor et al. 2016), so this is
-/// Dijkstra's algorithm over these corners. Each casts its sight only beyond the corner's shadow. Paths may
-/// touch closed cells, but not squeeze between two that meet at a corner. Does not allocate once warm.
+/// Exact lengths of a point's shortest paths from the centres of open cells to a goal. Such paths turn only
+/// at corners that have exactly one closed cell (taut paths, as in Anya: Harabor et al. 2016), so this is
+/// Dijkstra's algorithm over these corners. From each corner, lines of sight are cast only behind the corner.
+/// Paths may touch closed cells, but not squeeze between two that meet at a corner. Does not allocate once
+/// warm.
 class SightLengths {
  public:
   /// A corner of cells, or kGoal.
@@ -21,31 +22,31 @@ class SightLengths {
 
   explicit SightLengths(const GridLayout& layout);
 
-  /// All cells are closed at first.
+  /// Opens or closes a cell. Initially all cells are closed.
   void set_open(GridCell cell, bool is_open);
-  /// Computes all lengths anew. Precondition: the goal, in cells from the origin, lies in the grid.
+  /// Recomputes all lengths. The goal is in cells from the origin. Precondition: it lies in the grid.
   void compute(const Vec2& goal);
 
-  /// In cells; infinite if there is no path.
+  /// The length in cells; infinite if there is no path.
   float length(GridCell cell) const { return cell_lengths_[cell]; }
-  /// Where the path from a cell with a finite length goes first.
+  /// The first corner on the path from a cell with a finite length.
   Corner source(GridCell cell) const { return sources_[cell]; }
-  /// Where a path goes after a corner that is not the goal.
+  /// The corner that follows a corner which is not the goal.
   Corner next(Corner corner) const { return parents_[corner]; }
-  /// In cells from the origin.
+  /// The corner's position in cells from the origin.
   Vec2 position(Corner corner) const;
 
  private:
-  /// Slopes, horizontal over vertical, between two of which everything is seen.
+  /// Two slopes, horizontal over vertical, between which everything is seen.
   struct Cone {
     double low, high;
   };
-  /// The rows that are seen from a position. Cell (i, j) of the frame spans i - offset to i + 1 - offset
-  /// horizontally, and first_row + j to first_row + j + 1 vertically, from the position.
+  /// The rows seen from a position. In this frame, cell (i, j) spans i - offset to i + 1 - offset
+  /// horizontally, and first_row + j to first_row + j + 1 vertically, relative to the position.
   struct Frame {
     Corner from;
     Vec2 position;
-    std::int64_t column, row;  // of the frame's cell (0, 0)
+    std::int64_t column, row;  // cell (0, 0) of the frame
     int step_x, step_y;
     double offset, first_row;
   };
@@ -63,10 +64,10 @@ class SightLengths {
   void split(const Frame& frame, std::int64_t row, double near, double far);
 
   std::int64_t columns_, rows_;
-  std::vector<std::uint8_t> open_;  // with a border of one closed cell
+  std::vector<std::uint8_t> open_;  // with a border of one closed cell on each side
   std::vector<float> cell_lengths_;
   std::vector<Corner> sources_;
-  std::vector<double> lengths_;  // by corner
+  std::vector<double> lengths_;  // indexed by corner
   std::vector<Corner> parents_;
   Vec2 goal_{0, 0};
   BucketQueue queue_;

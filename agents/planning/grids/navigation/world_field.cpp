@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMaxSide = 32'000;  // cells, as of GridLayout
+constexpr double kMaxSide = 32'000;  // maximum number of cells per side, as in GridLayout
 
 void check_settings(const WorldFieldSettings& settings) {
   const auto is_valid = [](double x, double max) { return x >= 0 && x <= max; };
@@ -18,7 +18,7 @@ void check_settings(const WorldFieldSettings& settings) {
     throw std::invalid_argument("the settings of a navigation function must be positive and finite");
 }
 
-/// The index of the column or row that contains a coordinate, clipped to the grid.
+/// The index of the column or row that contains a coordinate, clamped to the grid.
 std::uint32_t clipped_index(double in_cells, std::uint32_t count) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(in_cells), 0.0, static_cast<double>(count - 1)));
 }
@@ -35,7 +35,7 @@ std::optional<GridLayout> layout_of(const Field& floor, double radius_m, const W
   const double wanted_m =
       std::max({settings.cell_m, std::sqrt(x_m * y_m / max_cells), x_m / kMaxSide, y_m / kMaxSide});
   const double cell_m = std::min({wanted_m, x_m, y_m});
-  // A tiny part of a cell too much, due to rounding, is taken from all cells.
+  // If rounding adds a tiny part of a cell, all cells are shrunk accordingly.
   const double columns = std::floor(x_m / cell_m + 1e-6), rows = std::floor(y_m / cell_m + 1e-6);
   if (columns > kMaxSide || rows > kMaxSide || columns * rows > max_cells) return std::nullopt;
   const double side_m = std::min({cell_m, x_m / columns, y_m / rows});
@@ -68,7 +68,7 @@ void WorldField::update(const ObstacleWorld& world) {
   for (const Box& bounds_m : obstacles_.changed_bounds()) update_costs_near(world, bounds_m);
 }
 
-/// Once per update.
+/// Runs once per update.
 void WorldField::update_cost(const ObstacleWorld& world, GridCell cell) {
   if (updated_at_[cell] == updates_) return;
   updated_at_[cell] = updates_;

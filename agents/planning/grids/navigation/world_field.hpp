@@ -10,19 +10,19 @@ namespace sidestep {
 struct WorldFieldSettings {
   GridKernel kernel = GridKernel::kLsm;
   double cell_m = 0.05;             ///< side of a cell
-  std::size_t max_cells = 250'000;  ///< on a larger floor, cells are larger
-  /// Cells whose centre leaves the disc less than this distance to the nearest obstacle cost more; 0: none.
+  std::size_t max_cells = 250'000;  ///< cells are larger if the floor would need more
+  /// Cells cost more if, at their centre, the disc is nearer than this to an obstacle; 0: none do.
   double clearance_m = 0;
-  /// How much more a cell costs where the disc touches; elsewhere, the square of the lacking part of the
-  /// clearance times this.
+  /// Additional cost of a cell where the disc touches. Elsewhere this is multiplied by the square of the
+  /// missing fraction of the clearance.
   double contact_cost = 0;
 
   bool keeps_clear() const { return clearance_m > 0 && contact_cost > 0; }
 };
 
-/// The square cells in which the centre of a disc can be on a floor. They may leave a margin narrower than a
-/// cell. Nullopt if the disc does not fit, or the floor is too narrow for that few square cells. Throws
-/// std::invalid_argument for invalid settings, floors and radii.
+/// A grid of square cells for the positions of a disc's centre on a floor. It may leave a margin narrower
+/// than a cell. nullopt if the disc does not fit, or if the floor is too narrow for so few square cells.
+/// Throws std::invalid_argument for invalid settings, floors and radii.
 [[nodiscard]] std::optional<GridLayout> layout_of(const Field& floor, double radius_m,
                                                   const WorldFieldSettings& settings);
 
@@ -31,20 +31,20 @@ struct WorldFieldSettings {
 /// once warm.
 class WorldField {
  public:
-  /// `floor` and `radius_m` as they were for the layout.
+  /// Precondition: `floor` and `radius_m` are those of the layout.
   WorldField(const GridLayout& layout, const Field& floor, double radius_m,
              const WorldFieldSettings& settings = {});
 
   bool is_for(const Field& floor, double radius_m) const;
   /// Adopts the obstacles of a world.
   void update(const ObstacleWorld& world);
-  /// Sets another goal, in the grid; values are out of date until reach(). Throws std::invalid_argument for a
-  /// goal outside.
+  /// Sets another goal in the grid; values are out of date until reach(). Throws std::invalid_argument if the
+  /// goal is outside the grid.
   void set_goal(const Vec2& goal_m);
   /// Computes the values that a path from this cell needs, and returns whether there is one.
   bool reach(GridCell cell);
 
-  /// Final where reach() was successful and on the path from there.
+  /// Values are final where reach() was successful, and on the path from there.
   const EStar& values() const { return values_; }
 
  private:
@@ -59,7 +59,7 @@ class WorldField {
   ObstacleCells obstacles_;
   EStar values_;
   std::uint64_t updates_ = 0;
-  std::vector<std::uint64_t> updated_at_;  // by cell
+  std::vector<std::uint64_t> updated_at_;  // indexed by cell
   bool has_goal_ = false;
 };
 
