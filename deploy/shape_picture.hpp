@@ -10,9 +10,9 @@
 
 namespace sidestep {
 
-// Parts of pictures in SVG, whose y axis points down.
+// Parts of SVG pictures, whose y axis points down.
 
-/// "x,y x,y " for a polyline or polygon.
+/// The points of a polyline or polygon, as "x,y x,y ".
 inline std::string svg_points(std::span<const Vec2> points_m, double pixels_per_metre) {
   std::string text;
   for (const Vec2& p : points_m)
@@ -26,7 +26,7 @@ inline std::string svg_disc(const Vec2& centre_m, double radius_m, const std::st
                      -pixels_per_metre * centre_m.y(), pixels_per_metre * radius_m, style);
 }
 
-/// A static obstacle.
+/// Draws a static obstacle.
 inline std::string svg_obstacle(const Shape& shape, double pixels_per_metre) {
   constexpr const char* kColour = "#57606a";
   if (const auto* circle = std::get_if<Circle>(&shape))

@@ -49,7 +49,7 @@ struct Robots {
   std::optional<LeagueOutput> league;
 };
 
-/// Robots that clients of the league's protocol drive.
+/// Robots that clients drive through the league's protocol.
 struct LeagueRobots {
   LeagueRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
       : bases(bus, scenario, options.bases.team_size, settings_of(options.bases), options.bases.speed,
@@ -69,7 +69,7 @@ struct LeagueRobots {
   LeagueOutput vision;
 };
 
-/// Robots that are bases with ROS 2's topics.
+/// Robots that appear as bases with ROS 2's topics.
 struct VelocityRobots {
   VelocityRobots(DdsBus& bus, const Scenario& scenario, const Options& options, Incarnation incarnation)
       : bases(bus, scenario, 0, settings_of(options.bases), options.bases.speed, incarnation, options.seed),

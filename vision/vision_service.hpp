@@ -18,8 +18,9 @@ namespace sidestep {
 struct VisionOptions {
   bool is_league_source = false;  ///< detections come from the league's packets instead of the bus
   std::string league_vision = league::kVisionEndpoint;
-  std::vector<std::uint32_t> league_cameras;  ///< that see all of the floor; empty: those of the scenario
-  std::optional<std::string> tracked;         ///< endpoint to which tracked packets are sent
+  /// Cameras that together see the whole floor; empty: the scenario's.
+  std::vector<std::uint32_t> league_cameras;
+  std::optional<std::string> tracked;  ///< endpoint to which tracked packets are sent
   std::string league_interface = league::kLeagueInterface;
   ImageOptions images;
 };
@@ -27,9 +28,9 @@ struct VisionOptions {
 /// Adds --source, --ssl-vision, --league-cameras, --tracked and --league-interface.
 void add_league_options(const CliCommand& app, VisionOptions& options);
 
-/// The vision service with the sources and outputs that the options select. Precondition: the bus makes no
-/// callbacks after the service's destruction. Throws as MulticastReceiver, LeagueSource and image_reader()
-/// do.
+/// The vision service with the sources and outputs selected by the options. Precondition: the bus makes no
+/// callbacks after the service's destruction. Throws what MulticastReceiver, LeagueSource and image_reader()
+/// throw.
 class VisionService {
  public:
   VisionService(DdsBus& bus, const Scenario& scenario, Incarnation incarnation, const VisionOptions& options);

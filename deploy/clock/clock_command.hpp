@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Adds `sidestep clock`: the offsets of the processes' clocks.
+/// Adds `sidestep clock`, which shows the offsets of the processes' clocks.
 void add_clock_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -12,23 +12,24 @@
 
 namespace sidestep {
 
-/// Whether a clock is known to be within the clock bound of another one.
+/// Whether a clock is within the clock bound of another clock, as far as is known.
 enum class ClockVerdict : std::uint8_t {
   kWithin,
-  kUnclear,  ///< the interval contains offsets within the bound, and beyond it
+  kUnclear,  ///< the interval contains offsets both within and beyond the bound
   kBeyond,
   kNotMeasured
 };
 
-/// What is known of one process's clock.
+/// What is known about one process's clock.
 struct ClockRow {
   std::uint32_t process = 0;
   std::string host;                      ///< empty until the process has answered
-  std::optional<OffsetInterval> offset;  ///< of its clock from that of the reference
-  Duration round_trip{0};                ///< of its quickest recent answer, without the time to answer
+  std::optional<OffsetInterval> offset;  ///< offset of its clock from the reference clock
+  /// Of its quickest recent answer, minus the time that it took to answer.
+  Duration round_trip{0};
   ClockVerdict verdict = ClockVerdict::kNotMeasured;
-  Duration host_ahead{0};               ///< its host's clock - its own
-  std::optional<OffsetInterval> robot;  ///< of an agent: its robot's clock - the coordinator's
+  Duration host_ahead{0};               ///< its host's clock minus its own clock
+  std::optional<OffsetInterval> robot;  ///< for an agent: its robot's clock minus the coordinator's
 };
 
 /// Collects the answers to the probes of one client.
@@ -44,20 +45,20 @@ class ClockSurvey {
   void on_probe(Time sent) { probes_[probe_count_++ % probes_.size()] = sent; }
   /// Ignores answers to other clients, and to probes that were not sent.
   void on_answer(const ClockAnswer& answer, Time received);
-  /// A process that has not answered, but must have a clock.
+  /// Records a process that has not answered but must have a clock.
   void on_heard(std::uint32_t process, Time now);
-  /// What an agent has measured; nullopt: nothing.
+  /// Records what an agent has measured; nullopt: nothing.
   void on_robot_clock(RobotId robot, const std::optional<OffsetInterval>& offset, Time now);
 
-  /// One row for each process, by its id. The offsets are from the clock of `reference`, or from the client's
-  /// own; if the reference has not been measured, neither has any other.
+  /// One row per process, sorted by id. The offsets are relative to the clock of `reference`, or else to the
+  /// client's own clock. If the reference has not been measured, no row has an offset.
   std::vector<ClockRow> rows(Time now, std::optional<std::uint32_t> reference) const;
 
  private:
   struct Measured {
     Incarnation incarnation = 0;
     ClockOffset offset;
-    Duration round_trip{0};  ///< the quickest since round_trip_at
+    Duration round_trip{0};  ///< the shortest one since round_trip_at
     Time round_trip_at;
     double clock_bound_s = 0;
     std::string host;
@@ -76,7 +77,7 @@ class ClockSurvey {
   std::map<std::uint32_t, Process> processes_;
 };
 
-/// Whether every process has been measured, and none is beyond the bound; false without processes.
+/// Whether every process has been measured and none is beyond the bound. False without processes.
 [[nodiscard]] bool all_agree(const std::vector<ClockRow>& rows);
 
 }  // namespace sidestep

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// A table of clocks, one line for each process. `reference` names the clock from which offsets are.
+/// A table of clocks, one line per process. `reference` names the clock to which offsets are relative.
 [[nodiscard]] std::string to_table(const std::vector<ClockRow>& rows, const std::string& reference);
 
 }  // namespace sidestep

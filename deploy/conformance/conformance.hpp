@@ -11,19 +11,19 @@
 
 namespace sidestep {
 
-/// Examines one robot alone on a floor: plays its agent, without a coordinator, and compares what vision sees
-/// and what the robot reports with what a robot must do (coordinator/PROTOCOL.md). The bus must make no
-/// callback after this object's destruction.
+/// Tests one robot alone on a floor. It plays the robot's agent, without a coordinator, and compares vision's
+/// observations and the robot's reports with what a robot must do (coordinator/PROTOCOL.md). The bus must
+/// make no callback after this object's destruction.
 class Conformance {
  public:
-  /// Precondition: the robot is of the scenario.
+  /// Precondition: the scenario contains the robot.
   Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
   Conformance(const Conformance&) = delete;
   Conformance& operator=(const Conformance&) = delete;
 
   bool is_finished() const { return step_ == steps_.size(); }
   const ConformanceReport& report() const { return report_; }
-  /// What is examined at present.
+  /// The current step of the examination, in words.
   std::string activity() const { return is_finished() ? "" : steps_[step_]->name(); }
 
  private:

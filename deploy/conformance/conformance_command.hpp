@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// `sidestep conformance SCENARIO`: examines the scenario's only robot over DDS.
+/// Adds `sidestep conformance SCENARIO`, which tests the scenario's only robot over DDS.
 void add_conformance_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -12,19 +12,19 @@ namespace sidestep {
 
 enum class Conformity { kPassed, kFailed, kNotJudged };
 
-/// The result of one of the robot's rules.
+/// The result for one rule that the robot must obey.
 struct ConformanceRow {
   std::string rule;  ///< as in coordinator/PROTOCOL.md, "What a robot must do"
   Conformity conformity = Conformity::kNotJudged;
-  std::string figures;  ///< what was measured
+  std::string figures;  ///< the measured figures
 };
 
-/// What the robot was measured to be capable of, for the scenario file.
+/// Measured capabilities of the robot, for the scenario file.
 struct RobotFigures {
   std::optional<double> tracking_bound_m;
   std::optional<double> clock_bound_s;
   MotionLimits limits;
-  bool is_within_limits = false;  ///< the robot braked and moved as the limits say
+  bool is_within_limits = false;  ///< the robot braked and moved within its limits
 };
 
 struct ConformanceReport {
@@ -33,15 +33,15 @@ struct ConformanceReport {
 
   /// Whether every row passed.
   bool is_conformant() const;
-  /// Whether any row failed; the others may not have been judged.
+  /// Whether any row failed; the others may not have been judged yet.
   bool has_failed() const;
 };
 
-/// One line.
+/// The row as one line of text.
 std::string to_line(const ConformanceRow& row);
-/// What to write into the scenario file.
+/// The lines to put into the scenario file.
 std::string scenario_lines(const RobotFigures& figures);
-/// All of it.
+/// The complete result as text.
 std::string to_text(const ConformanceReport& report);
 
 }  // namespace sidestep

@@ -10,15 +10,15 @@
 
 namespace sidestep {
 
-/// What steps share.
+/// State shared by all steps.
 struct ConformanceContext {
   const Scenario& scenario;
   RobotProbe& probe;
   VersionStream& stream;
   ConformanceReport& report;
-  /// Standard deviation of what vision shows of the resting robot, per axis.
+  /// Standard deviation on each axis of observations of the resting robot.
   double vision_noise_m = 0;
-  /// The robot's motors obey at another time than it assumes.
+  /// Whether the robot's motors respond at a different time than the robot assumes.
   bool is_late = false;
 };
 
@@ -26,19 +26,19 @@ struct ConformanceContext {
 class ConformanceStep {
  public:
   virtual ~ConformanceStep() = default;
-  /// Called once per cycle, before the command is sent, until it returns true. Then the step has added its
+  /// Called once per cycle before the command is sent, until it returns true; the step has then added its
   /// rows.
   [[nodiscard]] virtual bool update(ConformanceContext& context) = 0;
   /// A few words for the progress line.
   virtual std::string name() const = 0;
-  /// Whether the examination cannot go on if this step fails.
+  /// Whether the examination must end if this step fails.
   virtual bool is_required() const { return false; }
 };
 
-/// All steps, in order.
+/// Creates all steps, in order.
 std::vector<std::unique_ptr<ConformanceStep>> conformance_steps(const Scenario& scenario);
 
-// The steps, for conformance_steps() only.
+// Creates the individual steps; only for conformance_steps().
 std::unique_ptr<ConformanceStep> make_reports_step();
 std::unique_ptr<ConformanceStep> make_clock_step();
 std::unique_ptr<ConformanceStep> make_new_agent_step();

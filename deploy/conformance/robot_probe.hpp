@@ -13,53 +13,55 @@
 
 namespace sidestep {
 
-/// Where vision saw the robot, and where the version that it executed then should have taken it.
+/// The position at which vision saw the robot, and the position prescribed by the version that it was
+/// executing.
 struct MotionSample {
   Time at{};        ///< by this process's clock
-  Time robot_at{};  ///< by the robot's
+  Time robot_at{};  ///< by the robot's clock
   Vec2 seen_m{0, 0};
   Motion reference;
   bool is_off_reference = false;
 };
 
-/// Speaks to one robot as its agent would, without a coordinator: sends commands with fixes, and hears its
-/// facts and what vision sees. All times are by this process's clock unless they say otherwise.
+/// Communicates with one robot as its agent would, without a coordinator: sends commands with fixes, and
+/// receives its facts and vision's observations. All times are by this process's clock unless stated
+/// otherwise.
 class RobotProbe {
  public:
   RobotProbe(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
   RobotProbe(const RobotProbe&) = delete;
   RobotProbe& operator=(const RobotProbe&) = delete;
 
-  /// The incarnation, epoch and version of the commands that are sent from now on.
+  /// The incarnation, epoch and version of all further commands.
   Incarnation incarnation;
   Epoch epoch;
   std::optional<Version> version;
-  /// Added to the fixes.
+  /// An error that is added to the fixes.
   Vec2 fix_error_m{0, 0};
   bool sends_commands = true;
 
   /// Sends the command of this cycle.
   void send_command();
-  /// Sends a message as it is, whatever is in it.
+  /// Sends a message unchanged, whatever it contains.
   void send(msg::Command message);
 
   const std::optional<Feedback>& fact() const { return fact_; }
-  /// When it arrived.
+  /// When the last fact arrived.
   Time fact_at() const { return fact_at_; }
   std::uint64_t facts() const { return facts_; }
   std::uint64_t malformed_facts() const { return malformed_facts_; }
-  /// The longest time between two facts since the last reset_gap().
+  /// The longest interval between two facts since the last reset_gap().
   Duration longest_gap() const { return longest_gap_; }
   void reset_gap() { longest_gap_ = Duration{0}; }
   const std::optional<RobotObservation>& seen() const { return seen_; }
-  /// The interval of the robot's clock ahead of this one; nullopt before the first exchange.
+  /// Bounds of how far the robot's clock is ahead of this process's clock; nullopt before the first exchange.
   std::optional<OffsetInterval> clock_offset() const { return clock_.at(bus_.now()); }
   Time now() const { return bus_.now(); }
   Time robot_now() const;
 
-  /// Calls back with each sample once facts have shown what was executed; null: no more.
+  /// Calls back with each sample once facts have shown which version was executed; null ends that.
   void on_sample(std::function<void(const MotionSample&)> callback) { on_sample_ = std::move(callback); }
-  /// Where facts say that the robot was at a time.
+  /// The version that the robot was executing at a time, according to facts.
   const Version* executed_at(Time robot_time) const;
 
   RobotId robot() const { return robot_; }
@@ -69,7 +71,7 @@ class RobotProbe {
   void on_feedback(const msg::Feedback& message);
   void on_world(const msg::WorldState& message);
   void take_samples();
-  /// How far this process's clock is behind the robot's, as well as it is known.
+  /// Best estimate of how far the robot's clock is ahead of this process's clock.
   Duration robot_ahead() const;
 
   Bus& bus_;
@@ -87,7 +89,7 @@ class RobotProbe {
     Version version;
     bool is_off_reference = false;
   };
-  std::deque<Executed> executed_;  ///< in the order of their facts
+  std::deque<Executed> executed_;  ///< in the order of the facts that report them
   std::deque<RobotObservation> unjudged_;
   std::function<void(const MotionSample&)> on_sample_;
 };

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// The operator's part of attesting that a robot is not on the floor: repeats the attestation until the
-/// coordinator no longer waits for the robot.
+/// The operator's side of attesting that a robot is not on the floor: repeats the attestation until the
+/// coordinator no longer awaits the robot.
 class AttestationExchange {
  public:
   /// Longer than the period of participant announcements.
@@ -21,14 +21,14 @@ class AttestationExchange {
 
   AttestationExchange(RobotId robot, Time now) : robot_(robot), begun_(now), due_(now) {}
 
-  /// `is_missing`: the coordinator waits for the robot. Returns whether the attestation has to be sent now.
-  /// Call it at least a few times a second.
+  /// `is_missing` means that the coordinator awaits the robot. Returns whether the attestation must be sent
+  /// now. Call it at least a few times a second.
   [[nodiscard]] bool update(bool is_missing, Time now);
 
   RobotId robot() const { return robot_; }
   Time begun() const { return begun_; }
   State state() const { return state_; }
-  /// Why it is not accepted.
+  /// Why the attestation has not been accepted.
   std::string reason() const;
 
  private:

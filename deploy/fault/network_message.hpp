@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// The message that impairs what arrives at a process from then on, without its header. `target`: the process
-/// id, or kEveryProcess (common/messaging/senders.hpp).
+/// The message, without its header, that impairs all messages arriving at a process from then on. `target` is
+/// the process id or kEveryProcess (common/messaging/senders.hpp).
 [[nodiscard]] msg::NetworkFault encode(const LinkQuality& quality, std::uint32_t target, std::uint64_t seed);
 
 }  // namespace sidestep

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// A new private key on the curve P-256.
+/// Creates a private key on the curve P-256.
 [[nodiscard]] PrivateKey make_private_key();
 [[nodiscard]] std::string to_pem(const PrivateKey& key);
 [[nodiscard]] std::string to_pem(const Certificate& certificate);
@@ -19,21 +19,21 @@ namespace sidestep {
 /// std::runtime_error if OpenSSL fails.
 class Authority {
  public:
-  /// A new authority.
+  /// Creates a new authority.
   Authority(const std::string& name, Time from, Time until);
-  /// From PEM files. Throws std::invalid_argument with the file and what is wrong.
+  /// Loads an authority from PEM files. Throws std::invalid_argument with the file and what is wrong.
   Authority(const std::string& certificate_file, const std::string& key_file);
 
   const Certificate& certificate() const { return certificate_; }
   const PrivateKey& key() const { return key_; }
 
-  /// A certificate for the owner of a private key, named by the identity.
+  /// Issues a certificate to the owner of a private key, named by the identity.
   [[nodiscard]] Certificate issue(const Identity& identity, const PrivateKey& key, Time from,
                                   Time until) const;
   /// A signed list of revoked serial numbers (CRL, PEM).
   [[nodiscard]] std::string revocation_list(const std::set<std::string>& serials, Time from,
                                             Time until) const;
-  /// A document with its signature (S/MIME), as DDS Security wants it.
+  /// Signs a document in the form that DDS Security requires (S/MIME).
   [[nodiscard]] std::string sign(const std::string& document) const;
 
  private:

@@ -9,13 +9,13 @@
 
 namespace sidestep {
 
-/// The identities that the words of a command line name, one after another: "agent 0-3 vision client
-/// forklift". Each agent and coordinator of a range gets a key of its own, because each is a process of its
-/// own; robots of a range share one, as they share sidestep-robot. Throws UsageError that says what is wrong.
+/// Parses the identities in the words of a command line, such as "agent 0-3 vision client forklift". Every
+/// agent or coordinator in a range gets its own key, because each is a separate process. The robots of a
+/// range share one key, because they share a sidestep-robot process. Throws UsageError with what is wrong.
 [[nodiscard]] std::vector<Identity> parse_key_list(const std::vector<std::string>& words);
 
-/// All identities that a run of the scenario needs: its processes, whatever drives its robots, and those that
-/// judge, watch and operate it.
+/// All identities that a run of the scenario needs: its processes, the program that drives its robots, and
+/// those that judge, watch and operate the run.
 [[nodiscard]] std::vector<Identity> identities_of(const Scenario& scenario);
 
 }  // namespace sidestep

@@ -11,42 +11,42 @@
 
 namespace sidestep {
 
-/// A key that has been issued.
+/// An issued key.
 struct IssuedKey {
-  std::string name;  ///< of the identity; empty if its certificate cannot be read
+  std::string name;  ///< name of the identity; empty if its certificate cannot be read
   std::string serial;
   Time not_after{};
   bool is_revoked = false;
-  std::string problem = {};  ///< why its certificate cannot be read; empty: it can
+  std::string problem = {};  ///< why its certificate cannot be read; empty if it can
 };
 
-/// The keys of an identity when it was revoked.
+/// The result of revoking an identity's keys.
 struct Revocation {
   Identity identity;
-  std::size_t revoked = 0;  ///< by this call
-  std::size_t before = 0;   ///< were revoked already
+  std::size_t revoked = 0;  ///< number revoked by this call
+  std::size_t before = 0;   ///< number that had already been revoked
 };
 
-/// A folder with two certificate authorities and the keys of all identities, laid out as ROS 2's sros2 does:
-/// `public` (certificates, the list of revoked keys), `private` (the authorities' keys) and `enclaves/NAME`.
-/// There are two authorities because Fast DDS 2.9.1 accepts permissions that a certificate of the same
-/// authority has signed (CVE-2023-24010). The functions throw std::invalid_argument if the folder does not
-/// allow what is asked, and std::runtime_error if files cannot be written. Processes that change the folder
-/// wait for each other; one that is killed leaves what it had finished.
+/// A folder with two certificate authorities and the keys of all identities. Its layout is that of ROS 2's
+/// sros2: `public` (certificates, the list of revoked keys), `private` (the authorities' keys) and
+/// `enclaves/NAME`. There are two authorities because Fast DDS 2.9.1 accepts permissions signed with any
+/// certificate of the same authority (CVE-2023-24010). The functions throw std::invalid_argument if the state
+/// of the folder does not permit the operation, and std::runtime_error if files cannot be written. Processes
+/// that change the folder wait for each other; if one is killed, what it has completed remains.
 class KeyStore {
  public:
-  /// Makes a new folder. An existing folder must be empty.
+  /// Creates a new store. If the folder exists, it must be empty.
   static void create(const std::string& folder, Time now, Time until);
   /// Opens a folder that create() has made.
   explicit KeyStore(const std::string& folder);
 
-  /// Makes a key, and so replaces an earlier one of this identity, which stays valid until it is revoked or
+  /// Issues a key. It replaces an earlier key of this identity, which stays valid until it is revoked or
   /// expires. Returns the folder of the identity.
   std::string issue(const Identity& identity, Time now, Time until);
-  /// Revokes all keys of these identities, in one new list of revoked keys that is read back, and removes
-  /// their folders. Returns what was done for each, in this order.
+  /// Revokes all keys of these identities in a single new list of revoked keys, which is read back for
+  /// verification, and removes their folders. Returns the results in the same order.
   std::vector<Revocation> revoke(std::span<const Identity> identities, Time now);
-  /// All keys that have been issued, sorted by name.
+  /// All issued keys, sorted by name.
   std::vector<IssuedKey> keys() const;
   bool has(const Identity& identity) const;
   Time authorities_expire() const;

@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// Adds `sidestep keys`. Parsing it sets `action`, which returns the exit code, and throws as KeyStore does.
+/// Adds `sidestep keys`. Parsing it sets `action`, which returns the exit code and throws what KeyStore
+/// throws.
 void add_keys_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

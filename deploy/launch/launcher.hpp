@@ -28,9 +28,9 @@
 
 namespace sidestep {
 
-/// Directs a run: it acts on its processes, and decides when the run is over.
+/// Controls a run: acts on its processes and decides when the run is over.
 struct RunDirector {
-  /// When to call `act` at the latest.
+  /// Returns the latest time at which to call `act`.
   std::function<Time()> next;
   /// Called at least every 20 ms once the coordinator grants. Returns whether the run is over.
   std::function<bool()> act;
@@ -38,8 +38,8 @@ struct RunDirector {
 
 /// Earlier launchers of a run; see keep_processes().
 struct Predecessors {
-  std::vector<std::string> deaths;  ///< why they have died
-  Duration age{0};                  ///< since the first began
+  std::vector<std::string> deaths;  ///< why they died
+  Duration age{0};                  ///< time since the first one began
 };
 
 /// Starts the processes of one run, monitors them until the run is over, and stops them.
@@ -50,21 +50,21 @@ class Launcher {
   Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
            const NamespaceNetwork* network, Processes& processes, Predecessors before = {});
 
-  /// The director decides when the run is over, instead of arrivals, deaths and the time limit.
+  /// From now on the director decides when the run is over, instead of arrivals, deaths and the time limit.
   void follow(RunDirector director) { director_ = std::move(director); }
 
   Report run();
 
-  // For directors. Processes are named as in the report.
+  // For directors. Processes have the same names as in the report.
   DdsBus& bus() { return bus_; }
   const RunMetrics& metrics() const { return metrics_; }
-  /// Sends a signal to a process; false if it does not run.
+  /// Sends a signal to a process. False if it is not running.
   [[nodiscard]] bool send_signal(const std::string& process, int signal) {
     return children_.send_signal(process, signal);
   }
-  /// Kills a process if it runs, and starts it again with a scenario file.
+  /// Kills a process if it is running, and starts it again with a scenario file.
   void restart(const std::string& process, const std::string& scenario_file);
-  /// Starts another agent of a robot, as the process `name`.
+  /// Starts a second agent for a robot, as the process `name`.
   void start_twin(RobotId robot, const std::string& name);
 
  private:
@@ -83,17 +83,17 @@ class Launcher {
   void handle(const ChildEvent& event);
   /// Starts the process that shows the run in the browser.
   void start_monitor();
-  /// Until the run is over.
+  /// Runs until the run is over.
   void work();
   void print_last_lines(const std::string& process);
-  /// Whether the run is over; then abort_reason_ says why if it was aborted.
+  /// Whether the run is over. If it was aborted, abort_reason_ then says why.
   bool is_over();
   bool is_startup_over();
   bool is_drive_over();
   std::string startup_failure() const;
-  /// When the coordinator granted first, or, if another launcher came before this one, when the first began.
+  /// When the coordinator first granted; if other launchers preceded this one, when the first of them began.
   Time drive_began() const;
-  /// Whether nothing moves any more and dead processes keep the remaining robots from arriving.
+  /// Whether nothing moves any more, and dead processes keep the remaining robots from arriving.
   bool is_stuck(Time now) const;
   bool are_all_coordinators_dead() const;
 
@@ -103,7 +103,7 @@ class Launcher {
   const NamespaceNetwork* network_;
   Processes& children_;
   const Predecessors before_;
-  std::map<std::string, ProcessSpec> processes_;  ///< by name
+  std::map<std::string, ProcessSpec> processes_;  ///< indexed by name
   RevokedKeys revoked_keys_;
   RunDirector director_;
   DdsBus bus_;

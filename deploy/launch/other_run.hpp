@@ -5,9 +5,9 @@
 
 namespace sidestep {
 
-/// Listens for half a second. Throws std::invalid_argument if a coordinator works in the domain: the message
-/// names it and the start of its run, and its host and scenario if it tells them within two seconds more.
-/// Throws also as the constructor of DdsBus does.
+/// Listens for half a second. Throws std::invalid_argument if a coordinator is running in the domain. The
+/// message names the coordinator and the start of its run, and its host and scenario if it reports them
+/// within two more seconds. Also throws whatever the constructor of DdsBus throws.
 void require_free_domain(const DdsSettings& dds);
 
 }  // namespace sidestep

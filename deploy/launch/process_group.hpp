@@ -15,15 +15,15 @@
 
 namespace sidestep {
 
-/// Supervises and logs child processes. When this process ends, however it ends, the kernel kills the
-/// children, and asks those that drive robots to end. Use it only from one thread that lives as long as the
-/// program, because the kernel monitors the thread that forked.
+/// Supervises and logs child processes. When this process ends in any way, the kernel kills the children,
+/// except that those that drive robots are asked to end. Use it only from one thread that lives as long as
+/// the program, because the kernel monitors the thread that forked.
 class ProcessGroup : public Processes {
  public:
   using SteadyTime = std::chrono::steady_clock::time_point;
 
-  /// The output of children goes to the log file, each line prefixed with the child's name. Throws
-  /// std::runtime_error when the log cannot be written.
+  /// The children's output goes to the log file, each line prefixed with the child's name. Throws
+  /// std::runtime_error if the log cannot be written.
   explicit ProcessGroup(const std::string& log_path);
   /// Asks children that drive robots to end, and kills all others.
   ~ProcessGroup() override;
@@ -35,7 +35,7 @@ class ProcessGroup : public Processes {
   void add_input(const std::string& name, const std::string& more) override;
   void restart(const ChildSpec& spec) override;
   std::vector<ChildEvent> poll(Milliseconds timeout) override { return poll(timeout, {}); }
-  /// Returns as soon as one of these descriptors is readable, too.
+  /// Like poll(), but also returns as soon as one of these descriptors is readable.
   std::vector<ChildEvent> poll(Milliseconds timeout, std::span<const int> descriptors);
   std::vector<std::string> terminate(Milliseconds timeout) override;
 
@@ -57,7 +57,7 @@ class ProcessGroup : public Processes {
   void start_due(std::vector<ChildEvent>& events);
   static bool drives_robots(const Child& child);
   void ask_to_end(Child& child);
-  /// Asks children to end, and waits for them at most for the timeout.
+  /// Asks children to end, and waits for them up to the timeout.
   void end_all(Milliseconds timeout, const std::function<bool(const Child&)>& is_meant);
 
   std::FILE* log_;
@@ -66,7 +66,7 @@ class ProcessGroup : public Processes {
   bool is_terminating_ = false;
 };
 
-/// Why a process ended, by its status (see wait(2)): e.g. "exit code 3" or "signal 9 (SIGKILL)".
+/// Why a process ended, from its status (see wait(2)), for example "exit code 3" or "signal 9 (SIGKILL)".
 std::string reason_of(int status);
 
 /// The path of a program in the folder of the running program.

@@ -8,12 +8,12 @@
 
 namespace sidestep {
 
-/// The folder with the keys of a process of a run, e.g. "agent 3"; empty for a run without keys. Throws
-/// std::invalid_argument if there are none.
+/// The key folder of a process of a run, for example "agent 3"; empty for a run without keys. Throws
+/// std::invalid_argument if the process has no keys.
 [[nodiscard]] std::string key_folder_of_process(const RunOptions& options, const std::string& process,
                                                 const Scenario& scenario);
 
-/// Throws std::invalid_argument if a run with keys lacks those of a process.
+/// Throws std::invalid_argument if a run with keys lacks the keys of one of its processes.
 void require_keys(const RunOptions& options, const Scenario& scenario);
 
 }  // namespace sidestep

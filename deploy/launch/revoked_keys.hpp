@@ -9,14 +9,14 @@
 
 namespace sidestep {
 
-/// Notices when the list of revoked keys changes.
+/// Detects changes of the list of revoked keys.
 class RevokedKeys {
  public:
-  /// `folder`: the keys of an identity. Empty: the list never changes.
+  /// `folder` contains the keys of an identity. Empty: the list never changes.
   explicit RevokedKeys(const std::string& folder);
 
-  /// The list, if it has changed since the last call, or since the construction. Looks once a second. Throws
-  /// std::runtime_error, once for each change, if it cannot be read.
+  /// The list, if it has changed since the last call or the construction. Checks once a second. Throws
+  /// std::runtime_error, once per change, if it cannot be read.
   [[nodiscard]] std::optional<std::string> changed(Time now);
 
  private:

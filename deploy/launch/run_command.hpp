@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Adds `sidestep run`. Parsing it sets `action`, which returns and throws as run() does.
+/// Adds `sidestep run`. Parsing it sets `action`, which returns and throws what run() does.
 void add_run_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

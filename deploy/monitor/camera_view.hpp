@@ -13,17 +13,17 @@
 
 namespace sidestep {
 
-/// The images of a scenario's cameras, for viewers. As images are large (about 100 MB/s), they are received
-/// only while somebody asks for them.
+/// The images of a scenario's cameras, for viewers. Because images are large (about 100 MB/s), they are
+/// received only while a viewer asks for them.
 class CameraView {
  public:
   /// The scenario must outlive this object.
   CameraView(const Scenario& scenario, const DdsSettings& dds);
 
-  /// The latest image of a camera as JPEG, in which crosses mark where vision sees the robots. nullopt: there
-  /// is none yet, or no such camera.
+  /// The latest image of a camera as JPEG, with crosses where vision sees the robots. nullopt if there is no
+  /// image yet or no such camera.
   [[nodiscard]] std::optional<std::string> jpeg(std::size_t camera, const FloorState& floor, Time now);
-  /// Receives what has arrived. Call it often.
+  /// Receives images that have arrived. Call it often.
   void poll(Time now);
 
  private:
@@ -34,7 +34,7 @@ class CameraView {
 
   DdsSettings dds_;
   std::vector<Camera> cameras_;
-  std::unique_ptr<DdsBus> bus_;  ///< null: no viewer has asked lately
+  std::unique_ptr<DdsBus> bus_;  ///< null: no viewer has asked recently
   Time asked_at_{};
 };
 

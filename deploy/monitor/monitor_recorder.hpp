@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// Records what the monitor receives, from any moment to any other.
+/// Records the messages that the monitor receives; recording can start and stop at any time.
 class MonitorRecorder {
  public:
   /// The scenario must outlive this object.
@@ -19,9 +19,9 @@ class MonitorRecorder {
       : scenario_(scenario), scenario_file_(scenario_file) {}
 
   bool is_recording() const { return writer_.has_value(); }
-  /// Precondition: it does not record. Throws std::runtime_error when the file cannot be written.
+  /// Precondition: it is not recording. Throws std::runtime_error if the file cannot be written.
   void start(const std::string& path);
-  /// Throws std::runtime_error when a write has failed.
+  /// Throws std::runtime_error if a write has failed.
   void stop();
   void add(const AnyMessage& message, Time now);
   void add_scene(const FloorState& floor, Time now);
@@ -34,7 +34,7 @@ class MonitorRecorder {
   std::string scenario_file_;
   std::optional<RecordingWriter> writer_;
   Time next_scene_{};
-  std::map<std::uint32_t, std::uint16_t> channels_;  ///< of the file, by AnyMessage::channel
+  std::map<std::uint32_t, std::uint16_t> channels_;  ///< channel ids in the file, by AnyMessage::channel
 };
 
 }  // namespace sidestep

@@ -10,8 +10,8 @@ namespace sidestep {
 
 class DdsListener;
 
-/// What DDS tells of a domain's processes: their hosts, and writers and readers that do not match. Nothing is
-/// asked before the first call, because another participant costs all processes some work.
+/// What DDS reports about a domain's processes: their hosts, and writers and readers that do not match. It
+/// joins the domain only at the first call, because an additional participant costs all processes some work.
 class NetworkView {
  public:
   explicit NetworkView(const DdsSettings& dds);

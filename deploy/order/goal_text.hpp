@@ -20,8 +20,8 @@ namespace sidestep {
 
 using GoalLists = std::map<RobotId, std::vector<Goal>>;
 
-/// Reads the goals of robots from a YAML text such as "3: [[1.2, -0.4], [0, 0, 1.57]]". `file_name` appears
-/// in error messages. Throws ConfigError.
+/// Reads robots' goals from a YAML text such as "3: [[1.2, -0.4], [0, 0, 1.57]]". `file_name` appears in
+/// error messages. Throws ConfigError.
 [[nodiscard]] GoalLists parse_goal_lists(const std::string& text, const std::string& file_name);
 
 }  // namespace sidestep

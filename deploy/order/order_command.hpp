@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// Adds `sidestep go`, `cancel`, `hold`, `resume`, `zone` and `status`: orders to robots while they run.
+/// Adds `sidestep go`, `cancel`, `hold`, `resume`, `zone` and `status`, which give orders to robots while
+/// they run.
 void add_order_commands(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

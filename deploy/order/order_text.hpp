@@ -8,10 +8,10 @@
 
 namespace sidestep {
 
-/// One line that says what has become of an order.
+/// One line that describes the state of an order.
 [[nodiscard]] std::string to_line(const SentOrder& sent);
 
-/// A table of what the robots do with their orders, one line for each.
+/// A table of the robots' activities, with one line per robot.
 [[nodiscard]] std::string to_table(const std::map<RobotId, OrderReport>& reports);
 
 }  // namespace sidestep

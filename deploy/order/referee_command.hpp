@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Adds `sidestep referee`: plays the referee of the Small Size League.
+/// Adds `sidestep referee`, which plays the referee of the Small Size League.
 void add_referee_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

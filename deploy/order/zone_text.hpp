@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// The zone with these corners, each as "X,Y" in metres. Throws UsageError if there are too many, or if the
-/// zone covers no area.
+/// Parses a zone with these corners, each given as "X,Y" in metres. Throws UsageError if there are too many
+/// corners, or if the zone covers no area.
 [[nodiscard]] Zone parse_zone(const std::vector<std::string>& corners, double radius_m,
                               std::optional<double> speed_limit_mps);
 

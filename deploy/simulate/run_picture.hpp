@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Draws the true paths of the robots of a run as SVG, on which the robots drive in real time.
+/// Draws the true paths of a run's robots as SVG, animated in real time.
 class RunPicture {
  public:
   /// The scenario must outlive the picture.
@@ -25,7 +25,8 @@ class RunPicture {
     Vec2 position_m;
   };
   std::string track(const RobotSpec& robot, const std::vector<TrackPoint>& points) const;
-  /// Moves the robot, drawn at the last point, along all points from `begin_s` to `end_s`, again and again.
+  /// Moves the robot, which is drawn at the last point, along all points from `begin_s` to `end_s`,
+  /// repeatedly.
   std::string animation(const std::vector<TrackPoint>& points, double begin_s, double end_s) const;
 
   const Scenario& scenario_;

@@ -15,7 +15,7 @@ struct SeedRange {
   std::uint64_t first = 1, last = 1;
 };
 
-/// Reads "FIRST..LAST", of at most a million seeds. Throws UsageError.
+/// Parses "FIRST..LAST", with at most a million seeds. Throws UsageError.
 [[nodiscard]] inline SeedRange parse_seed_range(const std::string& text) {
   constexpr std::uint64_t kMaxSeeds = 1'000'000;
   SeedRange seeds;

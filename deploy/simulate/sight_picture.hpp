@@ -12,15 +12,14 @@
 
 namespace sidestep {
 
-/// Draws as SVG what a robot makes of the scans of its laser: the last scan, its local grid, where people may
-/// step out, and who moves.
+/// Draws as SVG how a robot interprets its laser scans: the last scan, its local grid, where people may step
+/// out, and who moves.
 class SightPicture {
  public:
-  /// The scenario must outlive the picture. Throws std::invalid_argument if it has no laser, or no such
-  /// robot.
+  /// The scenario must outlive the picture. Throws std::invalid_argument if it has no laser or no such robot.
   SightPicture(const Scenario& scenario, RobotId robot);
 
-  /// Where the robots are, for the picture and for hits on them.
+  /// Adds the robots' positions, for the picture and to recognise hits on robots.
   void add(const msg::GroundTruth& truth);
   void add(const msg::LaserScan& scan);
   std::string svg() const;

@@ -10,24 +10,24 @@
 namespace sidestep {
 
 struct SimulateOptions {
-  std::string scenario_file;              ///< simulate_trial(): may be empty
+  std::string scenario_file;              ///< may be empty in simulate_trial()
   std::string report_file;                ///< empty: reports/<scenario>-<seed>.json
-  std::string picture_file;               ///< SVG of the robots' paths; empty: none
+  std::string picture_file;               ///< SVG of the robots' paths; empty: no picture
   std::optional<std::uint32_t> sight_of;  ///< the picture shows what this robot's laser sees instead
   std::string recording_file;             ///< records all messages except images; empty: none
   std::uint64_t seed = 1;
-  LogLevel log_level = LogLevel::kWarning;  ///< of the simulated processes, on stderr
+  LogLevel log_level = LogLevel::kWarning;  ///< log level of the simulated processes, which log to stderr
   std::optional<double> seconds;            ///< overrides the scenario's time limit
-  std::string planner;                      ///< of all robots' paths; empty: the scenario's
+  std::string planner;                      ///< planner of all robots' paths; empty: the scenario's
 };
 
 /// Runs the whole system in this process and virtual time, and writes the same report as run(). Returns the
-/// exit code as run() does. Throws ConfigError, and std::runtime_error when a file cannot be written.
+/// same exit codes as run(). Throws ConfigError, and std::runtime_error if a file cannot be written.
 int simulate(const SimulateOptions& options);
 
-/// Runs the trial of one seed of a campaign (deploy/simulate/campaign), with or without its faults, prints
-/// its scene and faults, and writes the report. Without a scenario file the scene is random, too. Returns and
-/// throws as simulate() does.
+/// Runs the trial of one seed of a campaign (deploy/simulate/campaign) with or without its faults, prints its
+/// scene and faults, and writes the report. Without a scenario file, the scene is random too. Returns and
+/// throws what simulate() does.
 int simulate_trial(const SimulateOptions& options, bool has_faults);
 
 }  // namespace sidestep

@@ -8,7 +8,7 @@
 namespace sidestep {
 
 /// Adds `sidestep simulate`: one run, or a campaign over many seeds. Parsing it sets `action`, which returns
-/// and throws as simulate() and run_campaign() do.
+/// and throws what simulate() and run_campaign() do.
 void add_simulate_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -8,7 +8,7 @@ namespace {
 
 // The time constant with which the motors reach a velocity.
 constexpr double kResponse_s = 0.02;
-// A flood of commands within the latency.
+// Bounds a flood of commands within the latency.
 constexpr std::size_t kMaxWaiting = 1000;
 
 }  // namespace

@@ -9,29 +9,31 @@
 
 namespace sidestep {
 
-/// The traits of bases that follow velocities. Defaults are those of the league's simulators and robots.
+/// Properties of bases that follow velocity commands. The defaults are those of the league's simulators and
+/// robots.
 struct BaseSettings {
-  Duration latency = std::chrono::milliseconds(100);          ///< from a command to first motion
-  Duration silence_timeout = std::chrono::milliseconds(100);  ///< after this without a command it brakes
+  Duration latency = std::chrono::milliseconds(100);  ///< delay from a command to the first motion
+  /// The base brakes after this time without a command.
+  Duration silence_timeout = std::chrono::milliseconds(100);
   double acceleration_mps2 = 4.7;
   double braking_mps2 = 5.9;
   double speed_mps = 3.7;
   double turn_acceleration_radps2 = 50;
   double turn_speed_radps = 20;
-  double scale = 1;  ///< the speed that it reaches relative to the commanded one
+  double scale = 1;  ///< ratio of the reached speed to the commanded speed
 };
 
-/// What a base is commanded.
+/// The velocity command of a base.
 struct BaseVelocity {
   Vec2 linear_mps{0, 0};
   double turn_radps = 0;
-  bool is_global = false;  ///< linear_mps is in the world's frame instead of the base's
+  bool is_global = false;  ///< linear_mps is in the world frame instead of the base's frame
 };
 
 BodySettings body_settings(const BaseSettings& settings);
 
 /// The velocity control of a simulated base: it follows the latest command that is older than its latency,
-/// within its acceleration, and brakes when commands stay out.
+/// within its acceleration, and brakes when there are no commands.
 class BaseControl {
  public:
   explicit BaseControl(const BaseSettings& settings) : settings_(settings) {}
@@ -49,7 +51,7 @@ class BaseControl {
   BaseSettings settings_;
   std::deque<Received> waiting_;
   BaseVelocity current_;
-  Time silent_from_{};  ///< by then it brakes if no further command is obeyed
+  Time silent_from_{};  ///< time at which it brakes if no further command takes effect
 };
 
 }  // namespace sidestep

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// Options for simulated robots that others drive.
+/// Options for simulated robots that external programs drive.
 struct BaseOptions {
   bool is_league = false, is_velocity = false;
   BasesBusOptions velocity;
@@ -28,14 +28,14 @@ struct BaseOptions {
   bool counts_from_start = false;
 };
 
-/// Throws UsageError if both are asked for.
+/// Throws UsageError if both kinds are requested.
 void check(const BaseOptions& options);
 
 void add_base_options(const CliCommand& app, BaseOptions& options);
 
 BaseSettings settings_of(const BaseOptions& options);
 LeagueTraits traits_of(const BaseOptions& options);
-/// Throws std::invalid_argument if an address is not one.
+/// Throws std::invalid_argument if an address is invalid.
 LeagueServerPorts ports_of(const BaseOptions& options);
 
 }  // namespace sidestep

@@ -9,9 +9,9 @@
 namespace sidestep {
 namespace {
 
-// Opponents have the highest ids, which end in their numbers.
+// Opponents have the highest ids; an id ends in the robot's number.
 constexpr RobotId kFirstBlueOpponent = kMaxRobots - 32, kFirstYellowOpponent = kMaxRobots - 16;
-// A robot that an opponent has pushed may be in motion for so long without having driven.
+// For this long after a push by an opponent, a robot may be in motion without having driven.
 constexpr Duration kPushedTime = std::chrono::seconds(1);
 constexpr double kReach_m = 0.015, kFrontAngle_rad = 0.45;
 
@@ -110,7 +110,7 @@ void BaseWorld::step() {
   if (ball_) ball_->step(floor_.field, floor_.obstacles, floor_.map.get(), bodies_, floor_.radius_m);
 }
 
-// The contacts' own figure includes the opponents.
+// The figure computed by the contacts includes the opponents.
 void BaseWorld::measure_clearance() {
   if (ours_ == bodies_.size()) return;
   for (std::size_t i = 0; i < ours_; ++i) {
@@ -134,7 +134,7 @@ void BaseWorld::count_contacts(const std::vector<double>& speeds_mps) {
       continue;
     }
     const std::size_t robot = is_ours(first) ? first : second;
-    if (!is_robot || !is_ours(robot)) continue;  // of opponents among themselves
+    if (!is_robot || !is_ours(robot)) continue;  // between two opponents
     ++crashes_;
     const bool was_pushed = time_ - kPushedTime < pushed_at_[robot];
     pushed_at_[robot] = time_;

@@ -15,18 +15,19 @@
 
 namespace sidestep {
 
-/// A floor of robots without firmware, which others drive by velocities: those of a scenario, and more that
-/// fill up the teams and count as opponents. In steps of kPhysicsStep.
+/// A floor with robots without firmware, which external programs drive by velocity commands. These are the
+/// robots of a scenario, and others that fill up the teams and count as opponents. Time advances in steps of
+/// kPhysicsStep.
 class BaseWorld {
  public:
   /// The scenario's robots, and opponents up to `team_size` robots of each team, which wait along the field's
-  /// upper edge. Throws std::invalid_argument if two robots share team and number.
+  /// upper edge. Throws std::invalid_argument if two robots have the same team and number.
   BaseWorld(const Scenario& scenario, std::uint32_t team_size, const BaseSettings& settings, Time begin);
 
   void advance(Time to);
   Time time() const { return time_; }
 
-  /// The scenario with the opponents among its robots.
+  /// The scenario, with the opponents added to its robots.
   const Scenario& floor() const { return floor_; }
   std::optional<std::size_t> find(Team team, std::uint32_t number) const;
   void command(std::size_t robot, const BaseVelocity& velocity, Time now) {
@@ -35,15 +36,15 @@ class BaseWorld {
   void place(std::size_t robot, const Vec2& position_m, double heading_rad);
   void remove(std::size_t robot);
   void set_ball(const State& state);
-  /// Kicks the ball if it is at the robot's front; whether it was.
+  /// Kicks the ball if it is at the robot's front. Returns whether it was.
   bool kick(std::size_t robot, double speed_mps);
   bool has_ball(std::size_t robot) const;
 
   std::span<const Body> bodies() const { return bodies_; }
   const std::optional<Ball>& ball() const { return ball_; }
 
-  /// Fills in everything but the header. Contacts are those of the scenario's robots with each other and with
-  /// obstacles; crashes are those with opponents. For metrics and audit only.
+  /// Fills in everything except the header. Contacts are those of the scenario's robots with each other and
+  /// with obstacles; crashes are those with opponents. Only for metrics and audit.
   void fill(msg::GroundTruth& truth) const;
 
   static constexpr double kAtRest_mps = 0.05;
@@ -60,7 +61,7 @@ class BaseWorld {
   Time time_;
   std::vector<Body> bodies_;
   std::vector<BaseControl> controls_;
-  std::vector<Time> pushed_at_;  ///< when an opponent touched it last
+  std::vector<Time> pushed_at_;  ///< when an opponent last touched the robot
   std::optional<Ball> ball_;
   Contacts contacts_;
   std::uint64_t seen_contacts_ = 0;
@@ -69,7 +70,7 @@ class BaseWorld {
   std::array<ContactPair, msg::MAX_CONTACTS> recent_contacts_{};
   std::array<RobotId, msg::MAX_CONTACTS> recent_moving_crashes_{};
   double max_crash_mps_ = 0;
-  double min_clearance_m_ = 1;  ///< of the scenario's robots among themselves
+  double min_clearance_m_ = 1;  ///< between the scenario's robots
 };
 
 }  // namespace sidestep

@@ -13,9 +13,9 @@
 
 namespace sidestep {
 
-/// Simulates a floor of robots that others drive, on a bus: advances it with time, publishes the cameras'
-/// detections after the scenario's delay, and ground truth for metrics and audit. The bus must make no
-/// callback after the node's destruction.
+/// Simulates, on a bus, a floor of robots that external programs drive: advances it with time, publishes the
+/// cameras' detections after the scenario's delay, and ground truth for metrics and audit. The bus must make
+/// no callback after the node's destruction.
 class BasesNode {
  public:
   BasesNode(Bus& bus, const Scenario& scenario, std::uint32_t team_size, const BaseSettings& settings,
@@ -35,7 +35,7 @@ class BasesNode {
     detection_listener_ = std::move(listener);
   }
 
-  /// Advances the floor to the present.
+  /// Advances the floor to the present and returns it.
   BaseWorld& world_now();
   Time simulated_now() const { return clock_.simulated(bus_.now()); }
   void set_speed(double speed) { clock_.set_speed(speed, bus_.now()); }
@@ -43,7 +43,7 @@ class BasesNode {
 
  private:
   struct PendingFrame {
-    Time publish_at{};  ///< simulated
+    Time publish_at{};  ///< by simulated time
     msg::DetectionFrame message;
   };
   void wake();
@@ -61,7 +61,7 @@ class BasesNode {
   EventReporter events_;
   std::vector<std::function<void(DropCounters&)>> drop_sources_;
   std::function<void(const msg::DetectionFrame&)> detection_listener_;
-  std::vector<PendingFrame> frames_;  ///< in order of their times
+  std::vector<PendingFrame> frames_;  ///< sorted by time
   Writer<msg::DetectionFrame> detections_;
   Writer<msg::GroundTruth> truth_;
   msg::GroundTruth truth_message_;

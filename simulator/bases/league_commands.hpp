@@ -6,10 +6,10 @@
 
 namespace sidestep {
 
-/// What clients of the league's simulation protocol may do, applied to a world.
+/// Applies the commands of the league's simulation protocol to a world.
 class LeagueCommands {
  public:
-  /// `accepts_global`: also velocities in the world's frame. The simulators in use accept local ones only.
+  /// `accepts_global` allows velocities in the world frame too. The simulators in use only accept local ones.
   LeagueCommands(BaseWorld& world, bool accepts_global) : world_(world), accepts_global_(accepts_global) {}
 
   league::TeamResponse on_team(Team team, const league::TeamCommands& commands, Time now);

@@ -46,7 +46,7 @@ void LeagueServer::receive_team(Team team, league::UnicastSocket& socket) {
     if (!accept(commands, from)) return;
     const auto response =
         LeagueCommands(world, accepts_global_).on_team(team, *commands.packet, node_.simulated_now());
-    (void)socket.send(encode(response), from);  // counted
+    (void)socket.send(encode(response), from);  // failures are counted by the socket
   });
 }
 
@@ -58,7 +58,7 @@ void LeagueServer::receive_control() {
     std::optional<double> speed;
     const auto response = LeagueCommands(world, accepts_global_).on_control(*command.packet, speed);
     if (speed) node_.set_speed(*speed);
-    (void)control_.send(encode(response), from);  // counted
+    (void)control_.send(encode(response), from);  // failures are counted by the socket
   });
 }
 

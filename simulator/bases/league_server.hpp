@@ -8,16 +8,17 @@
 
 namespace sidestep {
 
-/// Where clients of the league's simulation protocol send their commands.
+/// Ports to which clients of the league's simulation protocol send their commands.
 struct LeagueServerPorts {
   league::Endpoint control, blue, yellow;
 };
 
-/// Serves the Small Size League's simulation protocol for a simulated floor: answers every datagram to its
-/// sender. Malformed datagrams are counted and get no answer. Throws std::runtime_error if a port is in use.
+/// Serves the Small Size League's simulation protocol for a simulated floor: it sends a response to the
+/// sender of every datagram. Malformed datagrams are counted and get no response. Throws std::runtime_error
+/// if a port is in use.
 class LeagueServer {
  public:
-  /// `loss`: probability that a packet of commands is lost.
+  /// `loss` is the probability that a packet of commands is lost.
   LeagueServer(BasesNode& node, const LeagueServerPorts& ports, bool accepts_global, double loss = 0);
 
   /// `watch` calls back whenever a descriptor is readable.

@@ -11,23 +11,24 @@
 
 namespace sidestep {
 
-/// Serves a simulated floor as bases with ROS 2's topics: twists in, odometry out, 50 times a second. The bus
-/// must make no callback after the server's destruction.
+/// Serves a simulated floor as bases with ROS 2's topics: receives twists, and publishes odometry 50 times a
+/// second. The bus must make no callback after the server's destruction.
 class VelocityServer {
  public:
-  /// The odometry of a base measures its motion too long by the part `drift`, for every other one too short.
+  /// A base's odometry overestimates its motion by the fraction `drift`; for every second base it
+  /// underestimates the motion by the same fraction.
   VelocityServer(Bus& bus, BasesNode& node, const std::string& prefix, double drift);
   VelocityServer(const VelocityServer&) = delete;
   VelocityServer& operator=(const VelocityServer&) = delete;
 
  private:
   struct Base {
-    std::size_t index = 0;  ///< in the world
+    std::size_t index = 0;  ///< index in the world
     double scale = 1;
     std::unique_ptr<RawWriter> odometry;
-    Vec2 last_m{0, 0};  ///< in the world, at the last report
+    Vec2 last_m{0, 0};  ///< position in the world at the last report
     double last_rad = 0;
-    Vec2 position_m{0, 0};  ///< by the odometry, in a frame that begins where the base does
+    Vec2 position_m{0, 0};  ///< according to odometry, in a frame whose origin is the base's start
     double heading_rad = 0;
   };
   void receive(const Base& base, const ros::Twist& twist);

@@ -15,7 +15,7 @@ namespace sidestep {
 /// after this object's destruction.
 class ImageOutput {
  public:
-  /// Precondition: the scenario has images. Throws as camera_grid() does.
+  /// Precondition: the scenario has images. Throws what camera_grid() throws.
   ImageOutput(Bus& bus, const Scenario& scenario, SimulatorNode& simulator, Incarnation incarnation,
               std::uint64_t seed);
   ImageOutput(const ImageOutput&) = delete;

@@ -68,7 +68,7 @@ void LeagueFrames::add(const msg::RobotDetection& robot, const CameraModel& came
   detected.number = number_of(robot.robot());
   detected.heading_rad = robot.heading_rad();
   detected.confidence = robot.confidence();
-  // A ghost's id may not belong to any robot in the scenario; such a ghost counts as blue.
+  // A ghost's id may belong to no robot of the scenario; such a ghost counts as blue.
   const RobotSpec* const spec = find_robot(scenario_, robot.robot());
   const bool is_yellow = spec && spec->team == Team::kYellow;
   (is_yellow ? detection.yellow : detection.blue).push_back(detected);

@@ -13,11 +13,11 @@
 namespace sidestep {
 
 /// Converts the cameras' detections to the packets that SSL-Vision would send. Robots are identified by team
-/// and number; opponents have neither and are sent as yellow robots without number and heading.
+/// and number; opponents have neither, and are sent as yellow robots without number and heading.
 class LeagueFrames {
  public:
-  /// Throws std::invalid_argument if two robots of the scenario share team and number, or if there are more
-  /// than league::kMaxCameras cameras.
+  /// Throws std::invalid_argument if two robots of the scenario have the same team and number, or if there
+  /// are more than league::kMaxCameras cameras.
   LeagueFrames(const Scenario& scenario, std::span<const CameraView> views);
 
   /// The detections of one camera, sent now. Precondition: frame.camera() is an index into `views`.
@@ -31,7 +31,7 @@ class LeagueFrames {
 
   Scenario scenario_;
   std::vector<CameraModel> cameras_;
-  std::vector<std::uint32_t> frame_numbers_;  ///< of each camera's latest frame
+  std::vector<std::uint32_t> frame_numbers_;  ///< number of each camera's latest frame
 };
 
 }  // namespace sidestep

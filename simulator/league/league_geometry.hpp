@@ -13,8 +13,8 @@ namespace sidestep {
 /// The field with its FieldMarking. The floor ends at the outer lines.
 league::FieldSize league_field(const Field& field);
 
-/// A camera with this view of the floor, up to the robots' tops: 780 x 580 pixels, without distortion, 4 m
-/// above the centre of the view.
+/// A camera with this view of the floor, up to the height of the robots' tops: 780 x 580 pixels, no
+/// distortion, 4 m above the centre of the view.
 CameraModel league_camera(const CameraView& view);
 
 /// A camera's calibration as sent to the league.

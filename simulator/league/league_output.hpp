@@ -13,7 +13,7 @@
 
 namespace sidestep {
 
-/// How a simulator sends league packets; the simulators in use differ.
+/// How a simulator sends league packets; existing simulators differ in this.
 struct LeagueTraits {
   Duration geometry_period = std::chrono::seconds(3);  ///< 0: with every frame
   bool counts_from_start = false;                      ///< times begin with 0 instead of 1970
@@ -21,8 +21,8 @@ struct LeagueTraits {
 };
 
 /// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry from
-/// time to time. The bus must make no callback after this object's destruction. Throws as MulticastSender,
-/// parse_multicast_endpoint() and LeagueFrames do.
+/// time to time. The bus must make no callback after this object's destruction. Throws what MulticastSender,
+/// parse_multicast_endpoint() and LeagueFrames throw.
 class LeagueOutput {
  public:
   LeagueOutput(Bus& bus, const EventReporter& events, const Scenario& scenario,
@@ -42,7 +42,7 @@ class LeagueOutput {
   const EventReporter& events_;
   LeagueFrames frames_;
   LeagueTraits traits_;
-  Duration epoch_{0};  ///< the sender's time 0
+  Duration epoch_{0};  ///< origin of the sender's time
   league::MulticastSender sender_;
   Rng rng_{1};
   std::uint64_t lost_ = 0, next_report_ = 1;

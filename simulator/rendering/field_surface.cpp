@@ -11,10 +11,10 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMargin_m = 0.3;  // of field surface outside the lines
+constexpr double kMargin_m = 0.3;  // width of the field surface outside the lines
 constexpr Rgb kSurroundings{58, 56, 54};
 
-/// The shares of line and of field surface at a point or in a pixel, without texture; the rest is
+/// The fractions of line and of field surface at a point or in a pixel, without texture; the rest is
 /// surroundings.
 struct Coverage {
   float line = 0, surface = 0;
@@ -52,7 +52,7 @@ class FloorCoverage {
   }
 
  private:
-  /// From the signed distances to the edges of the nearest line and of the field surface.
+  /// Computed from the signed distances to the edges of the nearest line and of the field surface.
   static Coverage at_point(double line_m, double surface_m) {
     if (line_m <= 0) return {1, 0};
     return {0, surface_m <= 0 ? 1.0F : 0.0F};

@@ -13,7 +13,7 @@
 
 namespace sidestep {
 
-/// The white lines of a field, the centre circle included, as FieldMarking defines them.
+/// The white lines of a field, including the centre circle, as defined by FieldMarking.
 class FieldLines {
  public:
   explicit FieldLines(const Field& field);
@@ -22,10 +22,11 @@ class FieldLines {
 
  private:
   FieldMarking marking_;
-  std::array<Box, std::tuple_size_v<decltype(FieldMarking::lines)>> lines_;  ///< without width
+  std::array<Box, std::tuple_size_v<decltype(FieldMarking::lines)>> lines_;  ///< lines without width
 };
 
-/// The share of full light at a point of the floor; beyond the field's far end the same as at that end.
+/// The fraction of full light at a point of the floor. Beyond the field's far end it is the same as at that
+/// end.
 double light_at(const RenderSpec& spec, const Field& field, const Vec2& p);
 
 /// A camera's view of the empty floor under neutral light: the field surface with its lines, its texture and

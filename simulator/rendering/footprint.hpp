@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The pixels that may show an object within a radius of a place and between two heights. Empty if the object
-/// is outside the image or not entirely in front of the camera.
+/// The pixels that may show an object that lies within a radius of a place and between two heights. Empty if
+/// the object is outside the image or not entirely in front of the camera.
 cv::Rect footprint(const CameraModel& camera, const Vec2& place_m, double radius_m, double low_m,
                    double high_m);
 

@@ -18,8 +18,7 @@
 namespace sidestep {
 
 /// Renders the frames of one camera. The floor with its static obstacles is drawn, blurred and converted
-/// once; the cost of a frame is that of drawing its objects, plus one pass over its bytes that adds the
-/// noise.
+/// once; a frame then costs only drawing its objects, plus one pass over its bytes to add the noise.
 class FrameRenderer {
  public:
   /// The state of `rng` determines the frames. Throws std::invalid_argument if the width is odd with kYuv422.
@@ -29,13 +28,13 @@ class FrameRenderer {
   /// Renders a frame in the spec's format and the camera's size. Precondition: `pixels` has space for
   /// ImageView::bytes() bytes.
   void render(const Scene& scene, std::uint8_t* pixels);
-  /// The same into a new image.
+  /// Renders a frame into a new image.
   Image render(const Scene& scene);
 
   const CameraModel& camera() const { return camera_; }
 
  private:
-  /// An object of the scene; the farthest from the camera is drawn first.
+  /// An object of the scene. Objects are drawn starting with the farthest from the camera.
   struct VisibleObject {
     double distance_m;
     Vec2 place_m;
@@ -46,7 +45,7 @@ class FrameRenderer {
   void render_floor_once(const StaticScene& statics);
   void sort_objects(const Scene& scene);
   cv::Rect draw_object(const Scene& scene, const VisibleObject& object);
-  /// The same, without what static obstacles hide.
+  /// Draws an object except for the parts hidden by static obstacles.
   cv::Rect draw_visible_part(const Scene& scene, const VisibleObject& object);
   cv::Rect draw_robot(const SceneRobot& robot);
   cv::Rect draw_cylinder(const SceneCylinder& cylinder);
@@ -63,11 +62,11 @@ class FrameRenderer {
   Rng rng_;
   SensorNoise noise_;
   StaticCover cover_;
-  Canvas floor_;                           ///< with static obstacles, under the actual light
+  Canvas floor_;                           ///< the floor with static obstacles, under the actual light
   Canvas canvas_;                          ///< the floor with the objects drawn so far
-  int blur_size_ = 1;                      ///< of the kernel, odd
-  std::vector<std::uint8_t> clean_floor_;  ///< the frame of that floor without noise
-  std::vector<std::uint8_t> clean_;        ///< the same with the objects
+  int blur_size_ = 1;                      ///< size of the kernel, odd
+  std::vector<std::uint8_t> clean_floor_;  ///< the converted frame of floor_, without noise
+  std::vector<std::uint8_t> clean_;        ///< the converted frame of canvas_, without noise
   std::vector<VisibleObject> objects_;
   std::vector<cv::Rect> changed_;
   Canvas before_;  ///< the canvas before an object is drawn

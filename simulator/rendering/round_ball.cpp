@@ -25,7 +25,7 @@ class BallView {
     }
   }
 
-  /// The share of a pixel that shows the ball. The viewing ray of the pixel's centre meets the horizontal
+  /// The fraction of a pixel that shows the ball. The viewing ray of the pixel's centre meets the horizontal
   /// plane through the ball's centre at place_m.
   float share(const Vec2& place_m) const {
     const Vec2 offset_m = place_m - centre_m_.head<2>();

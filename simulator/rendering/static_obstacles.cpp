@@ -14,13 +14,13 @@ namespace {
 
 constexpr int kSquare_px = 16;            // squares that share a list of candidate shapes
 constexpr float kSideBrightness = 0.55F;  // relative to the top
-constexpr int kFrontSteps = 12;           // of bisection along a viewing ray
+constexpr int kFrontSteps = 12;           // number of bisections along a viewing ray
 
 double half_thickness_m(const Shape& shape) {
   return std::holds_alternative<Segment>(shape) ? kBoardHalfThickness_m : 0;
 }
 
-/// Whether all cells that meet a box are blocked; the outside is.
+/// Whether all cells that intersect a box are blocked; the outside counts as blocked.
 bool is_covered(const OccupancyMap& map, const Box& box) {
   const CellRange range = map.grid().cells_that_meet(box);
   const int end = range.last.column + 1;
@@ -32,7 +32,7 @@ bool is_covered(const OccupancyMap& map, const Box& box) {
 /// What a viewing ray shows.
 enum class Seen { kFloor, kSide, kTop };
 
-/// A viewing ray below the obstacles' tops: from the height of the tops down to the floor.
+/// The part of a viewing ray between the height of the obstacles' tops and the floor.
 class StaticView {
  public:
   StaticView(const StaticScene& scene, const CameraModel& camera)

@@ -17,31 +17,32 @@ namespace sidestep {
 /// Obstacles that never move: prisms that stand on the floor, as high as the robots.
 struct StaticScene {
   std::vector<Shape> shapes;
-  std::shared_ptr<const FloorMap> map;  ///< its blocked cells and its outside; null: none
+  std::shared_ptr<const FloorMap> map;  ///< its blocked cells and its outside are obstacles; null: no map
   double height_m = 0.15;
-  Rgb colour{128, 125, 120};  ///< grey, which no marker, ball or person shows
+  Rgb colour{128, 125, 120};  ///< grey that no marker, ball or person shows
 
   bool empty() const { return shapes.empty() && !map; }
 };
 
-/// Segments have no thickness; they are drawn as boards that extend this far to every side.
+/// Segments have no thickness, so they are drawn as boards that extend this far to every side.
 inline constexpr double kBoardHalfThickness_m = 0.005;
 
-/// What static obstacles hide from one camera.
+/// The regions that static obstacles hide from one camera.
 struct StaticCover {
-  cv::Mat1b samples;  ///< of kSamples per pixel, those that show an obstacle
-  /// The distance from the point below the camera to where the pixel's viewing ray meets an obstacle: what is
-  /// farther along the ray is hidden. Meaningful where `samples` is not 0.
+  cv::Mat1b samples;  ///< how many of kSamples per pixel show an obstacle
+  /// The distance from the point below the camera to the point where the pixel's viewing ray meets an
+  /// obstacle. Anything farther along the ray is hidden. Meaningful where `samples` is not 0.
   cv::Mat1f front_m;
 };
 
 /// Draws the obstacles over a floor under neutral light, antialiased, and returns what they hide: empty
-/// matrices if there are none. Precondition: the camera is above the obstacles; one that is not shows none.
+/// matrices if there are no obstacles. Precondition: the camera is above the obstacles; otherwise none are
+/// shown.
 StaticCover draw_static(const StaticScene& scene, const CameraModel& camera, const Field& field,
                         const RenderSpec& spec, Canvas& floor);
 
-/// Restores what static obstacles hide of an object that was drawn over them within a rectangle. `before`
-/// holds the rectangle's pixels without the object.
+/// Removes the parts of an object that static obstacles hide, after the object was drawn over them within a
+/// rectangle. `before` contains the rectangle's pixels without the object.
 void hide_behind(const StaticCover& cover, const CameraModel& camera, const Vec2& object_m,
                  const cv::Rect& rect, const Canvas& before, Canvas& canvas);
 

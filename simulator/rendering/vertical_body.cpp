@@ -49,7 +49,7 @@ class BodyView {
   /// The content of a square of pixels.
   struct SquareContent {
     bool is_mixed;       ///< the pixels may differ
-    const Light* light;  ///< of all pixels; null: the background
+    const Light* light;  ///< colour of all pixels; null: the background
   };
 
   /// The content of a square of size x size pixels. The viewing ray of its centre meets the plane of the top
@@ -70,7 +70,7 @@ class BodyView {
     return {false, light};
   }
 
-  /// Paints a pixel by the counts of its samples.
+  /// Paints a pixel according to the counts of its samples.
   void paint(const Vec2& place_m, cv::Vec3b& pixel) const {
     const Vec2 p = in_frame(place_m);
     Points moved{};
@@ -111,7 +111,7 @@ class BodyView {
 
   /// An edge that crosses a square is no farther than this from its centre.
   double reach_of(int size) const { return size * pixel_reach_m_ + motion_m_; }
-  /// The same for the body's silhouette, where the far end of a ray moves more than its near end.
+  /// Like reach_of(), for the body's silhouette, where the far end of a ray moves more than its near end.
   double ray_reach_m(double reach_m) const { return 1.2 * (1 + parallax_) * reach_m; }
 
   double top_distance_m(const Vec2& p) const {
@@ -124,7 +124,8 @@ class BodyView {
     const Vec2 ray = parallax_ * (p - nadir_m_), end = p + ray;
     const double square = ray.squaredNorm();
     const Vec2 nearest = p + (square > 0 ? std::clamp(-p.dot(ray) / square, 0.0, 1.0) : 0.0) * ray;
-    // If a point of the ray is this deep in the cross-section, p is at least as deep in the silhouette.
+    // If a point of the ray is this deep inside the cross-section, p is at least as deep inside the
+    // silhouette.
     const double inside_m = std::min({top_distance_m(p), top_distance_m(end), top_distance_m(nearest)});
     if (inside_m < 0) return inside_m;
     const double ahead_m = std::min(p.x(), end.x()) - body_.front_m;
@@ -144,7 +145,7 @@ class BodyView {
   const VerticalBody& body_;
   Vec2 position_m_;
   Eigen::Matrix2d heading_;  ///< rotation from the world to the body's frame
-  Vec2 nadir_m_;             ///< of the camera, in the body's frame
+  Vec2 nadir_m_;             ///< nadir of the camera, in the body's frame
   double parallax_ = 0;
   double pixel_reach_m_ = 0;
   double motion_m_ = 0;

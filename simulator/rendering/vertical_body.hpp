@@ -20,11 +20,10 @@ struct VerticalBody {
   Vec2 position_m;
   double heading_rad = 0;
   double radius_m = 0.09;
-  double front_m =
-      1e3;  ///< distance of the flat front from the centre; beyond radius_m there is no flat front
+  double front_m = 1e3;  ///< distance of the flat front from the centre; beyond radius_m there is none
   double height_m = 0.15;
   Light top, side;
-  std::span<const TopDot> dots;  ///< without overlaps, within the top
+  std::span<const TopDot> dots;  ///< must not overlap, and must lie within the top
   Vec2 velocity_mps{0, 0};
   double angular_radps = 0;
 };

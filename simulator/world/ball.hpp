@@ -8,8 +8,7 @@
 
 namespace sidestep {
 
-/// A ball that rolls and bounces off the field's walls and obstacles. Robots push it without feeling any
-/// reaction.
+/// A ball that rolls and bounces off the field's walls and obstacles. Robots push it without being affected.
 class Ball {
  public:
   Ball(const State& state, const BallSettings& settings) : ball_(state, settings) {}

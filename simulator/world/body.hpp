@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// The step of the physics, and the period of the firmware's control loop.
+/// The time step of the physics, and the period of the firmware's control loop.
 inline constexpr Duration kPhysicsStep{1'000'000};
 inline constexpr double kPhysicsStepSeconds = to_seconds(kPhysicsStep);
 
@@ -31,7 +31,7 @@ struct Actuation {
 };
 
 /// The body of an omnidirectional robot. Its acceleration follows the command with a first-order lag and
-/// within limits. The wheels roll and so measure the body's motion, unless a disturbance makes them slip.
+/// within limits. The wheels roll, so they measure the body's motion, unless a disturbance makes them slip.
 class Body {
  public:
   Body(const Vec2& position_m, double heading_rad, const BodySettings& settings);
@@ -40,20 +40,21 @@ class Body {
   /// clamped, and one that is not finite counts as zero.
   void step(const Actuation& command);
 
-  /// Displaces the body and changes its velocity, wheels included: the effect of a contact.
+  /// Displaces the body and changes its velocity, including that of the wheels. This is the effect of a
+  /// contact.
   void displace(const Vec2& shift_m, const Vec2& velocity_change_mps);
 
   /// Changes the body's velocity but not that of its wheels: the body slips until friction has brought it
   /// back to the wheels' velocity.
   void push(const Vec2& velocity_change_mps);
-  /// Sets the grip: the share, 0 to 1, of the wheels' acceleration and of friction that reaches the body.
+  /// Sets the grip: the fraction, 0 to 1, of the wheels' acceleration and of friction that reaches the body.
   void set_grip(double share);
-  /// Blocks a wheel: the wheels do not roll along a direction, given as an angle from the heading. nullopt:
-  /// no wheel is blocked.
+  /// Blocks a wheel, so that the wheels do not roll in a direction, given as an angle from the heading.
+  /// nullopt: no wheel is blocked.
   void set_blocked(std::optional<double> direction_rad);
-  /// A body without power rolls on until friction stops it, and obeys no command.
+  /// Switches the power. A body without power rolls on until friction stops it, and obeys no command.
   void set_powered(bool is_powered);
-  /// Moves the body at a velocity, close above the floor, so that its wheels do not roll; nullopt: puts it
+  /// Moves the body at a velocity just above the floor, so that its wheels do not roll. nullopt: puts it
   /// down, at rest.
   void carry(const std::optional<Vec2>& velocity_mps);
   /// Takes the body off the floor, where it does not move.
@@ -61,13 +62,13 @@ class Body {
   /// Puts the body on the floor, at rest.
   void put_down(const Vec2& position_m, double heading_rad);
   bool is_on_floor() const { return is_on_floor_; }
-  /// The position without any slip: what ideal wheel odometry measures.
+  /// The position without slip, as ideal wheel odometry would measure it.
   Vec2 rolled_position_m() const { return state_.position_m - slid_m_; }
 
   const Vec2& position_m() const { return state_.position_m; }
   const Vec2& velocity_mps() const { return state_.velocity_mps; }
   const Vec2& acceleration_mps2() const { return acceleration_mps2_; }
-  /// Unwrapped: counts full turns.
+  /// The heading without wrapping: it counts full turns.
   double heading_rad() const { return heading_rad_; }
   double angular_radps() const { return angular_radps_; }
 
@@ -84,7 +85,7 @@ class Body {
   double angular_radps_ = 0;
   double angular_acceleration_radps2_ = 0;
   BodySettings settings_;
-  double decay_;  ///< of the lag, over one step
+  double decay_;  ///< decay of the lag over one step
 
   bool is_rolling_ = true;  ///< on the floor, powered, and free of slip
   bool is_powered_ = true;
@@ -93,7 +94,7 @@ class Body {
   double grip_ = 1;
   std::optional<double> blocked_rad_;
   Vec2 slip_mps_{0, 0};  ///< velocity of the body relative to its rolling wheels
-  Vec2 slid_m_{0, 0};    ///< total slip since the creation
+  Vec2 slid_m_{0, 0};    ///< total slip since creation
 };
 
 }  // namespace sidestep

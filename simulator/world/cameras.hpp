@@ -27,7 +27,7 @@ struct VisibleObjects {
   std::span<const Body> robots;  ///< in the scenario's order
   const Vec2* ball_m = nullptr;
   std::span<const Circle> opponents{};
-  std::span<const SightError> sight_errors{};  ///< of the robots; empty: none
+  std::span<const SightError> sight_errors{};  ///< errors in seeing the robots; empty: none
 };
 
 /// The cameras over the field. They capture in turn, each once per period, and detect robots, ball and
@@ -36,10 +36,11 @@ class Cameras {
  public:
   Cameras(const Scenario& scenario, Time begin, std::uint64_t seed);
 
-  /// When the next frame is due.
+  /// The time at which the next frame is due.
   Time next_capture() const { return due_[next_]; }
-  /// Captures that frame from the given objects and drops the camera's overdue frames. Sets everything but
-  /// the header. Of more opponents than a frame holds, those nearest to the detected robots are listed.
+  /// Captures that frame from the given objects, and drops the camera's overdue frames. Sets everything
+  /// except the header. If there are more opponents than a frame holds, lists those nearest to the detected
+  /// robots.
   void capture(Time now, const VisibleObjects& objects, msg::DetectionFrame& frame);
 
   std::span<const CameraView> views() const { return views_; }

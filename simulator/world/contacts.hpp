@@ -15,17 +15,17 @@
 
 namespace sidestep {
 
-/// A body's index, and either another body's index or the number of bodies + an obstacle's index. The map is
-/// one obstacle, behind all others.
+/// The index of a body, and the index of another body, or the number of bodies plus the index of an obstacle.
+/// The map counts as one obstacle, after all others.
 struct ContactPair {
   std::uint32_t first = 0, second = 0;
 };
 
 struct ContactTotals {
   std::uint64_t contacts = 0;  ///< number of times that a pair began to touch
-  /// The latest contacts: the k-th, counted from 0, at k % MAX_CONTACTS.
+  /// The latest contacts: contact k, counted from 0, is at k % MAX_CONTACTS.
   std::array<ContactPair, msg::MAX_CONTACTS> recent_contacts{};
-  double penetration_m_s = 0;  ///< penetration depth x time
+  double penetration_m_s = 0;  ///< penetration depth integrated over time
   double min_clearance_m = 1;  ///< smallest distance between edges; distances above 1 m are not tracked
 };
 
@@ -51,7 +51,7 @@ class Contacts {
  private:
   struct Pair {
     std::uint32_t first;
-    std::uint32_t second;  ///< as in ContactPair
+    std::uint32_t second;  ///< see ContactPair
     bool is_touching;
   };
   struct Overlap {
@@ -64,8 +64,8 @@ class Contacts {
   void check_pair(Pair& pair, std::span<const Body> bodies);
   static void separate(const Overlap& overlap, std::span<Body> bodies);
 
-  /// What a body has to keep its own radius from, as a disc; nullopt if it is an obstacle farther than
-  /// `near_m`.
+  /// A disc that represents the nearest part of an obstacle or body, from which a body must keep its own
+  /// radius; nullopt for an obstacle farther than `near_m`.
   std::optional<Circle> facing(const Vec2& position_m, std::size_t obstacle, double near_m) const;
 
   std::vector<Shape> obstacles_;

@@ -14,7 +14,7 @@ namespace sidestep {
 [[nodiscard]] std::optional<RobotDisturbance> decode(const msg::Disturbance& message, const Field& field,
                                                      double robot_radius_m);
 
-/// Without the header.
+/// Encodes a disturbance without its header.
 msg::Disturbance encode(const RobotDisturbance& disturbance);
 
 }  // namespace sidestep

@@ -9,11 +9,11 @@
 namespace sidestep {
 namespace {
 
-// A robot without a pose is at rest if its wheels have been slower than this for so long. The velocity
-// estimate, which begins at zero, converges in less.
+// A robot without a pose is at rest if its wheels have been slower than this for this long. The velocity
+// estimate, which starts at zero, converges in less time.
 constexpr double kRestSpeed_mps = 0.02;
 constexpr Duration kRestTime = std::chrono::milliseconds(100);
-// Of the first fix of a robot that has just come to rest, per axis.
+// Standard deviation, on each axis, of the first fix of a robot that has just come to rest.
 constexpr double kFirstFixDeviation_m = 0.002;
 
 robot::Settings<double> side_settings(const FirmwareSettings& settings) {
@@ -42,7 +42,7 @@ Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time 
   executing_ = from_plain(side_.executing(), robot_);
 }
 
-// Every switch changes the number, and lifting the start.
+// Every switch changes the number, and lifting changes the start.
 void Firmware::update_executing() {
   const robot::Version& executing = side_.executing();
   if (executing.number != executing_.number || executing.start_ns != to_ns(executing_.trajectory.start()))

@@ -15,16 +15,17 @@ namespace sidestep {
 struct FirmwareSettings {
   BodySettings body;  ///< the firmware's model of its motors
   EstimatorSettings estimator;
-  double position_gain_ps2 = 8000;  ///< of the tracking control, 1/s^2
+  double position_gain_ps2 = 8000;  ///< gain of the tracking control, 1/s^2
   double velocity_gain_ps = 180;    ///< 1/s
   double heading_gain_ps = 8;
   double turning_speed_radps = 4;
   double turning_gain_ps = 25;
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
-  double deceleration_mps2 = MotionLimits{}.deceleration_mps2;  ///< D, for stops that the firmware generates
+  /// D, used for stops that the firmware generates.
+  double deceleration_mps2 = MotionLimits{}.deceleration_mps2;
 };
 
-/// Firmware memory that outlives the simulated robot's restarts, which the Firmware object survives.
+/// Firmware memory that survives the simulated robot's restarts. The Firmware object survives them too.
 class SimulatedFlash final : public robot::StableMemory {
  public:
   [[nodiscard]] bool store(const robot::DurableState&) override { return true; }
@@ -34,8 +35,8 @@ class SimulatedFlash final : public robot::StableMemory {
 /// control and estimation. Initially it executes version 0, at rest at its start position.
 ///
 /// Firmware that has forgotten its pose brakes by its wheels, accepts no version and reports nothing, because
-/// every fact contains a position. The first fix of the resting robot gives it a pose. It makes a stop of its
-/// own there.
+/// every fact contains a position. The first fix of the resting robot gives it a pose, where it makes an own
+/// stop.
 ///
 /// All times are by the robot's clock, which goes back only with set_clock_back().
 class Firmware {
@@ -49,56 +50,56 @@ class Firmware {
   /// Counts a command that could not be decoded.
   void on_malformed_command(Time now);
 
-  /// Makes the next switch of version that is due; false if none is. Every other call with a time first makes
-  /// all switches due by then, so that a reported "executing f at t" remains true.
+  /// Switches to the next version if it is due; false if none is due. Every other function that takes a time
+  /// first makes all switches due by then, so that a reported "executing f at t" remains true.
   bool switch_next(Time now);
 
-  /// One period of the control loop, called every kPhysicsStep: the command to the motors until the next
-  /// call.
+  /// Runs one period of the control loop; called every kPhysicsStep. Returns the command to the motors until
+  /// the next call.
   Actuation tick(Time now, const Odometry& odometry);
 
-  /// The robot has been lifted off the floor: discards the executed version and all pending ones. Its facts
-  /// name the last version as the base of nothing, number 0, so that its agent can number the next one above
-  /// it. Called again, it also discards a rest version accepted since.
+  /// The robot was lifted off the floor: discards the executed version and all pending ones. Facts then
+  /// report version 0 and name the last version as its base, so that the agent can number the next version
+  /// above it. If called again, it also discards a rest version accepted since.
   void lift(Time now);
   /// The lifted robot has been put down at the rest version that it executes. Precondition:
   /// executing().number > 0.
   void put_down(double heading_rad, Time now);
-  /// Restarts a robot on the floor, at the first tick later than all reported facts. It then makes a stop of
-  /// its own and retains only its pose estimate, the incarnation and epoch that it obeys, and the highest
-  /// number seen.
+  /// Restarts a robot on the floor, at the first tick later than all reported facts. It then makes an own
+  /// stop and retains only its pose estimate, the incarnation and epoch that it obeys, and the highest number
+  /// seen.
   void reboot() { side_.reboot(); }
-  /// As reboot(), but the pose estimate is lost too. Precondition: the robot is not lifted.
+  /// Like reboot(), but the pose estimate is lost too. Precondition: the robot is not lifted.
   void forget_pose(Time now);
-  /// As reboot(), after a time without power: the robot takes itself to be at rest, and has forgotten its
+  /// Like reboot(), but after a time without power: the robot assumes that it is at rest, and has lost its
   /// pending versions.
   void switch_on(Time now);
 
-  /// The robot's clock reads `now` although it read `before` already. The robot has to begin a new
-  /// incarnation, and makes a stop of its own by the new time.
+  /// The robot's clock reads `now` although it already read `before`. The robot must start a new incarnation,
+  /// and makes an own stop by the new time.
   void set_clock_back(Time before, Time now);
 
-  /// The facts at this time, without robot_incarnation. Precondition: time never goes back between calls but
-  /// with set_clock_back().
+  /// The facts at this time, without robot_incarnation. Precondition: time only goes back through
+  /// set_clock_back().
   Feedback feedback(Time now);
 
   const Version& executing() const { return executing_; }
-  /// Whether it executes a stop of its own.
+  /// Whether it executes an own stop.
   bool is_off_reference() const { return side_.is_off_reference(); }
-  /// Why it has made the last one.
+  /// The reason for the last own stop.
   robot::OwnStopReason own_stop_reason() const { return side_.own_stop_reason(); }
   bool is_lifted() const { return side_.is_lifted(); }
   /// Whether it knows its pose.
   bool has_pose() const { return side_.has_pose(); }
   /// Precondition of feedback().
   bool may_report() const { return side_.may_report() && estimator_.is_finite(); }
-  /// Its own estimate.
+  /// The robot's own estimate.
   Vec2 position_m() const { return estimator_.position_m(); }
   double heading_rad() const { return estimator_.heading_rad(); }
   Incarnation obeyed_incarnation() const { return side_.obeyed_incarnation(); }
   Epoch obeyed_epoch() const { return side_.obeyed_epoch(); }
   const robot::Counts& counts() const { return side_.counts(); }
-  /// Number of stops of its own since the last restart.
+  /// Number of own stops since the last restart.
   std::uint64_t own_stops() const { return side_.own_stops(); }
   /// The start of the next pending version; Time::max() if none is pending.
   Time next_start() const { return side_.has_pending() ? time_from_ns(side_.next_start_ns()) : Time::max(); }
@@ -114,16 +115,15 @@ class Firmware {
   RobotId robot_;
   SimulatedFlash flash_;
   robot::RobotSide<double> side_;
-  Version executing_;  ///< as side_.executing()
-  Time moved_at_{};    ///< without a pose: when its wheels turned last
+  Version executing_;  ///< copy of side_.executing()
+  Time moved_at_{};    ///< without a pose: when the wheels last turned
   FirmwareSettings settings_;
   double decay_;
   Duration look_ahead_;
-  double
-      max_position_error_m_;  ///< at which the tracking control's approach brakes as hard as the motors can
+  double max_position_error_m_;  ///< beyond it, the tracking control would brake harder than the motors can
   PoseEstimator estimator_;
   Actuation last_actuation_;
-  Actuation modelled_;  ///< current accelerations, by the motor model
+  Actuation modelled_;  ///< current accelerations according to the motor model
   double target_heading_rad_;
 };
 

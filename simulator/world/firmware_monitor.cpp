@@ -26,7 +26,7 @@ void FirmwareMonitor::command_arrived(const Command& command, Time now) {
 }
 
 bool FirmwareMonitor::arrived_in_time(const Arrival& wanted) const {
-  // Searches backwards, because nearly always the latest one matches.
+  // Searches backwards, because the latest one matches in almost all cases.
   for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(arrival_count_, arrivals_.size()); ++back) {
     if (arrivals_[static_cast<std::size_t>((arrival_count_ - back) % arrivals_.size())] == wanted)
       return true;
@@ -43,7 +43,7 @@ void FirmwareMonitor::switched(const Version& to) {
   check_rule(to.trajectory.start() > last_fact_);
   const State& begin = to.trajectory.at_start();
   if (is_lifted_) {
-    // A single rest version, at the place where the robot will be put down.
+    // Only a rest version is allowed, at the place where the robot will be put down.
     check_rule(executing_.number == 0 && to.trajectory.phases().empty() && begin.velocity_mps.norm() == 0);
   } else {
     const State previous = executing_.trajectory.state_at(to.trajectory.start());
@@ -77,7 +77,7 @@ void FirmwareMonitor::started_own_stop(const Version& to) {
   check_rule(expects_clock_stop_ || to.trajectory.start() > executing_.trajectory.start());
   check_rule(is_own_stop(to.trajectory));
   check_rule(to.inflation_m >= 0 && to.inflation_m <= kMaxInflation_m);
-  // The stop begins at the robot's own estimate, whose uncertainty accounts for up to half of the drift.
+  // The stop starts at the robot's own estimate, whose uncertainty accounts for up to half of the drift.
   const State reference = executing_.trajectory.state_at(to.trajectory.start());
   const double error_m = (to.trajectory.at_start().position_m - reference.position_m).norm();
   check_rule(expects_reboot_stop_ || expects_clock_stop_ ||

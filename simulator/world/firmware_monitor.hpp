@@ -11,8 +11,8 @@
 namespace sidestep {
 
 /// Observes one robot's firmware from outside and counts the rules that it breaks (coordinator/PROTOCOL.md,
-/// "Roles"). Shares no code with the firmware: it is told of commands received, except malformed ones, of
-/// versions begun and of facts reported. All times are by the robot's clock.
+/// "Roles"). Shares no code with the firmware: it is informed of received commands (except malformed ones),
+/// started versions and reported facts. All times are by the robot's clock.
 class FirmwareMonitor {
  public:
   explicit FirmwareMonitor(const Version& initial, double tracking_bound_m = SafetyBudget{}.tracking_bound_m,
@@ -21,14 +21,14 @@ class FirmwareMonitor {
 
   void command_arrived(const Command& command, Time now);
   void switched(const Version& to);
-  /// The firmware executes a stop of its own.
+  /// The firmware starts an own stop.
   void started_own_stop(const Version& to);
   void reported(const Feedback& fact);
   /// Disturbances of the robot.
   void lifted();
   void put_down();
   void rebooted() { expects_reboot_stop_ = true; }
-  /// The robot's clock has gone back, so that earlier times mean nothing.
+  /// The robot's clock has gone back, so earlier times are meaningless.
   void clock_went_back();
 
   std::uint64_t violations() const { return violations_; }
@@ -49,13 +49,13 @@ class FirmwareMonitor {
   void check_rule(bool is_kept) { violations_ += is_kept ? 0 : 1; }
 
   Version executing_;
-  bool is_own_ = false;  ///< executing a stop of its own
+  bool is_own_ = false;  ///< executing an own stop
   bool is_lifted_ = false;
-  bool expects_reboot_stop_ = false;  ///< rebooted, with the stop of its own still to come
-  bool expects_clock_stop_ = false;   ///< the same, after its clock has gone back
+  bool expects_reboot_stop_ = false;  ///< rebooted, and the own stop is still to come
+  bool expects_clock_stop_ = false;   ///< its clock has gone back, and the own stop is still to come
   VersionNumber highest_executed_ = 0;
-  std::uint64_t highest_seen_ = 0;  ///< of all version numbers and incarnations received
-  Incarnation acknowledged_ = 0;    ///< highest reported in a fact
+  std::uint64_t highest_seen_ = 0;  ///< highest version number or incarnation received
+  Incarnation acknowledged_ = 0;    ///< highest incarnation reported in a fact
   Epoch acknowledged_epoch_ = 0;
   Time last_fact_ = Time::min();
   std::array<Arrival, 64> arrivals_{};  ///< ring buffer of versions that arrived before their start

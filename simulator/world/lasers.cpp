@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// The noise is normal, but never larger than the largest error, which is this many standard deviations.
+/// The noise is normal, but limited to the maximum error, which is this many standard deviations.
 constexpr double kDeviations = 3;
 
 }  // namespace

@@ -21,11 +21,11 @@ class Lasers {
   /// Precondition: the scenario has a laser.
   Lasers(const Scenario& scenario, Time begin, std::uint64_t seed);
 
-  /// When the next scan is due, and which robot takes it.
+  /// The time at which the next scan is due, and the robot that takes it.
   Time next_scan() const { return next_scan_; }
   std::size_t next_robot() const { return next_robot_; }
-  /// Takes that scan. Sets everything but the header. False if the robot is off the floor, or reports
-  /// nothing. Precondition: world.time() is that of the scan, up to a step.
+  /// Takes that scan. Sets everything except the header. Returns false if the robot is off the floor or
+  /// reports nothing. Precondition: world.time() is the time of the scan, within one step.
   [[nodiscard]] bool scan(World& world, msg::LaserScan& scan);
 
  private:
@@ -36,12 +36,12 @@ class Lasers {
   LaserScanner scanner_;
   ObstacleWorld obstacles_;
   std::shared_ptr<const FloorMap> map_;
-  Duration interval_;  // between the scans of two robots
+  Duration interval_;  // interval between the scans of two robots
   std::size_t robot_count_;
   Time next_scan_;
   std::size_t next_robot_ = 0;
   Rng rng_;
-  std::vector<Circle> discs_;  // of robots and people
+  std::vector<Circle> discs_;  // discs of robots and people
 };
 
 }  // namespace sidestep

@@ -60,7 +60,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
   bus.at(begin, [this] { wake(); });
 }
 
-// The world goes on if the host's clock is set back, as do the bodies in it.
+// The world and the bodies in it continue if the host's clock is set back.
 Time SimulatorNode::clock() {
   const Time now = world_.world_time(bus_.now());
   if (now < clock_) world_.on_host_clock_set_back(clock_ - now);
@@ -161,7 +161,7 @@ void SimulatorNode::on_start(std::size_t robot) {
 }
 
 void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
-  // If its clock was set back, the robot reports nothing before it has made its own stop.
+  // If its clock was set back, the robot reports nothing until it has made its own stop.
   (void)world_.robot_time(robot, now);
   if (!world_.may_report(robot)) {
     feedback_due_[robot] = now + cycle_;
@@ -196,7 +196,7 @@ void SimulatorNode::capture_frame(Time now) {
   if (slot == frames_.end()) slot = frames_.emplace(frames_.end());
   const Time captured_at = world_.time();
   const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;
-  // Robots with lasers have to see opponents themselves.
+  // Robots with lasers must see opponents themselves.
   const auto opponents = lasers_ ? std::span<const Circle>() : world_.opponents().discs();
   cameras_.capture(captured_at, {world_.bodies(), ball, opponents, world_.sight_errors()}, slot->message);
   slot->message.captured_at_ns(to_ns(world_.host_time(captured_at)));

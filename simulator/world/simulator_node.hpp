@@ -33,13 +33,13 @@ class SimulatorNode {
   }
   /// For the outputs of this node.
   const EventReporter& events() const { return events_; }
-  /// An output of this node adds what it has dropped.
+  /// Registers an output of this node, which adds its own drop counts.
   void add_drop_source(std::function<void(DropCounters&)> source) {
     drop_sources_.push_back(std::move(source));
   }
   void count_drops(DropCounters& drops) const;
 
-  /// Whether a robot obeys an agent. A robot must not forget whom it obeys.
+  /// Whether any robot obeys an agent. A robot must not forget whom it obeys.
   bool is_commanded() const;
 
   const World& world() const { return world_; }
@@ -91,16 +91,16 @@ class SimulatorNode {
   WorldChanges changes_{events_, world_};
   Cameras cameras_;
   std::optional<Lasers> lasers_;
-  std::vector<Writer<msg::LaserScan>> scans_;  // of the robots with lasers
+  std::vector<Writer<msg::LaserScan>> scans_;  // for the robots with lasers
   msg::LaserScan scan_message_;
   Rng radio_rng_;
-  DropCounters drops_;  // lost commands and refused disturbances
+  DropCounters drops_;  // counts of lost commands and refused disturbances
   std::vector<std::function<void(DropCounters&)>> drop_sources_;
 
   std::unordered_map<RobotId, std::size_t> robot_index_;
   std::vector<Writer<msg::Feedback>> feedback_;
   std::vector<Time> feedback_due_;
-  std::vector<Time> watched_start_;  ///< per robot, the version start for which a timer is set
+  std::vector<Time> watched_start_;  ///< for each robot, the version start for which a timer is set
   Writer<msg::DetectionFrame> detections_;
   std::vector<PendingFrame> frames_;
   std::function<void(const msg::DetectionFrame&)> detection_listener_;

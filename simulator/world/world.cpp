@@ -10,7 +10,8 @@ namespace {
 // Slower wheels have less noise, in proportion to their speed.
 constexpr double kFullNoiseSpeed_mps = 0.1;
 
-/// Wheels and floor that can do what the robots' limits say, with a reserve to follow the reference.
+/// Capabilities of wheels and floor that suffice for the robots' limits, with a reserve to follow the
+/// reference.
 BodySettings body_settings(const MotionLimits& limits) {
   BodySettings body;
   const double needed_mps2 = 1.2 * std::max(limits.acceleration_mps2, limits.deceleration_mps2);
@@ -112,10 +113,10 @@ void World::step() {
 }
 
 // A clock that is set back by less than the bound stands still until the new time has caught up with it, so
-// that reported facts stay true. What was reported by a clock that is set back farther is void.
+// that reported facts stay true. If it is set back farther, what it reported is void.
 Time World::robot_time(std::size_t index, Time now) {
   Robot& robot = robots_[index];
-  // A scan or a command may ask for a moment before the last question.
+  // A scan or a command may ask for a time before the last request.
   robot.read_at = std::max(robot.read_at, now);
   const Time reading = robot.clock_error.reading(robot.read_at);
   if (robot.clock - reading <= clock_bound_) return robot.clock = std::max(robot.clock, reading);
@@ -144,7 +145,7 @@ Odometry World::measure(std::size_t index) {
   const double angular = (body.heading_rad() - robot.last_heading_rad) / kPhysicsStepSeconds;
   robot.last_position_m = rolled_position;
   robot.last_heading_rad = body.heading_rad();
-  // Wheels that stand still give no pulses.
+  // Wheels that stand still generate no pulses.
   const double wheel_speed_mps = velocity.norm() + radius_m_ * std::abs(angular);
   const double noise_mps = velocity_noise_mps_ * std::min(1.0, wheel_speed_mps / kFullNoiseSpeed_mps);
   const double x_noise = noise_mps * approximately_normal(robot.noise);

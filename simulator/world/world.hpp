@@ -24,20 +24,20 @@ namespace sidestep {
 
 /// The simulated floor: all bodies with their firmware, the ball, the obstacles and the opponents, in steps
 /// of kPhysicsStep. Robots are addressed by their index in the scenario. Times are by the host's clock, but
-/// go on if that is set back; each robot has a clock of its own.
+/// continue to increase if that clock is set back. Each robot has its own clock.
 class World {
  public:
   World(const Scenario& scenario, Time begin, std::uint64_t seed);
 
-  /// Advances in whole steps, the last of which ends no later than `to`.
+  /// Advances in complete steps; the last one ends no later than `to`.
   void advance(Time to);
   /// Skips time without simulating it; pose estimators then discard their odometry history.
   void skip_to(Time to) { time_ = std::max(time_, to); }
   /// The time of the last step.
   Time time() const { return time_; }
 
-  /// Applies a disturbance; false if the robot's state does not allow it. Precondition: the fields that its
-  /// kind uses are in range (disturbance_codec.hpp).
+  /// Applies a disturbance. Returns false if the robot's state does not allow it. Precondition: the fields
+  /// that its kind uses are in range (disturbance_codec.hpp).
   [[nodiscard]] bool disturb(std::size_t robot, const RobotDisturbance& disturbance, Time now);
 
   /// A command reaches a robot. Precondition: time() <= now < time() + kPhysicsStep.
@@ -46,14 +46,14 @@ class World {
   void on_malformed_command(std::size_t robot, Time now);
   /// The robot's clock. If it has gone back by more than the clock bound, the robot begins a new incarnation.
   Time robot_time(std::size_t robot, Time now);
-  /// The robot's facts; robot_incarnation is how often the robot has begun a new one.
+  /// The robot's facts; robot_incarnation is the number of times that the robot has started a new one.
   Feedback feedback(std::size_t robot, Time now);
-  /// The host's clock, and with it the clocks of all robots, has been set back by so much; the time of this
-  /// world goes on.
+  /// The host's clock, and with it the clocks of all robots, was set back by this duration. The time of this
+  /// world continues.
   void on_host_clock_set_back(Duration by);
-  /// What the host's clock shows at a time of this world.
+  /// The host's clock at a time of this world.
   Time host_time(Time t) const { return t - host_behind_; }
-  /// The time of this world when the host's clock shows this.
+  /// The time of this world when the host's clock shows this time.
   Time world_time(Time shown) const { return shown + host_behind_; }
 
   /// Robots that have changed version, agent or epoch, or have been lifted or put down, since their last
@@ -63,7 +63,7 @@ class World {
 
   std::size_t robot_count() const { return robots_.size(); }
   RobotId id(std::size_t robot) const { return robots_[robot].id; }
-  /// Whether it has power and has a version where it is; otherwise it reports nothing.
+  /// Whether it has power and a version at its position; otherwise it reports nothing.
   bool may_report(std::size_t robot) const {
     return robots_[robot].is_powered && robots_[robot].firmware.may_report();
   }
@@ -71,18 +71,18 @@ class World {
   /// The start of the robot's next pending version, by the host's clock; Time::max() if none is pending.
   Time next_start(std::size_t robot) const;
   std::span<const Body> bodies() const { return bodies_; }
-  /// How cameras see the robots wrongly.
+  /// Errors in how cameras see the robots.
   std::span<const SightError> sight_errors() const { return sight_errors_; }
   const std::optional<Ball>& ball() const { return ball_; }
   const ContactTotals& contacts() const { return contacts_.totals(); }
   const Opponents& opponents() const { return opponents_; }
   std::uint64_t firmware_violations() const;
-  /// What the robots have refused.
+  /// Adds the counts of what the robots have refused.
   void count_drops(DropCounters& drops) const;
-  /// Distance of a body from the version that it executes, by the robot's clock; 0 off the floor.
+  /// Distance between a body and the version that it executes, by the robot's clock; 0 off the floor.
   double reference_error_m(std::size_t robot) const;
 
-  /// Fills in everything but the header. For metrics and audit only.
+  /// Fills in everything except the header. Only for metrics and audit.
   void fill(msg::GroundTruth& truth) const;
 
  private:
@@ -95,12 +95,13 @@ class World {
     Actuation actuation;
     Vec2 last_position_m;  ///< without slip, for the odometry
     double last_heading_rad;
-    ClockError clock_error;      ///< of the robot's clock, relative to the host's
-    Time clock;                  ///< the latest reading
+    ClockError clock_error;      ///< error of the robot's clock relative to the host's
+    Time clock;                  ///< latest reading
     Time read_at = Time::min();  ///< when it was read
     std::uint64_t clock_setbacks = 0;
     VersionNumber last_own_stop = 0;
-    std::optional<Time> last_disturbance = std::nullopt;  ///< of the body; active ones may end later
+    /// Last disturbance of the body; active ones may end later.
+    std::optional<Time> last_disturbance = std::nullopt;
     bool has_pending_feedback = false;
     bool is_powered = true;
   };
@@ -128,9 +129,9 @@ class World {
   bool see_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void see_frozen(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void end(const ActiveDisturbance& disturbance);
-  /// Whether cameras have misled the robot, and it has not had a fix since that tells it where it is.
+  /// Whether cameras have misled the robot, and it has since had no fix that shows its true place.
   bool is_still_misled(const ActiveDisturbance& disturbance) const;
-  /// Whether it may take the body off its reference.
+  /// Whether the disturbance may take the body off its reference.
   bool affects_body(const ActiveDisturbance& disturbance) const;
   void carry(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void switch_versions(std::size_t robot, Time now);

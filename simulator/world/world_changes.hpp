@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// Reports what happens to the robots of a simulated world: disturbances, own stops and contacts.
+/// Reports events of a simulated world's robots: disturbances, own stops and contacts.
 class WorldChanges {
  public:
   WorldChanges(const EventReporter& events, const World& world);
@@ -26,7 +26,7 @@ class WorldChanges {
 
   const EventReporter& events_;
   const World& world_;
-  std::vector<VersionNumber> own_stops_;  // the last one of each robot
+  std::vector<VersionNumber> own_stops_;  // the last own stop of each robot
   std::uint64_t contacts_ = 0;
 };
 

@@ -12,14 +12,14 @@ namespace sidestep {
 struct CalibrateColoursOptions {
   std::string scenario_file;
   std::vector<std::string> frame_files;
-  std::vector<std::uint32_t> cameras{0};  ///< of the frames: one for all, or one for each
-  std::string cameras_file{};             ///< empty: cameras as in the scenario
+  std::vector<std::uint32_t> cameras{0};  ///< cameras of the frames: one for all frames, or one for each
+  std::string cameras_file{};             ///< empty: the scenario's cameras
   std::string layout_file{};              ///< empty: the butterfly
   std::string format{};                   ///< empty: the scenario's
 };
 
-/// Learns colours from pictures of a scenario's floor at the start. Throws ConfigError for a file, and
-/// std::invalid_argument for options or pictures that do not fit the scenario.
+/// Learns colours from pictures of a scenario's floor at the start. Throws ConfigError for an invalid file,
+/// and std::invalid_argument for options or pictures that do not fit the scenario.
 [[nodiscard]] LearnedColours calibrate_colours(const CalibrateColoursOptions& options);
 
 /// Whether the thresholds recognise most pixels of every colour that the pictures show; if not, the pictures

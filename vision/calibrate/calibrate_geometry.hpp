@@ -14,11 +14,11 @@ struct CalibratedCamera {
   NumberedCamera camera;
   std::size_t point_count = 0;
   CalibrationResult result;
-  YamlLocation worst_point;  ///< of the point with the largest residual
+  YamlLocation worst_point;  ///< location of the point with the largest residual
 };
 
-/// Calibrates each camera from its points. Throws ConfigError ("FILE:LINE: cameras[i]: ...") when the points
-/// of one do not determine it.
+/// Calibrates each camera from its points. Throws ConfigError ("FILE:LINE: cameras[i]: ...") if a camera's
+/// points do not determine it.
 [[nodiscard]] std::vector<CalibratedCamera> calibrate_geometry(const std::vector<CameraPoints>& cameras);
 
 /// One line per camera: number of points, residuals, and the predicted error at the height of robots.

@@ -10,19 +10,19 @@
 
 namespace sidestep {
 
-/// The discs of one camera's image for which the scene is known.
+/// The discs in one camera's image of a known scene.
 struct FloorLabels {
   std::vector<LabelledDisc> discs;    ///< dots and the ball
   std::vector<LabelledDisc> ignored;  ///< obstacles and opponents, whose colours are unknown
 };
 
 /// Labels for a scenario's floor at the start. Each robot wears the pattern of its number; throws
-/// std::invalid_argument when the layout has no such pattern.
+/// std::invalid_argument if the layout has no such pattern.
 [[nodiscard]] FloorLabels floor_labels_at_start(const Scenario& scenario, const MarkerLayout& layout,
                                                 const CameraModel& camera);
 
-/// All colours of robots and ball at the start, over the whole floor, each once. Precondition: the layout has
-/// all patterns.
+/// All colours of robots and ball at the start, over the whole floor, without repetitions. Precondition: the
+/// layout has all patterns.
 [[nodiscard]] std::vector<Colour> colours_at_start(const Scenario& scenario, const MarkerLayout& layout);
 
 }  // namespace sidestep

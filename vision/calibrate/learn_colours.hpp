@@ -19,15 +19,15 @@ struct LabelledImage {
 
 struct LearnedColour {
   Colour colour{};
-  std::uint64_t pixels = 0;  ///< labelled with this colour
-  double recall = 0;         ///< share of them that the thresholds classify as this colour
+  std::uint64_t pixels = 0;  ///< number of pixels labelled with this colour
+  double recall = 0;         ///< fraction of them that the thresholds classify as this colour
 };
 
 struct LearnedColours {
   ColourThresholds thresholds;
-  std::vector<LearnedColour> colours;  ///< one for each expected colour
-  double ground_false_positives = 0;   ///< share of the background classified as a named colour
-  std::vector<std::string> warnings;   ///< for the user, about data that calibrates badly
+  std::vector<LearnedColour> colours;  ///< one element per expected colour
+  double ground_false_positives = 0;   ///< fraction of the background classified as a named colour
+  std::vector<std::string> warnings;   ///< for the user, about data that is bad for calibration
 };
 
 /// Learns thresholds from labelled images, and evaluates them on the same images. `expected` are the colours

@@ -73,7 +73,7 @@ CameraParameters updated(CameraParameters camera, const Step& step) {
   return camera;
 }
 
-/// Sum of squared pixel errors; infinite when a point is not visible.
+/// Sum of squared pixel errors; infinite if a point is not visible.
 double cost_of(const CameraParameters& parameters, std::span<const CalibrationPoint> points) {
   if (!validation_error(parameters).empty()) return kInfinite;
   const CameraModel camera(parameters);
@@ -131,7 +131,7 @@ double minimise(CameraParameters& camera, std::span<const CalibrationPoint> poin
   return cost;
 }
 
-/// Sets an initial pose for the camera's focal length. False when no pose shows all points.
+/// Sets an initial pose for the camera's focal length. False if no pose shows all points.
 bool find_pose(std::span<const CalibrationPoint> points, CameraParameters& camera) {
   std::vector<cv::Point3d> positions;
   std::vector<cv::Point2d> rays;

@@ -19,7 +19,7 @@ struct CalibrationSettings {
   bool estimates_focal_length = true;
   bool estimates_distortion = true;
   bool estimates_principal_point = false;
-  double max_robot_top_sd_px = 0.5;  ///< limit of CalibrationResult::robot_top_sd_px
+  double max_robot_top_sd_px = 0.5;  ///< upper limit of CalibrationResult::robot_top_sd_px
 };
 
 struct CalibrationResult {
@@ -27,11 +27,11 @@ struct CalibrationResult {
   std::string error;
   CameraParameters camera;
   double rms_px = 0;            ///< RMS distance between given pixels and projected points
-  double max_px = 0;            ///< largest such distance
-  std::size_t worst_index = 0;  ///< of the point with that distance
+  double max_px = 0;            ///< maximum of these distances
+  std::size_t worst_index = 0;  ///< index of the point with that distance
   double rms_m = 0;             ///< RMS distance between given points and pixels projected to their heights
   /// Predicted standard deviation of the pixel at which the camera observes the top of a robot, 0.15 m above
-  /// one of the points; the maximum over all points. Large when the points do not determine the camera's
+  /// one of the points; the maximum over all points. Large if the points do not determine the camera's
   /// height, such as points on the floor seen vertically from above.
   double robot_top_sd_px = 0;
 };

@@ -27,7 +27,7 @@ struct NumberedCamera {
 ///     translation_m: [0, 0, 4]
 /// ```
 [[nodiscard]] std::vector<NumberedCamera> load_cameras(const std::string& path);
-/// The same from text; `file_name` appears in error messages.
+/// Parses and checks the text of a file of cameras; `file_name` appears in error messages.
 [[nodiscard]] std::vector<NumberedCamera> parse_cameras(const std::string& text,
                                                         const std::string& file_name);
 /// The text of a file from which parse_cameras() restores every number exactly.

@@ -8,7 +8,7 @@
 #include "common/camera/camera_model.hpp"
 #include "common/config/yaml_map.hpp"
 
-/// Keys and ranges that files of cameras and files of calibration points have in common.
+/// Keys and ranges shared by files of cameras and files of calibration points.
 namespace sidestep::camera_keys {
 
 inline constexpr std::size_t kMaxCameras = 64;
@@ -21,10 +21,10 @@ inline constexpr Range kCoordinate_m{-1000, 1000};
 [[nodiscard]] std::uint32_t read_id(YamlMap& map);
 /// Sets width and height from the key `image_px`.
 void read_image_size(YamlMap& map, CameraParameters& camera);
-/// Throws a ConfigError if `ids` contains `id`, else adds it. `map` is the camera's mapping.
+/// Throws a ConfigError if `ids` contains `id`; otherwise adds it. `map` is the camera's mapping.
 void require_new_id(YamlMap& map, std::uint32_t id, std::set<std::uint32_t>& ids);
 
-/// The cameras of a file with the one key `cameras`. `read_camera` reads one of them from a YamlMap&.
+/// The cameras in a file whose only key is `cameras`. `read_camera` reads one camera from a YamlMap&.
 template <typename Camera, typename Read>
 [[nodiscard]] std::vector<Camera> read_cameras(YamlMap file, Read read_camera) {
   std::vector<Camera> cameras;

@@ -13,10 +13,10 @@ namespace sidestep {
 /// The input for the calibration of one camera.
 struct CameraPoints {
   std::uint32_t id = 0;
-  CameraParameters initial;      ///< image size, and the parameters that are known
-  CalibrationSettings settings;  ///< which parameters are estimated
+  CameraParameters initial;      ///< image size, and the known parameters
+  CalibrationSettings settings;  ///< which parameters to estimate
   std::vector<CalibrationPoint> points;
-  std::vector<YamlLocation> point_locations;  ///< of `points`
+  std::vector<YamlLocation> point_locations;  ///< locations of `points`
   YamlLocation location;
 };
 
@@ -37,7 +37,7 @@ struct CameraPoints {
 ///       - {pixel: [401.7, 290.3], field_m: [0.1, 0, 0.15]}
 /// ```
 [[nodiscard]] std::vector<CameraPoints> load_points(const std::string& path);
-/// The same from text; `file_name` appears in error messages.
+/// Parses and checks the text of a file of calibration points; `file_name` appears in error messages.
 [[nodiscard]] std::vector<CameraPoints> parse_points(const std::string& text, const std::string& file_name);
 
 }  // namespace sidestep

@@ -12,7 +12,7 @@ namespace sidestep {
 /// Thresholds that classify the colours in frames of one format.
 struct ColourThresholds {
   PixelFormat format = PixelFormat::kYuv422;
-  std::vector<ColourBox> boxes;  ///< numbered as Colour, or kOtherColour
+  std::vector<ColourBox> boxes;  ///< numbers are those of Colour, or kOtherColour
 };
 
 /// Reads and validates a file of thresholds; throws ConfigError ("FILE:LINE: ...") for any error. The
@@ -24,9 +24,9 @@ struct ColourThresholds {
 ///   - {colour: other, low: [0, 150, 0], high: [255, 255, 255]}   # any colour without a name
 /// ```
 [[nodiscard]] ColourThresholds load_colours(const std::string& path);
-/// The same from text; `file_name` appears in error messages.
+/// Parses and checks the text of a file of thresholds; `file_name` appears in error messages.
 [[nodiscard]] ColourThresholds parse_colours(const std::string& text, const std::string& file_name);
-/// The text of a file that parse_colours() reads.
+/// The text of a file that parse_colours() can read.
 [[nodiscard]] std::string colours_text(const ColourThresholds& thresholds);
 
 }  // namespace sidestep

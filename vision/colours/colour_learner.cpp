@@ -11,19 +11,21 @@ namespace sidestep {
 namespace {
 
 constexpr int kGrey = 128;
-constexpr int kMinChroma = 25;             // distance from grey on U or V that identifies a colour
-constexpr int kRangeMargin = 14;           // around the observed range on U or V below that distance
-constexpr double kEdgeShare = 0.4;         // of the way from grey to a colour: there a region ends
-constexpr double kBrightnessWeight = 0.5;  // of gaps in brightness against U and V: light is uneven
+constexpr int kMinChroma = 25;      // distance from grey on U or V that identifies a colour
+constexpr int kRangeMargin = 14;    // margin around the observed range, on U or V below that distance
+constexpr double kEdgeShare = 0.4;  // fraction of the way from grey to a colour at which a region ends
+// Weight of gaps in brightness relative to U and V, because light is uneven.
+constexpr double kBrightnessWeight = 0.5;
 constexpr double kOutlierShare = 0.002, kFloorOutlierShare = 0.1;
 
-// For boxes of other colours.
-constexpr std::array<int, 4> kBandEdges{0, 96, 160, 256};  // of brightness
+// Bands for boxes of other colours.
+constexpr std::array<int, 4> kBandEdges{0, 96, 160, 256};  // limits in brightness
 constexpr double kGroundOutlierShare = 0.001;              // white lines cover less than 1 % of the floor
-constexpr int kGroundMargin = 8;                           // around the observed background, on U or V
-constexpr double kTintShare = 0.07;  // of the brightness: chroma of grey with a tenth more red or blue
-constexpr int kNoiseMargin = 4;      // on U or V
-constexpr int kCoarseStep = 16;      // range of a high nibble, by which segmentation excludes pixels
+constexpr int kGroundMargin = 8;                           // margin around the observed background, on U or V
+// Fraction of the brightness: chroma of grey with a tenth more red or blue.
+constexpr double kTintShare = 0.07;
+constexpr int kNoiseMargin = 4;  // margin on U or V
+constexpr int kCoarseStep = 16;  // range of a high nibble, by which segmentation excludes pixels
 
 }  // namespace
 
@@ -34,7 +36,7 @@ void ColourLearner::Histogram::add(const Yuv& pixel) {
   ++bins[2][pixel.v];
 }
 
-/// The smallest value that more than this share of all pixels do not exceed.
+/// The quantile: the smallest value that is exceeded by at most the given fraction of all pixels.
 int ColourLearner::Histogram::quantile(std::size_t channel, double share) const {
   const double target = share * static_cast<double>(count);
   std::uint64_t sum = 0;
@@ -85,7 +87,7 @@ ColourLearner::Ranges ColourLearner::extended_box(const Histogram& histogram) co
   return box;
 }
 
-/// Gap on a channel between two observed ranges: 0 when they overlap, positive when `own` lies above.
+/// Gap on a channel between two observed ranges: 0 if they overlap, positive if `own` lies above.
 int ColourLearner::gap(const Range& own, const Range& other) {
   const int below = own.low - other.high, above = other.low - own.high;
   return below >= above ? std::max(0, below) : -std::max(0, above);
@@ -160,7 +162,7 @@ std::vector<ColourBox> ColourLearner::other_boxes() const {
     const auto darkest = static_cast<std::uint8_t>(kBandEdges[band]);
     const auto brightest = static_cast<std::uint8_t>(kBandEdges[band + 1] - 1);
     const int grey_margin = static_cast<int>(kTintShare * brightest) + kNoiseMargin;
-    // The floor's chroma shows at the edges of brighter and darker objects.
+    // The floor's chroma also appears at the edges of brighter and darker objects.
     Ranges excluded = floor;
     if (background_bands_[band].count > 0) {
       const Ranges observed = background_bands_[band].ranges(kGroundOutlierShare);

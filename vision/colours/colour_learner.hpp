@@ -15,8 +15,8 @@
 
 namespace sidestep {
 
-/// Colour number of boxes for everything that is neither the floor nor a learned colour; follows those of
-/// Colour.
+/// Colour number of boxes for everything that is neither the floor nor a learned colour. It follows the
+/// numbers of Colour.
 inline constexpr std::uint32_t kOtherColour = kColours.size();
 
 /// The name used in files. Precondition: the number of a Colour, or kOtherColour.
@@ -40,7 +40,7 @@ struct LabelledDisc {
 /// discs.
 class ColourLearner {
  public:
-  /// Colours are recognised in light down to `min_light_ratio` of the darkest observed.
+  /// Colours are recognised in light down to `min_light_ratio` of the darkest light observed.
   explicit ColourLearner(double min_light_ratio = 0.5) : min_light_ratio_(min_light_ratio) {}
 
   /// Adds a frame. The inner parts of `discs` show their colours; pixels far from all discs are background,
@@ -52,10 +52,10 @@ class ColourLearner {
   /// Adds one pixel of the background.
   void add_background(const Yuv& pixel);
 
-  /// A box for each observed colour. It extends from two fifths of the way from grey to the colour, so that
-  /// regions keep their size and darker light is tolerated, to the end of the range. Towards another colour
-  /// or the floor the border is midway between the observed ranges. Boxes of colours that no border separates
-  /// overlap; the first one wins.
+  /// One box per observed colour. It starts at two fifths of the way from grey to the colour, so that regions
+  /// keep their size and darker light is tolerated, and ends at the end of the range. Towards another colour
+  /// or the floor, the border is midway between the observed ranges. Where no border separates two colours,
+  /// their boxes overlap, and the first one wins.
   [[nodiscard]] std::vector<ColourBox> named_boxes() const;
 
   /// Boxes of kOtherColour for everything clearly outside the observed background and not grey in tinted
@@ -91,7 +91,8 @@ class ColourLearner {
   double min_light_ratio_;
   std::array<Histogram, kColours.size()> colours_;
   Histogram background_;
-  std::array<Histogram, kBands> background_bands_;  ///< the background by brightness
+  /// Histograms of the background, indexed by brightness band.
+  std::array<Histogram, kBands> background_bands_;
 };
 
 }  // namespace sidestep

@@ -10,15 +10,16 @@
 namespace sidestep {
 namespace {
 
-/// A range of brightness, as a share of full light.
+/// A range of brightness, as fractions of full light.
 struct LightRange {
   double low, high;
 };
 constexpr LightRange kAll{0.55, 1}, kBright{0.75, 1}, kDim{0.55, 0.75};
 constexpr double kStep = 0.05;
-constexpr double kMinLightRatio = 0.7;  // of the dimmest light: regions grow too large closer to black
-constexpr double kNoise = 4;            // of 255, in red, green and blue
-constexpr int kFieldWeight = 20;        // frequency of the field surface, relative to white and black
+// Relative to the dimmest light: regions would grow too large closer to black.
+constexpr double kMinLightRatio = 0.7;
+constexpr double kNoise = 4;      // in levels of 255, in red, green and blue
+constexpr int kFieldWeight = 20;  // frequency of the field surface, relative to white and black
 
 /// The numbers of two neighbouring pixels of one colour in a frame.
 Yuv yuv_in_frame(PixelFormat format, const Rgb& colour) {

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// A horizontal disc in the world, projected into the image; nothing when its centre is outside the image.
+/// A horizontal disc in the world, projected into the image; nullopt if its centre is outside the image.
 [[nodiscard]] std::optional<LabelledDisc> projected_disc(const CameraModel& camera, Colour colour,
                                                          const Vec3& centre_m, double radius_m);
 

@@ -12,7 +12,7 @@
 namespace sidestep {
 
 /// Calls on_disc(disc, x, y) for each pixel that lies entirely inside one of `discs`, and on_background(x, y)
-/// for each that is near none of them. Skips pixels near one of `ignored`.
+/// for each pixel that is not near any of them. Skips pixels near one of `ignored`.
 template <typename OnDisc, typename OnBackground>
 void for_labelled_pixels(const ImageView& image, std::span<const LabelledDisc> discs,
                          std::span<const LabelledDisc> ignored, OnDisc on_disc, OnBackground on_background) {

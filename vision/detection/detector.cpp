@@ -11,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-// Lit from above, a ball shows its colour on only a part of its disc.
+// Lit from above, a ball shows its colour on only part of its disc.
 constexpr double kMinBallAreaRatio = 0.25, kMaxBallAreaRatio = 2.0;
 
 // A small merge gap keeps dots of one colour apart.
@@ -21,12 +21,12 @@ double confidence_of(const DetectedPattern& pattern, const MarkerLayout& layout)
   return pattern.dot_count / static_cast<double>(layout.dots.size() + 1);
 }
 
-// Margins around the radius within which pixels are attributed to a robot: one that was found, and one that
+// Margins around the radius within which pixels are attributed to a robot that was found, and to a robot that
 // was expected but not found.
 constexpr double kFoundRobotMargin_m = 0.01, kMissedRobotMargin_m = 0.04;
 
-// A tinted centre may be this far outside its team's thresholds, in U and V, if the other team's are at least
-// this many times as far.
+// A tinted centre may be outside its team's thresholds by at most this distance in U and V, if the other
+// team's thresholds are at least this many times as far away.
 constexpr double kMaxTeamDistance = 24, kMinTeamDistanceRatio = 3;
 
 std::uint32_t bit(Colour colour) { return std::uint32_t{1} << static_cast<std::uint32_t>(colour); }
@@ -83,8 +83,8 @@ double Detector::chroma_distance(Colour colour, const Vec2& uv) const {
   return min_distance;
 }
 
-/// The team of a pattern whose centre dot is missing because tinted light moves it out of its team's
-/// thresholds: the team whose colour is near, if the other's is far.
+/// The team of a pattern whose centre dot is missing because tinted light has moved its colour out of the
+/// team's thresholds. It is the team whose colour is near, provided that the other team's colour is far.
 std::optional<Team> Detector::team_by_chroma(const ImageView& image, const Vec2& centre_m) const {
   const auto centre = camera_.pixel_of({centre_m.x(), centre_m.y(), settings_.robot_height_m});
   if (!centre) return std::nullopt;

@@ -18,7 +18,7 @@
 namespace sidestep {
 
 struct DetectorSettings {
-  std::vector<ColourBox> boxes;  ///< numbered as Colour, or kOtherColour
+  std::vector<ColourBox> boxes;  ///< numbers are those of Colour, or kOtherColour
   MarkerLayout layout;
   std::vector<RosterEntry> roster;
   double robot_radius_m = 0.09;
@@ -27,16 +27,16 @@ struct DetectorSettings {
   Colour ball = Colour::kOrange;
   double min_obstacle_radius_m = 0.03;
   std::vector<Shape> known_obstacles;         ///< not reported
-  std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported; null: none
+  std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported either; null: no map
 };
 
-/// Detects robots, balls and obstacles in the frames of one camera. Obstacles are all that is neither robot,
-/// ball nor ground (ObstacleFinder).
+/// Detects robots, balls and obstacles in the frames of one camera. Everything that is neither robot, ball
+/// nor ground is an obstacle (ObstacleFinder).
 class Detector {
  public:
   Detector(const CameraModel& camera, const DetectorSettings& settings);
 
-  /// Fills in the frame except its header and camera. `expected` holds predicted poses at the time of
+  /// Fills in the frame except its header and camera. `expected` contains predicted poses at the time of
   /// capture. Precondition: the image has the camera's size.
   void detect(const ImageView& image, Time captured_at, std::span<const ExpectedRobot> expected,
               msg::DetectionFrame& frame);

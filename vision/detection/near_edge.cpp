@@ -11,13 +11,15 @@ namespace sidestep {
 namespace {
 
 constexpr int kGrey = 128;
-constexpr double kShadedShare = 0.5;      // of the obstacle's chroma that its shaded side shows
-constexpr double kMaxFloorShare = 0.3;    // of the obstacle's chroma that the floor may show
-constexpr double kFloorOffset = 1.5;      // half widths from the middle at which the floor is sampled
+constexpr double kShadedShare = 0.5;    // minimum fraction of the obstacle's chroma on its shaded side
+constexpr double kMaxFloorShare = 0.3;  // maximum fraction of the obstacle's chroma on the floor
+// Offset from the middle, in half widths, at which the floor is sampled.
+constexpr double kFloorOffset = 1.5;
 constexpr double kSampleHalfWidth = 0.2;  // half widths to either side that are averaged
 constexpr int kSamplesPerSide = 2;
-constexpr double kMinNearRatio = 0.6;  // of near_m: no obstacle is high enough for its foot to be nearer
-constexpr double kStepRatio = 0.004;   // of near_m, about half a pixel
+// Fraction of near_m: no obstacle is high enough for its foot to be nearer.
+constexpr double kMinNearRatio = 0.6;
+constexpr double kStepRatio = 0.004;  // fraction of near_m: about half a pixel
 
 class HueSampler {
  public:
@@ -25,9 +27,9 @@ class HueSampler {
              const VerticalCylinders& robots)
       : silhouette_(silhouette), camera_(camera), image_(image), robots_(robots) {}
 
-  /// The share of the obstacle's chroma at a distance and at an offset from the middle in half widths: the
-  /// mean over the samples that are in the image and not occluded, 1 for the obstacle's own chroma. Nothing
-  /// when there is no such sample.
+  /// The fraction of the obstacle's chroma at a distance and at an offset from the middle in half widths. It
+  /// is the mean over the samples that are in the image and not occluded; 1 is the obstacle's own chroma.
+  /// nullopt if there is no such sample.
   std::optional<double> at(double distance_m, double offset) const {
     double sum = 0;
     int count = 0;

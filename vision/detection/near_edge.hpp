@@ -7,18 +7,18 @@
 
 namespace sidestep {
 
-/// The silhouette of an obstacle in polar coordinates around the point on the floor below the camera.
+/// The silhouette of an obstacle in polar coordinates around the floor point below the camera.
 struct Silhouette {
-  Vec2 direction{1, 0};       ///< unit vector to its middle
-  double near_m = 0;          ///< distance to the nearest point that shows its colour
-  double half_width_rad = 0;  ///< half the angle that it subtends
-  Vec2 chroma{0, 0};          ///< its mean U and V, relative to grey
+  Vec2 direction{1, 0};       ///< unit vector to the middle of the silhouette
+  double near_m = 0;          ///< distance to the nearest point with the obstacle's colour
+  double half_width_rad = 0;  ///< half the angle that the obstacle subtends
+  Vec2 chroma{0, 0};          ///< mean U and V of the obstacle, relative to grey
 };
 
-/// Distance to the foot of an obstacle whose side towards the camera is in shade, and so too dark for its
-/// colour to be classified. Follows the hue inwards from `near_m` while there is more of it than on the floor
-/// to the sides, until robots or the image border hide it. Returns `near_m` where the floor has that hue or
-/// is not visible, or where the hue does not end.
+/// Distance to the foot of an obstacle whose side towards the camera is in shade and therefore too dark for
+/// its colour to be classified. Follows the hue inwards from `near_m` as long as it is stronger than on the
+/// floor to the sides, until robots or the image border hide it. Returns `near_m` if the floor has that hue
+/// or is not visible, or if the hue does not end.
 [[nodiscard]] double near_edge_m(const Silhouette& silhouette, const CameraModel& camera,
                                  const ImageView& image, const VerticalCylinders& robots);
 

@@ -12,12 +12,14 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMaxBlobs = 1024;       // more would take too long to merge
-constexpr int kMaxGap_px = 2;                 // between adjacent regions
-constexpr double kMinRegionAreaRatio = 0.15;  // of the smallest obstacle's area: smaller regions are noise
-constexpr double kMaxDotAreaRatio = 3;     // of the largest dot's area: larger blobs are no dot and no ball
-constexpr double kMinFillRatio = 0.6;      // coloured share of the pixels inside the contour
-constexpr double kMaxHalfWidthSine = 0.7;  // beyond it the obstacle is treated as below the camera
+constexpr std::size_t kMaxBlobs = 1024;  // more blobs would take too long to merge
+constexpr int kMaxGap_px = 2;            // between adjacent regions
+// Fraction of the smallest obstacle's area: smaller regions are noise.
+constexpr double kMinRegionAreaRatio = 0.15;
+// Relative to the largest dot's area: larger blobs are neither dot nor ball.
+constexpr double kMaxDotAreaRatio = 3;
+constexpr double kMinFillRatio = 0.6;      // minimum coloured fraction of the pixels inside the contour
+constexpr double kMaxHalfWidthSine = 0.7;  // beyond this, the obstacle is treated as being below the camera
 
 // Known obstacles are extended by this margin; circles are assumed to be this high.
 constexpr double kKnownMargin_m = 0.04, kKnownHeight_m = 0.3;
@@ -117,7 +119,7 @@ bool ObstacleFinder::find_contour(const Blob& blob, const ImageView& image, cons
   return !contour_.empty() && blob.area_px >= kMinFillRatio * static_cast<double>(enclosed_px);
 }
 
-/// Whether a wall or a map cell that is not a circle hides a point on the floor.
+/// Whether a point on the floor is hidden by a wall, a map cell or another shape that is not a circle.
 bool ObstacleFinder::is_in_shadow_of_floor(const Vec2& floor_m) const {
   const Vec3& eye_m = camera_.position_m();
   const double share = std::min(1.0, settings_.robot_height_m / eye_m.z());
@@ -148,7 +150,7 @@ bool ObstacleFinder::is_in_known_shadow() const {
          std::ranges::all_of(contour_, [&](const Vec2& point) { return is_in_shadow_of_floor(point); });
 }
 
-/// Independent of the known obstacle's height.
+/// This does not depend on the known obstacle's height.
 bool ObstacleFinder::is_within_known(const Circle& circle) const {
   return std::ranges::any_of(settings_.known_obstacles, [&](const Shape& known) {
     return signed_distance(circle.centre_m, known) + circle.radius_m <= kKnownMargin_m;

@@ -20,39 +20,42 @@ namespace sidestep {
 
 struct ObstacleFinderSettings {
   std::uint32_t ground_colours = 0;  ///< bit c: colour c belongs to the ground, never to an obstacle
-  double max_dot_radius_m = 0.025;   ///< of the largest dot or ball
-  double min_radius_m = 0.03;        ///< of an obstacle
+  double max_dot_radius_m = 0.025;   ///< radius of the largest dot or ball
+  double min_radius_m = 0.03;        ///< minimum radius of an obstacle
   double robot_height_m = 0.15;
   std::vector<Shape> known_obstacles;         ///< not reported
-  std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported; null: none
+  std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported either; null: no map
 };
 
-/// Finds obstacles on the floor, neither robot nor ball, from regions of any colour. Adjacent regions form
-/// one blob; a blob counts when it is too large for a dot or the ball. The height of an obstacle is unknown,
-/// and irrelevant for a vertical cylinder: around the point below the camera it subtends the same angle as
-/// its base whatever its height, and its nearest point lies on the floor. Objects that float, or show their
-/// colour only on top, are estimated farther away and larger, by the ratio of their height to the camera's.
-/// A blob is attributed to a known obstacle when it lies in the shadow that the obstacle would cast from a
-/// lamp at the camera, or when its circle lies within the known one. Circles are assumed to be 0.3 m high;
-/// other shapes and map cells, whose long shadows could hide a person, as high as robots.
+/// Finds obstacles on the floor that are neither robot nor ball, from regions of any colour. Adjacent regions
+/// form one blob; a blob counts if it is too large for a dot or the ball. The height of an obstacle is
+/// unknown, but irrelevant for a vertical cylinder: around the point below the camera, the cylinder subtends
+/// the same angle as its base whatever its height, and its nearest point lies on the floor. Objects that
+/// float, or show their colour only on top, are estimated to be farther away and larger, by the ratio of
+/// their height to the camera's. A blob is attributed to a known obstacle if it lies in the shadow that the
+/// obstacle would cast from a lamp at the camera, or if its circle lies within the known one. Circles are
+/// assumed to be 0.3 m high; other shapes and map cells, whose long shadows could hide a person, as high as
+/// robots.
 class ObstacleFinder {
  public:
   ObstacleFinder(const CameraModel& camera, const ObstacleFinderSettings& settings)
       : camera_(camera), settings_(settings) {}
 
-  /// Obstacles, largest first, which the caller may reorder. Pixels on or behind one of the `robots`, which
-  /// fill these circles from the floor to their tops, are ignored. Valid until the next call; allocates when
-  /// the scene has more blobs or contour points than any before.
+  /// Obstacles, largest first; the caller may reorder them. Ignores pixels on or behind one of the `robots`,
+  /// which fill these circles from the floor to their tops. Valid until the next call. Allocates only if the
+  /// scene has more blobs or contour points than any before.
   std::span<Circle> find(const ImageView& image, const ColourClasses& classes,
                          std::span<const Region> regions, std::span<const Circle> robots);
 
-  /// Whether the last image had more blobs than the finder handles, so that it may have missed any obstacle.
+  /// Whether the last image had more blobs than the finder can handle, so that it may have missed any
+  /// obstacle.
   bool has_overflowed() const { return has_overflowed_; }
-  /// Whether a region lies within the largest region of an obstacle of the last call, known ones included.
+  /// Whether a region lies within the largest region of an obstacle found in the last call, including known
+  /// obstacles.
   bool is_part_of_obstacle(const Region& region) const;
 
  private:
-  /// Adjacent regions.
+  /// A group of adjacent regions.
   struct Blob {
     Region largest;
     int left_px = 0, right_px = 0, top_px = 0, bottom_px = 0;
@@ -63,7 +66,7 @@ class ObstacleFinder {
   void collect_blobs(std::span<const Region> regions, const VerticalCylinders& robots);
   bool is_larger_than_dot(const Blob& blob) const;
   /// Fills contour_ with the ends of each row's coloured pixels, projected to the floor, and chroma_. False
-  /// when the blob is not solid.
+  /// if the blob is not solid.
   bool find_contour(const Blob& blob, const ImageView& image, const ColourClasses& classes,
                     const VerticalCylinders& robots);
   bool is_in_known_shadow() const;

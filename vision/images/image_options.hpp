@@ -10,12 +10,12 @@ namespace sidestep {
 /// Files that describe cameras and markers beyond the scenario.
 struct ImageOptions {
   std::string colours_file{};  ///< empty: default_colours()
-  std::string cameras_file{};  ///< empty: cameras as in the scenario
+  std::string cameras_file{};  ///< empty: the scenario's cameras
   std::string layout_file{};   ///< empty: the butterfly
 };
 
 /// Creates the reader for a scenario's images. Throws ConfigError for an invalid file, and
-/// std::invalid_argument for one that does not fit the scenario.
+/// std::invalid_argument for a file that does not fit the scenario.
 [[nodiscard]] ImageReader image_reader(const Scenario& scenario, const ImageOptions& options);
 
 }  // namespace sidestep

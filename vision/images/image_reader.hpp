@@ -12,11 +12,11 @@
 
 namespace sidestep {
 
-/// The image in a message; nothing when its size or format does not match its bytes or the camera.
+/// The image in a message; nullopt if its size or format does not match its bytes or the camera.
 [[nodiscard]] std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera);
 
 /// Detector settings for a scenario. Robots wear the layout's pattern of their number; throws
-/// std::invalid_argument when a robot's number has none.
+/// std::invalid_argument if there is no pattern for a robot's number.
 [[nodiscard]] DetectorSettings detector_settings(const Scenario& scenario,
                                                  const std::vector<ColourBox>& boxes,
                                                  const MarkerLayout& layout);
@@ -24,12 +24,13 @@ namespace sidestep {
 /// Runs detection on the images of all cameras of a scenario.
 class ImageReader {
  public:
-  /// `cameras` are indexed by their numbers in messages. Throws as detector_settings() does.
+  /// `cameras` are indexed by their numbers in messages. Throws what detector_settings() throws.
   ImageReader(const Scenario& scenario, std::vector<CameraModel> cameras, const ColourThresholds& colours,
               const MarkerLayout& layout);
 
-  /// Fills in the detections of an image, all but the frame's header. False, and the frame unchanged, when
-  /// the image is not timely or not from one of the cameras. `world` provides recent poses of the robots.
+  /// Fills in the detections of an image: everything except the frame's header. Returns false and leaves the
+  /// frame unchanged if the image is not timely or not from one of the cameras. `world` provides recent poses
+  /// of the robots.
   bool read(const msg::CameraImage& message, Time now, const msg::WorldState& world,
             msg::DetectionFrame& frame);
 

@@ -15,9 +15,8 @@ struct LeagueAddress {
   std::string interface = league::kLeagueInterface;
 };
 
-/// Feeds a vision node with detections from the league's multicast, and logs problems.
-/// Precondition: the bus makes no callbacks after this object's destruction. Throws as MulticastReceiver and
-/// LeagueSource do.
+/// Feeds a vision node with detections from the league's multicast, and logs problems. Precondition: the bus
+/// makes no callbacks after this object's destruction. Throws what MulticastReceiver and LeagueSource throw.
 class LeagueInput {
  public:
   LeagueInput(DdsBus& bus, const Scenario& scenario, const LeagueAddress& address, VisionNode& node);

@@ -18,26 +18,28 @@
 namespace sidestep {
 
 /// Converts the league's vision packets to detection frames. Robots are identified by team and number; a
-/// robot without a number, or with one that is not in the scenario, becomes an obstacle with the radius of a
-/// league robot. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets, and
-/// packets whose capture time cannot be determined, are counted and dropped.
+/// robot without a number, or with a number that is not in the scenario, becomes an obstacle with the radius
+/// of a league robot. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets,
+/// and packets whose capture time cannot be determined, are counted and dropped.
 class LeagueSource {
  public:
   struct Counts {
     std::uint64_t packets = 0;
-    std::uint64_t frames = 0;                                     ///< returned by decode()
-    std::array<std::uint64_t, league::kDecodeErrors> rejected{};  ///< packets, by league::DecodeError
-    std::uint64_t duplicates = 0;                                 ///< frames received before
-    std::uint64_t unsynchronised = 0;  ///< frames whose capture time could not be determined
-    /// Detections: balls beyond the capacity of a frame, obstacles beyond it, of which those nearest to
-    /// robots are kept, and robots of the scenario without a heading.
+    std::uint64_t frames = 0;  ///< number of frames returned by decode()
+    /// Number of packets, indexed by league::DecodeError.
+    std::array<std::uint64_t, league::kDecodeErrors> rejected{};
+    /// Number of frames that had been received before.
+    std::uint64_t duplicates = 0;
+    std::uint64_t unsynchronised = 0;  ///< number of frames whose capture time could not be determined
+    /// Number of detections dropped: balls and obstacles beyond the capacity of a frame (the obstacles
+    /// nearest to robots are kept), and robots of the scenario without a heading.
     std::uint64_t dropped = 0;
   };
 
-  /// Throws std::invalid_argument when two robots of the scenario have the same team and number.
+  /// Throws std::invalid_argument if two robots of the scenario have the same team and number.
   explicit LeagueSource(const Scenario& scenario);
 
-  /// The detections in a datagram that has just been received; nullptr when there are none. Valid until the
+  /// The detections in a datagram that has just been received; nullptr if there are none. Valid until the
   /// next call.
   [[nodiscard]] const msg::DetectionFrame* decode(std::span<const std::byte> datagram,
                                                   const league::Endpoint& sender, Time now);
@@ -46,11 +48,11 @@ class LeagueSource {
   void count_drops(DropCounters& drops) const;
   /// Number of packets rejected so far, for any reason.
   std::uint64_t rejected() const;
-  /// Why the latest packet was rejected; kNone when it was not.
+  /// Why the latest packet was rejected; kNone if it was not.
   league::DecodeError error() const { return error_; }
   /// Number of jumps detected in the senders' clocks.
   std::uint64_t clock_jumps() const;
-  /// The field of the latest geometry packet, the only part of it that is used.
+  /// The field in the latest geometry packet; the rest of the packet is not used.
   const std::optional<league::FieldSize>& field() const { return field_; }
 
  private:
@@ -64,7 +66,7 @@ class LeagueSource {
     league::Endpoint endpoint;
     Time last_received{};
     SenderClock clock{};
-    std::array<FrameKey, 64> recent{};  ///< ring buffer: half a second of two cameras
+    std::array<FrameKey, 64> recent{};  ///< ring buffer for half a second of two cameras
     std::size_t next_recent = 0;
   };
 
@@ -74,10 +76,11 @@ class LeagueSource {
   void add_robot(Team team, const league::DetectedRobot& robot);
   void add_balls(std::span<const league::DetectedBall> balls);
 
-  std::array<std::array<std::optional<RobotId>, league::kRobotNumbers>, 2> ids_;  ///< by team and number
+  /// Indexed by team and number.
+  std::array<std::array<std::optional<RobotId>, league::kRobotNumbers>, 2> ids_;
   std::vector<Sender> senders_;
   msg::DetectionFrame frame_;
-  std::vector<Circle> obstacles_;  ///< in the frame that is being filled
+  std::vector<Circle> obstacles_;  ///< obstacles in the frame that is being filled
   std::vector<const league::DetectedBall*> by_confidence_;
   std::optional<league::FieldSize> field_;
   league::DecodeError error_ = league::DecodeError::kNone;

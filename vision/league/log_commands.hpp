@@ -3,8 +3,8 @@
 
 namespace sidestep {
 
-/// `sidestep-vision replay FILE`: sends a log's packets with the timing with which they were received.
-/// Returns the exit code: 1 when the file is corrupt, after the packets before the corruption have been sent.
+/// `sidestep-vision replay FILE`: sends a log's packets with their original timing. Returns the exit code: 1
+/// if the file is corrupt, after sending the packets before the corruption.
 int replay_command(int argc, char** argv);
 
 /// `sidestep-vision record FILE`: records the league's multicast packets in a log until SIGINT or SIGTERM.

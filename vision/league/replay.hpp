@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Replays a log's records with the timing with which they were received, scaled by a speed factor.
+/// Replays a log's records with their original timing, scaled by a speed factor.
 class Replay {
  public:
   using Send = std::function<void(const league::LogRecord&)>;
@@ -16,8 +16,9 @@ class Replay {
   /// Precondition: speed > 0, and the reader outlives this object.
   Replay(league::LogReader& reader, double speed) : reader_(reader), speed_(speed) {}
 
-  /// Sends the records that are due. Returns when the next one is due; nothing at the end of the log. The
-  /// first call starts the replay. A record received before its predecessor in the log is due with it.
+  /// Sends the records that are due. Returns when the next one is due; nullopt at the end of the log. The
+  /// first call starts the replay. A record that was received before its predecessor in the log is due
+  /// together with it.
   [[nodiscard]] std::optional<Time> advance(Time now, const Send& send);
 
  private:

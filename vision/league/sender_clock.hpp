@@ -10,10 +10,10 @@
 namespace sidestep {
 
 /// Converts times of a sender's clock, whose epoch is arbitrary, to the local clock, from one-way messages.
-/// The lag of a message, arrival minus sending time, is the clock offset plus a delay. The minimum lag over
-/// the last two seconds in which messages arrived is the offset up to the minimum delay: a drift of 200 ppm
-/// causes an error of 0.4 ms, and delayed messages have no effect while one in two seconds is on time. The
-/// sender's clock must run at the rate of the local one.
+/// The lag of a message (arrival minus sending time) is the clock offset plus a delay. The minimum lag over
+/// the last two seconds in which messages arrived is the offset plus the minimum delay. A drift of 200 ppm
+/// causes an error of 0.4 ms, and delayed messages have no effect as long as one in two seconds is on time.
+/// The sender's clock must run at the rate of the local one.
 class SenderClock {
  public:
   /// A message with a longer delay is useless, or the sender's clock has been set.
@@ -25,11 +25,11 @@ class SenderClock {
   static constexpr Duration kSettlingTime{100'000'000};
 
   /// The local time of a frame's capture. `captured` and `sent` are by the sender's clock; a `sent` before
-  /// `captured` or more than kMaxDelay after it is from another clock and ignored. Nothing within
-  /// kSettlingTime of the first message, for a message delayed by more than kMaxDelay, and for one that
-  /// contradicts earlier messages. A clock that was set forward is accepted after 5 consecutive messages that
-  /// agree; one that was set back after 1 s of them, because a suspended process receives late messages only
-  /// for a short time.
+  /// `captured` or more than kMaxDelay after it is from another clock and ignored. nullopt within
+  /// kSettlingTime of the first message, for a message delayed by more than kMaxDelay, and for a message that
+  /// contradicts earlier ones. A clock that was set forward is accepted after 5 consecutive messages that
+  /// agree. A clock that was set back is accepted after 1 s of such messages, because a suspended process
+  /// receives late messages only for a short time.
   [[nodiscard]] std::optional<Time> add(Duration captured, Duration sent, Time arrival);
 
   /// Number of jumps detected in the sender's clock.
@@ -54,7 +54,7 @@ class SenderClock {
   bool confirms_jump(Duration lag, Time arrival, bool is_forward);
 
   std::array<Duration, kWindowParts> min_lags_{};  ///< of each part of the window, newest first
-  std::size_t parts_ = 0;                          ///< in use
+  std::size_t parts_ = 0;                          ///< number of parts in use
   Time part_since_{};
   Time settled_at_{};
   Disagreement disagreement_;

@@ -12,12 +12,12 @@ namespace sidestep {
 /// Converts worlds to the league's tracked packets, which have no obstacles.
 class TrackedOutput {
  public:
-  /// The sender's UUID is derived from the incarnation. Throws std::invalid_argument when two robots of the
+  /// The sender's UUID is derived from the incarnation. Throws std::invalid_argument if two robots of the
   /// scenario have the same team and number.
   TrackedOutput(const Scenario& scenario, Incarnation incarnation);
 
-  /// Valid until the next call. A robot not observed in the last 100 ms is reported as not visible, whatever
-  /// its variance.
+  /// Valid until the next call. A robot that was not observed in the last 100 ms is reported as not visible,
+  /// whatever its variance.
   [[nodiscard]] const league::TrackedPacket& packet_of(const msg::WorldState& world);
 
  private:

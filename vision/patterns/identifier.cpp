@@ -28,8 +28,8 @@ std::size_t first_set(const std::vector<bool>& flags) {
 Identifier::Identifier(std::span<const RosterEntry> roster, const IdentifierSettings& settings)
     : roster_(roster.begin(), roster.end()), settings_(settings) {}
 
-/// Robots whose pattern matches, except those that a pattern with more dots has already identified in this
-/// frame.
+/// The robots whose pattern matches, except those already identified in this frame by a pattern with more
+/// dots.
 Identifier::RosterMask Identifier::matching_robots(const DetectedPattern& pattern) const {
   RosterMask matches(roster_.size());
   for (std::size_t i = 0; i < roster_.size(); ++i) {
@@ -45,7 +45,8 @@ bool Identifier::is_within_gates(const ExpectedRobot& expected, const DetectedPa
          std::abs(wrapped_rad(expected.pose.heading_rad - pattern.pose.heading_rad)) <= settings_.gate_rad;
 }
 
-/// Two robots cannot occupy one position: a pattern here is an expected robot, or its dots were misread.
+/// Two robots cannot occupy one position: a pattern found there belongs to the expected robot, or its dots
+/// were misread.
 Identifier::RosterMask Identifier::robots_expected_at(const DetectedPattern& pattern,
                                                       std::span<const ExpectedRobot> expected) const {
   RosterMask robots(roster_.size());
@@ -78,7 +79,7 @@ Identifier::RosterMask Identifier::narrowed_by_history(Time captured_at, const D
     return matches;
   }
   RosterMask remaining = intersection(matches, nearest->matches);
-  if (count(remaining) == 0) remaining = matches;  // the earlier observations were of another robot
+  if (count(remaining) == 0) remaining = matches;  // the earlier observations were of a different robot
   *nearest = {pattern.pose.position_m, captured_at, remaining};
   return remaining;
 }

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// A participating robot, and the pattern it wears.
+/// A participating robot and its marker pattern.
 struct RosterEntry {
   RobotId robot = 0;
   Team team = Team::kBlue;
@@ -35,10 +35,10 @@ struct IdentifierSettings {
   Duration history_timeout{500'000'000};
 };
 
-/// Identifies robots by the colours of their dots. A complete pattern names one robot. With a dot missing,
-/// several robots may match; the robot expected at that position is chosen, or the only one that matches
-/// everything observed there so far. A robot expected at a position is not mistaken for another because a
-/// dot was misread. An ambiguous pattern stays unidentified.
+/// Identifies robots by the colours of their dots. A complete pattern identifies one robot. If a dot is
+/// missing, several robots may match; then the robot expected at that position is chosen, or else the only
+/// one that matches everything observed there so far. A robot expected at a position is not confused with
+/// another if a dot was misread. An ambiguous pattern remains unidentified.
 class Identifier {
  public:
   explicit Identifier(std::span<const RosterEntry> roster, const IdentifierSettings& settings = {});
@@ -49,9 +49,9 @@ class Identifier {
                                             std::span<const ExpectedRobot> expected);
 
  private:
-  /// Flags in the order of the roster.
+  /// One flag per robot, in the order of the roster.
   using RosterMask = std::vector<bool>;
-  /// A robot observed without its identity being known.
+  /// An observed robot whose identity is unknown.
   struct UnidentifiedRobot {
     Vec2 position_m;
     Time observed_at;

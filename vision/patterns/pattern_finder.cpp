@@ -72,7 +72,7 @@ int PatternFinder::nearest_dot(const Vec2& position_m) const {
   return nearest;
 }
 
-/// The dots near their positions at the guessed pose, and the pose fitted to them.
+/// Finds the dots near their positions at the guessed pose, and fits the pose to them.
 std::optional<PatternFinder::Candidate> PatternFinder::candidate_at(const Pose& guess, int centre) const {
   Candidate candidate;
   candidate.centre = centre;
@@ -100,7 +100,7 @@ std::optional<PatternFinder::Candidate> PatternFinder::candidate_at(const Pose& 
   return candidate;
 }
 
-/// The better of two candidates: at the guess, and at the pose fitted there.
+/// The better of two candidates: one at the guessed pose, and one at the pose fitted there.
 std::optional<PatternFinder::Candidate> PatternFinder::refined(const Pose& guess, int centre) const {
   const auto first = candidate_at(guess, centre);
   if (!first) return std::nullopt;

@@ -13,22 +13,24 @@
 
 namespace sidestep {
 
-/// All limits apply on the plane of the dots, not in pixels, so they hold at any camera height.
+/// Limits, all measured in the plane of the dots rather than in pixels, so that they hold at any camera
+/// height.
 struct PatternSettings {
   double tolerance_m = 0.012;   ///< maximum distance of a dot from the position that the pose predicts
   double min_area_ratio = 0.3;  ///< minimum area of a region, as a fraction of the dot's area
   double max_area_ratio = 2.5;  ///< maximum area of a region, as a fraction of the dot's area
 };
 
-/// Dots arranged as in the layout, with at most one of them missing.
+/// A set of dots arranged as in the layout; at most one dot is missing.
 struct DetectedPattern {
   Pose pose;
   double rms_residual_m = 0;  ///< root mean square distance of the dots from their predicted positions
-  std::optional<Team> team;   ///< nothing when the centre dot is missing
-  int dot_count = 0;          ///< dots found, the centre included
-  std::array<std::optional<Colour>, kMaxDots> colours{};  ///< of the layout's dots; nothing for a missing dot
+  std::optional<Team> team;   ///< nullopt if the centre dot is missing
+  int dot_count = 0;          ///< number of dots found, including the centre
+  /// Colours of the layout's dots; nullopt for a missing dot.
+  std::array<std::optional<Colour>, kMaxDots> colours{};
 
-  /// Whether all dots found have the colours of this team and pattern.
+  /// Whether all dots that were found have the colours of this team and pattern.
   [[nodiscard]] bool matches(Team other_team, const MarkerPattern& pattern) const;
 };
 
@@ -38,14 +40,15 @@ class PatternFinder {
  public:
   explicit PatternFinder(const MarkerLayout& layout, const PatternSettings& settings = {});
 
-  /// Best first: more dots, then smaller residuals. No region is used twice. Valid until the next call.
+  /// Patterns, best first: more dots, then smaller residuals. No region is used twice. Valid until the next
+  /// call.
   std::span<const DetectedPattern> find(std::span<const ProjectedRegion> regions);
 
  private:
   struct Candidate {
     DetectedPattern pattern;
-    int centre = -1;                   ///< index into centres_, -1: missing
-    std::array<int, kMaxDots> dots{};  ///< indices into dots_, -1: missing
+    int centre = -1;                   ///< index into centres_; -1: missing
+    std::array<int, kMaxDots> dots{};  ///< indices into dots_; -1: missing
   };
   void classify_regions(std::span<const ProjectedRegion> regions);
   bool has_disc_area(const ProjectedRegion& region, double radius_m) const;
@@ -59,9 +62,9 @@ class PatternFinder {
 
   MarkerLayout layout_;
   PatternSettings settings_;
-  double max_dot_distance_m_ = 0;  ///< from the centre dot to the farthest other dot
+  double max_dot_distance_m_ = 0;  ///< from the centre dot to the farthest dot
   std::vector<ProjectedRegion> centres_, dots_;
-  std::vector<bool> is_used_;  ///< in the order of dots_
+  std::vector<bool> is_used_;  ///< parallel to dots_
   std::vector<Candidate> candidates_;
   std::vector<DetectedPattern> found_;
 };

@@ -16,11 +16,11 @@ struct ProjectedRegion {
   double area_m2 = 0;
 };
 
-/// Square pixels per square metre of a horizontal surface at a point. Nothing where the camera cannot see it.
+/// Pixels per square metre of a horizontal surface at a point. nullopt if the camera cannot see the point.
 [[nodiscard]] std::optional<double> px2_per_m2(const CameraModel& camera, const Vec3& point_m);
 
-/// Projects a region onto the plane at `height_m` above the floor. Nothing where the camera cannot see that
-/// plane.
+/// Projects a region onto the plane at `height_m` above the floor. nullopt if the camera cannot see the plane
+/// there.
 [[nodiscard]] std::optional<ProjectedRegion> project_region(const Region& region, const CameraModel& camera,
                                                             double height_m);
 

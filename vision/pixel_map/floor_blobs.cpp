@@ -9,8 +9,8 @@ namespace sidestep {
 namespace {
 
 constexpr int kMaxGap_px = 2;              // between adjacent regions
-constexpr int kAround_px = 3;              // of a target: little else is coloured
-constexpr std::uint32_t kMaxRest_px = 25;  // of a target that does not show its colour
+constexpr int kAround_px = 3;              // margin of a target in which little else may be coloured
+constexpr std::uint32_t kMaxRest_px = 25;  // maximum part of a target that does not show its colour
 
 bool are_adjacent(const ObstacleBlob& a, const ObstacleBlob& b) {
   return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) <= kMaxGap_px &&
@@ -98,7 +98,7 @@ void FloorBlobFinder::collect(std::span<const Region> regions) {
                 [&](const ObstacleBlob& blob) { return blob.area_px <= settings_.max_marker_px; });
 }
 
-/// Fits diamond and disc to the coloured pixels in the bounding box, those of the robot excepted.
+/// Fits diamond and disc to the coloured pixels in the bounding box, except those of the robot.
 void FloorBlobFinder::measure(const ImageView& image, const ColourClasses& classes,
                               ObstacleBlob& blob) const {
   constexpr double kFar = std::numeric_limits<double>::max();

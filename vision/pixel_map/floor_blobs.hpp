@@ -16,35 +16,35 @@
 namespace sidestep {
 
 struct FloorBlobSettings {
-  Colour robot = Colour::kBlue;     ///< of the dot that marks the robot
-  Colour target = Colour::kOrange;  ///< of the target
-  std::uint32_t ground_colours = 1U << static_cast<unsigned>(Colour::kField) |
-                                 1U << static_cast<unsigned>(Colour::kWhite) |
-                                 1U << static_cast<unsigned>(Colour::kBlack);  ///< bit c: no obstacle has it
-  std::uint32_t min_marker_px = 4;   ///< area of the robot's dot and of the target
-  std::uint32_t max_marker_px = 80;  ///< what is larger is an obstacle
-  double max_robot_px = 20;          ///< what is nearer to the robot's dot belongs to the robot
-  Vec2 below_camera_px{0, 0};        ///< the pixel of the floor's point below the camera
-  /// The foot of the highest obstacle appears at this share of its top's distance from below_camera_px; its
-  /// side may be too dark to be seen. 1: obstacles are flat.
+  Colour robot = Colour::kBlue;     ///< colour of the dot that marks the robot
+  Colour target = Colour::kOrange;  ///< colour of the target
+  std::uint32_t ground_colours =
+      1U << static_cast<unsigned>(Colour::kField) | 1U << static_cast<unsigned>(Colour::kWhite) |
+      1U << static_cast<unsigned>(Colour::kBlack);  ///< bit c: no obstacle has colour c
+  std::uint32_t min_marker_px = 4;                  ///< minimum area of the robot's dot and of the target
+  std::uint32_t max_marker_px = 80;                 ///< a larger region is an obstacle
+  double max_robot_px = 20;    ///< anything nearer than this to the robot's dot belongs to the robot
+  Vec2 below_camera_px{0, 0};  ///< pixel of the floor point below the camera
+  /// The foot of the highest obstacle appears at this fraction of its top's distance from below_camera_px;
+  /// its side may be too dark to be seen. 1: obstacles are flat.
   double foot_share = 1;
 };
 
-/// An obstacle in the image: all its pixels, and their feet, lie in the diamond and in the disc. Pixels are
+/// An obstacle in the image. All its pixels and their feet lie in the diamond and in the disc. Pixels are
 /// squares around their coordinates.
 struct ObstacleBlob {
   int left_px = 0, right_px = 0, top_px = 0, bottom_px = 0;  ///< bounding box of its pixels, inclusive
   std::uint32_t area_px = 0;
   std::array<Vec2, 4> diamond{Vec2(0, 0), Vec2(0, 0), Vec2(0, 0),
                               Vec2(0, 0)};  ///< sides along the diagonals of the image
-  Vec2 centre{0, 0};                        ///< of the disc
+  Vec2 centre{0, 0};                        ///< centre of the disc
   double radius_px = 0;
 };
 
-/// What a camera image shows of a floor.
+/// The contents of a camera image of a floor.
 struct FloorBlobs {
   std::vector<ObstacleBlob> obstacles;
-  std::optional<Vec2> robot, target;  ///< centroids in pixels; nullopt: not found, or several
+  std::optional<Vec2> robot, target;  ///< centroids in pixels; nullopt: not found, or found several times
 };
 
 /// Finds obstacles, robot and target among the colour regions of an image. Adjacent regions form one obstacle
@@ -57,7 +57,8 @@ class FloorBlobFinder {
   const FloorBlobs& find(const ImageView& image, const ColourClasses& classes,
                          std::span<const Region> regions);
 
-  /// The pixel of the floor's point below what a pixel shows, if that is as high as obstacles may be.
+  /// The pixel of the floor point below what a pixel shows, assuming that this is as high as an obstacle can
+  /// be.
   Vec2 foot_of(const Vec2& pixel) const {
     return settings_.below_camera_px + settings_.foot_share * (pixel - settings_.below_camera_px);
   }

@@ -54,7 +54,7 @@ LandmarkWatch::LandmarkWatch(const CameraModel& camera, const Field& field,
 void LandmarkWatch::add_line(const CameraModel& camera, const Vec2& from_m, const Vec2& to_m) {
   const double length_m = (to_m - from_m).norm();
   const Vec2 along_m = (to_m - from_m) / length_m;
-  // Crossings of lines at their ends, and half of the spacing, are left out.
+  // Omits crossings of lines at their ends, and half of the spacing.
   for (double at_m = settings_.spacing_m; at_m < length_m - settings_.spacing_m / 2;
        at_m += settings_.spacing_m) {
     const Vec2 point_m = from_m + at_m * along_m, next_m = point_m + 0.01 * along_m;

@@ -11,7 +11,8 @@
 
 namespace sidestep {
 
-/// The cells of an image: squares of pixels, row 0 at the top. The last ones are cut by the image's border.
+/// The cells of an image: squares of pixels, with row 0 at the top. The last cells are cut off by the image's
+/// border.
 struct PixelCells {
   static constexpr int kDefaultCell_px = 10;
 
@@ -30,12 +31,12 @@ struct PixelCells {
   }
 
   int cell_px;
-  BitGrid seen;     ///< cells that show a pixel of an obstacle
+  BitGrid seen;     ///< cells with a pixel of an obstacle
   BitGrid blocked;  ///< cells that a disc's centre must not enter
 };
 
 /// Marks the cells of the obstacles. `radius_px` is the disc's radius with its margin; a cell is blocked if a
-/// disc with its centre anywhere in it may touch a seen cell or leave the image, so a path through free cells
+/// disc whose centre is anywhere in it may touch a seen cell or leave the image. So a path through free cells
 /// is safe everywhere.
 void mark_cells(const ImageView& image, const ColourClasses& classes, const FloorBlobFinder& finder,
                 std::span<const ObstacleBlob> obstacles, double radius_px, PixelCells& cells);

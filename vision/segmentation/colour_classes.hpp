@@ -15,13 +15,14 @@
 
 namespace sidestep {
 
-/// The numbers of a pixel that thresholds apply to. kYuv422: as the frame holds them. kRgb, where thresholds
-/// on red, green and blue would not tolerate uneven light: Y = ((R + B + 1) / 2 + G + 1) / 2,
-/// U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, each rounded down. Precondition: column x and row y exist.
+/// The values of a pixel to which thresholds apply. With kYuv422 they are the frame's values. With kRgb,
+/// where thresholds on red, green and blue would not tolerate uneven light, they are Y = ((R + B + 1) / 2 + G
+/// + 1) / 2, U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, all rounded down. Precondition: column x and row y
+/// exist.
 Yuv pixel_at(const ImageView& image, int x, int y);
 
-/// The pixels of a colour: all three numbers lie between low and high, both included. Precondition: no
-/// component of low is above high's.
+/// The pixels of a colour: all three values lie between low and high, inclusive. Precondition: no component
+/// of low exceeds that of high.
 struct ColourBox {
   Yuv low;
   Yuv high;
@@ -35,7 +36,7 @@ constexpr bool is_within(const ColourBox& box, const Yuv& pixel) {
 
 inline constexpr std::size_t kMaxColours = segmentation::kMasks;
 
-/// Classifies pixels by colour: each number is looked up in a table with one bit per box, and the three words
+/// Classifies pixels by colour: each value is looked up in a table with one bit per box, and the three words
 /// are combined by bitwise AND (CMVision; Bruce, CMU-CS-06-181, appendix A.1).
 class ColourClasses {
  public:
@@ -43,7 +44,7 @@ class ColourClasses {
   explicit ColourClasses(std::span<const ColourBox> boxes);
 
   std::span<const ColourBox> boxes() const { return boxes_; }
-  /// Bit k: whether the pixel lies in box k.
+  /// Bit k is set if the pixel lies in box k.
   std::uint32_t bits(const Yuv& pixel) const { return y_[pixel.y] & u_[pixel.u] & v_[pixel.v]; }
   /// The colour of the first box that contains the pixel.
   [[nodiscard]] std::optional<std::uint32_t> colour_of(const Yuv& pixel) const {
@@ -51,7 +52,7 @@ class ColourClasses {
     if (matches == 0) return std::nullopt;
     return boxes_[static_cast<std::size_t>(std::countr_zero(matches))].colour;
   }
-  /// By value, the boxes whose range contains it: bit k for box k.
+  /// Indexed by value, the boxes whose range contains it: bit k for box k.
   std::span<const std::uint32_t, 256> y() const { return y_; }
   std::span<const std::uint32_t, 256> u() const { return u_; }
   std::span<const std::uint32_t, 256> v() const { return v_; }

@@ -26,7 +26,7 @@ double density(const Region& region) {
 
 bool is_absorbed(const Region& region) { return region.area_px == 0; }
 
-/// False for a region of another colour or too far below, and then for all regions after it.
+/// False for a region of another colour or too far below, and thus for all regions after it.
 bool is_within_rows(const Region& upper, const Region& lower, const MergeSettings& settings) {
   return lower.colour == upper.colour && lower.top_px - upper.bottom_px - 1 <= settings.max_gap_px;
 }
@@ -51,7 +51,7 @@ void merge_by_density(std::vector<Region>& regions, const MergeSettings& setting
       }
       regions[i] = both;
       regions[j].area_px = 0;
-      j = i + 1;  // regions that were skipped may fit the larger one
+      j = i + 1;  // regions skipped earlier may fit the larger region
     }
   }
   std::erase_if(regions, is_absorbed);

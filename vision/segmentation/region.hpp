@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// A connected component of one colour in 8-connectivity. Pixel (0, 0) is the upper left one; whole numbers
-/// are the centres of pixels.
+/// A connected component of one colour in 8-connectivity. Pixel (0, 0) is the upper left one; pixel centres
+/// have integer coordinates.
 struct Region {
   std::uint32_t colour = 0;
   std::uint32_t area_px = 0;  ///< number of pixels

@@ -10,12 +10,12 @@
 namespace sidestep {
 
 /// Joins the runs of one colour to regions, row by row: a run belongs to the regions of all runs in the row
-/// above that it touches, corners included, and union-find merges these (CMVision; Bruce, CMU-CS-06-181,
-/// appendix A.1). Stores two rows of runs, and sums for each region. Allocates when a frame has more runs in
-/// a row, or more regions, than any before.
+/// above that it touches, including at corners, and union-find merges these regions (CMVision; Bruce,
+/// CMU-CS-06-181, appendix A.1). Stores two rows of runs, and sums for each region. Allocates only if a frame
+/// has more runs in a row, or more regions, than any before.
 class RegionBuilder {
  public:
-  /// A frame with more regions in one colour is noise: regions that start after these are dropped.
+  /// A frame with more regions of one colour than this is noise: further regions are dropped.
   static constexpr std::size_t kMaxRegions = 1 << 16;
 
   void begin_frame();
@@ -27,7 +27,7 @@ class RegionBuilder {
       row_.push_back({begin_px, end_px, 0});
     }
   }
-  /// Whether the current row or the row above has runs; only then must the row be ended.
+  /// Whether the current row or the row above has runs; if so, the row must be ended.
   bool has_runs() const { return !row_.empty() || !row_above_.empty(); }
   void end_row(int y_px);
   /// Appends the regions of at least `min_area_px` pixels.
@@ -39,7 +39,7 @@ class RegionBuilder {
     std::uint32_t region;
   };
   struct Sums {
-    std::uint32_t parent = 0;  ///< its own index for a root
+    std::uint32_t parent = 0;  ///< a root's parent is itself
     std::uint32_t area_px = 0;
     std::uint64_t x_px = 0, y_px = 0;
     int left_px = 0, right_px = 0, top_px = 0, bottom_px = 0;

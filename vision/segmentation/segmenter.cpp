@@ -11,7 +11,7 @@ namespace {
 
 using namespace segmentation;
 
-constexpr std::size_t kBoxGroups = 8;  // as many as a byte of CoarseTables has bits
+constexpr std::size_t kBoxGroups = 8;  // number of bits in a byte of CoarseTables
 
 template <typename Visit>
 void for_each_bit(std::uint32_t bits, Visit visit) {
@@ -42,7 +42,7 @@ Thresholds thresholds_of(const ColourBox& box) {
 
 /// The high nibbles of the values that a group of boxes accepts: bit i for nibble i.
 struct HighNibbles {
-  std::array<std::uint32_t, 3> of{};  ///< of Y, U and V
+  std::array<std::uint32_t, 3> of{};  ///< for Y, U and V
 
   void add(const ColourBox& box) {
     const auto range = [](std::uint8_t low, std::uint8_t high) {
@@ -52,7 +52,7 @@ struct HighNibbles {
     of[1] |= range(box.low.u, box.high.u);
     of[2] |= range(box.low.v, box.high.v);
   }
-  /// The number of pairs of U and V nibbles accepted.
+  /// The number of accepted pairs of U and V nibbles.
   int pairs() const { return std::popcount(of[1]) * std::popcount(of[2]); }
 };
 

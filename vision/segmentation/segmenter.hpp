@@ -21,12 +21,12 @@ struct SegmentationSettings {
 };
 
 /// Finds the colour regions of a frame in one pass: each row is classified, cut into runs and joined to the
-/// regions above while it is in the cache. Pixels without a colour cost next to nothing. Allocates when a
+/// regions above while it is in the cache. Pixels without a colour cost almost nothing. Allocates only if a
 /// frame is wider or has more regions than any before.
 class Segmenter {
  public:
   explicit Segmenter(const ColourClasses& classes, const SegmentationSettings& settings = {});
-  /// Uses the given kernels instead of the fastest.
+  /// Uses the given kernels instead of the fastest ones.
   Segmenter(const ColourClasses& classes, const SegmentationSettings& settings,
             const segmentation::Kernels& kernels);
 

@@ -11,7 +11,7 @@ CameraWatch::CameraWatch(const std::vector<std::uint32_t>& cameras) {
 
 void CameraWatch::on_frame(std::uint32_t camera, Time captured_at) {
   Camera& watched = cameras_.at(camera);
-  if (captured_at <= watched.last) return;  // late
+  if (captured_at <= watched.last) return;  // the frame arrived late
   if (captured_at - watched.last > kMaxGap) watched.frames = 0;
   watched.frames = std::min(watched.frames + 1, kFrames);
   watched.last = captured_at;

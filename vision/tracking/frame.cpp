@@ -14,7 +14,7 @@ constexpr double kMaxObstacle_m = 10;
 constexpr double kMaxHeading_rad = 7;  // a full turn either way covers every sender's range
 constexpr Duration kMaxAge{500'000'000};
 
-// Comparisons with NaN are false, so both reject it.
+// Comparisons with NaN are false, so both functions reject NaN.
 bool is_within(double value, double bound) { return std::abs(value) <= bound; }
 bool is_probability(double value) { return value >= 0 && value <= 1; }
 bool is_completeness(double value) { return value >= 0 && value <= kCompleteEverywhere_m; }

@@ -24,17 +24,17 @@ struct ObstacleObservation {
   double radius_m = 0;
 };
 
-/// How far a frame's time of capture may be ahead, by default.
+/// Default limit of how far a frame's capture time may be ahead.
 inline constexpr Duration kMaxFrameLead = max_vision_lead(max_clock_difference(SafetyBudget{}.clock_bound_s));
 
 /// Whether a frame that arrives now may carry this capture time: at most 500 ms old, and at most `max_lead`
 /// ahead, because clocks differ.
 [[nodiscard]] bool is_timely(std::int64_t captured_at_ns, Time now, Duration max_lead = kMaxFrameLead);
 
-/// Why a frame cannot be used.
+/// Why a frame is unusable.
 enum class FrameProblem : std::uint8_t {
   kNone,
-  kTime,       ///< the capture time is not timely
+  kTime,       ///< the capture time is too old or too far ahead
   kMalformed,  ///< a count or the obstacles' completeness is out of range
 };
 
@@ -43,17 +43,17 @@ class Frame {
  public:
   std::uint32_t camera() const { return camera_; }
   Time captured_at() const { return captured_at_; }
-  /// False when the capture time, a count or the obstacles' completeness was invalid; the frame then holds no
-  /// detections.
+  /// False if the capture time, a count or the obstacles' completeness was invalid; the frame then contains
+  /// no detections.
   bool is_usable() const { return problem_ == FrameProblem::kNone; }
   FrameProblem problem() const { return problem_; }
   std::span<const RobotPoseObservation> robots() const { return {robots_.data(), robot_count_}; }
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
   std::span<const ObstacleObservation> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
   /// Every obstacle that the camera detected nearer than this to one of the frame's robots is in obstacles().
-  /// 0 if one was rejected, because it may be anywhere.
+  /// It is 0 if an obstacle was rejected, because that one may be anywhere.
   double obstacles_complete_within_m() const { return obstacles_complete_within_m_; }
-  /// Number of detections of the message that were rejected; at least 1 for an unusable frame.
+  /// Number of detections in the message that were rejected; at least 1 for an unusable frame.
   std::uint64_t rejected() const { return rejected_; }
 
   /// Copies the valid detections: timely frames, positions within 100 m, confidences in 0..1, robot numbers

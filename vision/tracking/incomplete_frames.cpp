@@ -45,8 +45,8 @@ double IncompleteFrames::complete_within_m(std::span<const Vec2> robots_m, Time 
   double distance = kCompleteEverywhere_m;
   for (const IncompleteFrame& frame : frames_) {
     if (t - frame.captured_at > max_age_) continue;
-    // The distance is known from the frame's robots only: others may be nearer to a missing obstacle by as
-    // much as they are away from the nearest of those.
+    // The distance is known only for the frame's robots. Other robots may be nearer to a missing obstacle by
+    // up to their distance from the nearest of these.
     const double uncertainty = max_distance_m(robots_m, frame.robots_m) + max_error_m_ +
                                max_speed_mps_ * std::abs(to_seconds(t - frame.captured_at));
     distance = robots_m.empty() ? 0 : std::min(distance, frame.complete_within_m - uncertainty);

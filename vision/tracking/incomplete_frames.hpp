@@ -9,23 +9,23 @@
 
 namespace sidestep {
 
-/// The cameras whose last frame had more obstacles than were tracked, and how far from the frame's robots the
-/// missing ones were. They may have moved since, so the distance up to which the tracks are complete shrinks
-/// with the age of the frame.
+/// The cameras whose last frame had more obstacles than were tracked, and how far the missing ones were from
+/// the frame's robots. These obstacles may have moved since, so the distance up to which the tracks are
+/// complete shrinks as the frame ages.
 class IncompleteFrames {
  public:
-  /// `max_speed_mps`, `max_error_m`: of an obstacle and of its observed position. A frame older than
-  /// `max_age` is forgotten, as a track is.
+  /// `max_speed_mps` is an obstacle's maximum speed, `max_error_m` the maximum error of its observed
+  /// position. A frame older than `max_age` is forgotten, like a track.
   IncompleteFrames(double max_speed_mps, double max_error_m, Duration max_age)
       : max_speed_mps_(max_speed_mps), max_error_m_(max_error_m), max_age_(max_age) {}
 
-  /// Replaces the last frame of the frame's camera, unless it is newer. Every obstacle of the frame that was
-  /// nearer than `complete_within_m` to one of the frame's robots is tracked. Allocates only for incomplete
-  /// frames.
+  /// Replaces the last frame of the frame's camera, unless that one is newer. Precondition: every obstacle of
+  /// the frame that is nearer than `complete_within_m` to one of the frame's robots is tracked. Allocates
+  /// only for incomplete frames.
   void update(const Frame& frame, double complete_within_m);
   bool is_empty() const { return frames_.empty(); }
   void clear() { frames_.clear(); }
-  /// No missing obstacle can be nearer than this to any of the robots at a time.
+  /// A lower bound of the distance between missing obstacles and the robots at a time.
   [[nodiscard]] double complete_within_m(std::span<const Vec2> robots_m, Time t) const;
 
  private:

@@ -70,7 +70,7 @@ void ObstacleTracker::update(const Frame& frame) {
 }
 
 /// Lists the pairs of tracks and observations within the tracks' gates. Observations are sorted by x, so that
-/// a track is compared with those in its gate's range of x only.
+/// a track is compared only with those within its gate on x.
 void ObstacleTracker::find_pairs(const Frame& frame) {
   const auto observations = frame.obstacles();
   const auto x_of = [&](std::uint16_t index) { return observations[index].position_m.x(); };
@@ -123,12 +123,12 @@ void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservat
   track.filter.predict(to_seconds(at - track.observed_at), settings_.motion);
   const Vec2 innovation = observation.position_m - track.filter.position();
   if (track.filter.squared_distance(innovation, variance) > kGateDeviations * kGateDeviations) {
-    // The obstacle has turned abruptly: the velocity estimate is void.
+    // The obstacle has turned abruptly, so the velocity estimate is discarded.
     track.filter = {observation.position_m, variance, settings_.max_speed_mps * settings_.max_speed_mps};
   } else {
     track.filter.correct(innovation, variance);
   }
-  // The track may have followed a smaller obstacle that is at the same place.
+  // The track may have followed a smaller obstacle at the same place.
   track.radius_m =
       std::max(observation.radius_m, track.radius_m + kRadiusGain * (observation.radius_m - track.radius_m));
   track.observed_at = at;

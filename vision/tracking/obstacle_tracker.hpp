@@ -15,21 +15,21 @@
 namespace sidestep {
 
 struct ObstacleTrackerSettings {
-  double max_speed_mps = 1.5;        ///< of an obstacle
-  double position_noise_m = 0.0015;  ///< standard deviation of an observation, per axis
+  double max_speed_mps = 1.5;        ///< maximum speed of an obstacle
+  double position_noise_m = 0.0015;  ///< standard deviation of an observation on each axis
   MotionNoise motion{2, 5};          ///< people turn abruptly
-  /// Observations before a track is confirmed. While frames are incomplete, one is enough: an obstacle that
-  /// the last frame left out is not new.
+  /// Number of observations before a track is confirmed. While frames are incomplete, one is enough: an
+  /// obstacle that the last frame left out is not new.
   int confirm_hits = 2;
   Duration drop_after{1'000'000'000};  ///< time without an observation after which a track ends
 };
 
-/// Tracks moving obstacles, which have no identity: each observation updates the nearest track that can have
-/// reached it, or starts a track. Allocates only in the constructor, for incomplete frames, and when more
-/// observations are within reach of tracks than ever before.
+/// Tracks moving obstacles, which cannot be identified: each observation updates the nearest track that can
+/// have reached it, or starts a track. Allocates only in the constructor, for incomplete frames, and when
+/// more observations are within reach of tracks than ever before.
 class ObstacleTracker {
  public:
-  /// Enough for four cameras whose frames are full.
+  /// Enough for four cameras with full frames.
   static constexpr std::size_t kMaxTracks = std::size_t{4} * msg::MAX_OBSTACLES;
 
   explicit ObstacleTracker(const ObstacleTrackerSettings& settings);
@@ -37,26 +37,26 @@ class ObstacleTracker {
   /// Updates the tracks from a usable frame. Frames may come in any order; an observation older than a
   /// track's last one does not change it.
   void update(const Frame& frame);
-  /// Forgets all obstacles, but not which numbers have been used.
+  /// Forgets all obstacles, but remembers which numbers have been used.
   void forget();
-  /// Writes the confirmed tracks that are current at a time, nearest to one of the robots first, and up to
-  /// which distance they are complete. See ObstacleList in idl/vision.idl. `robots` holds the robots at that
+  /// Writes the confirmed tracks that are current at a time, those nearest to a robot first, and the distance
+  /// up to which they are complete. See ObstacleList in idl/vision.idl. `robots` contains the robots at that
   /// time.
   void list_at(Time t, std::span<const msg::TrackedRobot> robots, msg::ObstacleList& list);
-  /// Observations rejected because all tracks were in use.
+  /// Number of observations rejected because all tracks were in use.
   std::uint64_t rejected() const { return rejected_; }
 
  private:
   struct Track {
-    std::uint32_t number = 0;  ///< 0: not confirmed yet
+    std::uint32_t number = 0;  ///< 0: not yet confirmed
     int hits = 0;
     Time observed_at{};
     double radius_m = 0;
-    ConstantVelocityFilter<2> filter;  ///< at observed_at
+    ConstantVelocityFilter<2> filter;  ///< state at observed_at
   };
-  /// An observation that a track can have reached.
+  /// A track, and an observation that it can have reached.
   struct Pair {
-    double distance_m = 0;  ///< of the observation from the track's prediction
+    double distance_m = 0;  ///< distance of the observation from the track's prediction
     std::uint16_t track = 0;
     std::uint16_t observation = 0;
     auto operator<=>(const Pair&) const = default;
@@ -65,7 +65,8 @@ class ObstacleTracker {
     double distance_m = 0;  ///< see ObstacleList in idl/vision.idl
     const Track* track = nullptr;
   };
-  /// Updates tracks from the frame's observations, nearest pairs first, and flags the observations used.
+  /// Updates tracks from the frame's observations, nearest pairs first, and flags the observations that were
+  /// used.
   void associate(const Frame& frame);
   void find_pairs(const Frame& frame);
   double predicted_distance_m(const Track& track, Time at, const Vec2& position_m) const;
@@ -74,7 +75,7 @@ class ObstacleTracker {
   /// False if all tracks are in use.
   [[nodiscard]] bool start_track(Time at, const ObstacleObservation& observation, int confirm_hits);
   void drop_stale_tracks(Time now);
-  /// How near the obstacle can have come to one of robots_m_ by a time; infinite without robots.
+  /// Lower bound of the obstacle's distance from the robots in robots_m_ at a time; infinite without robots.
   double min_distance_m(const Track& track, Time t) const;
 
   ObstacleTrackerSettings settings_;
@@ -83,9 +84,9 @@ class ObstacleTracker {
   std::uint32_t last_number_ = 0;
   std::uint64_t rejected_ = 0;
   // Working memory.
-  std::array<std::uint16_t, msg::MAX_OBSTACLES> by_x_{};  // the frame's observations, ascending by x
-  std::array<bool, msg::MAX_OBSTACLES> is_used_{};        // by observation
-  std::array<bool, kMaxTracks> is_updated_{};             // by track
+  std::array<std::uint16_t, msg::MAX_OBSTACLES> by_x_{};  // the frame's observations, sorted by x
+  std::array<bool, msg::MAX_OBSTACLES> is_used_{};        // indexed by observation
+  std::array<bool, kMaxTracks> is_updated_{};             // indexed by track
   std::vector<Pair> pairs_;
   std::vector<Vec2> robots_m_;
   std::vector<ListedTrack> listed_;

@@ -26,8 +26,8 @@ void predict(PoseFilter& filter, Duration dt, const TrackModel& model) {
   filter.heading.predict(to_seconds(dt), model.turning);
 }
 
-/// Corrects a filter that has been predicted to the observation's time. False, and unchanged, when the
-/// observation lies outside the gate.
+/// Corrects a filter that has been predicted to the observation's time. Returns false and leaves it unchanged
+/// if the observation lies outside the gate.
 bool correct(PoseFilter& filter, const Observation& observation, const TrackModel& model) {
   const Vec2 offset = observation.position_m - filter.position.position();
   const Angle turn(wrapped_rad(observation.heading_rad - filter.heading.position()(0)));
@@ -106,7 +106,7 @@ void update_candidate(TrackState& state, const Observation& observation, const T
   state.candidate_hits = 1;
 }
 
-/// A robot that was pushed is observed near its track repeatedly; ghosts are not.
+/// A robot that was pushed is observed repeatedly near its track; ghosts are not.
 bool is_displaced(const TrackState& state, const Observation& observation, const TrackModel& model) {
   return state.is_confirmed && state.candidate_hits >= model.displaced_hits &&
          (observation.position_m - state.last.position_m).norm() <= model.gate_m;

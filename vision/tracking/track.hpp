@@ -11,20 +11,23 @@
 
 namespace sidestep {
 
-/// How one kind of object moves and is observed. The defaults fit a robot.
+/// The motion and observation model of one kind of object. The defaults fit a robot.
 struct TrackModel {
-  double position_noise_m = 0.0015;  ///< standard deviation of an observation, per axis
+  double position_noise_m = 0.0015;  ///< standard deviation of an observation on each axis
   double heading_noise_rad = 0.005;  ///< standard deviation of an observation
-  MotionNoise motion{0.3, 3};        ///< robots brake with 5 m/s²: 5 / sqrt(3) as a standard deviation
+  MotionNoise motion{0.3, 3};        ///< robots brake at 5 m/s²: 5 / sqrt(3) as a standard deviation
   MotionNoise turning{10, 10};
-  double rolling_mps2 = 0;        ///< deceleration by rolling friction
-  double start_speed_mps = 1.5;   ///< standard deviation of the velocity at the first observation, per axis
-  double start_turn_radps = 5;    ///< the same for the heading's rate
-  double gate_sigma = 5;          ///< maximum Mahalanobis distance of an observation from the track
-  double gate_m = 0.09;           ///< maximum distance, however uncertain the track is
-  int confirm_hits = 3;           ///< consistent observations before a track is confirmed
-  int displaced_hits = 2;         ///< consistent observations within gate_m that move a displaced track
-  Duration max_gap{100'000'000};  ///< between two consistent observations of an unconfirmed track
+  double rolling_mps2 = 0;  ///< deceleration by rolling friction
+  /// Standard deviation of the velocity at the first observation, on each axis.
+  double start_speed_mps = 1.5;
+  double start_turn_radps = 5;  ///< standard deviation of the heading's rate at the first observation
+  double gate_sigma = 5;        ///< maximum Mahalanobis distance of an observation from the track
+  double gate_m = 0.09;         ///< maximum distance, however uncertain the track is
+  int confirm_hits = 3;         ///< number of consistent observations before a track is confirmed
+  /// Number of consistent observations within gate_m that move a displaced track.
+  int displaced_hits = 2;
+  /// Maximum time between two consistent observations of an unconfirmed track.
+  Duration max_gap{100'000'000};
   Duration relocate_after{150'000'000};  ///< time without an observation before a track may move elsewhere
   Duration drop_after{1'000'000'000};    ///< time without an observation after which a track ends
 };
@@ -55,29 +58,29 @@ struct Estimate {
 /// The state of a track after a sequence of observations in order of capture.
 struct TrackState {
   bool is_confirmed = false;
-  PoseFilter filter;  ///< at last.captured_at; valid when confirmed
+  PoseFilter filter;  ///< state at last.captured_at; valid if confirmed
   Observation last;   ///< mean of the latest accepted observations; unfiltered, so that acceleration does not
                       ///< bias it
-  int last_count = 0;      ///< observations in that mean, all captured at the same time
-  int candidate_hits = 0;  ///< consistent observations elsewhere, or before the track is confirmed
+  int last_count = 0;      ///< number of observations in that mean, all captured at the same time
+  int candidate_hits = 0;  ///< number of consistent observations elsewhere, or before the track is confirmed
   Time candidate_at{};
   PoseFilter candidate;
-  std::uint64_t rejected = 0;  ///< observations that turned out to belong to no track
+  std::uint64_t rejected = 0;  ///< number of observations that turned out to belong to no track
 };
 
-/// The state after one more observation, captured no earlier than those before it.
+/// The state after one more observation, which was not captured earlier than the previous ones.
 [[nodiscard]] TrackState advanced(const TrackState& state, const Observation& observation,
                                   const TrackModel& model);
 
-/// The estimate at a time; nothing when the track is not confirmed or was last observed too long ago.
+/// The estimate at a time; nullopt if the track is not confirmed or was last observed too long ago.
 [[nodiscard]] std::optional<Estimate> estimate_at(const TrackState& state, Time t, const TrackModel& model);
 
 /// The track of one object from observations that arrive in any order. Stores the latest observations with
-/// the state after each, and replays from the position of a late one. The result depends on what was observed
-/// and when, not on the order of arrival.
+/// the state after each. When a late observation arrives, it is inserted and the later ones are replayed. So
+/// the result depends on what was observed and when, but not on the order of arrival.
 class Track {
  public:
-  /// False for a duplicate, and for an observation older than all stored ones.
+  /// Returns false for a duplicate, and for an observation that is older than all stored ones.
   bool add(const Observation& observation, const TrackModel& model);
   const TrackState& state() const { return size_ == 0 ? base_ : entry(size_ - 1).after; }
   std::uint64_t rejected() const { return state().rejected + too_late_; }
@@ -92,7 +95,7 @@ class Track {
   Entry& entry(std::size_t i) { return entries_[(first_ + i) % kCapacity]; }
   const Entry& entry(std::size_t i) const { return entries_[(first_ + i) % kCapacity]; }
 
-  TrackState base_;  ///< after all observations older than the stored ones
+  TrackState base_;  ///< state after all observations that are older than the stored ones
   std::array<Entry, kCapacity> entries_;
   std::size_t first_ = 0;
   std::size_t size_ = 0;

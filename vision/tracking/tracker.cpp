@@ -39,9 +39,9 @@ msg::TrackedBall tracked_ball(const State& state) {
 }
 
 constexpr double kDotError_px =
-    0.19;  // of single dots in images, measured by sidestep-evaluation study vision
+    0.19;  // error of single dots in images, measured by sidestep-evaluation study vision
 constexpr double kRobotHeight_m = 0.15;  // height of the dots
-// Cameras observe an obstacle's contour from different sides, and its edge depends on thresholds.
+// Cameras observe an obstacle's contour from different sides, and thresholds affect its edge.
 constexpr double kContourError_m = 0.008;
 
 void set_image_noise(const Scenario& scenario, TrackModel& robot) {
@@ -67,14 +67,14 @@ TrackModel TrackerSettings::ball_model() {
 }
 
 TrackerSettings tracker_settings(const Scenario& scenario) {
-  // Lower bounds: a scenario without noise must not make the gates infinitely narrow.
+  // Lower bounds, so that a scenario without noise does not make the gates infinitely narrow.
   constexpr double kMinPositionNoise_m = 0.0002, kMinHeadingNoise_rad = 0.002;
   TrackerSettings settings;
   settings.robot.position_noise_m = std::max(kMinPositionNoise_m, scenario.vision.position_noise_m);
   settings.robot.heading_noise_rad = std::max(kMinHeadingNoise_rad, scenario.vision.heading_noise_rad);
   if (scenario.vision.images) set_image_noise(scenario, settings.robot);
   settings.robot.gate_m = scenario.radius_m;
-  // Slow cameras may miss no frame until they have found an object.
+  // Slow cameras must not miss any frame until they have found an object.
   const Duration between_frames = from_seconds(1.5 / scenario.vision.rate_hz);
   settings.robot.max_gap = settings.ball.max_gap =
       std::clamp(between_frames, settings.robot.max_gap, CameraWatch::kMaxGap);
@@ -161,7 +161,7 @@ void Tracker::obstacles_at(const msg::WorldState& world, msg::ObstacleList& list
   obstacles_.list_at(time_from_ns(world.valid_at_ns()), world.robots(), list);
 }
 
-/// Precondition: `world` holds the robots at time `t`.
+/// Precondition: `world` contains the robots at time `t`.
 State Tracker::ball_at(Time t, const msg::WorldState& world) const {
   constexpr double kStep_s = 0.005;
   const TrackState& track = ball_.state();

@@ -33,24 +33,25 @@ struct TrackerSettings {
 /// Settings for the cameras and robots of a scenario.
 [[nodiscard]] TrackerSettings tracker_settings(const Scenario& scenario);
 
-/// Fuses the frames of all cameras, in any order of arrival, into one world. Ignores robots that are not in
-/// the roster. Allocates only in the constructor, and for obstacles as ObstacleTracker does.
+/// Fuses the frames of all cameras, in any order of arrival, into one world state. Ignores robots that are
+/// not on the roster. Allocates only in the constructor, and for obstacles in the same cases as
+/// ObstacleTracker.
 class Tracker {
  public:
   /// Precondition: the roster's numbers are below kMaxRobots.
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
-  /// Forgets all observations: the clock was set back, so that later ones would seem older.
+  /// Forgets all observations, because the clock was set back and later observations would seem older.
   void forget();
-  /// Detections that were not used.
+  /// Adds the counts of detections that were not used.
   void count_drops(DropCounters& drops) const;
   /// Fills in valid_at_ns, the number of frames, and the ball and robots extrapolated from their last
-  /// observations to this time; ascending by number. An unobserved ball bounces off everything known on the
-  /// floor. Allocates when the message has held fewer robots so far.
+  /// observations to this time. Robots are sorted by number. An unobserved ball bounces off everything known
+  /// on the floor. Allocates if the message has not yet contained as many robots.
   void world_at(Time t, msg::WorldState& world) const;
-  /// Fills in everything but the header, for the time and the robots of a world: obstacles at their last
-  /// observations. Allocates when the message has held fewer obstacles so far.
+  /// Fills in everything except the header, for the time and the robots of a world state: obstacles at their
+  /// last observations. Allocates if the message has not yet contained as many obstacles.
   void obstacles_at(const msg::WorldState& world, msg::ObstacleList& list);
 
  private:
@@ -59,13 +60,13 @@ class Tracker {
   static constexpr std::uint16_t kNotInRoster = kMaxRobots;
 
   TrackerSettings settings_;
-  std::vector<RobotId> roster_;                       ///< ascending
+  std::vector<RobotId> roster_;                       ///< sorted
   std::array<std::uint16_t, kMaxRobots> index_of_{};  ///< index in the roster, or kNotInRoster
-  std::vector<Track> robots_;                         ///< in the order of the roster
+  std::vector<Track> robots_;                         ///< parallel to the roster
   Track ball_;
   ObstacleTracker obstacles_;
   std::uint64_t frames_ = 0;
-  // Detections that were not used, except by tracks.
+  // Number of detections that were not used, not counting those rejected by tracks.
   std::uint64_t malformed_ = 0, unknown_ = 0, untimely_frames_ = 0, malformed_frames_ = 0;
 };
 

@@ -14,21 +14,22 @@
 
 namespace sidestep {
 
-/// Reports which cameras and robots are lost or back, and that frames are refused.
+/// Reports cameras and robots that are lost or found again, and refused frames.
 class VisionChanges {
  public:
-  /// A camera that sends no usable frame for longer is lost.
+  /// A camera that sends no usable frame for longer than this is lost.
   static constexpr Duration kCameraTimeout{500'000'000};
   /// How long a camera may take to send its first frame.
   static constexpr Duration kFirstFrameTimeout{3'000'000'000};
 
   VisionChanges(const EventReporter& events, const std::vector<std::uint32_t>& cameras);
 
-  /// A frame of a camera that is not among these. A hostile sender may invent any number.
+  /// A frame from a camera that is not among these has arrived. A hostile sender may invent any number of
+  /// cameras.
   void on_unknown_camera(std::uint32_t camera);
-  /// A frame of one of the cameras that has arrived, usable or not.
+  /// A frame from one of the cameras has arrived, usable or not.
   void on_frame(const Frame& frame, Time now);
-  /// The tracked world; call it once per period.
+  /// Processes the tracked world; call it once per period.
   void update(const msg::WorldState& world, Time now);
 
  private:
@@ -37,7 +38,7 @@ class VisionChanges {
     bool is_lost = false;
     std::uint64_t refused = 0;
     std::uint64_t next_report = 1;  // value of `refused` at which it is reported
-    bool is_missing = false;        // it was reported that it has sent nothing so far
+    bool is_missing = false;        // it was reported that the camera has not sent anything yet
   };
   void report_missing(std::uint32_t number, Camera& camera, Time now);
   void report_refusal(const Frame& frame, Camera& camera, Time now);

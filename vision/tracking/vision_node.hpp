@@ -14,21 +14,21 @@
 
 namespace sidestep {
 
-/// Where a vision node gets its frames: detections on the bus, or calls of VisionNode::add_frame().
+/// The source of a vision node's frames: detections on the bus, or calls of VisionNode::add_frame().
 enum class FrameSource { kBus, kCaller };
 
 /// The numbers of a scenario's cameras: 0 .. columns * rows - 1.
 [[nodiscard]] std::vector<std::uint32_t> cameras_of(const VisionSpec& vision);
 
-/// The vision service on a bus: fuses frames and publishes the world state and the list of obstacles at the
-/// cameras' rate, also when no frames arrive.
+/// The vision service on a bus: fuses frames, and publishes the world state and the list of obstacles at the
+/// cameras' rate, even if no frames arrive.
 class VisionNode {
  public:
-  /// `cameras`: the numbers of those that together see all of the floor; frames of others are refused.
-  /// Precondition: the bus makes no callbacks after the node's destruction.
+  /// `cameras` are the numbers of the cameras that together see the whole floor; frames of other cameras are
+  /// refused. Precondition: the bus makes no callbacks after the node's destruction.
   VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, FrameSource source,
              const std::vector<std::uint32_t>& cameras);
-  /// With the cameras of the scenario.
+  /// Uses the scenario's cameras.
   VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnation,
              FrameSource source = FrameSource::kBus)
       : VisionNode(bus, scenario, incarnation, source, cameras_of(scenario.vision)) {}
@@ -43,9 +43,9 @@ class VisionNode {
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
-  /// For the sources of this node's frames.
+  /// For sources of this node's frames.
   const EventReporter& events() const { return events_; }
-  /// A source of this node's frames adds what it has dropped.
+  /// Registers a source of this node's frames, which adds its own drop counts.
   void add_drop_source(std::function<void(DropCounters&)> source) {
     drop_sources_.push_back(std::move(source));
   }
@@ -55,13 +55,14 @@ class VisionNode {
 
  private:
   void publish();
-  /// This process's clock was set back by so much: frames that arrive now would seem older than those before.
+  /// This process's clock was set back by this duration: frames that arrive now would seem older than earlier
+  /// ones.
   void on_clock_set_back(Duration by);
 
   Bus& bus_;
   Duration period_;
   Time next_;
-  Duration max_lead_;  // of a frame
+  Duration max_lead_;  // maximum lead of a frame's capture time
   Frame frame_;
   Tracker tracker_;
   CameraWatch watch_;
@@ -72,7 +73,7 @@ class VisionNode {
   std::function<void(const msg::WorldState&)> listener_;
   EventReporter events_;
   VisionChanges changes_;
-  std::uint64_t unknown_cameras_ = 0;  // frames of cameras that are not among the node's
+  std::uint64_t unknown_cameras_ = 0;  // number of frames from cameras that are not among the node's
   std::vector<std::function<void(DropCounters&)>> drop_sources_;
   CounterPublisher counters_;
 };

@@ -11,11 +11,11 @@
 
 namespace sidestep {
 
-/// Line colour in blue, green and red.
+/// Line colour as blue, green and red.
 using Ink = cv::Scalar;
 
-/// Draws horizontal shapes at a height above the floor into a camera's picture. Shapes that the camera cannot
-/// see are omitted.
+/// Draws horizontal shapes at a given height above the floor into a camera's picture. Shapes that the camera
+/// cannot see are omitted.
 class FloorPen {
  public:
   FloorPen(cv::Mat3b& picture, const CameraModel& camera) : picture_(picture), camera_(camera) {}

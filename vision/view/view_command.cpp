@@ -77,7 +77,7 @@ class Viewer {
   const Scenario& scenario_;
   const ViewOptions& options_;
   ImageReader reader_;
-  std::vector<Progress> progress_;  ///< by camera
+  std::vector<Progress> progress_;  ///< indexed by camera
   msg::WorldState world_;
   msg::DetectionFrame detections_;
 };

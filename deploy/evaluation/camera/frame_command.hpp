@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Adds `frame`, which renders a camera's view of a scenario at the start. Parsing it sets `action` to the
+/// Adds `frame`, which renders a camera's view of a scenario at its start. Parsing it sets `action` to the
 /// command, which returns the exit code, and may throw ConfigError for a file or std::runtime_error for any
 /// other failure.
 void add_frame_command(const CliCommand& root, std::function<int()>& action);

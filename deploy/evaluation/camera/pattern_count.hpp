@@ -8,9 +8,9 @@
 namespace sidestep {
 
 /// The number of patterns of c colours on a layout's n dots that identify both robot and heading. Without
-/// rotational symmetry, all c^n. With m symmetries, patterns equal up to a rotation count once, and patterns
-/// that are themselves symmetric do not count: sum over d | m of mu(d) c^(n/d), divided by m (for dots on a
-/// regular polygon, the aperiodic necklaces; Moreau 1872). Precondition: c^n is below 2^63.
+/// rotational symmetry these are all c^n patterns. With m symmetries, patterns equal up to a rotation count
+/// once, and patterns that are themselves symmetric do not count: sum over d | m of mu(d) c^(n/d), divided by
+/// m (for dots on a regular polygon, the aperiodic necklaces; Moreau 1872). Precondition: c^n is below 2^63.
 [[nodiscard]] std::uint64_t countable_patterns(const MarkerLayout& layout, std::uint64_t colours);
 
 /// The number of colours in a layout's patterns, without the team colours.

@@ -12,7 +12,7 @@ struct BenchmarkWorld {
 
   PlanWorld world;
   ObstacleWorld obstacles;
-  std::vector<double> shortest_m;  ///< by query, from the full visibility graph; infinite: no path
+  std::vector<double> shortest_m;  ///< indexed by query; from the full visibility graph; infinite: no path
 };
 
 }  // namespace sidestep

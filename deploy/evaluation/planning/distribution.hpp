@@ -17,14 +17,14 @@ class Distribution {
     values_.insert(values_.end(), other.values_.begin(), other.values_.end());
     std::inplace_merge(values_.begin(), values_.begin() + middle, values_.end());
   }
-  /// All values increased by the same amount.
+  /// A copy in which all values are increased by the same amount.
   Distribution shifted(double by) const {
     Distribution result = *this;
     for (double& value : result.values_) value += by;
     return result;
   }
   std::size_t size() const { return values_.size(); }
-  /// The value at `fraction` of the sorted values, 0 to 1; 0 when there are none.
+  /// The value at `fraction` (0 to 1) of the sorted values; 0 if there are none.
   double quantile(double fraction) const {
     if (values_.empty()) return 0;
     const auto i = static_cast<std::size_t>(fraction * static_cast<double>(values_.size()));

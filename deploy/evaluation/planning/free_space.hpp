@@ -14,11 +14,11 @@ namespace sidestep {
 ///
 /// The blocked positions form a union of convex sets: the obstacles inflated by the robot's radius, and four
 /// half-planes outside of the field. Two free positions are separated exactly if a closed curve in that union
-/// winds around one of them and not around the other (Alexander duality), and the overlaps between pairs of
-/// sets generate all such curves (nerve theorem).
+/// winds around one of them and not around the other (Alexander duality), and all such curves are generated
+/// by the overlaps between pairs of sets (nerve theorem).
 class FreeSpace {
  public:
-  /// Copies what it needs from the world.
+  /// Copies the data that it needs from the world.
   explicit FreeSpace(const PlanWorld& world);
 
   /// Precondition: both positions are free.

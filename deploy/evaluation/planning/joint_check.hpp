@@ -8,10 +8,10 @@
 
 namespace sidestep {
 
-/// What is wrong with the motions of robots, in one line; empty if nothing is: they lead from starts to
-/// goals, keep the required distances and obey the limits. Samples positions every millisecond, and computes
-/// them from the phases of the trajectories; shares no code with the planners. `obstacles`: those of the
-/// problem's world.
+/// Checks the motions of robots: they must lead from starts to goals, keep the required distances and obey
+/// the limits. Returns what is wrong in one line, or an empty string. Samples positions every millisecond,
+/// and computes them from the phases of the trajectories; shares no code with the planners. `obstacles` are
+/// the obstacles of the problem's world.
 [[nodiscard]] std::string fault_of(const JointProblem& problem, std::span<const Shape> obstacles,
                                    std::span<const Course> courses);
 

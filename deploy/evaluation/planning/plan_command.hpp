@@ -8,7 +8,7 @@
 namespace sidestep {
 
 /// Adds `plan`. Parsing it sets `action`, which returns the exit code, and may throw ConfigError for a world
-/// file or std::runtime_error with the reason of any other failure.
+/// file or std::runtime_error with the reason for any other failure.
 void add_plan_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

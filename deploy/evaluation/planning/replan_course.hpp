@@ -17,18 +17,18 @@ class ReplanCourse {
  public:
   static constexpr double kCycle_s = 1.0 / 60, kSpeed_mps = 2, kObstacleSpeed_mps = 0.5;
 
-  /// `cycles`: the maximum number of calls of step().
+  /// `cycles` is the maximum number of calls of step().
   ReplanCourse(std::size_t cycles, std::uint64_t seed);
 
-  /// Advances the world by one cycle; precedes the first query.
+  /// Advances the world by one cycle. Call it before the first query.
   void step();
 
   /// This cycle's query; valid until the next step.
   DiscDomain domain(const DiscDomainSettings& settings = {}) const;
   const Vec2& start_m() const { return position_m_; }
-  /// The shortest path, if there is one.
+  /// The shortest path, if one exists.
   const Plan<Vec2>& shortest() const { return path_; }
-  /// Like is_valid_path(), but a path that begins in an obstacle counts as valid.
+  /// Like is_valid_path(), but a path that starts in an obstacle may be valid.
   [[nodiscard]] bool is_valid(const std::vector<Vec2>& path_m) const;
 
  private:

@@ -8,8 +8,9 @@
 
 namespace sidestep {
 
-/// A point, segment or convex polygon (counter-clockwise) inflated by a radius: one form for every obstacle.
-/// Used by the reference checks; shares no arithmetic with the collision structures that planners query.
+/// A point, segment or convex polygon (counter-clockwise) inflated by a radius: a common representation of
+/// all obstacles. Used by the reference checks; shares no arithmetic with the collision structures that
+/// planners query.
 struct RoundedShape {
   std::vector<Vec2> corners_m;
   double radius_m = 0;

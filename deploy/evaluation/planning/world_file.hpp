@@ -11,7 +11,8 @@ namespace sidestep {
 /// line for the first error.
 [[nodiscard]] PlanWorld load_plan_world(const std::string& path);
 
-/// The same from text. `file_name` appears in messages, and its stem is the world's default name.
+/// Parses and checks the text of a world file. `file_name` appears in messages, and its stem is the world's
+/// default name.
 [[nodiscard]] PlanWorld parse_plan_world(const std::string& text, const std::string& file_name);
 
 /// The text of a world file for a world.

@@ -10,11 +10,11 @@
 
 namespace sidestep {
 
-/// The keys of disturbances of robots: push, slip, block, lift, place, reboot, forget_pose, clock,
+/// The keys for disturbances of robots: push, slip, block, lift, place, reboot, forget_pose, clock,
 /// switch_off, switch_on, carry.
 [[nodiscard]] std::vector<std::string> disturbance_keys();
 
-/// Reads the disturbance of the robot under one of these keys. Throws ConfigError.
+/// Reads the robot's disturbance under one of these keys. Throws ConfigError.
 [[nodiscard]] RobotDisturbance read_disturbance(YamlMap& map, const std::string& key,
                                                 const Scenario& scenario);
 /// Whether the disturbance lasts for RobotDisturbance::duration.

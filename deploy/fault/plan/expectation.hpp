@@ -10,20 +10,20 @@
 
 namespace sidestep {
 
-/// Why a robot is named as not in order: by the coordinator, or by its own agent (kClockOutOfBound).
+/// Why a robot is reported as having a problem: by the coordinator, or by its own agent (kClockOutOfBound).
 enum class NoticeKind { kMissing, kQuarantined, kDisplaced, kConflict, kClockOutOfBound };
-/// As in scenario files, e.g. "missing".
+/// The name used in scenario files, for example "missing".
 [[nodiscard]] const char* name_of(NoticeKind kind);
 [[nodiscard]] std::optional<NoticeKind> notice_kind_named(const std::string& name);
 
-/// Some robots of a scenario.
+/// A set of robots of a scenario.
 struct RobotSet {
   std::vector<RobotId> ids;
   bool is_all = false;
 
   bool contains(RobotId robot) const;
 };
-/// E.g. "all robots" or "robot 3".
+/// For example "all robots" or "robot 3".
 [[nodiscard]] std::string to_text(const RobotSet& robots);
 
 /// Part of a run, in seconds since the first grant.
@@ -31,22 +31,22 @@ struct TimeSpan {
   double from_s = 0, to_s = 0;
 };
 
-/// None of these robots touches another robot or an obstacle; contacts with the excepted robots do not count.
-/// If these are all robots, none touches an opponent while it moves.
+/// None of these robots touches another robot or an obstacle. Contacts with the excepted robots do not count.
+/// If the set is all robots, none of them touches an opponent while moving.
 struct ExpectNoContact {
   RobotSet robots, except;
 };
-/// The audit covers enough of the run and finds no violation.
+/// The audit covers enough of the run and finds no violations.
 struct ExpectNoViolations {};
 struct ExpectArrived {
   RobotSet robots;
   std::optional<double> by_s;  ///< nullopt: the end of the run
 };
-/// At the end of the run these robots have not arrived.
+/// These robots have not arrived at the end of the run.
 struct ExpectNotArrived {
   RobotSet robots;
 };
-/// Each robot comes to rest within the span, and stays at rest for a while.
+/// Each robot comes to rest within the span, and then stays at rest for a while.
 struct ExpectAtRest {
   RobotSet robots;
   TimeSpan span;
@@ -66,7 +66,7 @@ struct ExpectMaxSpeed {
   double from_s = 0;
   std::optional<double> to_s;  ///< nullopt: the end of the run
 };
-/// Within the span, another coordinator than before begins to grant in a higher epoch.
+/// Within the span, a different coordinator begins to grant, in a higher epoch.
 struct ExpectTakeover {
   TimeSpan span;
 };
@@ -76,7 +76,7 @@ struct ExpectNamed {
   NoticeKind as = NoticeKind::kMissing;
   TimeSpan span;
 };
-/// The report names a process that works by other rules.
+/// The report names a process whose rules differ.
 struct ExpectMismatch {
   std::string process;
 };
@@ -85,15 +85,15 @@ using ExpectationCheck = std::variant<ExpectNoContact, ExpectNoViolations, Expec
                                       ExpectAtRest, ExpectMoving, ExpectMinClearance, ExpectMaxSpeed,
                                       ExpectTakeover, ExpectNamed, ExpectMismatch>;
 
-/// What a run of a test has to show.
+/// What a run of a test must show.
 struct Expectation {
   ExpectationCheck check;
-  int line = 0;  ///< of the test's file
+  int line = 0;  ///< line in the test's file
 };
 
-/// One line without a verdict, e.g. "robot 3 at rest between 1 s and 1.5 s".
+/// One line without a verdict, for example "robot 3 at rest between 1 s and 1.5 s".
 [[nodiscard]] std::string describe(const Expectation& expectation);
-/// When the run has decided it at the latest; nullopt: at its end.
+/// The latest time at which it is decided; nullopt: the end of the run.
 [[nodiscard]] std::optional<double> deadline_s(const Expectation& expectation);
 
 }  // namespace sidestep

@@ -12,18 +12,18 @@
 
 namespace sidestep {
 
-/// Begins and ends the faults of a test at their times. What happens then is up to the caller's effects:
+/// Begins and ends the faults of a test at their times. The caller's effects carry them out:
 /// `effects.begin(fault)` and, for faults with a duration, `effects.end(fault)` with the fault's index. Both
 /// throw std::runtime_error if the fault cannot be applied.
 class FaultSchedule {
  public:
-  /// `zero`: the moment from which faults' times count. The faults must outlive the schedule.
+  /// `zero` is the origin of the faults' times. The faults must outlive the schedule.
   FaultSchedule(const std::vector<PlannedFault>& faults, Time zero);
 
-  /// When something is due next; Time::max(): never.
+  /// When the next event is due; Time::max() if none is.
   Time next() const { return next_ < events_.size() ? events_[next_].at : Time::max(); }
 
-  /// Does everything that is due.
+  /// Carries out everything that is due.
   template <typename Effects>
   void apply_due(Time now, Effects& effects) {
     while (next() <= now) {
@@ -51,7 +51,7 @@ class FaultSchedule {
 
   const std::vector<PlannedFault>& faults_;
   Time zero_;
-  std::vector<Event> events_;  // in order
+  std::vector<Event> events_;  // sorted by time
   std::size_t next_ = 0;
   std::vector<FaultProblem> problems_;
 };

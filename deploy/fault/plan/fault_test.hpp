@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-/// A scenario with faults, and what its runs have to show. All names and times in it are valid.
+/// A scenario with faults and with expectations for its runs. All names and times in it are valid.
 struct FaultTest {
   std::string file;
   Scenario scenario;
@@ -30,7 +30,7 @@ template <typename Action>
 /// Reads a scenario file with the keys `faults` and `expect` (deploy/scenarios/README.md). Throws
 /// ConfigError.
 [[nodiscard]] FaultTest load_fault_test(const std::string& path);
-/// The same from text.
+/// Parses the text of such a file.
 [[nodiscard]] FaultTest parse_fault_test(const std::string& text, const std::string& file);
 
 }  // namespace sidestep

@@ -9,12 +9,12 @@
 
 namespace sidestep {
 
-/// kNotJudged: what was heard of the run does not tell.
+/// kNotJudged means that too little of the run was received to decide.
 enum class Outcome { kPassed, kFailed, kNotJudged };
 
 struct Judgement {
   Outcome outcome = Outcome::kPassed;
-  double at_s = 0;     ///< when it was decided, since the first grant; meaningless if passed
+  double at_s = 0;     ///< time of the decision since the first grant; meaningless if passed
   std::string reason;  ///< what was observed instead; empty if passed
 
   static Judgement failed(double at_s, std::string reason) {
@@ -25,10 +25,10 @@ struct Judgement {
   }
 };
 
-/// Whether a run has shown what was expected.
+/// Judges whether a run met an expectation.
 [[nodiscard]] Judgement judge(const Expectation& expectation, const RunHistory& history);
 
-// The parts of judge().
+// Judges for the individual kinds of expectations.
 [[nodiscard]] Judgement judge(const ExpectNoContact& check, const RunHistory& history);
 [[nodiscard]] Judgement judge(const ExpectMinClearance& check, const RunHistory& history);
 [[nodiscard]] Judgement judge(const ExpectAtRest& check, const RunHistory& history);

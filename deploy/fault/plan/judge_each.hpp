@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Judges each robot by itself. A failure outweighs what could not be judged; the result is that of the worst
-/// robots, at the earliest time, with the reasons of the first ones.
+/// Judges each robot separately. A failure outweighs "not judged". The result has the worst outcome of all
+/// robots, at its earliest time, with the reasons of the first such robots.
 template <typename JudgeRobot>
 Judgement judge_each(const RobotSet& robots, JudgeRobot judge_robot) {
   constexpr int kShown = 3;

@@ -8,10 +8,11 @@
 
 namespace sidestep {
 
-/// The results as JUnit XML: one test case for each run, with its time and everything that failed in it.
+/// The results as JUnit XML, with one test case per run that contains its duration and everything that
+/// failed.
 [[nodiscard]] std::string junit_xml(const std::vector<TestResult>& results);
 
-/// The text for an XML 1.0 attribute or element. What XML cannot contain becomes '?'.
+/// Escapes a text for an XML 1.0 attribute or element. Characters that XML cannot contain become '?'.
 [[nodiscard]] std::string xml_escaped(const std::string& text);
 
 }  // namespace sidestep

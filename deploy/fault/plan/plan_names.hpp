@@ -10,24 +10,24 @@
 
 namespace sidestep {
 
-// Readers of the names and times that faults and expectations have in common. They throw ConfigError.
+// Readers for names and times that faults and expectations share. They throw ConfigError.
 
-/// The only one of these keys that the mapping has. `what` ("a fault") appears in error messages.
+/// The only one of these keys in the mapping. `what`, for example "a fault", appears in error messages.
 [[nodiscard]] std::string only_key_of(YamlMap& map, const std::vector<std::string>& keys, const char* what);
 
-/// A robot of the scenario.
+/// Reads a robot of the scenario.
 [[nodiscard]] RobotId robot_from(YamlMap& map, const std::string& key, const Scenario& scenario);
-/// "all", a robot, or a list of robots.
+/// Reads "all", a robot, or a list of robots.
 [[nodiscard]] RobotSet robots_from(YamlMap& map, const std::string& key, const Scenario& scenario);
 
-/// One of these names.
+/// Reads one of these names.
 [[nodiscard]] std::string process_from(YamlMap& map, const std::string& key,
                                        const std::vector<std::string>& names);
-/// One or several of these names.
+/// Reads one or several of these names.
 [[nodiscard]] std::vector<std::string> processes_from(YamlMap& map, const std::string& key,
                                                       const std::vector<std::string>& names);
 
-/// A required number of seconds since the first grant, within the scenario's time limit.
+/// Reads a required number of seconds since the first grant, which must be within the scenario's time limit.
 [[nodiscard]] double moment_from(YamlMap& map, const std::string& key, const Scenario& scenario);
 
 }  // namespace sidestep

@@ -11,28 +11,29 @@
 
 namespace sidestep {
 
-// Processes are named as in reports: "agent 3", "agent 3 (twin)", "coordinator 1", "vision", "simulator".
+// Processes have the same names as in reports: "agent 3", "agent 3 (twin)", "coordinator 1", "vision",
+// "simulator".
 
-/// Names the coordinator that grants when the fault begins.
+/// The name for the coordinator that is granting when the fault begins.
 inline constexpr const char* kActiveCoordinator = "active coordinator";
 
 struct KillFault {
   std::string process;
 };
-/// Starts a process, after killing it if it runs.
+/// Starts a process, killing it first if it is running.
 struct RestartFault {
   std::string process;
-  std::string scenario_file;  ///< by which it works; empty: the test's own
+  std::string scenario_file;  ///< scenario that it uses from then on; empty: the test's own
 };
-/// SIGSTOP, and SIGCONT at the end.
+/// Sends SIGSTOP, and SIGCONT at the end.
 struct PauseFault {
   std::string process;
 };
 /// Messages between two groups of processes are lost.
 struct PartitionFault {
   std::vector<std::string> group, others;
-  bool cuts_in = true;   ///< what the others send to the group
-  bool cuts_out = true;  ///< what the group sends to the others
+  bool cuts_in = true;   ///< cuts messages from other processes to the group
+  bool cuts_out = true;  ///< cuts messages from the group to other processes
 };
 /// Messages that arrive at a process are lost, delayed and duplicated.
 struct ImpairmentFault {
@@ -51,14 +52,14 @@ struct AbsenceFault {
 using FaultAction = std::variant<KillFault, RestartFault, PauseFault, PartitionFault, ImpairmentFault,
                                  RobotDisturbance, TwinFault, AbsenceFault>;
 
-/// A fault of a test, and when it begins.
+/// A fault of a test, with its time.
 struct PlannedFault {
-  double at_s = 0;                ///< since the first grant
+  double at_s = 0;                ///< in seconds since the first grant
   std::optional<double> seconds;  ///< duration; nullopt: it has no end
   FaultAction action;
-  std::string text;  ///< for messages, e.g. "kill agent 3"
+  std::string text;  ///< for messages, for example "kill agent 3"
 
-  /// When it has had its effect.
+  /// When the fault's effect ends.
   double end_s() const { return at_s + seconds.value_or(0); }
 };
 

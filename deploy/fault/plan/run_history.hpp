@@ -11,19 +11,19 @@
 
 namespace sidestep {
 
-// What expectations are judged by. Times are in seconds since the first grant.
+// The data that expectations are judged by. Times are in seconds since the first grant.
 
 struct TrueSpeed {
   RobotId robot = 0;
   double speed_mps = 0;
 };
 
-/// The floor at one moment, in ground truth. Robots that are off the floor are missing.
+/// The ground truth of the floor at one moment. Robots that are off the floor are omitted.
 struct TruthSample {
   double at_s = 0;
-  std::vector<TrueSpeed> robots;           ///< ascending by id
-  double min_clearance_m = 0;              ///< smallest since the start of the run
-  std::uint64_t crashes_while_moving = 0;  ///< since the start of the run
+  std::vector<TrueSpeed> robots;           ///< sorted by id
+  double min_clearance_m = 0;              ///< smallest value since the start of the run
+  std::uint64_t crashes_while_moving = 0;  ///< number since the start of the run
 
   std::optional<double> speed_of(RobotId robot) const;
 };
@@ -56,21 +56,22 @@ struct RunEnd {
   std::map<RobotId, std::optional<double>> arrival_s;
   std::uint64_t violations = 0;
   double first_violation_at_s = 0;
-  std::string first_violation;  ///< in one line
+  std::string first_violation;  ///< as one line
   std::string shortfall;        ///< why the audit covered too little; empty: it covered enough
-  std::map<std::string, std::string> mismatches;  ///< processes with other rules, and the differences
+  std::map<std::string, std::string> mismatches;  ///< processes with different rules, and the differences
 };
 
-/// Everything that was heard of a run; each list is in order of time.
+/// Everything that was received about a run. Each list is sorted by time.
 struct RunHistory {
   std::vector<TruthSample> truths;
   std::vector<ContactSample> contacts;
-  std::uint64_t unidentified_contacts = 0;  ///< contacts of which ground truth did not name the robots
+  /// Number of contacts for which ground truth did not name the robots.
+  std::uint64_t unidentified_contacts = 0;
   std::vector<CoordinatorSample> coordinators;
   std::vector<NoticeSample> notices;
   RunEnd end;
 
-  /// The number of the coordinator that was last heard to grant.
+  /// The number of the last coordinator that reported that it grants.
   std::optional<int> granting_coordinator() const;
   /// Whether the last heartbeat names the robot as missing.
   bool is_missing(RobotId robot) const;

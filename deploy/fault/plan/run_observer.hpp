@@ -9,21 +9,22 @@
 
 namespace sidestep {
 
-/// Records what the messages of a run tell. Times count from the moment when it first hears that a
-/// coordinator grants, by the clock of its bus.
+/// Records the messages of a run. Times count from the moment when the observer first receives a message that
+/// a coordinator grants, by the clock of its bus.
 class RunObserver {
  public:
-  /// The observer must outlive the bus's last callback. The bus must refuse messages of processes with other
-  /// rules.
+  /// The observer must outlive the bus's last callback. The bus must refuse messages from processes with
+  /// different rules.
   explicit RunObserver(Bus& bus);
   RunObserver(const RunObserver&) = delete;
   RunObserver& operator=(const RunObserver&) = delete;
 
-  /// When it first heard that a coordinator grants. Everything before is ignored, except for contacts.
+  /// When the observer first learned that a coordinator grants. Everything earlier is ignored, except
+  /// contacts.
   std::optional<Time> begin() const { return begin_; }
-  /// A coordinator is known to grant, although this observer has not heard it.
+  /// Sets the beginning if it is known otherwise that a coordinator grants.
   void begin_at(Time now) { begin_ = begin_.value_or(now); }
-  /// The end is left to the caller.
+  /// The history; the caller must add the end.
   const RunHistory& history() const { return history_; }
 
  private:
@@ -37,8 +38,8 @@ class RunObserver {
   Bus& bus_;
   std::optional<Time> begin_;
   RunHistory history_;
-  std::uint64_t truth_number_ = 0;  // of the last ground truth
-  std::uint64_t contacts_ = 0;      // reported so far
+  std::uint64_t truth_number_ = 0;  // message number of the last ground truth
+  std::uint64_t contacts_ = 0;      // number of contacts reported so far
   std::uint64_t highest_epoch_ = 0;
 };
 

@@ -10,17 +10,17 @@
 
 namespace sidestep {
 
-/// A fault that could not be applied, and when.
+/// A fault that could not be applied.
 struct FaultProblem {
-  double at_s = 0;   ///< since the first grant
+  double at_s = 0;   ///< in seconds since the first grant
   std::string text;  ///< the fault and the reason
 };
 
-/// What a run of a test has shown.
+/// The outcome of a run of a test.
 struct RunOutcome {
   RunHistory history;
   std::vector<FaultProblem> problems;
-  std::string log_file;  ///< of the run's processes; empty: none
+  std::string log_file;  ///< log of the run's processes; empty: none
 };
 
 struct JudgedExpectation {
@@ -35,19 +35,19 @@ struct TestResult {
   std::string bus;  ///< "SimBus" or "DDS"
   std::uint64_t seed = 1;
   double run_s = 0;          ///< by the run's clock, since the first grant
-  double wall_s = 0;         ///< that the run took
-  std::string error;         ///< why there was no run; empty: there was one
+  double wall_s = 0;         ///< wall-clock time that the run took
+  std::string error;         ///< why there was no run; empty: there was a run
   std::string abort_reason;  ///< empty: the run was not aborted
   std::vector<FaultProblem> problems;
   std::vector<JudgedExpectation> expectations;
   std::string log_file;
 
   bool passed() const { return failures().empty(); }
-  /// One line for each reason why the test did not pass: when, what was expected, and what was observed.
+  /// One line for each reason why the test did not pass: the time, what was expected, and what was observed.
   std::vector<std::string> failures() const;
 };
 
-/// Judges the outcome by all expectations of the test. The caller adds bus, seed and wall_s.
+/// Judges the outcome by all expectations of the test. The caller fills in bus, seed and wall_s.
 [[nodiscard]] TestResult judged(const FaultTest& test, const RunOutcome& outcome);
 
 }  // namespace sidestep

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// Attests that robots are absent, each until no coordinator misses it any more.
+/// Attests that robots are absent. Each attestation is repeated until no coordinator is missing the robot.
 class AbsenceAttestations {
  public:
   using Publish = std::function<void(msg::AbsenceAttestation&)>;
@@ -23,7 +23,7 @@ class AbsenceAttestations {
   void begin(RobotId robot, Time now) { pending_.emplace_back(robot, now); }
   /// Call it at least a few times a second.
   void update(Time now);
-  /// Attestations that were not accepted, including those that are still pending.
+  /// Attestations that have not been accepted, including pending ones.
   std::vector<FaultProblem> problems() const;
 
  private:

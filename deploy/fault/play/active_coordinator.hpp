@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// The name of a process: the same, or that of the coordinator that grants, for kActiveCoordinator. Throws
-/// std::runtime_error if none has granted.
+/// Resolves a process name: kActiveCoordinator becomes the name of the coordinator that grants; other names
+/// are unchanged. Throws std::runtime_error if no coordinator has granted.
 [[nodiscard]] inline std::string resolved(const std::string& process, const RunHistory& history) {
   if (process != kActiveCoordinator) return process;
   const auto number = history.granting_coordinator();

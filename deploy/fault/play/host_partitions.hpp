@@ -11,12 +11,12 @@
 
 namespace sidestep {
 
-/// Namespace hosts, created for the run, on which the partitions of a test separate whole hosts: processes on
-/// the same sides of all partitions share one.
+/// Namespace hosts that are created for the run, so that the partitions of a test separate whole hosts:
+/// processes that are on the same sides of all partitions share a host.
 [[nodiscard]] Hosts hosts_for_partitions(const FaultTest& test);
 
-/// Partitions between the namespace hosts of a run. Packets from one side to the other are dropped, including
-/// those of discovery. The launcher still hears all hosts.
+/// Partitions between the namespace hosts of a run. Packets between the two sides are dropped, including
+/// discovery packets. The launcher still receives packets from all hosts.
 class HostPartitions {
  public:
   /// Throws std::runtime_error if a partition of the test does not separate whole namespace hosts. The hosts
@@ -41,7 +41,7 @@ class HostPartitions {
 
   const FaultTest& test_;
   const RunHosts& hosts_;
-  /// Number of partitions by receiving host and sender's address.
+  /// Number of partitions, indexed by receiving host and sender's address.
   std::map<const HostSpec*, std::map<std::string, int>> cuts_;
 };
 

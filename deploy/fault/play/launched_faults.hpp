@@ -15,8 +15,8 @@
 
 namespace sidestep {
 
-/// The effects of a test's faults on real processes; see FaultSchedule. Nothing here waits, because it runs
-/// in the launcher's thread.
+/// Applies a test's faults to real processes; see FaultSchedule. Nothing here blocks, because it runs in the
+/// launcher's thread.
 class LaunchedFaults {
  public:
   /// Throws std::runtime_error if the hosts do not allow a fault of the test. Create it before the processes
@@ -49,10 +49,11 @@ class LaunchedFaults {
   const RunHosts& hosts_;
   Launcher& launcher_;
   const RunObserver& observer_;
-  std::optional<OperatorChannel> disturbances_, network_faults_, absences_;  // those that the test needs
+  // Only the ones that the test needs.
+  std::optional<OperatorChannel> disturbances_, network_faults_, absences_;
   std::optional<HostPartitions> partitions_;
   AbsenceAttestations attestations_;
-  std::map<std::size_t, std::string> paused_;  // processes, by fault
+  std::map<std::size_t, std::string> paused_;  // indexed by fault: the process
 };
 
 }  // namespace sidestep

@@ -13,7 +13,7 @@ namespace sidestep {
 struct LaunchOptions {
   std::string hosts_file;  ///< empty: this machine, or namespaces if the test has partitions
   DdsSettings dds;
-  std::uint64_t seed = 1;  ///< of the simulator's noise
+  std::uint64_t seed = 1;  ///< seed of the simulator's noise
   LogLevel log_level = LogLevel::kInfo;
 };
 

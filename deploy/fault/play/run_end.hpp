@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// What the report of a run says at its end, at the time `now`.
+/// The end of a run at the time `now`, according to its report.
 [[nodiscard]] RunEnd run_end(const Report& report, const RunObserver& observer, Time now);
 
 }  // namespace sidestep

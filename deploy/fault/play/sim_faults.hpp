@@ -13,7 +13,7 @@
 
 namespace sidestep {
 
-/// The effects of a test's faults on a system on SimBus; see FaultSchedule.
+/// Applies a test's faults to a system on SimBus; see FaultSchedule.
 class SimFaults {
  public:
   /// `bus` belongs to an observer of the system. All arguments must outlive this object.
@@ -21,9 +21,9 @@ class SimFaults {
 
   void begin(std::size_t fault);
   void end(std::size_t fault);
-  /// When update() is due, apart from begun attestations.
+  /// When update() is due, not counting attestations in progress.
   Time next() const;
-  /// Restarts killed processes that the scenario restarts, and repeats attestations. Call it at least a few
+  /// Restarts killed processes if the scenario says so, and repeats attestations. Call it at least a few
   /// times a second.
   void update();
   std::vector<FaultProblem> problems() const { return attestations_.problems(); }
@@ -37,7 +37,8 @@ class SimFaults {
   void apply(const RobotDisturbance& fault, const PlannedFault&);
   void apply(const TwinFault& fault, const PlannedFault&);
   void apply(const AbsenceFault& fault, const PlannedFault&);
-  /// The process of this name, or the active coordinator. Throws std::runtime_error if it does not run.
+  /// The name of the running process with this name, or of the active coordinator. Throws std::runtime_error
+  /// if it is not running.
   std::string running(const std::string& process) const;
 
   const FaultTest& test_;
@@ -46,8 +47,8 @@ class SimFaults {
   SimLinkFaults links_;
   Writer<msg::AbsenceAttestation> attestation_writer_;
   AbsenceAttestations attestations_;
-  std::map<std::string, Time> restarts_;    // of killed processes that the scenario restarts
-  std::set<std::string> with_other_rules_;  // processes that last started with another scenario
+  std::map<std::string, Time> restarts_;    // when to restart killed processes
+  std::set<std::string> with_other_rules_;  // processes that were last started with another scenario
 };
 
 }  // namespace sidestep

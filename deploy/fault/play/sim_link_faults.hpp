@@ -11,8 +11,8 @@
 
 namespace sidestep {
 
-/// Partitions and impairments of a system on SimBus. Links that no fault concerns keep the scenario's
-/// network.
+/// Partitions and impairments of a system on SimBus. Links without a fault keep the scenario's network
+/// quality.
 class SimLinkFaults {
  public:
   /// Both arguments must outlive this object.
@@ -20,10 +20,10 @@ class SimLinkFaults {
 
   void begin(const PartitionFault& partition) { cut(partition, 1); }
   void end(const PartitionFault& partition) { cut(partition, -1); }
-  /// Replaces the impairments of the fault's target, as over DDS.
+  /// Replaces the impairment of the fault's target, as over DDS.
   void begin(const ImpairmentFault& fault) { impair(fault.target, fault.quality); }
   void end(const ImpairmentFault& fault) { impair(fault.target, kUnimpairedLink); }
-  /// A process has died, and with it its impairment, as over DDS.
+  /// Removes a process's impairment when it dies, as over DDS.
   void end_impairment(const std::string& process) {
     if (impairments_.contains(process)) impair(process, kUnimpairedLink);
   }
@@ -36,8 +36,8 @@ class SimLinkFaults {
   SimSystem& system_;
   const NetworkSpec& network_;
   std::vector<std::string> processes_;
-  std::map<std::pair<std::string, std::string>, int> cuts_;  // by sender and receiver
-  std::map<std::string, LinkQuality> impairments_;           // by receiver
+  std::map<std::pair<std::string, std::string>, int> cuts_;  // indexed by sender and receiver
+  std::map<std::string, LinkQuality> impairments_;           // indexed by receiver
 };
 
 }  // namespace sidestep

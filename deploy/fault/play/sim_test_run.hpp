@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Runs a test on SimBus, in virtual time. The same seed gives the same outcome. `log_level`: of the
-/// simulated processes' log, on stderr.
+/// Runs a test on SimBus, in virtual time. The same seed gives the same outcome. The simulated processes log
+/// to stderr at `log_level`.
 [[nodiscard]] RunOutcome run_on_sim_bus(const FaultTest& test, std::uint64_t seed,
                                         LogLevel log_level = LogLevel::kOff);
 

@@ -11,10 +11,11 @@
 
 namespace sidestep {
 
-/// Moves this thread, and the processes it starts, to another network namespace until destruction.
+/// Moves this thread, and processes that it starts, to another network namespace for the lifetime of the
+/// object.
 class ScopedNamespace {
  public:
-  /// Throws std::runtime_error when the namespace does not exist or permission to enter it is missing.
+  /// Throws std::runtime_error if the namespace does not exist or there is no permission to enter it.
   explicit ScopedNamespace(const std::string& name);
   ~ScopedNamespace();
   ScopedNamespace(const ScopedNamespace&) = delete;
@@ -37,7 +38,7 @@ class NamespaceNetwork {
 
   /// The namespace with the bridge, where the launcher and observers run.
   std::string bridge() const;
-  /// The full name of a namespace of the hosts file.
+  /// The full name of a namespace that is in the hosts file.
   std::string full_name(const std::string& label) const;
 
  private:
@@ -45,7 +46,7 @@ class NamespaceNetwork {
   void connect(const HostSpec& host, const std::string& cable, int prefix_length);
   void remove();
 
-  const pid_t launcher_ = getpid();  ///< also in a process that it forks
+  const pid_t launcher_ = getpid();  ///< the original process, even in processes that it forks
   std::vector<std::string> created_;
 };
 
@@ -54,7 +55,7 @@ inline constexpr const char* kBridgeLabel = "bridge";
 
 /// A namespace that a launcher created.
 struct RunNamespace {
-  std::string name;  ///< in `ip netns`
+  std::string name;  ///< the name in `ip netns`
   pid_t launcher = 0;
   std::string label;  ///< its name in the hosts file, or kBridgeLabel
 };

@@ -11,11 +11,11 @@
 
 namespace sidestep {
 
-/// The hosts of one run, the processes on them, and the network between them if this process creates it. This
-/// thread is then in the network's bridge namespace during the lifetime of the object.
+/// The hosts of one run, the placement of processes on them, and the network between them if this process
+/// creates it. In that case this thread is in the network's bridge namespace for the lifetime of the object.
 class RunHosts {
  public:
-  /// Throws as Placement and NamespaceNetwork.
+  /// Throws whatever Placement and NamespaceNetwork throw.
   RunHosts(const Hosts& hosts, const Scenario& scenario, bool has_driver = false);
   RunHosts(const RunHosts&) = delete;
   RunHosts& operator=(const RunHosts&) = delete;
@@ -24,7 +24,7 @@ class RunHosts {
   const Placement& placement() const { return placement_; }
   /// Null unless this process created the network.
   const NamespaceNetwork* network() const { return network_ ? &*network_ : nullptr; }
-  /// The name in `ip netns` of a namespace host.
+  /// The name of a namespace host in `ip netns`.
   std::string namespace_name(const HostSpec& host) const {
     return network_ ? network_->full_name(host.target) : host.target;
   }

@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Adds `sidestep audit`. Parsing it sets `action`, which returns the exit code: that of the audit's verdict.
-/// The action may throw std::runtime_error.
+/// Adds `sidestep audit`. Parsing it sets `action`, which returns the exit code of the audit's verdict and
+/// may throw std::runtime_error.
 void add_audit_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-inline constexpr double kLengthTolerance_m = 2e-6;  ///< for rounding in paths and their distances
+inline constexpr double kLengthTolerance_m = 2e-6;  ///< allows for rounding in paths and their distances
 
 /// Whether all numbers of the version are finite and physically plausible and its phase count fits the array.
 [[nodiscard]] bool is_sane(const msg::Version& version);
@@ -19,7 +19,7 @@ inline constexpr double kLengthTolerance_m = 2e-6;  ///< for rounding in paths a
 class AuditPath {
  public:
   struct Node {
-    double elapsed_s = 0;  ///< since the path's start
+    double elapsed_s = 0;  ///< time since the path's start
     double x = 0, y = 0, vx = 0, vy = 0, ax = 0, ay = 0;
   };
 
@@ -34,7 +34,7 @@ class AuditPath {
   Node at_s(double elapsed_s) const;
   Node at_ns(std::int64_t t_ns) const { return at_s(static_cast<double>(t_ns - start_ns_) * 1e-9); }
   const Node& first() const { return nodes_[0]; }
-  /// The end of the last phase, with the speed that remains there.
+  /// The end of the last phase, with the residual speed there.
   const Node& last() const { return nodes_[static_cast<std::size_t>(count_)]; }
   int phase_count() const { return count_; }
   /// The state at the beginning of a phase.
@@ -46,8 +46,7 @@ class AuditPath {
  private:
   std::int64_t start_ns_ = 0;
   int count_ = 0;
-  std::array<Node, msg::MAX_PHASES + 1>
-      nodes_{};  ///< the beginning of each phase, and the end of the last one
+  std::array<Node, msg::MAX_PHASES + 1> nodes_{};  ///< the start of each phase, and the end of the last one
   double reach_m_ = 0;
   double max_speed_mps_ = 0;
 };
@@ -60,10 +59,10 @@ struct ClosestApproach {
 
 /// Closest approach at or after `from_ns` and the later of the two starts. Steps are as long as the relative
 /// speed allows without missing a distance below `cutoff_m`, and at most 0.25 ms where the paths are that
-/// close. Exact to micrometres below `cutoff_m`; above it, the result is only a bound.
+/// close. Below `cutoff_m` the result is accurate to micrometres; above it, the result is only a bound.
 [[nodiscard]] ClosestApproach closest_approach(const AuditPath& a, const AuditPath& b, double cutoff_m,
                                                std::int64_t from_ns = 0);
-/// The same for a path and a fixed point.
+/// The closest approach of a path to a fixed point, with the same accuracy.
 [[nodiscard]] ClosestApproach closest_approach(const AuditPath& path, double x_m, double y_m,
                                                double cutoff_m);
 

@@ -48,14 +48,14 @@ enum class AuditRule : std::uint8_t {
 inline constexpr std::size_t kAuditRules = static_cast<std::size_t>(AuditRule::kForgottenOrder) + 1;
 
 struct AuditRuleInfo {
-  const char* name;         ///< e.g. "clearance"
-  const char* reference;    ///< the rule's place in coordinator/PROTOCOL.md or a page beside it
+  const char* name;         ///< for example "clearance"
+  const char* reference;    ///< the rule's location in coordinator/PROTOCOL.md or a page beside it
   const char* requirement;  ///< one sentence
 };
 
 const AuditRuleInfo& audit_rule(AuditRule rule);
 
-/// One breach of one rule.
+/// A violation of one rule.
 struct Violation {
   AuditRule rule = AuditRule::kClearance;
   Time detected{};  ///< when the evidence was complete, by the auditor's clock
@@ -67,9 +67,9 @@ struct Violation {
   std::string detail;  ///< the measured and the required values
 };
 
-/// One line of text.
+/// The violation as one line of text.
 std::string to_line(const Violation& violation);
-/// One line of JSON.
+/// The violation as one line of JSON.
 std::string to_json_line(const Violation& violation);
 
 }  // namespace sidestep

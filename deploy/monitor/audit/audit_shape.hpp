@@ -25,7 +25,7 @@ class AuditShape {
   double radius_m_ = 0;
 };
 
-/// The same for a path and an obstacle's edge.
+/// The closest approach of a path to an obstacle's edge.
 [[nodiscard]] ClosestApproach closest_approach(const AuditPath& path, const AuditShape& obstacle,
                                                double cutoff_m);
 

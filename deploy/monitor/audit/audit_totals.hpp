@@ -13,23 +13,23 @@
 
 namespace sidestep {
 
-/// kNotJudged: nothing wrong was found, but the audit covered too little to say that the run passed.
+/// kNotJudged means that nothing wrong was found, but the audit covered too little to declare the run passed.
 enum class AuditVerdict : std::uint8_t { kPassed, kFailed, kNotJudged };
 
 /// The exit code of a run that was not judged.
 inline constexpr int kExitNotJudged = 3;
-/// 0 if passed.
+/// The exit code of a verdict; 0 if passed.
 [[nodiscard]] int exit_code(AuditVerdict verdict);
 /// "passed", "failed" or "not judged".
 [[nodiscard]] const char* name_of(AuditVerdict verdict);
 
-/// What tells the auditor where robots are and which ones touch.
+/// The source from which the auditor learns where robots are and which ones touch.
 enum class AuditReference : std::uint8_t { kNone, kVision, kGroundTruth, kVisionThenGroundTruth };
-/// E.g. "ground truth".
+/// For example "ground truth".
 [[nodiscard]] const char* name_of(AuditReference reference);
 
-/// The contacts of a pair of robots that one cause excuses; without a second robot: of a robot and an
-/// obstacle.
+/// The contacts of one pair of robots that one cause excuses. Without a second robot, contacts of a robot
+/// with an obstacle.
 struct ExcusedContacts {
   std::string cause;
   RobotId first = 0;
@@ -43,27 +43,33 @@ struct AuditTotals {
 
   std::uint64_t violations = 0;
   std::array<std::uint64_t, kAuditRules> by_rule{};
-  std::vector<Violation> first;       ///< the first kMaxKept violations
-  std::uint64_t received = 0;         ///< messages
-  std::uint64_t missed = 0;           ///< messages, from gaps in their numbers
-  std::uint64_t invalid = 0;          ///< malformed messages, dropped
-  std::uint64_t refused = 0;          ///< messages of processes with other rules, see refuse_other_rules()
-  std::uint64_t compared_pairs = 0;   ///< pairs of versions whose clearance was checked
-  std::uint64_t undecided_pairs = 0;  ///< pairs closer than required whose possible excuse was not received
+  std::vector<Violation> first;  ///< the first kMaxKept violations
+  std::uint64_t received = 0;    ///< number of messages
+  std::uint64_t missed = 0;      ///< number of messages, from gaps in their numbers
+  std::uint64_t invalid = 0;     ///< number of malformed messages, which were dropped
+  /// Number of messages from processes with different rules, see refuse_other_rules().
+  std::uint64_t refused = 0;
+  std::uint64_t compared_pairs = 0;  ///< number of pairs of versions whose clearance was checked
+  /// Number of pairs that are too close and whose possible excuse was not received.
+  std::uint64_t undecided_pairs = 0;
   Coverage coverage;
   bool is_cut_off = false;  ///< the messages come from a recording that lacks an unknown part of the run
-  double run_s = 0;         ///< the time of the run in which silence counts, see Auditor::begin_run
+  /// Duration of the part of the run in which silence counts, see Auditor::begin_run.
+  double run_s = 0;
   AuditReference reference = AuditReference::kNone;
-  double max_position_error_m = 0;          ///< largest distance of an on-reference robot from its reference
-  std::uint64_t excused_crashes = 0;        ///< crashes of moving robots that a disturbance excuses
-  std::uint64_t excused_contacts = 0;       ///< contacts that a disturbance of a robot excuses
-  std::vector<ExcusedContacts> excused;     ///< the same by cause and pair
-  std::uint64_t unidentified_contacts = 0;  ///< contacts of which the reference did not name the robots
-  std::uint64_t undecided_contacts = 0;     ///< contacts whose possible excuse was not received
-  std::uint64_t undecided_crashes = 0;      ///< crashes of moving robots, likewise
-  std::uint64_t excused_displacements = 0;  ///< position errors of disturbed robots
-  double pair_s = 0;          ///< sum over all pairs of robots on the floor of the time observed
-  double excused_pair_s = 0;  ///< of it, the time in which a contact would have been excused
+  /// Largest distance of a robot on its reference from that reference.
+  double max_position_error_m = 0;
+  std::uint64_t excused_crashes = 0;     ///< number of crashes of moving robots that a disturbance excuses
+  std::uint64_t excused_contacts = 0;    ///< number of contacts that a disturbance of a robot excuses
+  std::vector<ExcusedContacts> excused;  ///< the same contacts, by cause and pair
+  /// Number of contacts for which the reference did not name the robots.
+  std::uint64_t unidentified_contacts = 0;
+  std::uint64_t undecided_contacts = 0;  ///< number of contacts whose possible excuse was not received
+  /// Number of crashes of moving robots whose possible excuse was not received.
+  std::uint64_t undecided_crashes = 0;
+  std::uint64_t excused_displacements = 0;  ///< number of position errors of disturbed robots
+  double pair_s = 0;                        ///< observed time, summed over all pairs of robots on the floor
+  double excused_pair_s = 0;                ///< the part of it in which a contact would have been excused
 
   double excused_time_share() const { return pair_s > 0 ? excused_pair_s / pair_s : 0; }
   AuditVerdict verdict() const;

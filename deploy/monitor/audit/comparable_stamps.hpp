@@ -12,15 +12,15 @@
 
 namespace sidestep {
 
-/// Whether the times by which a process stamps its messages tell their order. They do not once its clock was
-/// set back: a later message then has an earlier stamp, also on another topic, where message numbers tell no
+/// Decides whether the time stamps of a process's messages show their order. They do not if its clock was set
+/// back: a later message then has an earlier stamp, and between different topics, message numbers show no
 /// order either.
 class ComparableStamps {
  public:
   /// `channel` distinguishes the streams that one sender numbers separately.
   void record(std::uint64_t channel, const msg::Header& header);
-  /// Whether the messages of this run of a process were stamped in the order of their numbers so far. Nothing
-  /// is known of a run of which no message was recorded, or only long ago.
+  /// Whether the messages of this run of a process have been stamped in the order of their numbers so far.
+  /// False if no message of the run was recorded, or only long ago.
   [[nodiscard]] bool tell_order(std::uint32_t sender, Incarnation incarnation) const;
 
  private:
@@ -31,7 +31,7 @@ class ComparableStamps {
     std::int64_t stamp_ns = 0;
   };
   struct Run {
-    std::map<std::uint64_t, Newest> newest;  // by channel
+    std::map<std::uint64_t, Newest> newest;  // indexed by channel
     bool was_set_back = false;
     std::uint64_t used = 0;
   };

@@ -12,27 +12,27 @@
 
 namespace sidestep {
 
-/// A robot on the floor, as ground truth or vision shows it.
+/// A robot on the floor, as shown by ground truth or vision.
 struct ObservedRobot {
   Vec2 position_m{0, 0};
   double speed_mps = 0;
-  double inflation_m = 0;    ///< of the version that it executes
-  bool is_in_place = false;  ///< where that version prescribes, and a ledger has held the version
+  double inflation_m = 0;    ///< inflation of the version that it executes
+  bool is_in_place = false;  ///< it is where its version prescribes, and a ledger has contained that version
 };
 
 struct DisturbanceSettings {
-  double contact_distance_m = 0;  ///< robots farther apart do not touch
-  double separation_m = 0;        ///< robots without inflation that are nearer are in conflict
-  /// Motion that was granted before a disturbance became known ends within this time.
+  double contact_distance_m = 0;  ///< robots farther apart than this do not touch
+  double separation_m = 0;        ///< robots without inflation that are nearer than this are in conflict
+  /// A motion granted before a disturbance became known ends within this time.
   Duration braking_time{0};
-  bool knows_causes = true;  ///< every announcement of a cause is received
+  bool knows_causes = true;  ///< whether every announcement of a cause is received
 };
 
 /// Decides which contacts disturbances of robots excuse. A contact of two robots is excused only if one of
 /// them was disturbed, or was pushed by a disturbed robot. The excuse of a pair begins with the disturbance.
-/// It ends when the disturbed robot is back in place, at rest or in motion, the other one has rested since
-/// then, and the two are not in conflict. Robots are given by their index in the roster; times are those of
-/// ground truth or vision.
+/// It ends when the disturbed robot is back in place (at rest or moving), the other robot has rested since
+/// then, and the two are not in conflict. Robots are identified by their index in the roster. Times are those
+/// of ground truth or vision.
 class Disturbances {
  public:
   static constexpr std::string_view kUnknownCause = "unknown";
@@ -40,31 +40,32 @@ class Disturbances {
 
   Disturbances(std::size_t robots, const DisturbanceSettings& settings);
 
-  /// An operator's message names the cause of a disturbance. By itself it excuses nothing.
+  /// An operator's message names the cause of a disturbance. This alone excuses nothing.
   void announce(std::size_t robot, std::string_view cause);
-  /// The robot is disturbed until `end`; Time::max(): the end is not known. Repetitions count once.
+  /// The robot is disturbed until `end`; Time::max() if the end is unknown. Repetitions count once.
   void disturb(std::size_t robot, Time end, Time now);
-  /// A contact began; nullopt stands for anything but a robot. Returns its cause if it is excused. A robot
-  /// that a disturbed one pushes counts as disturbed by the same cause, for as long as they touch.
+  /// A contact began; nullopt stands for anything other than a robot. Returns the cause if the contact is
+  /// excused. A robot pushed by a disturbed one counts as disturbed by the same cause for as long as they
+  /// touch.
   [[nodiscard]] std::optional<std::string_view> on_contact(std::optional<std::size_t> first,
                                                            std::optional<std::size_t> second, Time now);
-  /// The robots on the floor at this time.
+  /// Updates with the robots on the floor at this time.
   void update(Time now, const std::vector<std::optional<ObservedRobot>>& robots);
 
-  /// Messages were missed: from now on it is not known when a robot that is disturbed now will be back.
+  /// Messages were missed. From now on it is unknown when a currently disturbed robot will be back in place.
   void on_missed();
-  /// The same of messages that show positions.
+  /// Messages that show positions were missed, with the same consequence.
   void on_reference_missed();
-  /// Whether the robot may be disturbed although nothing that was received says so.
+  /// Whether the robot may be disturbed although no received message says so.
   bool is_uncertain(std::size_t robot) const { return states_[robot].is_uncertain; }
   /// Whether the robot was disturbed and is not back in place.
   bool is_displaced(std::size_t robot) const;
-  /// Whether the robot rests, out of place, where a disturbance has left it. Without observations that it can
-  /// use it never learns that, however long ago it was.
+  /// Whether the robot rests, out of place, where a disturbance has left it. A robot that gets no usable
+  /// observations never learns this, however long ago it was.
   bool rests_where_left(std::size_t robot) const { return states_[robot].rests_where_left; }
   /// Whether the robot was ever disturbed.
   bool was_disturbed(std::size_t robot) const { return states_[robot].reported_end.has_value(); }
-  /// Sum over all pairs of robots on the floor of the observed time, and of the part of it in which a contact
+  /// The observed time, summed over all pairs of robots on the floor, and the part of it in which a contact
   /// of the pair would have been excused.
   double pair_s() const { return pair_s_; }
   double excused_pair_s() const { return excused_pair_s_; }
@@ -72,9 +73,9 @@ class Disturbances {
  private:
   struct Displacement {
     std::string_view cause;
-    Time end{};  ///< of the disturbance
+    Time end{};  ///< end of the disturbance
     std::optional<Time> back_at;
-    std::vector<bool> is_over;  ///< by robot: contacts with it are no longer excused
+    std::vector<bool> is_over;  ///< indexed by robot: contacts with it are no longer excused
   };
   struct State {
     std::optional<Time> reported_end;  ///< as last reported

@@ -9,23 +9,23 @@
 
 namespace sidestep {
 
-/// The share of a time in which every one of several sources was heard. A source counts as heard for as long
-/// as it is silent for at most kMaxSilence. Memory is bounded by the number of sources.
+/// Measures the fraction of a period in which all of several sources were heard. A source counts as heard as
+/// long as it is never silent for more than kMaxSilence. Memory is bounded by the number of sources.
 class HeardTime {
  public:
   static constexpr Duration kMaxSilence{200'000'000};
 
   explicit HeardTime(std::size_t sources) : sources_(sources) {}
 
-  /// The time begins. What was heard earlier does not count.
+  /// Starts the period. Anything heard earlier does not count.
   void begin(Time now);
-  /// The source is heard. If it was silent for longer than kMaxSilence, the last `unheard` of its silence
+  /// The source is heard. If it was silent for longer than kMaxSilence, the last `unheard` of that silence
   /// counts as unheard. Precondition: times never decrease.
   void hear(std::size_t source, Time now, Duration unheard);
   /// The next silence of this source does not count.
   void expect_silence(std::size_t source) { sources_[source].is_silence_expected = true; }
 
-  /// Share of the time from its beginning until now, 0 before its beginning. `counts_last_silence`: a source
+  /// Fraction of the period from its start until now; 0 before its start. If `counts_last_silence`, a source
   /// that has now been silent for longer than kMaxSilence counts as unheard since it was last heard.
   [[nodiscard]] double share(Time now, bool counts_last_silence) const;
 
@@ -43,8 +43,8 @@ class HeardTime {
   bool has_begun_ = false;
   Time begun_at_{};
   std::vector<Source> sources_;
-  std::deque<Gap> gaps_;      ///< the latest ones, disjoint, in order
-  Duration earlier_gaps_{0};  ///< sum of those before; a gap that overlaps them counts twice
+  std::deque<Gap> gaps_;      ///< the latest gaps, disjoint and in order
+  Duration earlier_gaps_{0};  ///< total of the earlier gaps; a gap that overlaps them counts twice
 };
 
 }  // namespace sidestep

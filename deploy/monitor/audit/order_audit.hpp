@@ -17,30 +17,31 @@
 
 namespace sidestep {
 
-/// Judges orders (coordinator/ORDERS.md), by whole memories of coordinators alone: what such a memory lists
-/// stood at that moment, and what it neither lists, nor names a later order for, was forgotten. So messages
-/// that were missed leave orders unjudged, and never look like a breach.
+/// Audits orders (coordinator/ORDERS.md), using only complete memories of coordinators. An order that such a
+/// memory lists was in force at that moment. An order was forgotten if the memory neither lists it nor names
+/// a later order in its place. So missed messages leave orders unjudged, but never look like a violation.
 class OrderAudit {
  public:
   using Report = std::function<void(AuditRule, RobotId, VersionNumber, Epoch, std::string)>;
-  /// `is_complete`: every message is received. Only then does the audit know what each agent remembers.
-  /// `stamps` must outlive the audit and have recorded each message before it.
+  /// `is_complete` means that every message is received; only then does the audit know what each agent
+  /// remembers. `stamps` must outlive the audit, and must have recorded each message before it is passed
+  /// here.
   OrderAudit(std::vector<RobotId> roster, bool is_complete, const ComparableStamps& stamps, Report report);
 
   void on_order(const msg::Order& order);
   void on_answer(const msg::OrderAnswer& answer);
-  /// Of a coordinator or an agent.
+  /// Processes a memory of a coordinator or an agent.
   void on_memory(const msg::OrderMemory& memory);
   void on_status(const msg::OrderStatus& status);
   void on_registration(const msg::Registration& registration);
-  /// A verdict that grants a version of a robot that is on the floor. `earliest_ns`: the version may have
-  /// been granted by an earlier verdict, but not before this time by the coordinator's clock; kAlways: it was
-  /// not.
+  /// Processes a verdict that grants a version to a robot on the floor. `earliest_ns`: the version may have
+  /// been granted by an earlier verdict, but not before this time by the coordinator's clock. kAlways: there
+  /// was no earlier verdict.
   void on_grant(const msg::Verdict& verdict, std::int64_t earliest_ns);
 
  private:
   enum class Matter : std::uint8_t { kDrive, kHold, kResume, kZone };
-  /// What an order is about: of two with the same subject, only the later one counts.
+  /// What an order is about. Of two orders with the same subject, only the later one counts.
   using Subject = std::tuple<Matter, std::uint32_t, std::uint32_t, std::uint32_t>;
   struct Terms {
     Subject subject;
@@ -50,7 +51,7 @@ class OrderAudit {
     std::uint32_t robot = 0;
   };
   using Key = std::pair<std::uint64_t, std::uint32_t>;  // number and client of an order
-  /// An agent of a robot is known to remember an order.
+  /// An agent of a robot that is known to remember an order.
   struct Witness {
     Incarnation incarnation = 0;
     std::int64_t stamp_ns = 0;
@@ -71,11 +72,11 @@ class OrderAudit {
   /// One run of a coordinator. All stamps are by its clock, which must not be set back.
   struct Coordinator {
     Incarnation incarnation = 0;
-    std::map<Key, std::int64_t> told_ns;  // when it first told each hold that it remembers
-    std::map<RobotId, Grant> grants;      // latest
-    Epoch epoch = 0;                      // of the latest grant
-    std::int64_t granting_since_ns = 0;   // first grant in that epoch
-    std::vector<Terms> memory;            // pages of a whole one so far
+    std::map<Key, std::int64_t> told_ns;  // when it first announced each hold that it remembers
+    std::map<RobotId, Grant> grants;      // latest grants
+    Epoch epoch = 0;                      // epoch of the latest grant
+    std::int64_t granting_since_ns = 0;   // time of the first grant in that epoch
+    std::vector<Terms> memory;            // pages of a complete memory received so far
     std::uint64_t first_message = 0, pages = 0;
     std::int64_t memory_stamp_ns = 0;
   };
@@ -88,10 +89,10 @@ class OrderAudit {
     Incarnation incarnation = 0;
     std::uint64_t message = 0;
     bool is_set = false;
-    std::optional<Key> cause;  // the only hold that was sent while it was not set
+    std::optional<Key> cause;  // the only hold sent while it was not set
     bool has_several_causes = false;
   };
-  /// The whole memory of a coordinator, by subject.
+  /// A coordinator's complete memory, indexed by subject.
   class Memory;
 
   static Terms terms_of(std::uint32_t robot, std::uint32_t client, const msg::OrderTerms& terms);
@@ -101,21 +102,21 @@ class OrderAudit {
   void judge_grants(const Memory& memory, Coordinator& coordinator);
   void judge_confirmed(const Memory& memory, std::uint32_t sender, const Coordinator& coordinator,
                        bool claims_completeness);
-  /// Whether an agent that is known to remember the order has registered with the coordinator since.
+  /// Whether an agent that is known to remember the order has registered with the coordinator since then.
   bool has_witness(const Terms& terms, Epoch epoch) const;
   void add_witness(const Key& key, RobotId robot, const Witness& witness);
 
-  const std::vector<RobotId> roster_;  // ascending
+  const std::vector<RobotId> roster_;  // sorted
   const bool is_complete_;
   const ComparableStamps& stamps_;
   const Report report_;
-  std::map<std::uint32_t, Coordinator> coordinators_;  // by sender
+  std::map<std::uint32_t, Coordinator> coordinators_;  // indexed by sender
   std::map<Key, Terms> sent_;                          // bounded; the lowest numbers are forgotten first
-  std::map<Subject, Confirmed> confirmed_;             // the latest of each subject; bounded
+  std::map<Subject, Confirmed> confirmed_;             // latest order for each subject; bounded
   std::map<Key, Witnesses> witnesses_;                 // bounded; the lowest numbers are forgotten first
-  std::map<RobotId, AgentRegistration> registered_;    // latest
+  std::map<RobotId, AgentRegistration> registered_;    // latest registrations
   std::map<RobotId, HeldFlag> held_;
-  /// Some coordinator may have forgotten why holds, or zones, do not stand.
+  /// Some coordinator may have forgotten why holds or zones are no longer in force.
   bool may_lack_resumes_ = false, may_lack_removals_ = false;
 };
 

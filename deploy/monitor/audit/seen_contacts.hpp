@@ -23,32 +23,34 @@ struct Sight {
   bool is_new = false;  ///< observed since the previous world state
 };
 
-/// A robot, and another robot or an obstacle, that vision shows in contact.
+/// A contact seen by vision between a robot and another robot or an obstacle.
 struct SeenContact {
   std::size_t first = 0;              ///< index in the roster
   std::optional<std::size_t> second;  ///< nullopt: an obstacle
-  double distance_m = 0;              ///< between the centres, or from the obstacle's edge
-  /// When they were last seen apart; the lowest number: never.
+  double distance_m = 0;              ///< between the centres, or from the centre to the obstacle's edge
+  /// When they were last seen apart; the lowest number if never.
   std::int64_t apart_ns = std::numeric_limits<std::int64_t>::min();
 };
 
-/// Finds contacts in what vision shows: robots at a distance below the sum of their radii. The protocol keeps
-/// robots apart by at least the margin minus both tracking bounds. If observation errors may exceed that, the
-/// threshold is lower by the excess, so that robots that keep the protocol are never taken to touch.
+/// Finds contacts in vision's observations: robots whose distance is below the sum of their radii. The
+/// protocol keeps robots apart by at least the margin minus both tracking bounds. If observation errors may
+/// exceed that, the threshold is lower by the excess, so that robots that obey the protocol are never
+/// reported as touching.
 class SeenContacts {
  public:
   explicit SeenContacts(const Scenario& scenario);
 
-  /// The robots in a new world state. Returns the contacts that began, each once it has been observed twice.
+  /// Processes the robots in a new world state. Returns the contacts that began; each is returned once it has
+  /// been observed twice.
   [[nodiscard]] std::vector<SeenContact> update(const std::vector<Sight>& sights);
-  /// World states were missed: an observation before does not confirm one after.
+  /// World states were missed, so an earlier observation does not confirm a later one.
   void on_missed();
 
  private:
   using Pair = std::pair<std::size_t, std::size_t>;  ///< second: robot, or number of robots + obstacle;
                                                      ///< the map is the last obstacle
 
-  /// Whether a contact begins.
+  /// Returns whether a contact begins.
   bool observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m,
                std::int64_t at_ns);
   std::int64_t& apart_ns(const Pair& pair) { return apart_ns_[pair.first * seen_ + pair.second]; }
@@ -63,12 +65,12 @@ class SeenContacts {
   double position_error_m_;
   double acceleration_mps2_;
   double guaranteed_m_, guaranteed_to_obstacle_m_;
-  std::map<Pair, int> observations_;    ///< of pairs in contact
-  std::size_t seen_ = 0;                ///< robots, obstacles and the map
-  std::vector<std::int64_t> apart_ns_;  ///< by robot, then what may touch it
+  std::map<Pair, int> observations_;    ///< number of observations of each pair in contact
+  std::size_t seen_ = 0;                ///< counts robots, obstacles and the map
+  std::vector<std::int64_t> apart_ns_;  ///< indexed by robot, then by what may touch it
 };
 
-/// Upper bound of the error of an observed position, per axis.
+/// Upper bound of the error of an observed position on each axis.
 [[nodiscard]] double position_error_m(const VisionSpec& vision);
 
 }  // namespace sidestep

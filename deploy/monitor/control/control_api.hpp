@@ -11,11 +11,11 @@
 
 namespace sidestep {
 
-/// What a ControlApi cannot do itself.
+/// Actions that ControlApi delegates.
 struct ControlHooks {
   std::function<void(const std::string& text)> bookmark;
-  /// Begins or ends a recording; returns the file that it begins, or "" if there is nothing to do. Throws
-  /// std::runtime_error when the file cannot be written. Empty: nothing can be recorded.
+  /// Starts or stops a recording. Returns the file that it starts, or "" if there is nothing to do. Throws
+  /// std::runtime_error if the file cannot be written. Empty: nothing can be recorded.
   std::function<std::string(bool begins)> record;
 };
 
@@ -39,7 +39,7 @@ class ControlApi {
  public:
   ControlApi(Bus& bus, ControlHooks hooks);
 
-  /// nullopt: there is no such path. Requests that may not command are refused with status 401.
+  /// nullopt: there is no such path. Requests that may not give commands are refused with status 401.
   std::optional<WebResponse> respond(const WebRequest& request);
 
  private:

@@ -12,14 +12,14 @@
 
 namespace sidestep {
 
-/// What a robot could plan by, computed from the messages that everybody hears: agents do not publish these
-/// fields, and may plan by others. Of one robot at a time, because they are large.
+/// Fields by which a robot could plan, computed from publicly received messages: agents do not publish their
+/// own fields, and may plan differently. Computed for one robot at a time, because they are large.
 class RobotFields {
  public:
   /// The scenario must outlive this object.
   explicit RobotFields(const Scenario& scenario);
 
-  /// Adds a scan to the local grid of the robot, if somebody looks at it.
+  /// Adds a scan to the robot's local grid, if a viewer is looking at that robot.
   void on(const msg::LaserScan& scan, const FloorState& floor, Time now);
 
   /// {"navigation": {"min": [x, y], "cell_m":…, "columns":…, "rows":…, "values": […]}, "path": [[x, y], …],
@@ -37,7 +37,7 @@ class RobotFields {
   CostGrid costs_with(const FloorState& floor, Time now) const;
 
   const Scenario& scenario_;
-  CostGrid fixed_;  ///< without moving obstacles
+  CostGrid fixed_;  ///< costs without moving obstacles
   std::map<RobotId, Local> locals_;
 };
 

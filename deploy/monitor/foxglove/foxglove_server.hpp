@@ -22,33 +22,33 @@ namespace sidestep {
 /// A client that reads slowly gets the newest message of each sender, not all.
 class FoxgloveServer {
  public:
-  /// The names of the protocol, of which clients understand at least one.
+  /// The protocol's names; a client must understand at least one.
   static const std::vector<std::string>& protocols();
 
   FoxgloveServer();
 
   void add(WebSocket& socket);
   void remove(WebSocket& socket) { clients_.erase(&socket); }
-  /// False: the message makes no sense.
+  /// False: the message is invalid.
   [[nodiscard]] bool on_message(WebSocket& socket, const std::string& message);
 
-  /// Sends a message of a topic to those who have subscribed to it.
+  /// Sends a message of a topic to its subscribers.
   void publish(const AnyMessage& message, Time now);
-  /// Sends the robots and obstacles to those who have subscribed to scene or transforms.
+  /// Sends the robots and obstacles to the subscribers of scene or transforms.
   void publish_scene(const FloorState& floor, double radius_m, Time now);
 
  private:
   using ChannelId = std::uint32_t;
   struct Client {
-    std::map<std::uint32_t, ChannelId> subscriptions;  // by the client's ids
+    std::map<std::uint32_t, ChannelId> subscriptions;  // indexed by the client's ids
   };
 
   [[nodiscard]] bool subscribe(Client& client, const nlohmann::json& subscriptions);
   bool is_subscribed(ChannelId channel) const;
-  /// `key`: of messages of one channel with the same key, slow clients get the newest.
+  /// `key`: if several messages of a channel have the same key, slow clients get only the newest.
   void send(ChannelId channel, std::uint32_t key, Time now, const std::string& payload);
 
-  std::map<std::string, ChannelId> channels_;  // by topic; 0 is not used
+  std::map<std::string, ChannelId> channels_;  // indexed by topic; 0 is not used
   std::map<WebSocket*, Client> clients_;
 };
 

@@ -3,10 +3,10 @@
 
 namespace sidestep {
 
-/// What the processes of one name, i.e. a process and its restarts, have used.
+/// Resources used by all processes of one name, that is, a process and its restarts.
 struct ProcessUse {
-  double cpu_s = 0;          ///< sum
-  double max_memory_mb = 0;  ///< largest resident memory of one of them
+  double cpu_s = 0;          ///< total
+  double max_memory_mb = 0;  ///< largest resident memory of any of them
 };
 
 }  // namespace sidestep

@@ -9,11 +9,11 @@ namespace sidestep {
 
 /// One line that summarises the whole run.
 std::string progress_line(const RunMetrics& metrics, Time now);
-/// That line, followed by at most `max_rows` lines for one robot each.
+/// The same line, followed by at most `max_rows` lines, one per robot.
 std::string progress_table(const RunMetrics& metrics, Time now, int max_rows);
 
-/// Shows the progress of a run on stdout: in a terminal a table that is redrawn in place, elsewhere one line
-/// per second.
+/// Shows the progress of a run on stdout: in a terminal, a table that is redrawn in place; elsewhere, one
+/// line per second.
 class ProgressDisplay {
  public:
   ProgressDisplay();

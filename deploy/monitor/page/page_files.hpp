@@ -6,14 +6,14 @@
 
 namespace sidestep {
 
-/// A file of the monitor's page, which is part of the program.
+/// A file of the monitor's page, which is compiled into the program.
 struct PageFile {
-  const char* path;  ///< e.g. /main.js
+  const char* path;  ///< for example /main.js
   const char* content_type;
   std::string_view content;
 };
 
-/// nullptr: there is no such file. "/" is the page itself.
+/// nullptr if there is no such file. "/" is the page itself.
 [[nodiscard]] const PageFile* find_page_file(const std::string& path);
 
 }  // namespace sidestep

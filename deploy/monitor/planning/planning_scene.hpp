@@ -16,7 +16,7 @@ namespace sidestep {
 
 /// A floor on which a person drags obstacles, start and goal, while a planner plans again after each change:
 /// Dynamic PRM, whose roadmap repairs itself (Bruce 2006, section 4.4 and figure 4.10), or ERRT, which keeps
-/// waypoints of its last plan.
+/// waypoints from its last plan.
 class PlanningScene {
  public:
   static constexpr std::size_t kMaxObstacles = 60;

@@ -10,40 +10,40 @@
 
 namespace sidestep {
 
-/// What is in an MCAP file, ours or another program's.
+/// The content of an MCAP file, ours or another program's.
 struct BagInfo {
   struct Channel {
     std::string type;
-    std::uint64_t messages = 0, bytes = 0;  // of their payloads
+    std::uint64_t messages = 0, bytes = 0;  // of the messages' payloads
     std::uint64_t first_ns = 0, last_ns = 0;
   };
-  std::map<std::string, Channel> channels;  ///< by topic
-  std::vector<std::string> attachments;     ///< "map.pgm (image/x-portable-graymap), 3,000 bytes"
+  std::map<std::string, Channel> channels;  ///< indexed by topic
+  std::vector<std::string> attachments;     ///< for example "map.pgm (image/x-portable-graymap), 3,000 bytes"
   std::map<std::string, std::string> metadata;
-  std::vector<std::string> events;  ///< "12.345 s: bookmark: here"
+  std::vector<std::string> events;  ///< for example "12.345 s: bookmark: here"
   std::uint64_t file_bytes = 0, messages = 0;
   std::uint64_t first_ns = 0, last_ns = 0;  ///< times of the first and the last message
-  std::string damage;                       ///< why the file ended early; empty: it did not
+  std::string damage;                       ///< why the file ended prematurely; empty if it did not
 };
 
-/// These functions throw std::runtime_error when a file cannot be read or written.
+/// These functions throw std::runtime_error if a file cannot be read or written.
 [[nodiscard]] BagInfo bag_info(const std::string& path);
-/// As a table for people.
+/// Formats the information as a table.
 [[nodiscard]] std::string to_text(const BagInfo& info);
 
 struct BagCut {
-  double from_s = 0;  ///< after the first message
+  double from_s = 0;  ///< relative to the first message
   double to_s = std::numeric_limits<double>::infinity();
   std::set<std::string>
-      topics;  ///< e.g. truth, or feedback/3, or feedback for those of all robots; empty: all
+      topics;  ///< for example truth, feedback/3, or feedback for the channels of all robots; empty: all
 };
 
-/// Copies the messages of a part of a file, and all that is no message, to another one. Returns the damage of
-/// the file, of which everything before is used.
+/// Copies a part of a file's messages, and everything that is not a message, to another file. Returns the
+/// damage of the file; everything before the damage is used.
 std::string cut_bag(const std::string& path, const BagCut& cut, const std::string& out);
 
-/// Merges files in the order of the times at which their messages were received. Throws
-/// std::invalid_argument if they are recordings of different scenarios. Returns the damages of the files.
+/// Merges files in the order of the reception times of their messages. Throws std::invalid_argument if they
+/// are recordings of different scenarios. Returns the damages of the files.
 std::string merge_bags(const std::vector<std::string>& paths, const std::string& out);
 
 }  // namespace sidestep

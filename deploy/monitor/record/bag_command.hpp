@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Adds the command `bag`: what is in recordings, parts of them, and several of them as one.
+/// Adds the command `bag`, which shows what recordings contain, extracts parts of them, and merges them.
 void add_bag_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

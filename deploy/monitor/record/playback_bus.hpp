@@ -18,12 +18,12 @@ namespace sidestep {
 /// The result of playing a recording.
 struct PlaybackResult {
   std::uint64_t messages = 0;
-  std::uint64_t unreadable = 0;  ///< messages that could not be decoded as their topic's type
+  std::uint64_t unreadable = 0;  ///< number of messages that could not be decoded as their topic's type
   std::string damage;            ///< why playback stopped before the end of the file; empty: it did not
 };
 
-/// A bus that plays a recording: subscribe, then play. Arbitrary file contents are handled safely; the worst
-/// outcome is that playback ends early. Channels of other programs' topics are passed over.
+/// A bus that plays back a recording: subscribe first, then play. Arbitrary file contents are handled safely;
+/// the worst outcome is that playback ends early. Channels with other programs' topics are skipped.
 class PlaybackBus : public Bus {
  public:
   /// Throws std::runtime_error when the file cannot be read or is not a recording of Sidestep.
@@ -32,15 +32,15 @@ class PlaybackBus : public Bus {
   const RecordingHeader& header() const { return header_; }
   /// The recorded scenario with its map. Throws ConfigError.
   [[nodiscard]] Scenario scenario() const;
-  /// The time of reception of the current message.
+  /// The reception time of the current message.
   Time now() const override { return now_; }
   /// Timers never fire during playback.
   void at(Time, std::function<void()>) override {}
   /// Delivers all messages in the file's order, or those before stop().
   [[nodiscard]] PlaybackResult play();
-  /// Delivers the next message. False: there is none, or stop() was called.
+  /// Delivers the next message. False if there is none, or stop() was called.
   [[nodiscard]] bool play_next(PlaybackResult& result);
-  /// A part of the file that was read, and the time of its first message.
+  /// A part of the file that has been read, and the time of its first message.
   struct ChunkPosition {
     Time first_at{};
     std::uint64_t offset = 0;
@@ -48,20 +48,20 @@ class PlaybackBus : public Bus {
   /// In the order of the file.
   const std::vector<ChunkPosition>& chunks() const { return chunks_; }
   const McapReader& reader() const { return reader_; }
-  /// The share of the file that has been read, 0 to 1.
+  /// The fraction of the file that has been read, 0 to 1.
   double progress() const { return reader_.progress(); }
   /// Calls back for each event of the recording (RecordingWriter::add_event).
   void on_event(std::function<void(Time, const std::string& kind, const std::string& text)> callback) {
     on_event_ = std::move(callback);
   }
-  /// No further message is delivered. Callbacks and signal handlers may call it.
+  /// Stops the delivery of messages. May be called from callbacks and signal handlers.
   void stop() {
     is_stopped_ = true;
     reader_.stop();
   }
 
  protected:
-  /// Discards everything that is written.
+  /// Returns a writer that discards everything.
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string& channel) override;
   void make_reader(const TopicInfo& topic, const std::string& channel,
                    std::function<void(const void*)> callback) override;
@@ -70,15 +70,15 @@ class PlaybackBus : public Bus {
   /// Reads up to the first message.
   void read_header(const std::string& path);
   void deliver_event(const McapMetadata& metadata);
-  /// False: the message is damaged.
+  /// False if the message is damaged.
   bool deliver(const McapMessage& message, PlaybackResult& result);
-  /// The row of the topic table that a channel belongs to; nullptr: none.
+  /// The row of the topic table to which a channel belongs; nullptr if none.
   const TopicInfo* topic_of(const McapMessage& message);
 
   McapReader reader_;
   McapRecord next_;
   std::vector<ChunkPosition> chunks_;
-  std::vector<McapMetadata> early_events_;  ///< before the first message
+  std::vector<McapMetadata> early_events_;  ///< events before the first message
   RecordingHeader header_;
   Time now_{};
   std::atomic<bool> is_stopped_ = false;

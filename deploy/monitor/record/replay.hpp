@@ -11,11 +11,11 @@
 
 namespace sidestep {
 
-/// Whether a message of the topic makes processes or robots of a running system act as if it were theirs.
+/// Whether messages of this topic would make processes or robots of a running system act.
 [[nodiscard]] bool is_commanding(const TopicInfo& topic);
 
 /// Why messages of these topics must not be written to a domain with these endpoints: one of them belongs to
-/// a process that drives a robot or coordinates. nullopt: they may.
+/// a process that drives a robot or coordinates. nullopt if they may be written.
 [[nodiscard]] std::optional<std::string> reason_against_replay(const std::vector<DiscoveredEndpoint>& others);
 
 }  // namespace sidestep

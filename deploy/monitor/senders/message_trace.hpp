@@ -10,31 +10,31 @@
 
 namespace sidestep {
 
-/// When a received message was sent, and where it stands in its sender's sequence. Times are by the auditor's
+/// The sending time of a received message, and its place in its sender's sequence. Times are by the auditor's
 /// clock.
 struct Reception {
   std::int64_t earliest_ns = 0;  ///< lower bound of the sending time
   std::int64_t latest_ns = 0;    ///< upper bound of the sending time
-  std::uint64_t missed = 0;      ///< messages between the newest one received before and this one
+  std::uint64_t missed = 0;      ///< number of messages between the newest one received before and this one
   bool is_next = false;          ///< directly follows the newest message previously received from that sender
-  bool is_newest = false;        ///< neither this nor a later message of that sender was received before
+  bool is_newest = false;        ///< neither this nor a later message from that sender was received before
 };
 
-/// Counts missed messages and bounds sending times, from message headers alone.
+/// Counts missed messages and bounds sending times, using only message headers.
 class MessageTrace {
  public:
-  /// `min_latency_bound`: the fastest messages of a channel take at most this long to reach the auditor.
-  /// Zero: every message is received at the moment it is sent.
+  /// `min_latency_bound`: the fastest messages of a channel take at most this long to reach the auditor. Zero
+  /// means that every message is received at the moment it is sent.
   explicit MessageTrace(Duration min_latency_bound) : min_latency_bound_ns_(min_latency_bound.count()) {}
 
   /// `channel` distinguishes the streams that one sender numbers separately.
   [[nodiscard]] Reception record(std::uint64_t channel, const msg::Header& header, Time now);
 
-  /// Including repetitions of one message.
+  /// Number of receptions, including repetitions of a message.
   std::uint64_t received() const { return received_; }
-  /// Messages that were received, each counted once.
+  /// Number of different messages received.
   std::uint64_t distinct() const { return distinct_; }
-  /// Messages between received ones of the same sender and topic that were not received.
+  /// Number of messages that were not received, between received ones of the same sender and topic.
   std::uint64_t missed() const { return missed_; }
 
  private:
@@ -59,7 +59,7 @@ class MessageTrace {
     std::uint64_t window = 0;
     std::int64_t min_difference_ns = 0;  ///< minimum of (received - stamp): clock offset + minimum latency
     std::int64_t updated_ns = 0;         ///< when min_difference_ns was updated
-    int count = 0;                       ///< messages behind that minimum, up to kMinSamples
+    int count = 0;                       ///< number of messages behind that minimum, up to kMinSamples
   };
   void bound(Stream& stream, std::int64_t stamp_ns, std::int64_t now_ns, Reception& reception) const;
 

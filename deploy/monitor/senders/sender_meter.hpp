@@ -11,16 +11,17 @@
 
 namespace sidestep {
 
-/// What arrives of a topic from each sender: how late, and what is lost, repeated or out of order. Delays are
-/// from the sender's stamp to the reception, so that they include the difference of the two hosts' clocks.
+/// Statistics of a topic's messages from each sender: their delay, and how many are lost, repeated or out of
+/// order. Delays are measured from the sender's stamp to the reception, so they include the difference
+/// between the two hosts' clocks.
 class SenderMeter {
  public:
   void add(const msg::Header& header, Time received);
 
-  /// A line per sender, with a title.
+  /// A table with a title and one line per sender.
   [[nodiscard]] std::string table() const;
 
-  /// Of more senders, and runs of them, those are kept that were heard last.
+  /// If there are more senders and runs of senders than this, the most recently heard ones are kept.
   static constexpr std::size_t kMaxStreams = 1024;
 
  private:
@@ -31,7 +32,7 @@ class SenderMeter {
     Duration min_delay = Duration::max(), max_delay = Duration::min();
     DurationHistogram delays;
   };
-  std::map<std::pair<std::uint32_t, std::uint64_t>, Stream> streams_;  // by sender and incarnation
+  std::map<std::pair<std::uint32_t, std::uint64_t>, Stream> streams_;  // indexed by sender and incarnation
   std::uint64_t forgotten_ = 0;
 };
 

@@ -10,23 +10,24 @@ namespace sidestep {
 
 /// Who may use a web server.
 struct AccessSettings {
-  std::string address = "127.0.0.1";  ///< that the server listens on
+  std::string address = "127.0.0.1";  ///< address that the server listens on
   std::uint16_t port = 8080;
-  std::vector<std::string> allowed_origins;  ///< of pages of other servers, e.g. https://example.org
-  std::string token;                         ///< for requests that command; empty: none may
+  /// Origins of other servers' pages, for example https://example.org.
+  std::vector<std::string> allowed_origins;
+  std::string token;  ///< token for requests that command; empty: no request may
 };
 
-/// What a request's headers say; empty: the header is missing.
+/// The relevant headers of a request; empty: the header is missing.
 struct RequestSource {
   std::string_view host, origin, authorization;
 };
 
-/// Why a request is refused, e.g. because a page of another server sent it through the user's browser; empty:
-/// it is not. Requests must name this server as their host, so that no other name can be made to lead here
-/// (DNS rebinding).
+/// Why a request is refused, for example because another server's page sent it through the user's browser;
+/// empty if it is not refused. Requests must name this server as their host, so that no other name can be
+/// made to lead here (DNS rebinding).
 [[nodiscard]] std::string refusal(const AccessSettings& settings, const RequestSource& source);
 
-/// Why a request may not command; empty: it may.
+/// Why a request may not give commands; empty if it may.
 [[nodiscard]] std::string command_refusal(const AccessSettings& settings, const RequestSource& source);
 
 /// A random token of 128 bits, in hexadecimal.

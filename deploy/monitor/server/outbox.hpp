@@ -16,17 +16,18 @@ struct WebMessage {
   bool is_binary = false;
 };
 
-/// What one viewer has yet to get. Of each state only the newest is kept, so a slow viewer gets fewer updates
-/// and the memory stays bounded. Events are kept in order.
+/// The messages still to be sent to one viewer. For each state only the newest value is kept, so a slow
+/// viewer gets fewer updates, and the memory stays bounded. Events are kept in order.
 class Outbox {
  public:
   static constexpr std::size_t kMaxEventBytes = 4 << 20;
 
-  /// `slot` names the state, e.g. the floor.
+  /// `slot` identifies the state, for example the floor.
   void put_state(unsigned slot, WebMessage message) { states_[slot] = std::move(message); }
-  /// False: the viewer reads too slowly, so that not all events can be kept; it has to be disconnected.
+  /// False if the viewer reads too slowly to keep all events; it must then be disconnected.
   [[nodiscard]] bool add_event(WebMessage message);
-  /// The next message to send: events first, then the states in turn. nullopt: none.
+  /// Removes and returns the next message to send: events first, then the states in turn. nullopt if there is
+  /// none.
   std::optional<WebMessage> take();
 
  private:

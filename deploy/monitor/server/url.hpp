@@ -13,7 +13,7 @@ struct Url {
   std::map<std::string, std::string> query;
 };
 
-/// Decodes the target of a request, e.g. "/api/events?since=3". nullopt: it is not valid.
+/// Decodes the target of a request, for example "/api/events?since=3". nullopt if it is invalid.
 [[nodiscard]] std::optional<Url> parse_target(std::string_view target);
 
 }  // namespace sidestep

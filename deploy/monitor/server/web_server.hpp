@@ -13,11 +13,11 @@
 namespace sidestep {
 
 struct WebRequest {
-  std::string method;                        ///< e.g. GET
+  std::string method;                        ///< for example GET
   std::string path;                          ///< decoded, without the query
   std::map<std::string, std::string> query;  ///< decoded
   std::string body;
-  std::string command_refusal;  ///< why the request may not command; empty: it may
+  std::string command_refusal;  ///< why the request may not give commands; empty if it may
 };
 
 struct WebResponse {
@@ -30,42 +30,42 @@ struct WebResponse {
 class WebSocket {
  public:
   virtual ~WebSocket() = default;
-  /// The newest value of a state; an earlier one that was not sent yet is discarded.
+  /// Sends the newest value of a state. An earlier value that was not sent yet is discarded.
   virtual void send_state(unsigned slot, WebMessage message) = 0;
-  /// Sent in any case, or the viewer is disconnected.
+  /// Sends an event in any case; if that is not possible, the viewer is disconnected.
   virtual void send_event(WebMessage message) = 0;
 };
 
-/// What a server calls. All calls come from the thread that polls it.
+/// Callbacks of a server. All calls come from the thread that polls it.
 struct WebHandlers {
   std::function<WebResponse(const WebRequest&)> respond;
-  /// `protocol`: that the viewer and the server agreed on.
+  /// `protocol` is the one that the viewer and the server agreed on.
   std::function<void(WebSocket&, const std::string& protocol)> on_open;
-  /// A message of the viewer. False: it makes no sense, and the viewer is disconnected.
+  /// A message from the viewer. Returns false if it is invalid; the viewer is then disconnected.
   std::function<bool(WebSocket&, const std::string& message, bool is_binary)> on_message;
   std::function<void(WebSocket&)> on_close;
 };
 
-/// A web server for a few viewers: HTTP and web sockets. Requests of other origins, and messages that are
-/// larger than kMaxRequestBytes, are refused.
+/// A web server for a few viewers: HTTP and web sockets. Requests from other origins, and messages larger
+/// than kMaxRequestBytes, are refused.
 class WebServer {
  public:
   static constexpr std::size_t kMaxRequestBytes = 64 << 10;
   static constexpr std::size_t kMaxConnections = 128;
 
-  /// Port 0: any free one. `protocols`: names of the web socket protocols that are understood; the first is
-  /// used with viewers that name none. Throws std::runtime_error with the reason if the address cannot be
-  /// used.
+  /// Port 0 means any free port. `protocols` lists the names of the supported web socket protocols; the first
+  /// one is used for viewers that name none. Throws std::runtime_error with the reason if the address cannot
+  /// be used.
   WebServer(const AccessSettings& access, std::vector<std::string> protocols, WebHandlers handlers);
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// With the port in use.
+  /// The access settings, with the actual port.
   const AccessSettings& access() const;
-  /// Handles what has arrived, without waiting.
+  /// Processes what has arrived, without waiting.
   void poll();
-  /// Handles what arrives until the time is over.
+  /// Processes what arrives until the time is over.
   void run_for(Duration duration);
 
  private:

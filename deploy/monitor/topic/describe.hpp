@@ -15,8 +15,8 @@
 
 namespace sidestep {
 
-/// A readable form of a message: members by their IDL names and in IDL order, enumerators in words, arrays
-/// cut to their count, histograms as quantiles, and pixels as a byte count.
+/// A readable form of a message: members with their IDL names in IDL order, enumerators in words, arrays
+/// truncated to their count, histograms as quantiles, and pixels as a byte count.
 [[nodiscard]] nlohmann::ordered_json describe(const msg::CameraImage& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::DetectionFrame& m);
 [[nodiscard]] nlohmann::ordered_json describe(const msg::WorldState& m);

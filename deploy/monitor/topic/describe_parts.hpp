@@ -15,7 +15,7 @@ namespace sidestep::description {
 
 using Json = nlohmann::ordered_json;
 
-/// The enumerator in words. The network may deliver any number.
+/// The enumerator's name. The network may deliver any number.
 template <typename Enum, std::size_t kCount>
 Json word(Enum value, const char* const (&words)[kCount]) {
   const auto number = static_cast<std::uint32_t>(value);

@@ -9,24 +9,24 @@
 
 namespace sidestep {
 
-/// The processes and topics of a domain, and who writes and reads what.
+/// The processes and topics of a domain, and which process writes and reads which topic.
 struct ProcessGraph {
   struct Process {
     std::string name;
-    std::string host;  ///< the part of the process's GUID that tells hosts apart
+    std::string host;  ///< the part of the process's GUID that identifies its host
     std::set<std::string> writes, reads;
   };
-  std::vector<Process> processes;       ///< by host and name
-  std::vector<std::string> topics;      ///< sorted; channels of one topic are one: "feedback/*"
-  std::vector<std::string> mismatches;  ///< "feedback/3: reason (writer -> reader)"
+  std::vector<Process> processes;       ///< sorted by host and name
+  std::vector<std::string> topics;      ///< sorted; the channels of one topic are combined: "feedback/*"
+  std::vector<std::string> mismatches;  ///< for example "feedback/3: reason (writer -> reader)"
 };
 
 [[nodiscard]] ProcessGraph graph_of(const std::vector<DiscoveredEndpoint>& endpoints);
 
-/// A paragraph per host and a line per process.
+/// Formats the graph as text: a paragraph per host and a line per process.
 [[nodiscard]] std::string to_text(const ProcessGraph& graph);
 
-/// A picture: processes on the left, topics on the right, lines between them; hosts as boxes.
+/// Draws the graph: processes on the left, topics on the right, lines between them; hosts as boxes.
 [[nodiscard]] std::string to_svg(const ProcessGraph& graph);
 
 }  // namespace sidestep

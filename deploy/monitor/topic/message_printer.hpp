@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// A condition on a message, e.g. robot=3 or header.sender=3.
+/// A condition on a message, for example robot=3 or header.sender=3.
 struct MessageFilter {
   std::vector<std::string> path;  ///< names of members, or indices of lists
   std::string value;
@@ -20,20 +20,20 @@ struct MessageFilter {
 [[nodiscard]] MessageFilter parse_message_filter(const std::string& text);
 
 struct MessagePrinterSettings {
-  std::vector<MessageFilter> filters;  ///< only messages that meet all of them
+  std::vector<MessageFilter> filters;  ///< only messages that satisfy all of them are printed
   bool is_csv = false;
-  std::uint64_t count = 0;  ///< messages to print; 0: all
+  std::uint64_t count = 0;  ///< number of messages to print; 0: all
 };
 
-/// Turns described messages of one type into lines: JSON, or CSV with a column for each member, in which
-/// lists are JSON.
+/// Formats described messages of one type as lines: JSON, or CSV with one column per member, in which lists
+/// are JSON.
 class MessagePrinter {
  public:
-  /// `print` gets each line without its end.
+  /// `print` receives each line without its line break.
   MessagePrinter(MessagePrinterSettings settings, std::function<void(const std::string&)> print)
       : settings_(std::move(settings)), print_(std::move(print)) {}
 
-  /// Throws std::invalid_argument if messages have no such member as a filter names.
+  /// Throws std::invalid_argument if messages have no member with the name in a filter.
   void add(const nlohmann::ordered_json& message);
   bool is_done() const { return settings_.count > 0 && printed_ == settings_.count; }
   std::uint64_t printed() const { return printed_; }

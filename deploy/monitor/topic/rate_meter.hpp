@@ -12,11 +12,11 @@ namespace sidestep {
 /// Statistics of the samples in a span of time.
 struct Rate {
   std::uint64_t samples = 0;
-  double rate_hz = 0;  ///< gaps per second from the first to the last sample; 0 for less than two
-  std::optional<Duration> min_gap;  ///< none for less than two samples
+  double rate_hz = 0;  ///< gaps per second from the first to the last sample; 0 for fewer than two samples
+  std::optional<Duration> min_gap;  ///< nullopt for fewer than two samples
   std::optional<Duration> max_gap;
-  double bytes_per_second = 0;               ///< payload of all samples but the first, per second
-  std::size_t min_bytes = 0, max_bytes = 0;  ///< of one sample's payload
+  double bytes_per_second = 0;               ///< payload of all samples except the first, per second
+  std::size_t min_bytes = 0, max_bytes = 0;  ///< payload size of a sample
   double mean_bytes = 0;
 };
 
@@ -25,7 +25,7 @@ class RateMeter {
  public:
   void add(Time received, std::size_t bytes);
   Rate total() const { return total_.rate(); }
-  /// Since the last call. A gap that spans two calls counts for the later one.
+  /// The rate since the last call. A gap that spans two calls counts for the later one.
   Rate take_recent();
 
  private:
@@ -36,7 +36,7 @@ class RateMeter {
     std::uint64_t samples = 0;
     Time first{};
     Time last{};
-    bool has_last = false;  ///< `last` is a sample of this span or of the previous one
+    bool has_last = false;  ///< `last` is a sample in this span or the previous one
     std::uint64_t gaps = 0;
     Duration min_gap = Duration::max();
     Duration max_gap{0};

@@ -8,15 +8,15 @@
 
 namespace sidestep {
 
-/// Says on stderr that a channel belongs to no topic, and which topics there are.
+/// Reports on stderr that a channel belongs to no topic, and lists the topics.
 void print_unknown_topic(const std::string& channel);
 
-/// Says on stderr why only the beginning of a recording was used, if so.
+/// Reports on stderr why only the beginning of a recording was used, if that is the case.
 void print_damage(const std::string& recording_file, const std::string& damage);
 
-/// Calls `use` with each message of a channel, also with those that processes refuse. False, after
-/// print_unknown_topic(): it belongs to no topic. Throws std::invalid_argument if this process's keys do not
-/// allow reading it.
+/// Calls `use` with each message of a channel, including those that processes refuse. If the channel belongs
+/// to no topic, calls print_unknown_topic() and returns false. Throws std::invalid_argument if this process's
+/// keys do not allow reading it.
 template <typename Use>
 [[nodiscard]] bool subscribe_to_channel(Bus& bus, const std::string& channel, Use use) {
   bool is_known = false;

@@ -10,20 +10,20 @@ namespace sidestep {
 
 struct TopicOptions {
   DdsSettings dds;
-  std::string topic;         ///< the DDS topic name, e.g. feedback/3
+  std::string topic;         ///< the DDS topic name, for example feedback/3
   double seconds = 0;        ///< 0: until Ctrl-C
   double discovery_s = 1.5;  ///< participants announce themselves once per second
   MessagePrinterSettings printer;
   std::string recording_file;  ///< empty: a running system
-  std::string idl_file;        ///< has the topic's type, which need not be one of ours; empty: it is
-  std::string type;            ///< its name; empty: as the topic's writer announces it
+  std::string idl_file;        ///< IDL of the topic's type, which need not be one of ours; empty: it is
+  std::string type;            ///< name of the type; empty: as announced by the topic's writer
   std::string message;         ///< JSON to publish
-  double rate_hz = 1;          ///< of several messages to publish
+  double rate_hz = 1;          ///< rate if several messages are published
 };
 
 /// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit
-/// code, and throws std::runtime_error as DdsBus and PlaybackBus do, and std::invalid_argument for a filter
-/// that fits no message.
+/// code, throws whatever DdsBus and PlaybackBus throw, and throws std::invalid_argument for a filter that
+/// fits no message.
 int list_topics(const TopicOptions& options);
 int show_topic(const TopicOptions& options);
 int measure_rate(const TopicOptions& options);

@@ -8,12 +8,12 @@
 
 namespace sidestep {
 
-/// Waits for a participant that writes the topic. If there is none, says so on stderr; nullopt also if the
-/// listener was stopped.
+/// Waits for a participant that writes the topic. If there is none, reports that on stderr and returns
+/// nullopt. Also returns nullopt if the listener was stopped.
 [[nodiscard]] std::optional<DiscoveredEndpoint> find_writer(DdsListener& listener,
                                                             const TopicOptions& options);
 
-/// Says on stderr what a topic does not have in this domain, e.g. "no writer", and which topics there are.
+/// Reports on stderr what a topic lacks in this domain, for example "no writer", and lists the topics.
 void print_missing_topic(const TopicOptions& options, const char* what, const DdsListener& listener);
 
 }  // namespace sidestep

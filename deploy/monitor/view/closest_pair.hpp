@@ -18,17 +18,17 @@ struct ClosestPair {
   Time at{};
 };
 
-/// A robot's centre.
+/// The position of a robot's centre.
 struct RobotPlace {
   RobotId id = 0;
   Vec2 position_m{0, 0};
 };
 
-/// The two robots that are closest; nullopt: there are fewer than two.
+/// The two robots that are closest; nullopt if there are fewer than two.
 [[nodiscard]] std::optional<ClosestPair> closest_pair(std::vector<RobotPlace> robots, double radius_m,
                                                       Time now);
 
-/// Where the robots on the floor are: by ground truth if it is received, otherwise as vision sees them.
+/// The positions of the robots on the floor: from ground truth if it is received, otherwise from vision.
 [[nodiscard]] std::vector<RobotPlace> places_of(const FloorState& floor, Time now);
 
 }  // namespace sidestep

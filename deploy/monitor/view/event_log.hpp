@@ -17,10 +17,10 @@ enum class Severity : std::uint8_t { kInfo, kWarning, kError };
 
 /// Something that happened in a run.
 struct MonitorEvent {
-  std::uint64_t number = 0;  ///< from 1
+  std::uint64_t number = 0;  ///< counted from 1
   Time at{};
   Severity severity = Severity::kInfo;
-  std::string kind;  ///< e.g. "contact"
+  std::string kind;  ///< for example "contact"
   std::string text;  ///< one sentence
   std::vector<RobotId> robots{};
 };
@@ -33,10 +33,10 @@ class EventLog {
  public:
   static constexpr std::size_t kMaxEvents = 10'000;
 
-  /// Numbers the event.
+  /// Adds the event and numbers it.
   void add(MonitorEvent event);
   void on_event(std::function<void(const MonitorEvent&)> callback) { callback_ = std::move(callback); }
-  /// Those with higher numbers than `number`, as far as they are remembered.
+  /// The events with higher numbers than `number`, as far as they are remembered.
   std::vector<MonitorEvent> since(std::uint64_t number) const;
   std::uint64_t count() const { return count_; }
 

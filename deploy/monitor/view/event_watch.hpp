@@ -16,7 +16,7 @@
 
 namespace sidestep {
 
-/// Finds in the messages of a run what a person wants to know of, and adds it to a log.
+/// Finds events of interest to a person in the messages of a run, and adds them to a log.
 class EventWatch {
  public:
   /// The log must outlive this object.
@@ -33,16 +33,16 @@ class EventWatch {
   void on(const msg::NetworkFault& fault, Time now);
   void on(const msg::AbsenceAttestation& attestation, Time now);
   void on_violation(const Violation& violation);
-  /// Messages of a process with other rules are refused.
+  /// A process has different rules, so its messages are refused.
   void on_refused(std::uint32_t sender, Time now);
-  /// Looks for robots and coordinators that have fallen silent.
+  /// Detects robots and coordinators that have fallen silent.
   void tick(const FloorState& floor, Time now);
 
-  /// Silence of an agent, a robot or an active coordinator that is an event.
+  /// Silence of an agent, a robot or an active coordinator that counts as an event.
   static constexpr Duration kSilence = std::chrono::milliseconds(1000);
 
  private:
-  /// What of each robot or coordinator was last, to find changes.
+  /// Properties of robots and coordinators whose last values are kept to detect changes.
   enum class Watched : std::uint8_t {
     kOffReference,
     kLifted,
@@ -56,7 +56,8 @@ class EventWatch {
   };
 
   void add(Severity severity, std::string kind, std::string text, Time at, std::vector<RobotId> robots = {});
-  /// Whether the value differs from the last one with this key. The first one does if it is not `normal`.
+  /// Whether the value differs from the last one with this key. The first value counts as a change if it is
+  /// not `normal`.
   bool has_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
   void watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot, Time now);
 
@@ -64,10 +65,10 @@ class EventWatch {
   bool is_new_order(std::uint32_t sender, std::uint64_t number);
 
   EventLog& log_;
-  /// Anybody in the network can send what causes these events.
+  /// Limits these events, because anybody on the network can cause them.
   RateLimit outside_{1000, std::chrono::milliseconds(10)};
-  std::map<std::uint32_t, std::uint64_t> sent_orders_;  ///< the last number, by sender
-  std::set<std::uint32_t> refused_;                     ///< senders
+  std::map<std::uint32_t, std::uint64_t> sent_orders_;  ///< the last order number, by sender
+  std::set<std::uint32_t> refused_;                     ///< senders whose messages were refused
   std::map<std::pair<Watched, std::uint32_t>, std::uint64_t> last_;
   struct TruthTotals {
     std::uint64_t incarnation = 0, contacts = 0, crashes = 0, violations = 0;

@@ -24,7 +24,7 @@ namespace sidestep {
 [[nodiscard]] std::string encode_frame(const FloorState& floor, Time now);
 
 /// {"sections": [{"name": "robots", "columns": ["id", …]}, …], "flags": ["off_reference", …]}. The flags are
-/// the bits of the column of this name, from the lowest.
+/// the bits of the column "flags", starting with the lowest.
 [[nodiscard]] nlohmann::ordered_json frame_layout();
 
 }  // namespace sidestep

@@ -20,14 +20,14 @@
 
 namespace sidestep {
 
-/// A value and when it was received.
+/// A value and its reception time.
 template <typename Value>
 struct Received {
   Value value;
   Time at{};
 };
 
-/// What was received longer ago is not shown.
+/// Values received longer ago than this are not shown.
 inline constexpr Duration kMaxShownAge = std::chrono::seconds(1);
 
 /// The value, if it is recent enough to be shown; otherwise nullptr.
@@ -39,7 +39,7 @@ const Value* fresh(const std::optional<Received<Value>>& received, Time now) {
 /// A message of any topic.
 struct AnyMessage {
   const TopicInfo& topic;
-  std::uint32_t channel;  ///< of the topics of robots, each robot has another one
+  std::uint32_t channel;  ///< for per-robot topics, each robot has a different channel
   const std::string& channel_name;
   const msg::Header& header;
   const void* message;
@@ -48,10 +48,10 @@ struct AnyMessage {
 /// A candidate that the coordinator did not grant.
 struct Denial {
   msg::Reason reason = msg::Reason::REASON_NOT_EVALUATED;
-  RobotId blocker = 0;  ///< valid for REASON_CONFLICT
+  RobotId blocker = 0;  ///< valid if the reason is REASON_CONFLICT
 };
 
-/// The newest that is known about one robot.
+/// The newest information about one robot.
 struct RobotView {
   std::optional<Received<msg::TrueRobotState>> truth;
   std::optional<Received<msg::TrackedRobot>> seen;
@@ -60,13 +60,13 @@ struct RobotView {
   std::optional<Received<msg::OrderStatus>> order;
   std::optional<Received<msg::Proposal>> proposal;
   std::optional<Received<msg::Version>> granted;
-  std::optional<Received<Denial>> denial;  ///< since the last grant
+  std::optional<Received<Denial>> denial;  ///< last denial since the last grant
   std::optional<Received<msg::LaserScan>> scan;
-  std::map<std::uint32_t, std::uint64_t> denials;  ///< of first candidates, by msg::Reason
+  std::map<std::uint32_t, std::uint64_t> denials;  ///< denials of first candidates, by msg::Reason
 };
 
-/// The newest state of the floor, as messages tell it. Values of messages are not trusted: robots and
-/// coordinators beyond the numbers that the protocol allows are ignored.
+/// The newest state of the floor according to messages. Values in messages are not trusted: robots and
+/// coordinators with numbers beyond those that the protocol allows are ignored.
 class FloorState {
  public:
   void on(const msg::GroundTruth& truth, Time now);

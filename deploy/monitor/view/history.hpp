@@ -10,21 +10,22 @@
 
 namespace sidestep {
 
-/// What viewers get for one time: a frame, and the panels as they were then.
+/// What viewers get for one time: a frame, and the panels at that time.
 struct Snapshot {
   Time at{};
   std::shared_ptr<const std::string> frame, panels;
 };
 
-/// Snapshots in order of time, of bounded size. When it is full, it either forgets the oldest or, to keep the
-/// whole time, every other one.
+/// Snapshots sorted by time, of bounded size. When full, it either forgets the oldest or, to keep the whole
+/// duration, every other one.
 class History {
  public:
   enum class WhenFull : std::uint8_t { kForgetOldest, kThinOut };
 
   History(std::size_t max_bytes, WhenFull when_full) : max_bytes_(max_bytes), when_full_(when_full) {}
 
-  /// Snapshots that are not later than the last one are ignored. While it is thinned out, some others too.
+  /// Adds a snapshot. Ignores it if it is not later than the last one. When the history is thinned out,
+  /// others are ignored too.
   void add(Snapshot snapshot);
   bool empty() const { return snapshots_.empty(); }
   std::size_t size() const { return snapshots_.size(); }
@@ -34,8 +35,8 @@ class History {
   const Snapshot& last() const { return snapshots_.back(); }
   /// The last snapshot at or before a time; the first one if there is none.
   const Snapshot& at(Time time) const { return snapshots_[index_at(time)]; }
-  /// The snapshot that is `steps` after the one at a time (or before, if negative), as far as there are so
-  /// many.
+  /// The snapshot `steps` after the one at a time (or before it, if negative), limited to the ends of the
+  /// history.
   const Snapshot& stepped(Time time, int steps) const;
 
  private:
@@ -46,7 +47,7 @@ class History {
   WhenFull when_full_;
   std::deque<Snapshot> snapshots_;
   std::size_t bytes_ = 0;
-  std::size_t stride_ = 1, skipped_ = 0;  // of the snapshots that are added, one in `stride` is kept
+  std::size_t stride_ = 1, skipped_ = 0;  // of the snapshots added, one in `stride` is kept
 };
 
 }  // namespace sidestep

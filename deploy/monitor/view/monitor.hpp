@@ -24,21 +24,21 @@
 namespace sidestep {
 
 struct MonitorSettings {
-  const Scenario* scenario = nullptr;  ///< nullptr: unknown, so that nothing can be judged
+  const Scenario* scenario = nullptr;  ///< nullptr: unknown, so that the run cannot be judged
   AuditInput audit;
   bool is_recording = false;  ///< the messages come from a recording
-  bool can_command = false;   ///< the page shows what commands
-  /// Of a recording: the messages of a channel in an interval (see RecordedMessages). Empty: viewers get
+  bool can_command = false;   ///< the page shows elements that give commands
+  /// For a recording: the messages of a channel in an interval (see RecordedMessages). Empty: viewers get
   /// messages as they are received.
   std::function<std::vector<std::string>(const std::string& channel, Time from, Time to)> recorded_messages;
 };
 
-/// Shows a run to viewers: collects its messages, remembers what the floor looked like, and sends each viewer
-/// the moment that it looks at. Messages of a viewer: see README.md in this folder.
+/// Shows a run to viewers: collects its messages, remembers the states of the floor, and sends each viewer
+/// the moment that it is looking at. For the messages of viewers see README.md in this folder.
 class Monitor {
  public:
-  /// Subscribes to all topics except images. The bus must not be used otherwise, and outlive this object; so
-  /// must the scenario.
+  /// Subscribes to all topics except images. The bus must be used for nothing else. The bus and the scenario
+  /// must outlive this object.
   Monitor(Bus& bus, const MonitorSettings& settings);
   ~Monitor();
   Monitor(const Monitor&) = delete;
@@ -47,18 +47,18 @@ class Monitor {
   static constexpr Duration kFramePeriod = std::chrono::milliseconds(25);
   static constexpr Duration kPanelPeriod = std::chrono::milliseconds(500);
 
-  /// Takes a picture of the floor. Call it every kFramePeriod of the run.
+  /// Takes a snapshot of the floor. Call it every kFramePeriod of the run.
   void take_snapshot();
-  /// Sends all viewers what they look at. Call it often. `clock`: the real time.
+  /// Sends all viewers the moments that they are looking at. Call it often. `clock` is the real time.
   void update_viewers(Time clock);
-  /// Of a recording: how much of it has been read, 0 to 1.
+  /// For a recording: how much of it has been read, 0 to 1.
   void set_progress(double progress) { progress_ = progress; }
 
-  /// Answers GET requests of paths that begin with /api/; nullopt: there is no such path.
+  /// Answers GET requests whose path starts with /api/. nullopt if there is no such path.
   std::optional<WebResponse> respond(const WebRequest& request);
   void add_viewer(WebSocket& socket);
   void remove_viewer(WebSocket& socket);
-  /// False: the message makes no sense.
+  /// False: the message is invalid.
   [[nodiscard]] bool on_message(WebSocket& socket, const std::string& message, Time clock);
 
   /// Calls back with every message that is received.
@@ -77,9 +77,9 @@ class Monitor {
     ViewerTime time;
     Time shown{};
     std::shared_ptr<const std::string> frame, panels, time_text;
-    std::optional<std::string> inspected;  ///< channel
-    std::optional<Time> inspected_until;   ///< of a recording: what has been sent of it
-    Time next_inspection{};                ///< by the clock
+    std::optional<std::string> inspected;  ///< the channel
+    std::optional<Time> inspected_until;   ///< for a recording: up to when it has been sent
+    Time next_inspection{};                ///< by the real-time clock
   };
 
   struct Channel {
@@ -101,7 +101,7 @@ class Monitor {
   nlohmann::ordered_json scene() const;
   void send_time(WebSocket& socket, Viewer& viewer);
   void send_inspections();
-  /// Those that no viewer looks at.
+  /// Forgets inspections that nobody is watching.
   void forget_inspections();
   void send_recorded_messages(WebSocket& socket, Viewer& viewer, Time clock);
 
@@ -111,12 +111,13 @@ class Monitor {
   EventLog events_;
   EventWatch event_watch_{events_};
   TopicTraffic traffic_;
-  std::unique_ptr<RunJudges> judges_;  ///< null: the scenario is unknown
+  std::unique_ptr<RunJudges> judges_;  ///< null if the scenario is unknown
   History history_;
   std::set<RobotId> followed_;
   std::set<std::string> channels_;
   std::map<WebSocket*, Viewer> viewers_;
-  std::map<std::string, std::deque<std::string>> inspections_;  ///< JSON since it was last sent, by channel
+  /// JSON received since it was last sent, by channel.
+  std::map<std::string, std::deque<std::string>> inspections_;
   std::shared_ptr<const std::string> latest_panels_;
   Time panels_at_{}, heard_at_{};
   std::optional<ClosestPair> closest_, smallest_;

@@ -9,17 +9,17 @@
 
 namespace sidestep {
 
-/// Looks up the messages of one channel of a recording in any interval, for the inspector.
+/// Finds the messages of one channel of a recording in any interval, for the inspector.
 class RecordedMessages {
  public:
-  /// `playback` knows what it has read so far of the same file; it must outlive this object.
+  /// `playback` knows what it has read so far of the same file. It must outlive this object.
   RecordedMessages(const std::string& path, const PlaybackBus& playback)
       : reader_(path), playback_(playback) {}
 
   static constexpr std::size_t kMaxBytes = 2 << 20;
 
-  /// The messages received after `from` and until `to`, as {"at_s":…, "message":…}; of more than kMaxBytes,
-  /// the last ones. Empty if no topic has the channel.
+  /// The messages received after `from` and up to `to`, as {"at_s":…, "message":…}. If they exceed kMaxBytes,
+  /// only the last ones. Empty if no topic has the channel.
   [[nodiscard]] std::vector<std::string> between(const std::string& channel, Time from, Time to);
 
  private:

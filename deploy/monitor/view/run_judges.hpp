@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// What judges a run whose scenario is known.
+/// The objects that judge a run whose scenario is known.
 struct RunJudges {
   RunMetrics metrics;
   Auditor auditor;

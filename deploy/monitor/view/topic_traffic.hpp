@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-/// Rate, losses and delay of each topic, per sender.
+/// Rate, losses and delay of each topic, by sender.
 class TopicTraffic {
  public:
   /// `channel` distinguishes the channels of a topic, which senders number separately.

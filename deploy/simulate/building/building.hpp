@@ -14,16 +14,16 @@ struct BuildingOptions {
   std::string folder;
   std::string kind = kBuildingKinds.front();
   std::uint64_t seed = 1;
-  int cells = 2000;            ///< along each side
+  int cells = 2000;            ///< number along each side
   double resolution_m = 0.05;  ///< side of a cell
   int robots = 6;
-  int goals = 3;  ///< of each robot
+  int goals = 3;  ///< number per robot
 };
 
 /// Writes a random building into a folder, which it creates: its map as `map.yaml` and `map.pgm`, and
-/// `scenario.yaml` with robots and goals at random places, all of which can be reached. The same options give
-/// the same files. Throws std::invalid_argument if the building has no room for so many robots, and
-/// std::runtime_error if a file cannot be written.
+/// `scenario.yaml` with robots and goals at random reachable places. The same options give the same files.
+/// Throws std::invalid_argument if the building has no room for this number of robots, and std::runtime_error
+/// if a file cannot be written.
 void write_building(const BuildingOptions& options);
 
 }  // namespace sidestep

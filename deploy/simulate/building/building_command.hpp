@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// Adds `sidestep building`. Parsing it sets `action`, which returns 0 and throws as write_building() does.
+/// Adds `sidestep building`. Parsing it sets `action`, which returns 0 and throws what write_building()
+/// throws.
 void add_building_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// A map that covers a field: rooms, corridors, doors and shelves, and some single blocked cells, as maps
-/// made with a laser have them. Discs of `radius_m` fit through all doors, with a few centimetres to spare.
+/// Samples a map that covers a field: rooms, corridors, doors and shelves, and some single blocked cells, as
+/// in maps made with a laser. Discs of `radius_m` fit through all doors with a few centimetres to spare.
 [[nodiscard]] std::shared_ptr<const FloorMap> sample_building(const Field& field, double radius_m, Rng& rng);
 
 }  // namespace sidestep

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// The summary of a campaign; independent of the order in which results are added.
+/// The summary of a campaign. It does not depend on the order in which results are added.
 class CampaignSummary {
  public:
   void add(const TrialResult& result) { results_[result.seed] = result; }
@@ -23,21 +23,21 @@ class CampaignSummary {
   /// Number of trials with each kind of fault.
   std::map<std::string, std::uint64_t> trials_by_fault() const;
   struct Audited {
-    std::uint64_t violations = 0;          ///< in trials that the audit judges
-    std::uint64_t trials_without = 0;      ///< that it does not judge
-    std::uint64_t violations_without = 0;  ///< in those
+    std::uint64_t violations = 0;          ///< number in trials that the audit judges
+    std::uint64_t trials_without = 0;      ///< number of trials that the audit does not judge
+    std::uint64_t violations_without = 0;  ///< number of violations in those trials
   };
   Audited audited() const;
-  /// Share of the time of all pairs of robots in which a contact would have been excused.
+  /// Fraction of the time of all pairs of robots in which a contact would have been excused.
   double excused_time_share() const;
 
-  /// A few lines of text.
+  /// The summary in a few lines of text.
   std::string text() const;
   std::string json() const;
 
  private:
   std::uint64_t sum(std::uint64_t TrialResult::*count) const;
-  /// The seeds with the largest or smallest values: "seed 5 (0.3), seed 9 (0.2)".
+  /// The seeds with the largest or smallest values, such as "seed 5 (0.3), seed 9 (0.2)".
   template <typename Value>
   std::string extremes(Value value, bool are_largest) const;
 

@@ -19,7 +19,7 @@ class DistanceMeter {
 
   double total_m() const;
   double total_since_m() const;
-  /// Robots that drove less than `min_distance_m` since the given time.
+  /// Robots that have driven less than `min_distance_m` since the given time.
   std::vector<RobotId> stationary_robots(double min_distance_m) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// The kinds of faults in a trial, by names such as "kill" or "push".
+/// The kinds of faults in a trial, as names such as "kill" or "push".
 [[nodiscard]] std::set<std::string> fault_kinds(const Scenario& scenario, const FaultPlan& plan);
 
 }  // namespace sidestep

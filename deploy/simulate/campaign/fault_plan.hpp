@@ -16,18 +16,18 @@ namespace sidestep {
 
 using ProcessNames = std::vector<std::string>;
 
-/// Sets the quality of the links between those of these processes that are on different hosts.
+/// Sets the quality of the links between these processes where they are on different hosts.
 struct LinkChange {
   ProcessNames from, to;
   LinkQuality quality;
 };
-/// Drops all messages between these processes for a while.
+/// Drops all messages between these processes for some time.
 struct Partition {
   ProcessNames from, to;
   Duration duration{0};
 };
-/// Drops all messages from these processes to a coordinator, or from a coordinator to them, for good. The
-/// other coordinators have to work without it.
+/// Permanently drops all messages from these processes to a coordinator, or from a coordinator to them. The
+/// other coordinators must work without it.
 struct LastingCut {
   ProcessNames from, to;
 };
@@ -36,56 +36,56 @@ struct ClockJump {
   std::string process;
   Duration offset{0};
 };
-/// SIGSTOP and, after the duration, SIGCONT.
+/// Sends SIGSTOP and, after the duration, SIGCONT.
 struct Pause {
   ProcessNames processes;
   Duration duration{0};
-  std::size_t max_queued = 0;  ///< messages per process; further ones are lost
+  std::size_t max_queued = 0;  ///< maximum number of queued messages per process; further ones are lost
 };
 struct Kill {
   std::string process;
 };
-/// Starts a dead process, or a robot's second agent.
+/// Starts a dead process, or a second agent for a robot.
 struct Start {
   std::string process;
 };
 
-/// Somebody carries a robot to a place, by hand and at a speed.
+/// A person carries a robot to a place at a given speed.
 struct Carry {
   RobotId robot = 0;
   Vec2 place_m{0, 0};
   double speed_mps = 1;
 };
 /// The operator puts a lifted robot down. Each place is requested for a while, one after another and again
-/// from the first, until one is granted. Without a request that persists, an agent that is dead at the time
-/// would never learn of it.
+/// from the first, until one is granted. The requests are repeated because an agent that is dead at the time
+/// would otherwise never learn of them.
 struct Place {
   RobotId robot = 0;
   std::vector<Vec2> places_m;
   double heading_rad = 0;
 };
-/// The operator takes a robot without power off the floor for good, and attests its absence whenever the
-/// coordinator waits for it.
+/// The operator permanently takes a robot without power off the floor, and attests its absence whenever the
+/// coordinator awaits it.
 struct TakeAway {
   RobotId robot = 0;
 };
 
-/// Starts a process again with a scenario in which one rule differs.
+/// Restarts a process with a scenario in which one rule differs.
 struct StartWithOtherRule {
   std::string process;
-  std::size_t rule = 0;  ///< of other_rules()
+  std::size_t rule = 0;  ///< index in other_rules()
 };
-/// Starts such a process again with the right scenario.
+/// Restarts such a process with the correct scenario.
 struct StartWithOwnRules {
   std::string process;
 };
 /// A hostile process sends a false message about a robot.
 struct SendForgery {
   RobotId victim = 0;
-  std::size_t forgery = 0;  ///< of forgeries()
+  std::size_t forgery = 0;  ///< index in forgeries()
 };
 
-/// A client gives an order; its number is set when it is sent.
+/// A client gives an order; the order's number is set when it is sent.
 struct GiveOrder {
   Order order;
 };
@@ -95,30 +95,31 @@ using Fault =
                  StartWithOtherRule, StartWithOwnRules, SendForgery, LastingCut, ClockJump, GiveOrder>;
 
 struct TimedFault {
-  Duration at{0};  ///< since the start of the run
+  Duration at{0};  ///< time since the start of the run
   Fault fault;
 };
 
-/// In which state a robot is at the end of a run that was not put right for it.
+/// The state of a robot at the end of a run if its fault is not corrected.
 enum class RobotEnd {
-  kClockOutOfBound,   ///< its clock was out of bound all the time, so it must not move
+  kClockOutOfBound,   ///< its clock was out of bound throughout, so it must not move
   kClockLeftBound,    ///< its clock is so far out of bound that its agent must report it
-  kClockBeyondBound,  ///< its clock has left the bound by less
+  kClockBeyondBound,  ///< its clock has left the bound by a smaller amount
   kLifted,            ///< it is off the floor
   kTakenAway,         ///< it is off the floor and has no power
 };
 
-/// All faults of one run. None occurs or persists after `healed_at`, except that robots in `ends` remain as
-/// they are, and lasting cuts.
+/// All faults of one run. None occurs or persists after `healed_at`, except lasting cuts and the states of
+/// robots in `ends`.
 struct FaultPlan {
   std::vector<ProcessNames> hosts;           ///< messages within a host are fast and never lost
-  std::map<std::string, ClockError> clocks;  ///< by process
-  std::map<RobotId, RobotEnd> ends;          ///< of robots that need not drive at the end; the others must
-  std::vector<TimedFault> faults;            ///< sorted by time
+  std::map<std::string, ClockError> clocks;  ///< indexed by process
+  /// States of robots that need not drive at the end; all others must.
+  std::map<RobotId, RobotEnd> ends;
+  std::vector<TimedFault> faults;  ///< sorted by time
   Duration healed_at{0};
 };
 
-/// The robots that end in a state; ascending.
+/// The robots that end in a given state, sorted.
 [[nodiscard]] std::vector<RobotId> robots_with(const FaultPlan& plan, RobotEnd end);
 
 /// A description with one line per host, clock and fault.

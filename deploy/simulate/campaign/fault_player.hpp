@@ -17,10 +17,10 @@ namespace sidestep {
 /// Runs a system and applies the faults of a plan.
 class FaultPlayer {
  public:
-  /// All arguments must outlive the player. Links start with the quality of healthy hosts.
+  /// All arguments must outlive the player. Links start with the quality of links between healthy hosts.
   FaultPlayer(SimSystem& system, const Scenario& scenario, const FaultPlan& plan);
 
-  /// Runs until this time after the start, and applies all faults until then.
+  /// Runs until this time after the start, and applies all faults up to then.
   void run_until(Duration after_begin);
 
   void operator()(const LinkChange& change);
@@ -67,10 +67,10 @@ class FaultPlayer {
   const FaultPlan& plan_;
   FloorOperator operator_;
   std::vector<std::unique_ptr<Forger>> forgers_;  // one per victim
-  std::optional<OrderClients> clients_;           // if the plan has orders
+  std::optional<OrderClients> clients_;           // set if the plan has orders
   std::size_t next_ = 0;
   bool is_healed_ = false;
-  std::map<std::string, std::map<std::string, Link>> links_;  // by sender, then receiver
+  std::map<std::string, std::map<std::string, Link>> links_;  // indexed by sender, then receiver
   std::vector<End> ends_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Samples hosts, and faults of the network and of processes, in no particular order. `processes` are all
-/// processes of the system.
+/// Samples hosts, network faults and process faults, in no particular order. `processes` are all processes of
+/// the system.
 FaultPlan sample_faults(const Scenario& scenario, const ProcessNames& processes, const FaultTimes& times,
                         Rng& rng);
 

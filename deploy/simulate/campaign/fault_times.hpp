@@ -9,18 +9,18 @@
 namespace sidestep {
 
 /// Samples the times of faults. Faults cluster in time, because simultaneous faults have effects that single
-/// ones do not have.
+/// faults do not have.
 class FaultTimes {
  public:
   /// No fault occurs after `healed_at`.
   FaultTimes(Duration healed_at, Rng& rng);
 
   Duration healed_at() const { return healed_at_; }
-  /// A time at least a millisecond before the end of all faults, often near those of other faults.
+  /// A time at least a millisecond before the end of all faults, often near the time of another fault.
   Duration sample(Rng& rng) const;
-  /// The duration, or the time from `at` to the end of all faults if that is less.
+  /// The duration, limited to the time from `at` to the end of all faults.
   Duration until_healed(Duration at, double desired_s) const;
-  /// This long after `at`, or just before the end of all faults if that is earlier.
+  /// The time this long after `at`, but at the latest just before the end of all faults.
   Duration after(Duration at, double desired_s) const;
 
  private:
@@ -28,7 +28,7 @@ class FaultTimes {
   std::vector<double> burst_times_s_;
 };
 
-/// Uniformly distributed logarithm.
+/// Samples a number whose logarithm is uniformly distributed.
 double sample_log_uniform(double low, double high, Rng& rng);
 
 }  // namespace sidestep

@@ -10,23 +10,23 @@
 
 namespace sidestep {
 
-/// A person at the floor, who sees where robots are and does what the protocol asks of operators: puts robots
+/// A person on the floor who sees the robots and does what the protocol requires of operators: puts robots
 /// down, carries them, and attests that a robot without power is absent.
 class FloorOperator {
  public:
   /// System and scenario must outlive the operator.
   FloorOperator(SimSystem& system, const Scenario& scenario);
 
-  /// Carries a robot that is on the floor; it arrives no later than `limit`.
+  /// Carries a robot that is on the floor; it arrives by `limit`.
   void carry(const Carry& carry, Time limit);
   void place(const Place& place);
   void take_away(RobotId robot);
-  /// From now on, resumes all robots while any is held: after a restart of everything, coordinators hold all
-  /// robots for an operator. If they ever did, nobody knows the orders, so the operator sends robots without
-  /// one to the scenario's goals again.
+  /// From now on, resumes all robots whenever any is held, because after a restart of everything,
+  /// coordinators hold all robots until an operator resumes them. If that has happened, nobody knows the
+  /// orders, so the operator sends robots without an order to the scenario's goals again.
   void resume_held() { resumes_ = true; }
 
-  /// When the operator acts next; nullopt: has nothing to do.
+  /// When the operator acts next; nullopt if there is nothing to do.
   std::optional<Time> due() const;
   /// Acts if it is time.
   void update();
@@ -34,8 +34,8 @@ class FloorOperator {
  private:
   struct Placing {
     Place request;
-    std::size_t requests = 0;   ///< made so far
-    bool is_off_floor = false;  ///< has been seen off the floor; the lifting may take effect late
+    std::size_t requests = 0;   ///< number of requests made so far
+    bool is_off_floor = false;  ///< it has been seen off the floor; the lifting may take effect late
   };
   const Vec2* position_of(RobotId robot) const;
   void resume_if_held();

@@ -12,8 +12,9 @@
 
 namespace sidestep {
 
-/// A hostile process that knows the scenario's rules, repeats what it has received about one robot, its
-/// victim, and changes it. Observers do not hear it: they judge what the others say.
+/// A hostile process that knows the scenario's rules. It repeats messages that it has received about one
+/// robot, its victim, with changes. Observers do not hear it, because they judge the other processes'
+/// messages.
 class Forger {
  private:
   SimBus bus_;
@@ -27,11 +28,11 @@ class Forger {
   Forger& operator=(const Forger&) = delete;
 
   RobotId victim() const { return victim_; }
-  /// Sends the messages that have been changed since the last call. Messages of which none was received are
-  /// not sent.
+  /// Sends the messages that were changed since the last call. If no message of a topic was received, none is
+  /// sent.
   void send();
 
-  /// The latest message of a topic, as it was last changed. Calling it marks the message for sending.
+  /// The latest message of a topic, as last changed. Calling this marks the message for sending.
   template <typename Message>
   class Forged {
    public:
@@ -71,11 +72,12 @@ class Forger {
   Forged<msg::ObstacleList> obstacles{*this, topics::kObstacles};
 };
 
-/// A false message that must not cost any robot more than a moment (PROTOCOL.md, "Hostile messages").
+/// A false message that must not disturb any robot for more than a moment (PROTOCOL.md, "Hostile messages").
 struct Forgery {
   std::string name;
   std::function<void(Forger&)> change;
-  /// The fact could be true, so a ledger holds for a while what no observer has heard of.
+  /// Whether the fact could be true, so that a ledger contains for a while a version that no observer has
+  /// heard of.
   bool is_plausible_fact = false;
 };
 

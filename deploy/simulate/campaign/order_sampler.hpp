@@ -7,9 +7,9 @@
 
 namespace sidestep {
 
-/// Samples what an operator and two other clients order while faults happen: robots to go somewhere, holds of
-/// one robot or all, resumes, and zones. Before the end of all faults every hold is lifted and every zone is
-/// removed, so that robots drive at the end.
+/// Samples orders by an operator and two other clients while faults happen: drive orders, holds of one robot
+/// or all, resumes, and zones. Before the end of all faults every hold is lifted and every zone is removed,
+/// so that robots drive at the end.
 void sample_orders(const Scenario& scenario, const FaultTimes& times, FaultPlan& plan, Rng& rng);
 
 }  // namespace sidestep

@@ -9,14 +9,15 @@
 
 namespace sidestep {
 
-/// A change of a scenario by which a process has other rules than the rest (PROTOCOL.md, "The same rules").
+/// A change of a scenario that gives a process rules that differ from those of the others (PROTOCOL.md, "The
+/// same rules").
 struct OtherRule {
   std::string key;
   std::function<void(Scenario&)> change;
   bool changes_roster = false;
 };
 
-/// A change of every rule.
+/// One change for every rule.
 [[nodiscard]] const std::vector<OtherRule>& other_rules();
 
 }  // namespace sidestep

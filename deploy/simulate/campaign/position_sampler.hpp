@@ -12,13 +12,13 @@
 namespace sidestep {
 
 /// Samples positions of robots clear of walls, of obstacles and, on request, of other positions. A robot can
-/// drive from each of them to each other one: pockets that no robot can enter or leave get none.
+/// drive from each position to every other: pockets that no robot can enter or leave contain none.
 class PositionSampler {
  public:
   /// Both arguments must outlive the sampler.
   PositionSampler(const Scenario& scenario, Rng& rng);
 
-  /// Within the central `share` of the field if a free position is found there, else anywhere.
+  /// A position within the central `share` of the field if a free one is found there, otherwise anywhere.
   Vec2 sample(double share = 1);
   Vec2 sample_apart(const std::vector<Vec2>& others);
   /// A free position near the desired one and clear of the others.
@@ -27,14 +27,14 @@ class PositionSampler {
  private:
   bool is_clear(const Vec2& p) const;
   bool is_free(const Vec2& p) const;
-  /// Sets the cells of the largest part of the floor that robots can drive through.
+  /// Finds the cells of the largest part of the floor in which robots can drive.
   void find_largest_part();
   bool is_apart(const Vec2& p, const std::vector<Vec2>& others) const;
 
   const Scenario& scenario_;
   Rng& rng_;
   MapGrid grid_;
-  std::optional<BitGrid> largest_part_;  ///< nullopt: all of the floor, which has neither obstacles nor walls
+  std::optional<BitGrid> largest_part_;  ///< nullopt: the whole floor, which has neither obstacles nor walls
 };
 
 }  // namespace sidestep

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Samples processes that are deaf, mute, or hear or reach only some others, for seconds; where there are
-/// several coordinators, also one that stays so for good.
+/// Samples processes that cannot receive, cannot send, or can receive from or send to only some others, for
+/// seconds. If there are several coordinators, one of them may stay so permanently.
 void sample_reception(const Scenario& scenario, const FaultTimes& times, FaultPlan& plan, Rng& rng);
 
 }  // namespace sidestep

@@ -14,13 +14,13 @@ namespace sidestep {
 /// line identifies the campaign.
 class ResultsFile {
  public:
-  /// Opens or creates the file. An incomplete last line is removed. Throws std::runtime_error when the file
-  /// belongs to another campaign, is malformed, cannot be written, or another process writes it.
+  /// Opens or creates the file. Removes an incomplete last line. Throws std::runtime_error if the file
+  /// belongs to another campaign, is malformed, cannot be written, or is being written by another process.
   ResultsFile(const std::string& path, const std::string& campaign);
 
   /// The results in the file when it was opened.
   const std::vector<TrialResult>& found() const { return found_; }
-  /// Throws std::runtime_error when it cannot be written.
+  /// Throws std::runtime_error if the result cannot be written.
   void add(const TrialResult& result);
 
  private:

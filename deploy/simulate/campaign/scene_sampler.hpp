@@ -9,7 +9,8 @@
 
 namespace sidestep {
 
-/// Sometimes how late robots obey that are driven bases; otherwise they have firmware.
+/// The latency with which robots obey if they are driven bases, which is the case sometimes; nullopt if they
+/// have firmware.
 std::optional<Duration> sample_base_latency(Rng& rng);
 
 /// A scene with 5 to 30 robots, 16 if they are driven bases, dense enough that they interact (0.5 to 3 m²
@@ -17,17 +18,17 @@ std::optional<Duration> sample_base_latency(Rng& rng);
 /// minutes.
 Scenario sample_scene(Rng& rng, bool has_driven_bases = false);
 
-/// A description in one line.
+/// A description of the scene in one line.
 std::string scene_summary(const Scenario& scenario);
 
 /// Adds opponents that cross the floor among the robots to some scenes.
 void sample_opponents(Scenario& scenario, Rng& rng);
 
-/// Gives the robots of some scenes lasers, and people who walk there instead of the opponents.
+/// Gives the robots of some scenes lasers, and replaces the opponents with people who walk there.
 void sample_lasers(Scenario& scenario, Rng& rng);
 
-/// In every second scene, lets all robots or each of them find paths by a random planner. Not by local
-/// methods that ignore paths: these may stop for ever.
+/// In every second scene, uses random planners for all robots together or for each robot. Excludes local
+/// methods that ignore paths, because these may stop for ever.
 void sample_planners(Scenario& scenario, Rng& rng);
 
 }  // namespace sidestep

@@ -22,20 +22,20 @@ struct Trial {
   Scenario scenario;
   FaultPlan plan;
   Duration duration{0};
-  std::optional<Duration> base_latency = std::nullopt;  ///< if robots are driven bases; see SimSystem
+  std::optional<Duration> base_latency = std::nullopt;  ///< set if robots are driven bases; see SimSystem
 
   std::set<std::string> fault_kinds() const;
   /// A description in one line, without the faults.
   std::string summary() const;
 };
 
-/// Samples everything that the seed determines. Without a scenario the scene is sampled, too; without faults
-/// nothing else.
+/// Samples everything that the seed determines. If no scenario is given, samples the scene too; without
+/// faults, samples nothing else.
 [[nodiscard]] Trial sample_trial(std::uint64_t seed, Duration duration,
                                  const std::optional<Scenario>& scenario, bool has_faults = true);
 
-/// Adds the reasons why a trial failed to its result, whose figures are known. `progress` and `has_arrived`,
-/// that of all robots, are those of its end.
+/// Adds the reasons why a trial failed to its result, whose figures are known. `progress` and `has_arrived`
+/// (of all robots) describe the end of the trial.
 void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress, bool has_arrived,
                   const Report& report, TrialResult& result);
 

@@ -14,32 +14,33 @@ namespace sidestep {
 struct TrialResult {
   std::uint64_t seed = 0;
   std::vector<std::string> failures;
-  std::set<std::string> fault_kinds;                      ///< that were sampled
-  std::uint64_t contacts = 0;                             ///< excluding excused ones
-  std::uint64_t excused_contacts = 0;                     ///< that a disturbance of a robot excuses
-  std::map<std::string, std::uint64_t> excused_by_cause;  ///< the same by cause
-  double pair_s = 0;          ///< sum over all pairs of robots on the floor of the time observed
-  double excused_pair_s = 0;  ///< of it, the time in which a contact would have been excused
-  /// Whether the audit judges it. Not if a process believed a second simulator, because it had not heard the
-  /// first one for a while: what that process does then breaks rules, which the audit reports (PROTOCOL.md,
-  /// "Processes that must be alone").
+  std::set<std::string> fault_kinds;  ///< kinds of faults that were sampled
+  std::uint64_t contacts = 0;         ///< excluding excused ones
+  /// Number of contacts that a disturbance of a robot excuses.
+  std::uint64_t excused_contacts = 0;
+  std::map<std::string, std::uint64_t> excused_by_cause;  ///< the same contacts, by cause
+  double pair_s = 0;          ///< observed time, summed over all pairs of robots on the floor
+  double excused_pair_s = 0;  ///< the part of it in which a contact would have been excused
+  /// Whether the audit judges the trial. It does not if a process believed a second simulator, because it had
+  /// not heard the first one for a while: what that process does then breaks rules, which the audit reports
+  /// (PROTOCOL.md, "Processes that must be alone").
   bool is_audited = true;
   std::uint64_t audit_violations = 0, firmware_violations = 0;
   std::uint64_t proposals = 0, grants = 0, denials = 0;
   double robot_s = 0;                    ///< number of robots times simulated time
-  double distance_m = 0;                 ///< sum over all robots
+  double distance_m = 0;                 ///< total over all robots
   double distance_after_recovery_m = 0;  ///< the part of it after the end of all faults and a recovery time
   int robots = 0;
-  int stationary = 0;  ///< robots that did not move in that part
+  int stationary = 0;  ///< number of robots that did not move in that part
   double min_clearance_m = 1e9;
   double wall_s = 0;
 };
 
 nlohmann::ordered_json to_json(const TrialResult& result);
 
-/// One line of JSON.
+/// The result as one line of JSON.
 std::string to_line(const TrialResult& result);
-/// The inverse of to_line(); throws nlohmann::json::exception for anything else.
+/// The inverse of to_line(). Throws nlohmann::json::exception for any other text.
 [[nodiscard]] TrialResult parse_trial_result(const std::string& line);
 
 }  // namespace sidestep

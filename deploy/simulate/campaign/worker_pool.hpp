@@ -13,14 +13,14 @@ namespace sidestep {
 /// job. Must be created before this process has threads.
 class WorkerPool {
  public:
-  /// Runs in a child; returns one line of text.
+  /// The work of a job; runs in a child and returns one line of text.
   using Work = std::function<std::string(std::uint64_t job)>;
-  /// Runs in this process after each job, in any order. If the worker died, `death_reason` is not empty and
+  /// Called in this process after each job, in any order. If the worker died, `death_reason` is not empty and
   /// there is no line.
   using Done =
       std::function<void(std::uint64_t job, const std::string& line, const std::string& death_reason)>;
 
-  /// Precondition: workers > 0. Throws std::system_error when a worker cannot be started.
+  /// Precondition: workers > 0. Throws std::system_error if a worker cannot be started.
   WorkerPool(int workers, Work work, Done done);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -35,7 +35,7 @@ class WorkerPool {
     int jobs = -1, lines = -1;  // ends of pipes
     std::uint64_t job = 0;
     bool is_busy = false;
-    std::string text;  // of an incomplete line
+    std::string text;  // text of an incomplete line
   };
   void start(Worker& worker);
   /// Waits for the end of the process and returns the reason.

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Drives simulated bases without a protocol between: as a cable would.
+/// Drives simulated bases directly, without a protocol in between, as if by cable.
 class DirectDriver : public Driver {
  public:
   /// `bases` must outlive the driver.
@@ -20,11 +20,12 @@ class DirectDriver : public Driver {
   const Scenario scenario_;
 };
 
-/// A base that has its commanded velocity this long after the command, as far as its acceleration allows.
+/// Settings of a base that reaches its commanded velocity this long after the command, as far as its
+/// acceleration permits.
 BaseSettings bases_with_latency(Duration latency);
 
-/// Robots without firmware in one process with what sidestep-robot does for them: they obey their commands
-/// after a latency. Their memory ends with the process.
+/// Robots without firmware, in one process with the code that sidestep-robot runs for them: they obey their
+/// commands after a latency. Their memory ends with the process.
 class DrivenBases {
  public:
   /// The bus must make no callback after the destruction.

@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// Writes the events of all processes of a system to the log of this process, each with the virtual time
-/// since the start of the system and the simulated process's name. Sets the level of the log.
+/// Writes the events of all processes of a system to this process's log. Each line has the virtual time since
+/// the start of the system and the simulated process's name. Sets the level of the log.
 void log_events_of(SimSystem& system, LogLevel level);
 
 }  // namespace sidestep

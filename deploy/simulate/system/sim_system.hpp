@@ -22,9 +22,9 @@ namespace sidestep {
 
 struct PlanningScratch;
 
-/// The process name of a second agent of a robot.
+/// The process name of a robot's second agent.
 std::string twin_process(RobotId robot);
-/// The name of a second process of a kind that must be alone: "simulator" or "vision".
+/// The name of a second process of a kind that must run alone: "simulator" or "vision".
 std::string second_process(const std::string& process);
 
 /// The whole system on SimBus, in one thread and virtual time: one simulated process each for the simulator,
@@ -33,10 +33,9 @@ std::string second_process(const std::string& process);
 class SimSystem {
  public:
   static constexpr Time kBegin = time_from_ns(1'000'000'000'000);
-  /// Starts all processes at this virtual time. `clocks` holds the errors of processes' clocks; they apply
-  /// to all incarnations.
-  /// With a latency, robots are driven bases that obey after it, and have the simulator's clock
-  /// (DrivenBases); otherwise they have firmware.
+  /// Starts all processes at this virtual time. `clocks` contains the errors of processes' clocks, which
+  /// apply to all their incarnations. With a latency, robots are driven bases that obey after that latency
+  /// and use the simulator's clock (DrivenBases); otherwise they have firmware.
   SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks = {},
             Time begin = kBegin, std::optional<Duration> base_latency = std::nullopt);
   ~SimSystem();
@@ -49,24 +48,24 @@ class SimSystem {
   /// they have.
   bool run_until_arrived(Time limit);
 
-  /// Kills a process as by SIGKILL: "simulator", "vision", "coordinator", "coordinator 1" or "agent 3".
-  /// Robots, messages in flight and other processes are not affected. Does nothing if it is dead.
+  /// Kills a process as if by SIGKILL: "simulator", "vision", "coordinator", "coordinator 1" or "agent 3".
+  /// Robots, messages in flight and other processes are not affected. No effect if it is dead.
   void kill(const std::string& process);
-  /// From its next start on, a process uses another scenario than the system's.
+  /// From its next start on, the process uses a scenario other than the system's.
   void use_scenario(const std::string& process, const Scenario& scenario) { scenarios_[process] = scenario; }
-  /// Starts a dead process as a new incarnation without any state of the old one, twin_process(robot) as a
-  /// second agent, or second_process(name). The latter ends when it hears the first one.
+  /// Starts a dead process as a new incarnation without any state of the old one. Also starts
+  /// twin_process(robot) as a second agent, or second_process(name), which ends when it hears the first one.
   void restart(const std::string& process);
-  /// From now on, processes that should be alone stay although they hear an earlier one, as one of another
-  /// program might.
+  /// From now on, processes that should run alone do not end when they hear an earlier one, as another
+  /// program might behave.
   void stay_with_others() { stays_with_others_ = true; }
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
-  /// Whether some process, or the observer, has believed a second simulator or one of its robots: because it
-  /// had not heard the first one for SoleSender::kGoneAfter, or has never heard it.
+  /// Whether some process, or the observer, has believed a second simulator or one of its robots, because it
+  /// had not heard the first one for SoleSender::kGoneAfter or had never heard it.
   bool was_second_simulator_believed() const { return was_second_simulator_believed_; }
-  /// Pauses a process as by SIGSTOP and SIGCONT; see SimBus::pause. Does nothing if it is dead.
+  /// Pauses a process as if by SIGSTOP and SIGCONT; see SimBus::pause. No effect if it is dead.
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
-  /// Disturbs a robot as an operator would.
+  /// Disturbs a robot on an operator's behalf.
   void disturb(msg::Disturbance& disturbance) {
     disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     disturbance_writer_.publish(disturbance, now());
@@ -76,11 +75,11 @@ class SimSystem {
   /// Calls back with every answer of a coordinator to an order, and with every status of an order.
   void on_order_answer(std::function<void(const msg::OrderAnswer&)> callback);
   void on_order_status(std::function<void(const msg::OrderStatus&)> callback);
-  /// Sets how far the clock of a process, and of all its later incarnations, is ahead of true time.
+  /// Sets how far the clock of a process and all its later incarnations is ahead of true time.
   void set_clock(const std::string& process, Duration offset);
   /// Sets the quality of the link between two processes, for all their incarnations.
   void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
-  /// Sets the quality of the link on which a process gets the orders of send().
+  /// Sets the quality of the link by which a process receives the orders of send().
   void set_client_link(const std::string& to, const LinkQuality& quality);
   /// The names of the processes that a system starts.
   static std::vector<std::string> process_names(const Scenario& scenario);
@@ -93,9 +92,9 @@ class SimSystem {
   void on_truth(std::function<void(const msg::GroundTruth&)> callback) { on_truth_ = std::move(callback); }
   const RunMetrics& metrics() const { return metrics_; }
   using OnProcessEvent = std::function<void(const std::string& process, const LogEvent&)>;
-  /// Calls back with the events of all processes, of at least a level.
+  /// Calls back with the events of all processes that have at least this level.
   void on_event(LogLevel min_level, OnProcessEvent callback);
-  /// Receives every message, even those that are lost; the metrics' report includes its findings.
+  /// The auditor. It receives every message, even lost ones; the metrics' report includes its findings.
   Auditor& auditor() { return auditor_; }
 
  private:
@@ -103,7 +102,7 @@ class SimSystem {
   SimProcessSpec spec_of(const std::string& process);
   void start(const std::string& process);
   void observe(const std::string& process);
-  /// Notices when the process of this bus believes a second simulator.
+  /// Records whether the process of this bus believes a second simulator.
   void watch_beliefs(SimBus& bus);
   void on_other(const std::string& process, std::uint32_t id, Incarnation own, Incarnation other);
 
@@ -111,7 +110,7 @@ class SimSystem {
   std::uint64_t seed_;
   Rng rng_;
   std::map<std::string, ClockError> clocks_;
-  std::map<std::string, Scenario> scenarios_;  // of processes that use another one
+  std::map<std::string, Scenario> scenarios_;  // scenarios of processes that use a different one
   Time begin_;
   std::optional<Duration> base_latency_;
   std::shared_ptr<PlanningScratch> scratch_;  // shared by all agents
@@ -123,9 +122,9 @@ class SimSystem {
   RulesExchange rules_;
   Writer<msg::Disturbance> disturbance_writer_;
   Writer<msg::Order> order_writer_;
-  std::map<std::string, RobotId> robot_of_;  // by agent process
+  std::map<std::string, RobotId> robot_of_;  // indexed by agent process
   std::map<std::string, ProcessId> ids_;
-  std::map<std::string, Incarnation> incarnations_;  // the latest ones
+  std::map<std::string, Incarnation> incarnations_;  // the latest incarnations
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::optional<Time> arrived_since_;
   std::function<void(const msg::GroundTruth&)> on_truth_;

@@ -36,7 +36,7 @@ int count_rays_hitting(const Points& still_offsets, const PixelSamples& samples,
   const float from_nadir_x = samples.x - rays.nadir_x, from_nadir_y = samples.y - rays.nadir_y;
   int count = 0;
   for (std::size_t i = 0; i < kSamples; ++i) {
-    // The small constant keeps every ray from having no length or being parallel to the front.
+    // The small constant ensures that no ray has zero length or is parallel to the front.
     const float dx = parallax * (still_offsets.x[i] + from_nadir_x) + 1e-9F;
     const float dy = parallax * (still_offsets.y[i] + from_nadir_y);
     const float start_x = offsets.x[i] + samples.x, start_y = offsets.y[i] + samples.y;

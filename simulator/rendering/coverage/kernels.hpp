@@ -27,14 +27,15 @@ struct PixelSamples {
   const Points* offsets = nullptr;
 };
 
-/// Functions that count a pixel's samples in a region. All instruction sets give the same counts.
+/// Functions that count a pixel's samples in a region. All instruction sets give identical counts.
 struct Kernels {
   const char* name;
-  /// Samples in a disc about (x, y).
+  /// Counts the samples in a disc about (x, y).
   int (*count_in_disc)(const PixelSamples& samples, float x, float y, float radius);
   int (*count_in_cross_section)(const PixelSamples& samples, const CrossSection& section);
-  /// Samples whose rays meet the cross-section. The rays begin at the samples. Their directions are those of
-  /// the rays at `still_offsets` from the pixel's centre: the samples before the shift by the body's motion.
+  /// Counts the samples whose rays meet the cross-section. The rays start at the samples. Their directions
+  /// are those of the rays at `still_offsets` from the pixel's centre, which are the samples before they were
+  /// shifted by the body's motion.
   int (*count_rays_hitting)(const Points& still_offsets, const PixelSamples& samples, const ViewingRays& rays,
                             const CrossSection& section);
 };

@@ -6,10 +6,10 @@
 
 namespace sidestep {
 
-/// Number of sample points per pixel, from which the covered share of the pixel is computed at edges.
+/// Number of sample points per pixel, from which the covered fraction of a pixel at an edge is computed.
 inline constexpr std::size_t kSamples = 128;
 
-/// One coordinate of every sample.
+/// One coordinate for every sample.
 using SampleAxis = std::array<float, kSamples>;
 
 /// Points in a horizontal plane, in metres.

@@ -19,7 +19,7 @@ struct RgbPixels {
     u = average(b, inverted_y);
     v = average(r, inverted_y);
   }
-  /// The groups of boxes that may contain some of the pixels; 0 in all bytes when there is none.
+  /// The groups of boxes that may contain some of the pixels; 0 in all bytes if there are none.
   Bytes groups(const CoarseTables& tables) const {
     return bit_and(bit_and(look_up(y, tables.y), look_up(u, tables.u)), look_up(v, tables.v));
   }

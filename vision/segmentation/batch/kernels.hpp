@@ -20,19 +20,19 @@ struct alignas(64) VectorConstant {
 struct Thresholds {
   VectorConstant y_low, y_span, u_low, u_span, v_low, v_span, uv_low, uv_span;
   std::uint32_t colour;
-  std::uint32_t group;  ///< bit of its group in CoarseTables
+  std::uint32_t group;  ///< bit of the box's group in CoarseTables
 };
 
-/// By the high nibble of a value, the groups of boxes that may accept it: bit k for group k of eight. Tables
-/// of 16 bytes, repeated to fill a vector.
+/// Indexed by the high nibble of a value: the groups of boxes that may accept it, with bit k for group k of
+/// eight. Tables of 16 bytes, repeated to fill a vector.
 struct CoarseTables {
   VectorConstant y, u, v;
 };
 
-/// The colour classes in the forms that kernels use.
+/// The colour classes in the formats that kernels use.
 struct ClassesView {
-  const std::uint32_t *y, *u, *v;  ///< by value, bit k for box k
-  const Thresholds* thresholds;    ///< by box
+  const std::uint32_t *y, *u, *v;  ///< indexed by value; bit k for box k
+  const Thresholds* thresholds;    ///< indexed by box
   std::size_t boxes;
   std::uint32_t colours;  ///< bit c: colour c has a box
   const CoarseTables* coarse;
@@ -41,7 +41,7 @@ struct ClassesView {
 /// The colours of a row's pixels, in words of 64 pixels: bit i for pixel i. A pixel has at most one colour,
 /// that of the first box that contains it.
 struct RowMasks {
-  std::uint64_t* any;        ///< by word: pixels of any colour
+  std::uint64_t* any;        ///< indexed by word: pixels of any colour
   std::uint64_t* by_colour;  ///< by word and colour, kMasks per word; undefined where `any` is 0, and for
                              ///< colours without a box
 };

@@ -27,7 +27,7 @@ inline Bytes look_up(Bytes a, const VectorConstant& table) {
 }
 /// Moves each odd byte to the even position before it, and clears the odd ones.
 inline Bytes odd_bytes(Bytes a) { return _mm512_srli_epi16(a, 8); }
-/// Bit i: whether low <= byte i <= low + span.
+/// Bit i is set if low <= byte i <= low + span.
 inline std::uint64_t range_mask(Bytes a, const VectorConstant& low, const VectorConstant& span) {
   return _mm512_cmple_epu8_mask(_mm512_sub_epi8(a, load(low.bytes)), load(span.bytes));
 }
@@ -93,7 +93,7 @@ inline Bytes look_up(Bytes a, const VectorConstant& table) {
 }
 /// Moves each odd byte to the even position before it, and clears the odd ones.
 inline Bytes odd_bytes(Bytes a) { return _mm256_srli_epi16(a, 8); }
-/// Bit i: whether low <= byte i <= low + span.
+/// Bit i is set if low <= byte i <= low + span.
 inline std::uint64_t range_mask(Bytes a, const VectorConstant& low, const VectorConstant& span) {
   const Bytes above_low = _mm256_sub_epi8(a, load(low.bytes));
   const Bytes is_within = _mm256_cmpeq_epi8(_mm256_min_epu8(above_low, load(span.bytes)), above_low);

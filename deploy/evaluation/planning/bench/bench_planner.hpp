@@ -12,9 +12,9 @@ namespace sidestep {
 
 /// A planner's answer to a query, with the processor time that it took.
 struct TimedPlan {
-  bool is_solved = false;  ///< claimed by the planner; the benchmark checks it
+  bool is_solved = false;  ///< as claimed by the planner; the benchmark checks it
   double plan_us = 0, smoothing_us = 0;
-  std::size_t iterations = 0;  ///< samples for ours; checks of the termination condition for OMPL's
+  std::size_t iterations = 0;  ///< samples for our planners; checks of the termination condition for OMPL's
   std::vector<Vec2> path_m, smoothed_m;
 };
 
@@ -24,9 +24,10 @@ using QueryFunction = std::function<TimedPlan(const PlanQuery& query, double max
 /// One row of the benchmark.
 struct BenchPlanner {
   std::string name;
-  /// The planner that this one's times are compared with; empty: none.
+  /// The planner to which this one's times are compared; empty: none.
   std::string baseline;
-  /// Implements the same algorithm as its baseline, so it must not solve significantly fewer queries.
+  /// Whether it implements the same algorithm as its baseline, so that it must not solve significantly fewer
+  /// queries.
   bool is_namesake = false;
   /// Prepares a planner for a world, which must outlive the result.
   std::function<QueryFunction(const BenchmarkWorld&, std::uint64_t seed)> prepare;

@@ -10,12 +10,12 @@ namespace sidestep {
 struct QueryBenchRow {
   std::string planner;
   std::size_t queries = 0;
-  std::size_t solved = 0;   ///< with a valid path from the start to the goal
-  std::size_t invalid = 0;  ///< claimed to be solved, but the raw or the smoothed path is not valid
-  Distribution plan_us;     ///< of all queries, including unsolved ones
+  std::size_t solved = 0;   ///< number of queries with a valid path from the start to the goal
+  std::size_t invalid = 0;  ///< number claimed to be solved although the raw or the smoothed path is invalid
+  Distribution plan_us;     ///< over all queries, including unsolved ones
   Distribution with_smoothing_us;
-  Distribution iterations;  ///< of solved queries
-  Distribution length;      ///< relative to the shortest path, of solved queries
+  Distribution iterations;  ///< over solved queries
+  Distribution length;      ///< relative to the shortest path, over solved queries
   Distribution smoothed_length;
 };
 
@@ -30,7 +30,7 @@ inline constexpr std::size_t kBlock = 20;
                                                        const std::vector<BenchPlanner>& planners,
                                                        double max_ms, std::uint64_t seed);
 
-/// A namesake fails if the probability of solving as few queries by chance is below this.
+/// A namesake fails if the probability of solving so few queries by chance is below this.
 inline constexpr double kSignificance = 0.01;
 
 /// The failures in the rows of bench_queries, one sentence each: invalid paths, and namesakes that solve
@@ -38,7 +38,7 @@ inline constexpr double kSignificance = 0.01;
 [[nodiscard]] std::vector<std::string> query_bench_failures(const std::vector<QueryBenchRow>& rows,
                                                             const std::vector<BenchPlanner>& planners);
 
-/// The head and the rows of a Markdown table.
+/// The header and the rows of a Markdown table.
 [[nodiscard]] std::string query_bench_head();
 [[nodiscard]] std::string query_bench_lines(const std::string& world, const std::vector<QueryBenchRow>& rows,
                                             const std::vector<BenchPlanner>& planners);

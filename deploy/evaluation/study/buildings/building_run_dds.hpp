@@ -8,17 +8,17 @@
 
 namespace sidestep {
 
-/// The same run with a process for each part of the system, over DDS and in real time.
+/// The same run over DDS, in real time and with one process for each part of the system.
 struct BuildingRunOverDds {
   std::string scenario_file;
   std::string planner;
-  std::string folder;  ///< receives the scenario without goals, the report and the log
+  std::string folder;  ///< for the scenario without goals, the report and the log
   Duration duration{};
   std::uint64_t seed = 1;
 };
 
-/// As run_building(), on a domain of its own on the loopback interface. Throws std::runtime_error that says
-/// what failed, also if the run was aborted.
+/// Like run_building(), but in a separate domain on the loopback interface. Throws std::runtime_error with
+/// what failed, including aborted runs.
 [[nodiscard]] BuildingResult run_building(const BuildingRunOverDds& run);
 
 }  // namespace sidestep

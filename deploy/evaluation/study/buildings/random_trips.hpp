@@ -13,39 +13,41 @@
 namespace sidestep {
 
 struct TripSettings {
-  Duration max_pause{3'000'000'000};      ///< a robot stays at a goal for a random time up to this
-  Duration patience{30'000'000'000};      ///< a goal that is reported blocked for longer is given up
-  Duration stuck_after{180'000'000'000};  ///< an order that takes longer, and is not blocked, is given up
+  Duration max_pause{3'000'000'000};  ///< a robot stays at a goal for a random time, at most this long
+  /// A goal that has been reported as blocked for longer than this is given up.
+  Duration patience{30'000'000'000};
+  /// An order that takes longer than this without being blocked is given up.
+  Duration stuck_after{180'000'000'000};
 };
 
-/// What has become of all orders.
+/// The outcome of all orders.
 struct TripCounts {
   int orders = 0, reached = 0;
-  int blocked = 0;  ///< given up after being reported as blocked, or blocked at the end
-  int stuck = 0;    ///< neither reached nor reported as blocked in time
+  int blocked = 0;  ///< orders given up after being reported as blocked, or blocked at the end
+  int stuck = 0;    ///< orders neither completed nor reported as blocked in time
   double longest_s = 0;
 };
 
 /// A client that sends each robot to random places, one after another. The places are the starts and goals of
-/// the scenario. No two robots have places that overlap.
+/// the scenario. Places of different robots never overlap.
 class RandomTrips {
  public:
   /// `bus` must outlive this object.
   RandomTrips(Bus& bus, const Scenario& scenario, std::uint64_t seed, const TripSettings& settings = {});
 
-  /// Follows the orders, and sends robots that have none to their next places. Call it several times a
+  /// Tracks the orders, and sends robots without an order to their next places. Call it several times a
   /// second.
   void update(Time now);
-  /// From here on robots get no more orders.
+  /// From now on, robots get no new orders.
   void finish() { is_finishing_ = true; }
   /// Whether all orders are over.
   bool is_over() const;
-  /// Counts orders that are not over as blocked or stuck.
+  /// The counts if orders that are not over count as blocked or stuck.
   TripCounts counts(Time now) const;
 
  private:
   struct Trip {
-    std::optional<OrderHandle> order;  ///< none: the robot pauses
+    std::optional<OrderHandle> order;  ///< nullopt: the robot pauses
     Vec2 place_m{0, 0};
     Time begun_at{}, next_at{};
     std::optional<Time> blocked_since{};
@@ -57,7 +59,7 @@ class RandomTrips {
   TripSettings settings_;
   OrderClient client_;
   Rng rng_;
-  double separation_m_;  // of places
+  double separation_m_;  // minimum distance between places
   std::vector<Vec2> places_;
   std::map<RobotId, Trip> trips_;
   TripCounts counts_;

@@ -23,14 +23,14 @@ struct CameraFloor {
   double clearance_m(const Vec2& p) const;
 };
 
-/// Four to nine obstacles, cylinders and blocks, with space around start and target.
+/// Samples four to nine obstacles (cylinders and blocks) with space around start and target.
 [[nodiscard]] CameraFloor sample_camera_floor(Rng& rng);
-/// A random place of the field that keeps this distance from obstacles.
+/// A random place on the field that keeps this distance from obstacles.
 [[nodiscard]] Vec2 sample_free_place(const CameraFloor& floor, double clearance_m, Rng& rng);
 
-/// The camera that guides the robot: 800 x 600 pixels over the whole field, 4 m above it.
+/// The camera that guides the robot. It is 4 m above the field and shows the whole field in 800 x 600 pixels.
 [[nodiscard]] CameraModel guiding_camera();
-/// The same camera, turned about a random axis through it.
+/// The same camera, rotated about a random axis through it.
 [[nodiscard]] CameraModel bumped(const CameraModel& camera, double angle_rad, Rng& rng);
 
 }  // namespace sidestep

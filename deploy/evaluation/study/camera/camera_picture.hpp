@@ -6,8 +6,8 @@
 
 namespace sidestep {
 
-/// Draws the first frame of a drive with the blocked cells, the diamonds, and the paths on cells (orange) and
-/// around the diamonds (blue) as a PNG file. Throws std::runtime_error if it cannot be written.
+/// Draws the first frame of a drive as a PNG file, with the blocked cells, the diamonds, the path on cells
+/// (orange) and the path around the diamonds (blue). Throws std::runtime_error if the file cannot be written.
 void write_camera_picture(std::uint64_t seed, const std::string& path);
 
 }  // namespace sidestep

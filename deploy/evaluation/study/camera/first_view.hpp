@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// The first image of a random floor, and a guide that has seen it.
+/// The first image of a random floor, and a guide that has processed it.
 class FirstView {
  public:
   explicit FirstView(std::uint64_t seed)

@@ -22,11 +22,11 @@ namespace sidestep {
 enum class PixelPlanner {
   kCells,     ///< A* on cells of 10 x 10 pixels
   kDiamonds,  ///< the visibility graph around the blobs' diamonds
-  kDiscs,     ///< the same around their discs
+  kDiscs,     ///< the visibility graph around the blobs' discs
 };
 inline constexpr std::size_t kPixelPlanners = 3;
 
-/// Paths in pixels, by PixelPlanner; empty: none.
+/// Paths in pixels, indexed by PixelPlanner; an empty path means none was found.
 using PixelPaths = std::array<std::vector<Vec2>, kPixelPlanners>;
 
 /// Times of the stages in microseconds of processor time.
@@ -37,25 +37,25 @@ struct StageTimes {
 struct GuideSettings {
   PixelPlanner planner = PixelPlanner::kCells;
   double radius_m = 0.09, robot_height_m = 0.15, obstacle_height_m = 0.15;
-  double margin_m = 0.045;  ///< for tracking, for cut corners and for a camera that is off by little
+  double margin_m = 0.045;  ///< covers tracking errors, cut corners and a slightly misplaced camera
 };
 
-/// Guides a robot to a target by what one camera shows: where to drive, from image to image. It sees nothing
-/// but the images.
+/// Guides a robot to a target using only one camera. From image to image it determines where to drive; it has
+/// no other input.
 class PixelGuide {
  public:
   PixelGuide(const CameraModel& camera, const Field& field, const GuideSettings& settings);
 
   struct Guidance {
     bool camera_is_known = true;
-    std::optional<Vec2> robot_m;   ///< nullopt: not found
+    std::optional<Vec2> robot_m;   ///< nullopt: not found in the image
     std::optional<Vec2> carrot_m;  ///< the place to drive to; nullopt: stop
     ReplanReason replanned = ReplanReason::kNone;
     double to_target_m = 1e9;
   };
   Guidance guide(const ImageView& image);
 
-  /// Plans with all planners from the last image; for comparisons and pictures.
+  /// Plans with all planners, using the last image. For comparisons and pictures.
   PixelPaths plan_all();
   const FloorBlobs& blobs() const { return *blobs_; }
   const PixelCells& cells() const { return cells_; }
@@ -73,7 +73,7 @@ class PixelGuide {
   std::vector<Vec2> plan_around(std::vector<Shape> shapes);
   std::vector<Vec2> plan_around_diamonds();
   std::vector<Vec2> plan_around_discs();
-  /// Pixels to a plane with y up and the origin in the image's centre, and back.
+  /// Convert between pixels and a plane whose y axis points up and whose origin is the image's centre.
   Vec2 to_plane(const Vec2& pixel) const { return {pixel.x() - centre_px_.x(), centre_px_.y() - pixel.y()}; }
   Vec2 to_pixel(const Vec2& p) const { return {p.x() + centre_px_.x(), centre_px_.y() - p.y()}; }
 

@@ -8,21 +8,22 @@
 
 namespace sidestep {
 
-/// Robots with three goals each among people who walk around obstacles, but not around robots.
+/// Settings of a scene: robots with three goals each, and people who walk around obstacles but not around
+/// robots.
 struct ClutterSettings {
   bool is_building =
-      false;  ///< rooms and corridors of a random floor plan, or an open hall with ten obstacles
+      false;  ///< true: rooms and corridors of a random floor plan; false: an open hall with ten obstacles
   int robots = 1, people = 5;
   std::string planner = "lazy-visibility";
 };
 
-/// The same seed gives the same floor, people, starts and goals, whatever the planner. All goals can be
-/// reached.
+/// Makes a scene. The same seed gives the same floor, people, starts and goals, whatever the planner. All
+/// goals can be reached.
 [[nodiscard]] Scenario clutter_scene(const ClutterSettings& settings, std::uint64_t seed);
 
 struct ClutterResult {
   int robots = 0, arrived = 0;
-  double seconds = 0;  ///< until all robots have arrived, or the time limit
+  double seconds = 0;  ///< time until all robots have arrived, or the time limit
   std::uint64_t contacts = 0, crashes = 0, crashes_in_motion = 0;
   bool audit_passed = false;
 };

@@ -5,11 +5,13 @@
 
 namespace sidestep {
 
-/// A row for each planner and number of people of a table of runs: how many robots reached all their goals,
-/// the time, and what went wrong. Precondition: the table has the columns of the clutter study.
+/// Summarises a table of runs with one row per planner and number of people: how many robots reached all
+/// their goals, how long it took, and what went wrong. Precondition: the table has the columns of the clutter
+/// study.
 [[nodiscard]] StudyTable clutter_summary(const StudyTable& runs);
 
-/// The share of robots that reached all their goals over the number of people, a line for each planner.
+/// Plots the share of robots that reached all their goals against the number of people, with one line per
+/// planner.
 [[nodiscard]] Plot success_plot(const StudyTable& summary);
 
 }  // namespace sidestep

@@ -8,13 +8,13 @@
 
 namespace sidestep {
 
-/// Sides of the map's cells.
+/// Cell sizes of the map.
 inline constexpr std::array kDoorwayKinds{"2 cm", "5 cm", "10 cm", "20 cm"};
 
-/// One robot with a laser that drives along a corridor, and people who stand in doorways beside it, some
-/// hardly wider than they are, and step out when they like. All that matters is random: doorways of 0.3 to
-/// 1.2 m, people with a radius of 0.1 to 0.35 m, speeds, the laser. The same seed gives the same scene.
-/// `kind`: index of kDoorwayKinds.
+/// A scene with one robot that drives along a corridor and has a laser, and people who stand in doorways
+/// beside it, some hardly wider than they are, and step out at any time. Doorways (0.3 to 1.2 m), people
+/// (radius 0.1 to 0.35 m), speeds and the laser are random. The same seed gives the same scene. `kind` is an
+/// index of kDoorwayKinds.
 [[nodiscard]] Scenario doorway_scene(std::size_t kind, std::uint64_t seed);
 
 }  // namespace sidestep

@@ -11,22 +11,23 @@ namespace sidestep {
 enum class JointMethod {
   kComposite,    ///< all robots planned as one
   kPrioritised,  ///< one after another
-  kSafetySearch  ///< nothing planned jointly: the whole system in virtual time
+  kSafetySearch  ///< no joint planning: the whole system in virtual time
 };
 [[nodiscard]] const char* name_of(JointMethod method);
 
 struct JointTrial {
   bool solved = false;
-  std::string fault{};  ///< found by the independent check; empty: none
-  /// Of all robots together, over the whole run: processor time, or for the safety search, wall clock,
-  /// accurate to 12 %, without cycles of more than a millisecond, in which other processes ran.
+  std::string fault{};  ///< fault found by the independent check; empty: none
+  /// Total over all robots and the whole run. For planners this is processor time. For the safety search it
+  /// is wall-clock time, accurate to 12 %, without cycles of more than a millisecond, in which other
+  /// processes ran.
   double plan_us = 0;
-  double makespan_ratio = 0;  ///< over the longest straight line; 0 unless solved
+  double makespan_ratio = 0;  ///< makespan relative to the longest straight motion; 0 unless solved
   double cycle_us = 0,
-         cycle_p99_us = 0;  ///< one robot's planning in one control cycle; only the safety search
+         cycle_p99_us = 0;  ///< one robot's planning in one control cycle; only for the safety search
 };
 
-/// Lets a method solve a scene. `budget_s`: processor time that explicit planners may spend. The safety
+/// Lets a method solve a scene. `budget_s` is the maximum processor time of explicit planners. The safety
 /// search has solved a scene if all robots arrive within the scenario's time limit.
 [[nodiscard]] JointTrial run_joint_trial(JointMethod method, const Scenario& scenario, double budget_s,
                                          std::uint64_t seed);

@@ -5,12 +5,13 @@
 
 namespace sidestep {
 
-/// Errors of the values of each kernel on a free square grid with the goal in its middle, with and without
-/// exact initialisation, by direction from the goal: of all cells at least a quarter of the side away.
+/// Measures the errors of each kernel's values on a free square grid with the goal in the middle, with and
+/// without exact initialisation, by direction from the goal. Includes all cells at least a quarter of the
+/// side away from the goal.
 StudyTable errors_by_direction(std::uint32_t side);
 
-/// Errors of values over exact lengths, and lengths of traced paths, on square grids with a part of single
-/// cells blocked at random; on each, all cells that are reached.
+/// Measures the errors of values relative to exact lengths, and the lengths of traced paths, on square grids
+/// with a fraction of single cells blocked at random. Includes all cells that are reached.
 StudyTable errors_among_obstacles(std::uint32_t side, int grids, std::uint64_t seed);
 
 }  // namespace sidestep

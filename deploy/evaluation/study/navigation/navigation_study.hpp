@@ -5,9 +5,9 @@
 
 namespace sidestep {
 
-/// Navigation functions on grids: errors of their kernels by direction and among obstacles, what changes when
-/// a wall appears, and what costs do to paths. Writes directions, obstacles, replanning and costs as .csv and
-/// .png into the folder, which it creates. Throws std::runtime_error that says what failed.
+/// Studies navigation functions on grids: errors of their kernels by direction and among obstacles, changes
+/// when a wall appears, and effects of costs on paths. Writes directions, obstacles, replanning and costs as
+/// .csv and .png into the folder, which it creates. Throws std::runtime_error with what failed.
 int study_navigation(const StudyOptions& options);
 
 }  // namespace sidestep

@@ -8,14 +8,14 @@
 
 namespace sidestep {
 
-/// Whether each motion of a problem touches, according to a structure.
+/// A structure's answers to the question whether each motion of a problem touches.
 struct CollisionAnswers {
   std::string structure;
-  double tolerance_m;  ///< distance from contact within which either answer is right
+  double tolerance_m;  ///< distance from contact within which either answer is correct
   std::vector<bool> touches;
 };
 
-/// Describes each wrong answer. Motions about which structures disagree are compared exactly with every
+/// Describes each wrong answer. If structures disagree about a motion, it is compared exactly with every
 /// obstacle.
 [[nodiscard]] std::vector<std::string> wrong_answers(const CollisionProblem& problem,
                                                      std::span<const CollisionAnswers> answers);

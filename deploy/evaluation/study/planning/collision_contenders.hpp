@@ -8,13 +8,13 @@
 
 namespace sidestep {
 
-/// A structure that holds the obstacles of a problem, which has to outlive it.
+/// A structure with the obstacles of a problem, which must outlive it.
 struct CollisionContender {
   std::string name;
   std::function<bool(const Segment&)> touches;
-  /// Mean time of a query, over all motions one after another; the caller only counts the answers.
+  /// Mean time per query over all motions, one after another. The caller only counts the answers.
   std::function<double()> query_ns;
-  /// Mean time of a query for one motion, repeated so often.
+  /// Mean time of a query for one motion, repeated many times.
   std::function<double(const Segment&, std::size_t repetitions)> repeated_ns;
 };
 

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Where the obstacles are.
+/// The arrangement of the obstacles.
 enum class ObstacleLayout {
   kRandom,  ///< uniformly distributed
   kGrid,    ///< at the centres of equal squares; their number is a square
@@ -18,7 +18,7 @@ enum class ObstacleLayout {
 /// All sizes scale with the spacing of the obstacles: with more obstacles the robot is smaller and its
 /// motions are shorter, so contacts are equally frequent.
 struct CollisionProblem {
-  /// The obstacles are circles only, or also boxes, segments and pentagons.
+  /// Unless `circles_only`, the obstacles also include boxes, segments and pentagons.
   CollisionProblem(std::size_t obstacles, std::size_t motions, bool circles_only, std::uint64_t seed,
                    ObstacleLayout layout = ObstacleLayout::kRandom);
 
@@ -26,12 +26,12 @@ struct CollisionProblem {
 
   std::vector<Shape> shapes{};
   std::vector<Segment> motions{};
-  double radius_m = 0;  ///< of the robot
+  double radius_m = 0;  ///< radius of the robot
 };
 
-/// What the caller does with the answer of a query.
+/// How the caller uses the answer of a query.
 enum class AnswerUse {
-  kCounted,   ///< counts it: successive queries overlap in the processor
+  kCounted,   ///< counts it, so that successive queries overlap in the processor
   kBranched,  ///< branches on it, as planners do
 };
 

@@ -7,8 +7,8 @@ namespace sidestep {
 
 struct ErrtAndVisibility {
   std::vector<std::size_t> obstacles{4, 8, 16, 32, 64, 128, 256, 512};
-  std::size_t worlds = 25;   ///< of each size
-  std::size_t queries = 40;  ///< in each world
+  std::size_t worlds = 25;   ///< number for each size
+  std::size_t queries = 40;  ///< number in each world
 };
 
 /// Compares planners with one and two trees to visibility graphs. The tree planners are ERRT, whose cache is

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// FCL's tree of boxes over a mesh (oriented boxes and spheres), queried with a capsule: the peer of
-/// TerrainTree. FCL knows only the surface, so a motion must begin above it.
+/// FCL's tree of boxes over a mesh (oriented boxes and spheres), queried with a capsule. It is the
+/// counterpart of TerrainTree. FCL knows only the surface, so a motion must start above it.
 class FclTerrain {
  public:
   enum class Solver {

@@ -8,8 +8,9 @@
 
 namespace sidestep {
 
-/// FCL's dynamic tree of boxes over spheres and prisms on a plane, queried with a capsule in that plane: the
-/// peer of our structures. The capsule is exact and fast; FCL's continuous collision iterates.
+/// FCL's dynamic tree of boxes over spheres and prisms on a plane, queried with a capsule in that plane. It
+/// is the counterpart of our structures. The capsule is exact and fast, whereas FCL's continuous collision
+/// detection iterates.
 class FclTree {
  public:
   explicit FclTree(const std::vector<Shape>& shapes);

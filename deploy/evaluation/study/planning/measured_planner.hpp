@@ -15,20 +15,20 @@ namespace sidestep {
 struct PlanStatistics {
   std::size_t queries = 0, solved = 0;
   Distribution plan_us{}, nodes{};
-  Distribution length{};  ///< relative to the shortest path, of solved queries
+  Distribution length{};  ///< relative to the shortest path; over solved queries
 
-  /// `shortest_m`: the length of the shortest path, 0 when it is not known.
+  /// `shortest_m` is the length of the shortest path; 0 if unknown.
   void add(const Plan<Vec2>& plan, double us, double shortest_m);
   void add(const PlanStatistics& other);
   double solved_percent() const { return 100.0 * static_cast<double>(solved) / static_cast<double>(queries); }
 };
 
-/// The columns of a table of plan statistics: those of the key, then the measurements.
+/// The columns of a table of plan statistics: the key's columns, then the measurements.
 std::vector<std::string> plan_columns(std::vector<std::string> key);
 /// A row of that table. The 99th percentile is empty for fewer than kMinForP99 plans.
 std::vector<std::string> plan_cells(std::vector<std::string> key, const PlanStatistics& statistics);
 
-/// Makes a query's domain with the settings that a planner needs.
+/// Creates a query's domain with the settings that a planner needs.
 using DomainFactory = std::function<DiscDomain(const DiscDomainSettings&)>;
 DomainFactory domain_factory(const ObstacleWorld& obstacles, const PlanWorld& world, const PlanQuery& query);
 
@@ -64,7 +64,7 @@ MeasuredPlanner::PlanFunction plan_function(std::shared_ptr<Planner> planner) {
   };
 }
 
-/// A planner of this type, with these settings.
+/// Creates a measured planner of this type with these settings.
 template <typename Planner, typename... Settings>
 MeasuredPlanner measured_planner(std::string name, std::uint64_t seed, const Settings&... settings) {
   return {std::move(name), plan_function(std::make_shared<Planner>(settings...)), seed};

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// A ball's straight motion.
+/// A straight motion of a ball.
 struct Flight {
   Vec3 from_m, to_m;
 };
@@ -25,7 +25,7 @@ struct TerrainProblem {
   std::vector<Flight> flights{};
 };
 
-/// The reference: compares every query with all triangles.
+/// The reference, which compares every query with all triangles.
 class LinearTerrain {
  public:
   explicit LinearTerrain(const TerrainProblem& problem);

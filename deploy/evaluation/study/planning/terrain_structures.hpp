@@ -6,7 +6,7 @@
 namespace sidestep {
 
 struct TerrainStructures {
-  std::vector<std::size_t> squares{4, 8, 16, 32, 64, 128};  ///< of the grid, along each side
+  std::vector<std::size_t> squares{4, 8, 16, 32, 64, 128};  ///< grid squares along each side
   std::size_t queries = 1000;
   std::size_t rounds = 9;
   std::size_t max_linear_triangles = 2048;  ///< larger terrains are not timed with the linear list

@@ -13,9 +13,9 @@ namespace sidestep {
 struct FieldDriveSettings {
   MotionLimits limits{.speed_mps = 0.5};
   double cycle_s = 1.0 / 60;
-  double arrival_m = 0.05;  ///< distance from the goal that counts as there
+  double arrival_m = 0.05;  ///< distance from the goal that counts as arrived
   double time_limit_s = 60;
-  double stuck_m = 0.1;       ///< a robot that gets no farther than this ...
+  double stuck_m = 0.1;       ///< a robot that moves less than this ...
   double stuck_s = 4;         ///< ... in this time is in a local minimum
   double reversal_rad = 0.2;  ///< see ReversalCounter
 };
@@ -27,14 +27,15 @@ struct FieldDrive {
   double seconds = 0;
   double length_m = 0;
   int reversals = 0;
-  std::vector<Vec2> path_m;  ///< by cycle, from the start on
+  std::vector<Vec2> path_m;  ///< one position per cycle, beginning at the start
 };
 
-/// The direction in which to drive from a position, of length 1; zero: nowhere.
+/// Returns the unit vector in which to drive from a position; zero: nowhere.
 using DriveDirection = std::function<Vec2(const Vec2&)>;
 
-/// Drives a disc with limited acceleration to the goal of the world's query: in each cycle it accelerates
-/// towards its speed in the direction of the method. Slows down before the goal. `obstacles`: the world's.
+/// Drives a disc with limited acceleration to the goal of the world's query. In each cycle it accelerates
+/// towards its speed in the method's direction, and slows down before the goal. `obstacles` are the world's
+/// obstacles.
 [[nodiscard]] FieldDrive drive_by(const DriveDirection& direction, const PlanWorld& world,
                                   const ObstacleWorld& obstacles, const FieldDriveSettings& settings = {});
 

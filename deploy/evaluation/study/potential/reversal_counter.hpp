@@ -13,7 +13,7 @@ class ReversalCounter {
  public:
   explicit ReversalCounter(double threshold_rad) : threshold_rad_(threshold_rad) {}
 
-  /// The next position. Motions shorter than a millimetre have no heading.
+  /// Adds the next position. Motions shorter than a millimetre have no heading and are ignored.
   void add(const Vec2& position_m);
   int reversals() const { return reversals_; }
   double length_m() const { return length_m_; }
@@ -23,9 +23,9 @@ class ReversalCounter {
 
   double threshold_rad_;
   std::optional<Vec2> last_m_;
-  std::optional<double> heading_rad_;  // continuous: may leave [-pi, pi]
+  std::optional<double> heading_rad_;  // continuous: may exceed [-pi, pi]
   double min_rad_ = 0, max_rad_ = 0;   // since the last reversal
-  int turning_ = 0;                    // 1: left, -1: right, 0: not known yet
+  int turning_ = 0;                    // 1: left, -1: right, 0: unknown
   int reversals_ = 0;
   double length_m_ = 0;
 };

@@ -19,12 +19,12 @@ class Interpenetration {
   void add(std::span<const Vec2> positions_m, double seconds);
 
   double depth_time_m_s() const { return depth_time_m_s_; }
-  std::uint64_t contacts() const { return contacts_; }  ///< times that a pair began to touch
+  std::uint64_t contacts() const { return contacts_; }  ///< Number of times that a pair began to touch.
   double min_clearance_m() const { return min_clearance_m_; }
 
  private:
   double radius_m_;
-  std::vector<bool> is_touching_;  // by pair
+  std::vector<bool> is_touching_;  // indexed by pair
   double depth_time_m_s_ = 0;
   std::uint64_t contacts_ = 0;
   double min_clearance_m_ = 1;

@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// Samples robots on a floor of 0.7 m² each, all moving and clear of each other, and runs each one's safety
-/// search once, as in a control cycle. Returns the processor time per robot, in microseconds.
+/// Samples robots with 0.7 m² of floor each, all moving and clear of each other, and runs each robot's safety
+/// search once, as in a control cycle. Returns the processor time per robot in microseconds.
 double search_us_per_robot(int robots, std::uint64_t seed);
 
 }  // namespace sidestep

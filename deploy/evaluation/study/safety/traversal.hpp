@@ -16,22 +16,23 @@ inline constexpr double kStudyRadius_m = 0.09;
 struct TraversalSettings {
   int robots = 8;
   double margin_m = 0.014;
-  double position_noise_m = 0.0005;  ///< of vision, standard deviation per axis
-  bool has_poor_odometry = false;    ///< ten times the noise and the scale error, so that vision matters
-  bool stops_off_reference = true;   ///< beyond the tracking bound; false: there is no bound
+  double position_noise_m = 0.0005;  ///< standard deviation of vision, on each axis
+  bool has_poor_odometry = false;    ///< tenfold noise and scale error, so that vision matters
+  bool stops_off_reference = true;   ///< stops beyond the tracking bound; false: there is no bound
 };
 
-/// Each robot has its own slot on each side, assigned by the seed. Unlike in scenario files, the margin may
-/// be below the safety budget. The bodies are smaller than kStudyRadius_m and the margin is larger by the
-/// difference: robots keep the same separation, and the simulator does not resolve contacts.
+/// Creates the scenario. Each robot has its own slot on each side, assigned by the seed. Unlike in scenario
+/// files, the margin may be below the safety budget. The bodies are smaller than kStudyRadius_m and the
+/// margin is larger by the difference: robots keep the same separation, and the simulator does not resolve
+/// contacts.
 Scenario traversal_scenario(const TraversalSettings& settings, std::uint64_t seed);
 
 struct TraversalResult {
-  std::uint64_t traversals = 0;  ///< completed by all robots together
-  std::uint64_t contacts = 0;    ///< times that a pair began to touch
-  double penetration_m_s = 0;    ///< interpenetration depth x time
+  std::uint64_t traversals = 0;  ///< total over all robots
+  std::uint64_t contacts = 0;    ///< number of times that a pair began to touch
+  double penetration_m_s = 0;    ///< interpenetration depth integrated over time
   double min_clearance_m = 1;
-  double reference_error_m = 0;  ///< largest distance of a body from its reference
+  double reference_error_m = 0;  ///< largest distance between a body and its reference
 };
 
 TraversalResult result_of(const Interpenetration& meter);
@@ -41,7 +42,7 @@ TraversalResult result_of(const Interpenetration& meter);
 TraversalResult traverse_with_search(const Scenario& scenario, std::uint64_t seed, double seconds);
 
 /// Runs the same bodies, firmware and motion control without agents and coordinator: every robot executes its
-/// desired acceleration unchecked. There is no noise.
+/// desired acceleration unchecked, and there is no noise.
 TraversalResult traverse_without_search(const Scenario& scenario, double seconds);
 
 }  // namespace sidestep

@@ -11,13 +11,14 @@ namespace sidestep {
 
 /// One run: the key of its row in the table, and how to measure it.
 struct Run {
-  std::string line;  ///< the line of the plot that shows this run; empty: none
+  std::string line;  ///< the plot line that shows this run; empty: none
   double x = 0;
-  std::vector<std::string> key;          ///< the first columns
-  std::function<std::string()> columns;  ///< the others, separated by commas, the plotted one first
+  std::vector<std::string> key;  ///< cells of the first columns
+  /// Returns the other cells, separated by commas, the plotted one first.
+  std::function<std::string()> columns;
 };
 
-/// Runs that fill one table. Each is measured in a process of its own.
+/// Runs that fill one table. Each is measured in its own process.
 struct Experiment {
   StudyTable table;
   int jobs = 1;

@@ -23,7 +23,7 @@ struct Plot {
   bool has_log_x = false, has_log_y = false;
   double min_y = 0;  ///< lower end of a y axis that is not logarithmic
   std::vector<PlotLine> lines{};
-  std::optional<double> marked_x{};  ///< position of a vertical line; none: no line
+  std::optional<double> marked_x{};  ///< position of a vertical line; nullopt: no line
 };
 
 /// Throws std::runtime_error that names the package to install if gnuplot is missing.
@@ -32,9 +32,9 @@ void require_gnuplot();
 /// Draws plots side by side into a PNG file with gnuplot. Throws std::runtime_error if that fails.
 void draw(const std::vector<Plot>& plots, const std::string& png_file);
 
-/// A single value.
+/// A point with a single value.
 inline PlotPoint plot_point(double x, double value) { return {x, value, value, value}; }
-/// The median, the minimum and the maximum of at least one value.
+/// A point with the median, minimum and maximum of the values, of which there must be at least one.
 PlotPoint plot_point(double x, std::vector<double> values);
 
 }  // namespace sidestep

@@ -15,20 +15,20 @@ namespace sidestep {
 struct StudyOptions {
   std::string folder;
   std::uint64_t seed = 1;
-  int jobs = 2;                  ///< parallel processes, where nothing is timed
+  int jobs = 2;                  ///< number of parallel processes if nothing is timed
   bool is_quick = false;         ///< a small version of every experiment, for tests
-  std::uint64_t cases = 10'000;  ///< of studies of random cases
+  std::uint64_t cases = 10'000;  ///< number of cases in studies of random cases
 };
 
 /// The measurements of one experiment, and its plots.
 struct StudyTable {
-  std::string name{};                            ///< the stem of the file names
-  std::vector<std::string> columns{};            ///< machine-dependent ones end in _us or _ns
-  std::vector<std::vector<std::string>> rows{};  ///< a cell for each column
+  std::string name{};                            ///< stem of the file names
+  std::vector<std::string> columns{};            ///< machine-dependent columns end in _us or _ns
+  std::vector<std::vector<std::string>> rows{};  ///< rows with one cell per column
   std::vector<Plot> plots{};                     ///< side by side in one picture
 };
 
-/// Values as the cells of a row.
+/// Converts values to the cells of a row.
 template <typename... Values>
 std::vector<std::string> cells(const Values&... values) {
   return {fmt::format("{}", values)...};
@@ -37,8 +37,8 @@ std::vector<std::string> cells(const Values&... values) {
 /// Receives the progress of an experiment.
 using ProgressCallback = std::function<void(std::size_t done, std::size_t of)>;
 
-/// Shows the progress of an experiment on stderr: a line that is redrawn in a terminal, a line every five
-/// seconds elsewhere.
+/// Shows the progress of an experiment on stderr: in a terminal, a line that is redrawn; elsewhere, a line
+/// every five seconds.
 class StudyProgress {
  public:
   explicit StudyProgress(std::string name) : name_(std::move(name)) {}
@@ -54,7 +54,7 @@ class StudyProgress {
 void require_study_output(const StudyOptions& options);
 
 /// Writes the table as .csv, with the command and the commit in its head, and its plots, if any, as .png into
-/// the folder, and prints their names. `study`: the name of the command. Throws std::runtime_error that says
+/// the folder, and prints their names. `study` is the name of the command. Throws std::runtime_error with
 /// what failed.
 void write_study_table(const StudyTable& table, const std::string& study, const StudyOptions& options);
 

@@ -16,7 +16,7 @@ class OscillatingRobots {
   /// At most 16 robots per team. Throws std::invalid_argument when the field is too small for them.
   OscillatingRobots(const Field& field, std::size_t robots_per_team, Rng& rng);
 
-  /// Poses and velocities at a time.
+  /// Poses and velocities of the robots at a time.
   std::vector<SceneRobot> robots_at(double time_s) const;
   SceneBall ball_at(double time_s) const;
 
@@ -28,7 +28,7 @@ class OscillatingRobots {
     Vec2 position_m(double time_s) const;
     Vec2 velocity_mps(double time_s) const;
   };
-  std::vector<SceneRobot> robots_;         ///< teams and patterns only
+  std::vector<SceneRobot> robots_;         ///< only teams and patterns are set
   std::vector<Oscillation> oscillations_;  ///< in the order of robots_, then the ball's
 };
 

@@ -14,16 +14,16 @@
 
 namespace sidestep {
 
-inline constexpr Field kQuarterField{6, 4.5};  ///< of division A
+inline constexpr Field kQuarterField{6, 4.5};  ///< a quarter of a division-A field
 inline constexpr std::size_t kRobotsPerTeam = 11;
 inline constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// The number of the robot that wears a pattern; the inverse of number_of().
+/// The number of the robot with a given pattern; the inverse of number_of().
 constexpr RobotId robot_with_pattern(Team team, std::uint32_t pattern) {
   return team == Team::kBlue ? pattern : 16 + pattern;
 }
 
-/// A scenario with a grid of cameras over a field, and all 32 robots of two teams in the roster.
+/// A scenario with a grid of cameras over a field, and with all 32 robots of two teams on the roster.
 [[nodiscard]] Scenario testbed_scenario(const Field& field, int columns, int rows);
 
 /// Rendered cameras over oscillating robots, and vision that processes their images.
@@ -44,7 +44,7 @@ class VisionTestbed {
   const CameraModel& camera(std::size_t number) const { return renderers_[number].camera(); }
   const std::vector<msg::CameraImage>& images() const { return images_; }
   const Detector& detector(std::size_t camera) const { return reader_.detector(camera); }
-  /// Runs detection and tracking on the current frames, up to the world at their time of capture.
+  /// Runs detection and tracking on the current frames, and extrapolates the world to their capture time.
   void run_vision();
   const std::vector<msg::DetectionFrame>& detections() const { return detections_; }
   const msg::WorldState& world() const { return world_; }
@@ -63,7 +63,7 @@ class VisionTestbed {
   std::vector<msg::DetectionFrame> detections_;
   Frame frame_;
   msg::WorldState world_;
-  std::vector<std::uint32_t> hidden_dots_;  ///< by robot, as SceneRobot::hidden_dots
+  std::vector<std::uint32_t> hidden_dots_;  ///< indexed by robot; see SceneRobot::hidden_dots
 };
 
 /// Thresholds learned from a few images with known scenes in this light.

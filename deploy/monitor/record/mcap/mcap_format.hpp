@@ -36,30 +36,30 @@ enum class McapRecordKind : std::uint8_t {
   kDataEnd = 0x0f,
 };
 
-inline constexpr std::size_t kMcapFrameSize = 9;  // kind and size of a record
+inline constexpr std::size_t kMcapFrameSize = 9;  // size of a record's kind and size fields
 
 using McapBytes = std::vector<std::uint8_t>;
 using McapTexts = std::map<std::string, std::string>;
 
 struct McapSchema {
-  std::string name;      ///< of the type, e.g. sidestep::msg::Verdict
-  std::string encoding;  ///< e.g. omgidl
+  std::string name;      ///< name of the type, for example sidestep::msg::Verdict
+  std::string encoding;  ///< for example omgidl
   std::string text;
 };
 
 struct McapChannel {
-  std::uint16_t schema = 0;  ///< its id; 0: none
+  std::uint16_t schema = 0;  ///< id of the schema; 0: none
   std::string topic;
-  std::string message_encoding;  ///< e.g. cdr
+  std::string message_encoding;  ///< for example cdr
   McapTexts metadata{};
 };
 
 struct McapMessage {
-  std::uint16_t channel = 0;  ///< its id
+  std::uint16_t channel = 0;  ///< id of the channel
   std::uint32_t sequence = 0;
   std::uint64_t logged_ns = 0;
   std::uint64_t published_ns = 0;
-  std::span<const std::uint8_t> payload{};  ///< valid until the next call of what returned it
+  std::span<const std::uint8_t> payload{};  ///< valid until the next call of the function that returned it
 };
 
 struct McapAttachment {
@@ -93,7 +93,7 @@ class McapEncoder {
     bytes_.insert(bytes_.end(), text.begin(), text.end());
   }
   void texts(const McapTexts& texts);
-  /// Appends a record, whose content `append_content` appends.
+  /// Appends a record whose content is written by `append_content`.
   template <typename Append>
   void record(McapRecordKind kind, Append append_content) {
     number(static_cast<std::uint8_t>(kind));
@@ -132,7 +132,7 @@ class McapDecoder {
   bool is_ok_ = true;
 };
 
-/// CRC-32 as in ZIP; `sum` continues one.
+/// CRC-32 as used in ZIP; `sum` continues an earlier one.
 [[nodiscard]] std::uint32_t mcap_checksum(std::span<const std::uint8_t> bytes, std::uint32_t sum = 0);
 
 }  // namespace sidestep

@@ -14,26 +14,26 @@ namespace sidestep {
 
 struct McapWriterSettings {
   bool is_compressed = false;                  ///< with zstd
-  std::uint64_t max_chunk_ns = 1'000'000'000;  ///< a chunk holds messages of no longer time
+  std::uint64_t max_chunk_ns = 1'000'000'000;  ///< maximum duration of the messages in a chunk
   std::size_t chunk_bytes = 1 << 20;           ///< a chunk ends with the message that reaches this size
 };
 
-/// Writes an MCAP file: messages in chunks, each with an index, and a summary at the end. What a chunk holds
-/// is in the file once the chunk has ended, whatever happens to the process afterwards. After a write has
+/// Writes an MCAP file: messages in chunks, each with an index, and a summary at the end. A chunk's messages
+/// are in the file once the chunk has ended, whatever happens to the process afterwards. After a write has
 /// failed, the rest is discarded until close().
 class McapWriter {
  public:
-  /// Throws std::runtime_error with the reason when the file cannot be written.
+  /// Throws std::runtime_error with the reason if the file cannot be written.
   explicit McapWriter(const std::string& path, const McapWriterSettings& settings = {});
   ~McapWriter();
   McapWriter(McapWriter&&) noexcept;
   McapWriter& operator=(McapWriter&&) noexcept;
 
-  /// Returns the id. Throws std::length_error when all 65,535 are taken.
+  /// Returns the id. Throws std::length_error if all 65,535 ids are taken.
   std::uint16_t add_schema(McapSchema schema);
   std::uint16_t add_channel(McapChannel channel);
   /// Messages are added in the order of their logged times, as far as the clock permits. `append_payload`
-  /// appends the payload to the bytes that it gets.
+  /// appends the payload to the bytes passed to it.
   template <typename Append>
   void add_message(const McapMessage& message, Append append_payload) {
     begin_message(message);
@@ -49,7 +49,7 @@ class McapWriter {
   void end_chunk();
 
   std::uint64_t messages() const { return messages_; }
-  /// Writes the summary. What is added afterwards is discarded. Throws std::runtime_error when any write has
+  /// Writes the summary. Anything added afterwards is discarded. Throws std::runtime_error if any write has
   /// failed.
   void close();
 
@@ -65,7 +65,7 @@ class McapWriter {
   };
   struct Chunk {
     McapBytes records;
-    std::vector<std::vector<IndexEntry>> index;  // by channel
+    std::vector<std::vector<IndexEntry>> index;  // indexed by channel
     std::uint64_t messages = 0, begin_ns = 0, end_ns = 0;
   };
 
@@ -85,13 +85,13 @@ class McapWriter {
   std::unique_ptr<std::FILE, Closer> file_;
   std::unique_ptr<ZSTD_CCtx_s, ContextDeleter> compressor_;
   std::uint64_t size_ = 0;
-  std::uint32_t checksum_ = 0;  // of all that was written
+  std::uint32_t checksum_ = 0;  // checksum of everything written
   bool has_failed_ = false;
   Chunk chunk_;
   McapBytes compressed_;
-  std::vector<McapSchema> schemas_;    // by id - 1
-  std::vector<McapChannel> channels_;  // by id
-  std::vector<std::uint64_t> counts_;  // messages by channel
+  std::vector<McapSchema> schemas_;    // indexed by id - 1
+  std::vector<McapChannel> channels_;  // indexed by id
+  std::vector<std::uint64_t> counts_;  // number of messages, indexed by channel
   std::uint64_t messages_ = 0, begin_ns_ = 0, end_ns_ = 0;
   McapBytes chunk_indices_, attachment_indices_, metadata_indices_;
   std::uint32_t chunks_ = 0, attachments_ = 0, metadata_ = 0;

@@ -19,7 +19,7 @@ struct IdlMember {
   bool is_optional = false;
 };
 
-/// A type of OMG IDL 4.2, as far as messages over DDS use it.
+/// A type of OMG IDL 4.2, restricted to what messages over DDS use.
 struct IdlType {
   enum class Kind : std::uint8_t {
     kBoolean,
@@ -43,14 +43,14 @@ struct IdlType {
   enum class Extensibility : std::uint8_t { kFinal, kAppendable, kMutable };
 
   Kind kind = Kind::kBoolean;
-  std::string name{};                ///< of an enum or a struct, e.g. sidestep::msg::Order
-  std::uint32_t bound = 0;           ///< of a string or a sequence; 0: none. Of an array: its size
-  IdlTypePtr element{};              ///< of a sequence or an array
-  std::vector<IdlMember> members{};  ///< of a struct, those that it inherits first
-  std::map<std::uint32_t, std::string> enumerators{};        ///< of an enum
-  Extensibility extensibility = Extensibility::kAppendable;  ///< of a struct
-  int depth = 1;                                             ///< types within each other, this one included
-  std::uint64_t values = 1;  ///< of a message of this type whose sequences are empty
+  std::string name{};                ///< name of an enum or a struct, for example sidestep::msg::Order
+  std::uint32_t bound = 0;           ///< bound of a string or a sequence (0: unbounded), or size of an array
+  IdlTypePtr element{};              ///< element type of a sequence or an array
+  std::vector<IdlMember> members{};  ///< members of a struct, inherited ones first
+  std::map<std::uint32_t, std::string> enumerators{};        ///< enumerators of an enum
+  Extensibility extensibility = Extensibility::kAppendable;  ///< extensibility of a struct
+  int depth = 1;                                             ///< nesting depth of types, including this one
+  std::uint64_t values = 1;  ///< number of values in a message of this type whose sequences are empty
 };
 
 }  // namespace sidestep
