@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "common/file/console.hpp"
+#include "common/file/output_file.hpp"
 
 // glibc 2.36 declares the functions of this header without C linkage.
 extern "C" {
@@ -127,8 +128,7 @@ ProcessGroup::ProcessGroup(const std::string& log_path) {
   const auto folder = std::filesystem::path(log_path).parent_path();
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  log_ = std::fopen(log_path.c_str(), "we");
-  if (!log_) fail("cannot write the log " + log_path);
+  log_ = open_output(log_path).release();
 }
 
 ProcessGroup::~ProcessGroup() {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "common/config/scenario.hpp"
 #include "common/messaging/bus.hpp"
@@ -56,6 +58,10 @@ class RecordingWriter {
   void add_report(Time now, const std::string& json);
   /// Writes what has been added so far to the file.
   void flush() { mcap_.end_chunk(); }
+  /// See McapWriter.
+  void on_failure(std::function<void(const std::string& failure)> callback) {
+    mcap_.on_failure(std::move(callback));
+  }
   std::uint64_t messages() const { return mcap_.messages(); }
   /// Finishes the file. Throws std::runtime_error if any write has failed.
   void close() { mcap_.close(); }

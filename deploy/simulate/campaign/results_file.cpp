@@ -12,8 +12,7 @@
 namespace sidestep {
 
 ResultsFile::ResultsFile(const std::string& path, const std::string& campaign) : path_(path) {
-  file_.reset(std::fopen(path.c_str(), "a"));
-  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+  file_ = open_output(path, WriteMode::kAppend);
   if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0)
     throw std::runtime_error(fmt::format("{}: another campaign writes it now", path));
   if (std::filesystem::file_size(path) == 0)

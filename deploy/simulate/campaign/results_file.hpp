@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/file/output_file.hpp"
 #include "deploy/simulate/campaign/trial_result.hpp"
 
 namespace sidestep {
@@ -24,14 +25,11 @@ class ResultsFile {
   void add(const TrialResult& result);
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   void write(const std::string& line);
   void read(const std::string& campaign);
 
   std::string path_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  OutputFile file_;
   std::vector<TrialResult> found_;
 };
 

@@ -23,8 +23,7 @@ constexpr int kCompressionLevel = 1;
 void McapWriter::ContextDeleter::operator()(ZSTD_CCtx_s* context) const { ZSTD_freeCCtx(context); }
 
 McapWriter::McapWriter(const std::string& path, const McapWriterSettings& settings)
-    : path_(path), settings_(settings), file_(std::fopen(path.c_str(), "wb")) {
-  if (!file_) throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, std::strerror(errno)));
+    : path_(path), settings_(settings), file_(open_output(path)) {
   if (settings.is_compressed) compressor_.reset(ZSTD_createCCtx());
   McapBytes bytes(kMcapMagic.begin(), kMcapMagic.end());
   McapEncoder encoder(bytes);
@@ -33,16 +32,28 @@ McapWriter::McapWriter(const std::string& path, const McapWriterSettings& settin
     encoder.text("sidestep");
   });
   write(bytes);
-  has_failed_ = has_failed_ || std::fflush(file_.get()) != 0;
+  if (std::fflush(file_.get()) != 0) note_failure();
 }
 
 McapWriter::~McapWriter() = default;
 McapWriter::McapWriter(McapWriter&&) noexcept = default;
 McapWriter& McapWriter::operator=(McapWriter&&) noexcept = default;
 
+void McapWriter::on_failure(std::function<void(const std::string&)> callback) {
+  on_failure_ = std::move(callback);
+  if (!failure_.empty()) on_failure_(failure_);
+}
+
+void McapWriter::note_failure() {
+  if (!failure_.empty()) return;
+  failure_ = fmt::format("{}: {}", path_, std::strerror(errno));
+  if (on_failure_) on_failure_(failure_);
+}
+
 void McapWriter::write(std::span<const std::uint8_t> bytes) {
   if (!file_) return;
-  has_failed_ = has_failed_ || std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size();
+  if (failure_.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size())
+    note_failure();
   size_ += bytes.size();
   checksum_ = mcap_checksum(bytes, checksum_);
 }
@@ -154,7 +165,7 @@ void McapWriter::end_chunk() {
   ++chunks_;
   chunk_.records.clear();
   chunk_.messages = chunk_.begin_ns = chunk_.end_ns = 0;
-  if (file_) has_failed_ = has_failed_ || std::fflush(file_.get()) != 0;
+  if (file_ && failure_.empty() && std::fflush(file_.get()) != 0) note_failure();
 }
 
 McapBytes McapWriter::write_message_index() {
@@ -285,8 +296,8 @@ void McapWriter::close() {
   encoder.number(mcap_checksum(bytes));
   encoder.raw(kMcapMagic);
   write(bytes);
-  has_failed_ = std::fclose(file_.release()) != 0 || has_failed_;
-  if (has_failed_) throw std::runtime_error(path_ + ": some writes failed");
+  if (std::fclose(file_.release()) != 0) note_failure();
+  if (!failure_.empty()) throw std::runtime_error(failure_);
 }
 
 }  // namespace sidestep

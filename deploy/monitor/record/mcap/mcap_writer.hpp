@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "common/file/output_file.hpp"
 #include "deploy/monitor/record/mcap/mcap_format.hpp"
 
 struct ZSTD_CCtx_s;
@@ -48,15 +49,15 @@ class McapWriter {
   /// Writes the messages that have been added so far to the file.
   void end_chunk();
 
+  /// Calls back with the path and the reason when a write fails for the first time, at once if one has failed
+  /// already.
+  void on_failure(std::function<void(const std::string& failure)> callback);
   std::uint64_t messages() const { return messages_; }
   /// Writes the summary. Anything added afterwards is discarded. Throws std::runtime_error if any write has
   /// failed.
   void close();
 
  private:
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   struct ContextDeleter {
     void operator()(ZSTD_CCtx_s* context) const;
   };
@@ -77,16 +78,18 @@ class McapWriter {
   std::span<const std::uint8_t> compressed(std::span<const std::uint8_t> records);
   /// Returns the channels of the chunk's messages, each with the offset of its index in the file.
   McapBytes write_message_index();
+  void note_failure();
   /// Writes bytes to the file and counts them.
   void write(std::span<const std::uint8_t> bytes);
 
   std::string path_;
   McapWriterSettings settings_;
-  std::unique_ptr<std::FILE, Closer> file_;
+  OutputFile file_;
   std::unique_ptr<ZSTD_CCtx_s, ContextDeleter> compressor_;
   std::uint64_t size_ = 0;
-  std::uint32_t checksum_ = 0;  // checksum of everything written
-  bool has_failed_ = false;
+  std::uint32_t checksum_ = 0;  // of all that was written
+  std::string failure_;         // of the first write that failed; empty: none
+  std::function<void(const std::string&)> on_failure_;
   Chunk chunk_;
   McapBytes compressed_;
   std::vector<McapSchema> schemas_;    // indexed by id - 1

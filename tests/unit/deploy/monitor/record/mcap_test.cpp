@@ -239,9 +239,19 @@ TEST_CASE("a file that is not an MCAP file is refused with its name") {
   CHECK_THROWS_WITH(McapReader("/nowhere/at/all"), ContainsSubstring("cannot be read: No such file"));
   CHECK_THROWS_WITH(McapReader("/tmp"), ContainsSubstring("a directory"));
   CHECK_THROWS_WITH(McapReader("/dev/zero"), ContainsSubstring("not a regular file"));
-  CHECK_THROWS_WITH(McapWriter("/nowhere/at/all"), ContainsSubstring("cannot be written"));
+  CHECK_THROWS_WITH(McapWriter("/nowhere/at/all"), ContainsSubstring("cannot write "));
   McapWriter full("/dev/full");
-  CHECK_THROWS_WITH(full.close(), ContainsSubstring("some writes failed"));
+  CHECK_THROWS_WITH(full.close(), "/dev/full: No space left on device");
+}
+
+TEST_CASE("a recording that cannot be written says so once, as soon as it is known") {
+  McapWriter full("/dev/full");
+  std::vector<std::string> failures;
+  full.on_failure([&](const std::string& failure) { failures.push_back(failure); });
+  CHECK(failures == std::vector<std::string>{"/dev/full: No space left on device"});
+  full.add_metadata({"name", {}});
+  CHECK_THROWS(full.close());
+  CHECK(failures.size() == 1);
 }
 
 }  // namespace sidestep::mcap_test

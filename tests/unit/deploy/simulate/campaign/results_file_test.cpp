@@ -59,7 +59,7 @@ TEST_CASE("a file of another campaign, or without results, is refused with the r
   CHECK_THROWS_WITH(ResultsFile(picture, "campaign A"), ContainsSubstring("not a results file"));
   CHECK(std::filesystem::file_size(picture) == 17);
   CHECK_THROWS_WITH(ResultsFile((folder.path / "none" / "results").string(), "campaign A"),
-                    ContainsSubstring("cannot be written"));
+                    ContainsSubstring("cannot write "));
 }
 
 TEST_CASE("two campaigns do not write one file at the same time") {

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace sidestep {
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OutputFile = std::unique_ptr<std::FILE, FileCloser>;
+
+enum class WriteMode { kReplace, kAppend };
+
+/// Opens a file for writing; processes that this one starts do not inherit it. A named pipe that nobody reads
+/// is refused, because waiting for a reader hangs without a word, and a signal does not end that in a process
+/// that handles it. Throws std::runtime_error ("cannot write PATH: reason").
+[[nodiscard]] OutputFile open_output(const std::string& path, WriteMode mode = WriteMode::kReplace);
+
+/// Throws std::runtime_error ("cannot write PATH: reason").
+[[noreturn]] void throw_unwritable(const std::string& path, const std::string& reason);
+
+}  // namespace sidestep
