@@ -11,6 +11,7 @@
 #include "common/file/console.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "common/messaging/dds/free_domain.hpp"
+#include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
 #include "deploy/launch/hosts/run_hosts.hpp"
 #include "deploy/launch/launcher.hpp"
@@ -59,6 +60,9 @@ int run(const RunOptions& given) {
   const std::string report_path =
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
   const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
+  require_separate_outputs(
+      {{"SCENARIO", options.scenario_file}, {"--hosts", options.hosts_file}},
+      {{"the log", log_path}, {"--report", report_path}, {"--record", options.recording_file}});
   require_keys(options, scenario);
   const TemporaryFolder robot_memory;  // begins anew with each run
   options.floor.memory_folder = robot_memory.path();

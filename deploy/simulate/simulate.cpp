@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <stdexcept>
 #include <unistd.h>
 
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
+#include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/output_paths.hpp"
 #include "deploy/monitor/metrics/progress.hpp"
 #include "deploy/monitor/record/recording.hpp"
 #include "deploy/simulate/campaign/build_commit.hpp"
@@ -29,6 +32,18 @@ using std::chrono::steady_clock;
 constexpr Duration kStartupTimeout = std::chrono::seconds(20);
 constexpr Duration kStep = std::chrono::milliseconds(100);
 constexpr auto kDisplayPeriod = std::chrono::milliseconds(250);
+
+std::string report_path(const SimulateOptions& options, const std::string& scenario) {
+  return options.report_file.empty() ? default_report_path(scenario, options.seed) : options.report_file;
+}
+
+/// Throws UsageError if an output would overwrite another file of the run.
+void check_paths(const SimulateOptions& options, const std::string& scenario) {
+  require_separate_outputs({{"SCENARIO", options.scenario_file}},
+                           {{"--report", report_path(options, scenario)},
+                            {"--record", options.recording_file},
+                            {"--svg", options.picture_file}});
+}
 
 /// Shows the progress line on stderr if that is a terminal; stdout is for the summary.
 class ProgressLine {
@@ -156,6 +171,7 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
   if (!options.scenario_file.empty()) scenario = scenario_of(options);
   const Duration duration = options.seconds ? from_seconds(*options.seconds) : CampaignOptions{}.duration;
   const Trial trial = sample_trial(options.seed, duration, scenario, has_faults);
+  check_paths(options, trial.scenario.name);
   print_to(stdout, "commit {}\n{}\n", kBuildCommit, trial.summary());
   for (const std::string& line : to_lines(trial.plan)) print_to(stdout, "  {}\n", line);
   RunPicture picture(trial.scenario);
@@ -177,6 +193,7 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
 
 int simulate(const SimulateOptions& options) {
   const Scenario scenario = scenario_of(options);
+  check_paths(options, scenario.name);
   print_to(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
   if (scenario.map && !scenario.map->notice().empty()) print_to(stderr, "{}\n", scenario.map->notice());
   if (scenario.has_test_keys)

@@ -7,6 +7,7 @@
 #include "common/config/planner_names.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/log_option.hpp"
+#include "common/process/output_paths.hpp"
 #include "deploy/simulate/campaign/campaign.hpp"
 #include "deploy/simulate/seed_range.hpp"
 #include "deploy/simulate/simulate.hpp"
@@ -28,6 +29,9 @@ void read_seeds(const std::string& text, CampaignOptions& campaign) {
 }
 
 int run_seeds(Options& options) {
+  require_separate_outputs(
+      {{"SCENARIO", options.run.scenario_file}},
+      {{"--report", options.run.report_file}, {"--results", options.campaign.results_file}});
   options.campaign.scenario_file = options.run.scenario_file;
   options.campaign.report_file = options.run.report_file;
   options.campaign.has_faults = options.faults != "none";

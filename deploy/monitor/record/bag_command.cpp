@@ -2,12 +2,12 @@
 #include "deploy/monitor/record/bag_command.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
 #include "deploy/monitor/record/bag.hpp"
 
@@ -25,13 +25,6 @@ int exit_code_for(const std::string& damage) {
   if (damage.empty()) return 0;
   fmt::print(stderr, "damaged: {}; the messages before that were used\n", damage);
   return kExitFailure;
-}
-
-void require_other_file(const std::vector<std::string>& files, const std::string& out) {
-  std::error_code error;
-  for (const std::string& file : files)
-    if (std::filesystem::equivalent(file, out, error))
-      throw UsageError("--out: " + out + " is one of the recordings to read");
 }
 
 }  // namespace
@@ -61,7 +54,7 @@ void add_bag_command(const CliCommand& root, std::function<int()>& action) {
       .check(in_range(0, 1e9));
   cut.add_option("--topics", options->topics, "only these, e.g. truth,feedback/3 [all]").comma_separated();
   cut.on_parsed([options, &action] {
-    require_other_file({options->file}, options->out);
+    require_separate_outputs({{"FILE", options->file}}, {{"--out", options->out}});
     if (options->cut.to_s < options->cut.from_s) throw UsageError("--to: expected at least --from");
     options->cut.topics = {options->topics.begin(), options->topics.end()};
     action = [options] { return exit_code_for(cut_bag(options->file, options->cut, options->out)); };
@@ -72,7 +65,9 @@ void add_bag_command(const CliCommand& root, std::function<int()>& action) {
   merge.add_option("FILES", options->files, "recordings").required();
   merge.add_option("--out", options->out, "recording to write").required();
   merge.on_parsed([options, &action] {
-    require_other_file(options->files, options->out);
+    std::vector<NamedPath> inputs;
+    for (const std::string& file : options->files) inputs.push_back({"one of FILES", file});
+    require_separate_outputs(inputs, {{"--out", options->out}});
     action = [options] { return exit_code_for(merge_bags(options->files, options->out)); };
   });
 }

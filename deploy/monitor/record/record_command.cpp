@@ -7,6 +7,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/monitor/record/recording.hpp"
@@ -52,7 +53,10 @@ void add_record_command(const CliCommand& root, std::function<int()>& action) {
   command.add_flag("--compress", options->is_compressed, "compress the messages with zstd");
   command.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   add_dds_options(command, options->dds);
-  command.on_parsed([options, &action] { action = [options] { return record_messages(*options); }; });
+  command.on_parsed([options, &action] {
+    require_separate_outputs({{"SCENARIO", options->scenario_file}}, {{"--out", options->recording_file}});
+    action = [options] { return record_messages(*options); };
+  });
 }
 
 }  // namespace sidestep

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// A file of a command.
+struct NamedPath {
+  std::string name;  ///< what names it on the command line, e.g. "--report"
+  std::string path;  ///< empty: none
+};
+
+/// Throws UsageError if an output is the same file as an input or an earlier output, which it would
+/// overwrite. Devices such as /dev/null may be named more than once.
+void require_separate_outputs(const std::vector<NamedPath>& inputs, const std::vector<NamedPath>& outputs);
+
+}  // namespace sidestep

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/process/output_paths.hpp"
+
+#include <filesystem>
+
+#include "common/file/temporary_folder.hpp"
+#include "common/file/write_file.hpp"
+#include "common/process/command_line.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::output_paths_test {
+
+namespace fs = std::filesystem;
+
+TEST_CASE("an output that is an input or another output is refused by whichever path, and others are not") {
+  const TemporaryFolder folder;
+  const std::string scenario = folder.file("scenario.yaml"), report = folder.file("report.json");
+  write_file(scenario, "robots: []");
+  fs::create_symlink(scenario, folder.file("link"));
+  fs::create_directory_symlink(folder.path(), folder.file("folder"));
+  const auto check = [&](const std::string& first, const std::string& second) {
+    require_separate_outputs({{"SCENARIO", scenario}, {"--hosts", ""}},
+                             {{"--report", first}, {"--record", second}, {"--svg", ""}});
+  };
+  CHECK_NOTHROW(check(report, folder.file("recording.mcap")));
+  CHECK_NOTHROW(check("", ""));
+  CHECK_NOTHROW(check("/dev/null", "/dev/null"));
+  CHECK_THROWS_WITH(check(scenario, ""), "--report: " + scenario + " is the same file as SCENARIO");
+  CHECK_THROWS_AS(check(folder.file("link"), ""), UsageError);
+  CHECK_THROWS_AS(check("", folder.file("./scenario.yaml")), UsageError);
+  CHECK_THROWS_WITH(check(report, report), "--record: " + report + " is the same file as --report");
+  CHECK_THROWS_AS(check(report, folder.file("x/../report.json")), UsageError);
+  CHECK_THROWS_AS(check(report, folder.file("folder/report.json")), UsageError);
+}
+
+}  // namespace sidestep::output_paths_test
