@@ -70,6 +70,10 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
   listen(bus_, scenario, auditor_);
   if (!options.recording_file.empty()) {
     recording_.emplace(options.recording_file, recording_header(scenario, options.scenario_file));
+    recording_->on_failure([this](const std::string& failure) {
+      recording_failure_ = failure;
+      print("recording: " + failure, LogLevel::kError);
+    });
     record(bus_, scenario, *recording_);
   }
   listen(bus_, metrics_);
@@ -99,11 +103,19 @@ Report Launcher::run() {
   if (ready_at_) report.startup_s = to_seconds(*ready_at_ - began_);
   report.processes = children_.resource_use();
   report.director_deaths = before_.deaths;
-  if (recording_) {
-    recording_->add_report(bus_.now(), to_json(report));
-    recording_->close();
-  }
+  finish_recording(report);
+  report.recording_failure = recording_failure_;
   return report;
+}
+
+void Launcher::finish_recording(const Report& report) {
+  if (!recording_) return;
+  recording_->add_report(bus_.now(), to_json(report));
+  try {
+    recording_->close();
+  } catch (const std::runtime_error&) {
+    // on_failure() has said it.
+  }
 }
 
 void Launcher::work() {

@@ -85,6 +85,8 @@ class Launcher {
   void start_monitor();
   /// Runs until the run is over.
   void work();
+  /// With the report. A failure becomes recording_failure_.
+  void finish_recording(const Report& report);
   void print_last_lines(const std::string& process);
   /// Whether the run is over. If it was aborted, abort_reason_ then says why.
   bool is_over();
@@ -113,6 +115,7 @@ class Launcher {
   std::uint64_t printed_violations_ = 0;
   std::size_t printed_epochs_ = 0;
   std::optional<RecordingWriter> recording_;
+  std::string recording_failure_;
   ProgressDisplay display_;
   std::atomic<bool> is_interrupted_{false};
   bool is_ready_ = false;

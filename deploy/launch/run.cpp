@@ -68,8 +68,10 @@ int run(const RunOptions& given) {
   options.floor.memory_folder = robot_memory.path();
   ProcessGroup group(log_path);
   const auto finish = [&](const Report& report) {
-    write_report(report, report_path);
-    print_to(stdout, "\n{}: {}report: {}\nlog: {}\n", scenario.name, summary(report), report_path, log_path);
+    const std::string problem = try_write_report(report, report_path);
+    print_to(stdout, "\n{}: {}{}log: {}\n", scenario.name, summary(report),
+             problem.empty() ? "report: " + report_path + "\n" : "", log_path);
+    if (!problem.empty()) throw std::runtime_error(problem);
     return exit_code(report.verdict());
   };
   const auto began = std::chrono::steady_clock::now();

@@ -93,6 +93,7 @@ class SimRecorder {
     if (!options_.scenario_file.empty()) header = recording_header(scenario, options_.scenario_file);
     header.is_complete = true;
     writer_.emplace(options_.recording_file, header);
+    writer_->on_failure([](const std::string& failure) { log(LogLevel::kError, "recording: " + failure); });
     bus_.emplace(network);
     bus_->become_observer();
     record(*bus_, scenario, *writer_);
@@ -102,11 +103,15 @@ class SimRecorder {
     if (bus_) stopped_at_ = bus_->now();
     bus_.reset();
   }
-  /// Throws std::runtime_error when a write has failed.
-  void close(const Report& report) {
+  /// Adds the report to the recording, and to the report why messages could not be recorded.
+  void close(Report& report) {
     if (!writer_) return;
     writer_->add_report(stopped_at_, to_json(report));
-    writer_->close();
+    try {
+      writer_->close();
+    } catch (const std::runtime_error& error) {
+      report.recording_failure = error.what();
+    }
   }
 
  private:
@@ -146,14 +151,13 @@ int finish(const SimulateOptions& options, Report& report, SimRecorder& recorder
   report.program = "simulate";
   report.seed = options.seed;
   report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
-  const std::string path =
-      options.report_file.empty() ? default_report_path(report.scenario, options.seed) : options.report_file;
-  write_report(report, path);
   recorder.close(report);
+  const std::string path = report_path(options, report.scenario), problem = try_write_report(report, path);
+  print_to(stdout, "{}, seed {}: {}{:.1f} times as fast as real time\n{}", report.scenario, options.seed,
+           summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0,
+           problem.empty() ? "report: " + path + "\n" : "");
   if (!options.picture_file.empty()) write_file(options.picture_file, picture());
-  print_to(stdout, "{}, seed {}: {}{:.1f} times as fast as real time\nreport: {}\n", report.scenario,
-           options.seed, summary(report),
-           report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0, path);
+  if (!problem.empty()) throw std::runtime_error(problem);
   return exit_code(report.verdict());
 }
 

@@ -53,6 +53,34 @@ TEST_CASE("a run goes on to its end and its report when nobody reads its output 
   CHECK_THAT(f.text("r.log"), !ContainsSubstring("SIGPIPE"));
 }
 
+TEST_CASE(
+    "a run whose recording cannot be written says so once, goes on, and writes the reason in its report") {
+  const RunFixture f;
+  const ProgramRun run = run_in_shell(f.command("--record /dev/full --report r.json >out"), f.folder);
+  CAPTURE(run.errors);
+  CHECK(run.exit_code == 1);
+  const std::string output = f.text("out"), message = "recording: /dev/full: No space left on device\n";
+  CHECK(output.starts_with(message));
+  CHECK(output.find(message, 1) == std::string::npos);
+  CHECK_THAT(output, ContainsSubstring("robots arrived") && ContainsSubstring("report: r.json"));
+  CHECK_THAT(f.text("r.json"),
+             ContainsSubstring("\"failure\": \"time limit of 1 s, recording: /dev/full: No space left") &&
+                 ContainsSubstring("\"violations\": 0"));
+}
+
+TEST_CASE("a run whose report cannot be written prints its summary") {
+  const RunFixture f;
+  const std::string command = GENERATE("run", "simulate");
+  std::filesystem::create_directory(f.folder.file("taken"));
+  const ProgramRun run =
+      command == "run" ? run_in_shell(f.command("--report taken >out"), f.folder)
+                       : run_in_shell("\"$0\" simulate " + kScenario + " --report /dev/full >out", f.folder);
+  CAPTURE(command);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring("cannot write "));
+  CHECK_THAT(f.text("out"), ContainsSubstring("robots arrived") && !ContainsSubstring("report: "));
+}
+
 TEST_CASE("a simulated run ends as always if stderr is closed or on a full disk") {
   const TemporaryFolder folder;
   const std::string output = GENERATE("2>&-", "2>/dev/full", "<&- >&- 2>&-");

@@ -165,6 +165,7 @@ std::string Report::failure_reason() const {
   std::string reason;
   const auto add = [&reason](const std::string& part) { reason += (reason.empty() ? "" : ", ") + part; };
   if (!abort_reason.empty()) add(abort_reason);
+  if (!recording_failure.empty()) add("recording: " + recording_failure);
   if (const auto unexcused = unexcused_contacts(); unexcused > 0) add(fmt::format("{} contacts", unexcused));
   if (const auto crashes_moving = unexcused_crashes(); crashes_moving > 0)
     add(fmt::format("{} crashes of moving robots", crashes_moving));
@@ -320,6 +321,13 @@ std::string summary(const Report& r) {
 }
 
 void write_report(const Report& report, const std::string& path) { write_file(path, to_json(report)); }
+
+std::string try_write_report(const Report& report, const std::string& path) try {
+  write_report(report, path);
+  return "";
+} catch (const std::runtime_error& error) {
+  return error.what();
+}
 
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed) {
   if (seed) return fmt::format("reports/{}-{}.json", scenario, *seed);

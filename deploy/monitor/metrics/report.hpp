@@ -40,7 +40,8 @@ struct Report {
   std::string program;  ///< "run" or "simulate"
   std::string scenario;
   std::optional<std::uint64_t> seed;
-  std::string abort_reason;  ///< empty: the run was not aborted
+  std::string abort_reason;       ///< empty: the run was not aborted
+  std::string recording_failure;  ///< why the recording lacks messages; empty: it does not, or there is none
   int robots = 0;
   int arrived = 0;
   bool must_arrive = true;  ///< whether the run passes only if all robots arrive
@@ -97,9 +98,9 @@ struct Report {
   std::uint64_t unexcused_contacts() const;
   /// Number of crashes of moving robots, except those excused by a disturbance.
   std::uint64_t unexcused_crashes() const;
-  /// Why the run failed, in one line; empty if it did not fail. A run does not fail if it was not aborted, no
-  /// robot touched anything without excuse, none was moving in a crash, no rule was violated, and all robots
-  /// arrived if they had to.
+  /// Why the run failed, in one line. Empty if it did not fail: it was not aborted, its recording was
+  /// written, no robot touched anything without excuse, none moved in a crash, no rule was broken, and all
+  /// robots arrived if they had to.
   [[nodiscard]] std::string failure_reason() const;
   /// The verdict. A run that did not fail has passed only if its audit covered enough (or there was no audit)
   /// and no process that observed it has died.
@@ -113,6 +114,8 @@ std::string summary(const Report& report);
 /// Writes to_json() to a file and creates its folder. Throws std::runtime_error with the reason for a
 /// failure.
 void write_report(const Report& report, const std::string& path);
+/// Does that too, but returns the reason of a failure; empty: it is written.
+[[nodiscard]] std::string try_write_report(const Report& report, const std::string& path);
 /// reports/<scenario>-<seed>.json, or with the local time instead of the seed.
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed);
 

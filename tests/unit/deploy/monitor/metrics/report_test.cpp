@@ -131,7 +131,10 @@ TEST_CASE("the failure reason lists everything that went wrong in one line, and 
   report.abort_reason = "time limit of 60 s";
   report.contacts = 1;
   report.firmware_violations = 2;
-  CHECK(report.failure_reason() == "time limit of 60 s, 1 contacts, 2 firmware violations, 1 of 2 arrived");
+  report.recording_failure = "a.mcap: No space left on device";
+  CHECK(report.failure_reason() ==
+        "time limit of 60 s, recording: a.mcap: No space left on device, 1 contacts, 2 firmware violations, "
+        "1 of 2 arrived");
   Report good = example();
   good.arrived = 2;
   CHECK(good.failure_reason().empty());
