@@ -18,8 +18,8 @@ namespace {
 using Kind = McapRecordKind;
 using Bytes = std::span<const std::uint8_t>;
 
-/// What callers keep of others may be a thousand times larger than the file, if a compressed chunk holds
-/// them.
+/// The only ones that the specification allows in a chunk. Passing over others would take seconds: a
+/// compressed chunk of some kilobytes may hold millions of empty ones.
 bool is_for_chunks(Kind kind) {
   return kind == Kind::kSchema || kind == Kind::kChannel || kind == Kind::kMessage;
 }
@@ -167,14 +167,14 @@ bool McapReader::open_chunk(Bytes content) {
 }
 
 bool McapReader::read_chunk_frame(Frame& frame) {
-  while (!records_.left().empty()) {
-    frame.kind = static_cast<Kind>(records_.number<std::uint8_t>());
-    frame.content = records_.raw(records_.number<std::uint64_t>());
-    if (!records_.is_ok()) break;
-    if (is_for_chunks(frame.kind)) return true;
-  }
-  if (records_.is_ok()) return false;
-  fail("a record in a chunk is damaged");
+  if (records_.left().empty()) return false;
+  frame.kind = static_cast<Kind>(records_.number<std::uint8_t>());
+  frame.content = records_.raw(records_.number<std::uint64_t>());
+  if (records_.is_ok() && is_for_chunks(frame.kind)) return true;
+  fail(records_.is_ok() ? fmt::format("a chunk holds a record of kind 0x{:02x}, expected schemas, channels "
+                                      "and messages",
+                                      static_cast<unsigned>(frame.kind))
+                        : "a record in a chunk is damaged");
   records_ = McapDecoder({});
   return false;
 }

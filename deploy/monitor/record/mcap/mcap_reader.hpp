@@ -63,7 +63,8 @@ class McapReader {
                             const std::string& compression) const;
   bool open_chunk(std::span<const std::uint8_t> content);
   bool decompress(std::span<const std::uint8_t> compressed, std::uint64_t size);
-  /// The next record in the open chunk of a kind that belongs there. False at the end of the chunk.
+  /// The next record of the open chunk. False: the chunk has ended, or is damaged by a record of a kind that
+  /// does not belong there.
   bool read_chunk_frame(Frame& frame);
   McapRecord record_of(const Frame& frame);
   McapRecord message_of(std::span<const std::uint8_t> content);

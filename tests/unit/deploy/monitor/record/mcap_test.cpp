@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 
@@ -194,26 +195,33 @@ TEST_CASE("schemas and channels fill no memory, however many and large they are"
   CHECK_THAT(read(file).damage, ContainsSubstring("schemas and channels take more than"));
 }
 
-TEST_CASE("metadata and attachments in a chunk are passed over: a small chunk may hold millions of them") {
+TEST_CASE(
+    "a record other than schemas, channels and messages damages its chunk: millions may be in a small one") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
+  const auto kind = GENERATE(McapRecordKind::kAttachment, McapRecordKind::kMetadata, McapRecordKind::kChunk,
+                             McapRecordKind::kDataEnd, McapRecordKind{0x00}, McapRecordKind{0x90});
+  CAPTURE(kind);
   McapBytes records, bytes(kMcapMagic.begin(), kMcapMagic.end());
   McapEncoder inside(records), outside(bytes);
-  const auto add_both = [](McapEncoder& encoder, const char* name) {
-    encoder.record(McapRecordKind::kMetadata, [&] {
-      encoder.text(name);
-      encoder.texts({{"key", "value"}});
-    });
-    encoder.record(McapRecordKind::kAttachment, [&] {
-      encoder.number(std::uint64_t{0});
-      encoder.number(std::uint64_t{0});
-      encoder.text(name);
-      encoder.text("");
-      encoder.number(std::uint64_t{0});
-      encoder.number(std::uint32_t{0});
+  const auto add_message = [&] {
+    inside.record(McapRecordKind::kMessage, [&] {
+      inside.number(std::uint16_t{1});
+      inside.number(std::uint32_t{0});
+      inside.number(std::uint64_t{0});
+      inside.number(std::uint64_t{0});
     });
   };
-  add_both(inside, "inside");
+  inside.record(McapRecordKind::kChannel, [&] {
+    inside.number(std::uint16_t{1});
+    inside.number(std::uint16_t{0});
+    inside.text("topic");
+    inside.text("cdr");
+    inside.texts({});
+  });
+  add_message();
+  inside.record(kind, [] {});
+  add_message();
   outside.record(McapRecordKind::kChunk, [&] {
     outside.number(std::uint64_t{0});
     outside.number(std::uint64_t{0});
@@ -223,12 +231,17 @@ TEST_CASE("metadata and attachments in a chunk are passed over: a small chunk ma
     outside.number(std::uint64_t{records.size()});
     outside.raw(records);
   });
-  add_both(outside, "outside");
+  outside.record(McapRecordKind::kMetadata, [&] {
+    outside.text("outside");
+    outside.texts({{"key", "value"}});
+  });
   write(file, {bytes.begin(), bytes.end()});
   const Contents found = read(file);
-  CHECK(found.metadata == std::vector<std::string>{"outside:key=value"});
-  CHECK(found.attachments == std::vector<std::string>{"outside::"});
-  CHECK(found.damage == "the file was not finished");
+  CHECK(found.messages.size() == 1);
+  CHECK(found.metadata.empty());
+  CHECK(found.damage == fmt::format("a chunk holds a record of kind 0x{:02x}, expected schemas, channels and "
+                                    "messages",
+                                    static_cast<unsigned>(kind)));
 }
 
 TEST_CASE("a file that is not an MCAP file is refused with its name") {
