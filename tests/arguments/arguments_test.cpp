@@ -88,7 +88,7 @@ class Runner {
   std::string slowest_, largest_;
 };
 
-/// What a file of broken/ must cause, from its first line "# expected: LINE: MESSAGE".
+/// The error that a file in broken/ must cause, from its first line "# expected: LINE: MESSAGE".
 std::string expectation_of(const fs::path& file) {
   constexpr std::string_view kStart = "# expected: ";
   std::ifstream stream(file);
@@ -113,7 +113,7 @@ TEST_CASE("silly values of options are refused, and the message names the option
   for (const Row& row : rows) runner.check(row);
 }
 
-TEST_CASE("files that are none are refused by all commands that read some, and the message names them",
+TEST_CASE("files of the wrong kind are refused by all commands that read files, and the message names them",
           "[slow]") {
   Runner runner;
   const std::pair<std::string, const char*> files[] = {{runner.file("missing"), ": "},
@@ -176,13 +176,13 @@ TEST_CASE("broken YAML is refused by all commands that read YAML, with file, lin
       runner.check(row_for(runner, command, file, {file + ":" + expected}));
 }
 
-TEST_CASE("options that do not exist and words too many are refused and named", "[slow]") {
+TEST_CASE("unknown options and surplus words are refused and named", "[slow]") {
   Runner runner;
   for (const std::string& command : commands_of(runner.table(), "unknown")) {
     for (const std::string extra :
          {"--no-such-option", "--no-such-option=3", "-Z", "too-many-words", "\xf0\x9f\xa4\x96"}) {
       Row row = row_for(runner, command, "", {extra});
-      // What takes many words is refused for another reason.
+      // Commands that accept several words would refuse this for another reason.
       row.command.push_back(extra);
       runner.check(row);
     }

@@ -77,7 +77,7 @@ TEST_CASE("a command that reads a recording ends within a second of SIGTERM", "[
   }
 }
 
-TEST_CASE("a run whose report is a pipe that nobody reads says so and ends") {
+TEST_CASE("a run whose report is a pipe without a reader reports that and ends") {
   const TemporaryFolder folder;
   const TestDomain domain;
   const std::string pipe = folder.file("pipe");

@@ -28,7 +28,7 @@ void finish(LaunchedRun& run) {
   require_no_violations(run.report());
 }
 
-TEST_CASE("the patrol drives a robot to and fro until somebody else sends it elsewhere") {
+TEST_CASE("the patrol drives a robot back and forth until another client sends it elsewhere") {
   LaunchedRun run(shipped_scenario("on-demand"));
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
   start(run, "patrol", {"3", "2", "-1,1", "-2.2,0.6"});

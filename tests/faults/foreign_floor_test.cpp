@@ -83,8 +83,7 @@ TEST_CASE("robots of a foreign simulator all arrive without contact, with 5 % of
   WARN(name << ", loss " << loss << ": " << outcome(report));
 }
 
-TEST_CASE("where there is no ground truth, agents report arrivals and vision judges contacts",
-          "[both-cores]") {
+TEST_CASE("without ground truth, agents report arrivals and vision judges contacts", "[both-cores]") {
   ForeignFloor floor(shipped_scenario("league/crossing"), {}, {}, false);
   const std::string ended = floor.run().wait_for_end();
   INFO(floor.run().output());
@@ -114,7 +113,7 @@ TEST_CASE("robots go on when the process that drives them is killed and started 
   WARN("after a restart of the robots' process: " << outcome(report));
 }
 
-TEST_CASE("robots come to rest before the process that drives them ends, whatever ends the run",
+TEST_CASE("robots come to rest before the process that drives them ends, however the run ends",
           "[both-cores]") {
   const int signal = GENERATE(SIGINT, SIGKILL);
   CAPTURE(signal);

@@ -158,7 +158,7 @@ TEST_CASE("the next run removes the namespaces of a killed launcher") {
   CHECK_FALSE(has_namespaces(next.pid()));
 }
 
-TEST_CASE("packet faults for unknown hosts and without a loss are refused") {
+TEST_CASE("packet faults for unknown hosts, or without a loss, are refused") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("crossing"));
   CHECK(run->command({"fault", "partition", "sidestep-" + std::to_string(run->pid()) + "-south"}) ==

@@ -75,8 +75,8 @@ void compare(int runs) {
   print("with keys", keyed);
 }
 
-TEST_CASE("22 robots arrive with keys, as without", "[both-cores][slow]") { compare(1); }
+TEST_CASE("22 robots arrive with keys as well as without", "[both-cores][slow]") { compare(1); }
 
-TEST_CASE("22 robots arrive with keys, as without, many times", "[.long][slow]") { compare(7); }
+TEST_CASE("22 robots arrive with keys as well as without, many times", "[.long][slow]") { compare(7); }
 
 }  // namespace sidestep::keyed_run_test

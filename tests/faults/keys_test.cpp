@@ -212,7 +212,7 @@ TEST_CASE("with keys, processes speak only for themselves") {
   keyed.check_safe();
 }
 
-TEST_CASE("a program orders with its own keys, and not without any") {
+TEST_CASE("a program can give orders with its own keys, but not without keys") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
@@ -385,6 +385,8 @@ TEST_CASE("replayed and altered datagrams do no harm to robots that drive with k
   repeat_and_alter(seconds(15), 41);
 }
 
-TEST_CASE("the same for ten minutes", "[.long][slow]") { repeat_and_alter(std::chrono::minutes(10), 42); }
+TEST_CASE("replayed and altered datagrams do no harm for ten minutes", "[.long][slow]") {
+  repeat_and_alter(std::chrono::minutes(10), 42);
+}
 
 }  // namespace sidestep::keys_attack_test

@@ -30,7 +30,7 @@ double distance(OrderedSystem& run, RobotId robot, const Vec2& place) {
 
 TEST_CASE("a robot waits beside another one that rests on its goal, and goes on when it leaves") {
   OrderedSystem run(waiting_robots(4), 1);
-  const Vec2 place(2, -1.5);  // of robot 1
+  const Vec2 place(2, -1.5);  // place of robot 1
   run.system.run_for(seconds(1));
   const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
   REQUIRE(rests_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
@@ -87,7 +87,7 @@ TEST_CASE("robots that rest on each other's goals swap places") {
 TEST_CASE("a robot leaves a zone that is drawn over it or its goal, and returns to its goal when it may") {
   OrderedSystem run(waiting_robots(4), 1);
   run.system.run_for(seconds(1));
-  const Vec2 place(0, 0), home(2, -0.5);  // of robot 3, which has no order
+  const Vec2 place(0, 0), home(2, -0.5);  // places of robot 3, which has no order
   const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
   REQUIRE(run.run_until(seconds(5), [&] { return run.bodies[0].position_m.x() > -1.5; }));
   run.draw(4, {{{-0.2, -0.4}, {0.2, -0.4}, {0.2, 0.4}, {-0.2, 0.4}}, 0});
@@ -121,7 +121,7 @@ TEST_CASE("robots leave zones that overlap") {
     OrderedSystem run(waiting_robots(4), seed);
     Rng rng(seed);
     run.system.run_for(seconds(1));
-    const Vec2 home(-2, -1.5);  // of robot 0
+    const Vec2 home(-2, -1.5);  // place of robot 0
     std::vector<Order> zones(3);
     for (std::uint32_t i = 0; i < 3; ++i) {
       Zone& zone = zones[i].zone;
@@ -160,7 +160,7 @@ TEST_CASE("a robot goes as near to a goal in an obstacle, or behind a closed rin
   run.require_safe();
 }
 
-TEST_CASE("no robot enters a zone that was drawn before, or is faster in one than it allows") {
+TEST_CASE("no robot enters a zone drawn earlier, or exceeds the speed limit in one") {
   int arrived = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     INFO("seed " << seed);
@@ -220,7 +220,7 @@ TEST_CASE("no robot enters a zone that was drawn before, or is faster in one tha
   CHECK(blocked > 5);
 }
 
-TEST_CASE("the report says of each robot that has not arrived why") {
+TEST_CASE("the report says why each robot has not arrived") {
   const Scenario scenario = parse_scenario(
       "field: {length_m: 8, width_m: 5}\nobstacles:\n"
       "  - wall: {points_m: [[1, -1], [3, -1], [3, 1], [1, 1], [1, -1]], thickness_m: 0.1}\n"

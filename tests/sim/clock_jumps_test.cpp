@@ -15,17 +15,17 @@ constexpr Duration kMaxRecovery = std::chrono::seconds(5);
 // Clocks that go back by an hour must not show a negative time.
 constexpr Time kBegin = time_from_ns(100'000'000'000'000);
 
-/// From then on a clock is off by so much.
+/// From this time on, a clock is off by this amount.
 struct Jump {
   Duration at{0};
-  std::string clock;  ///< of this process or, if it begins with "robot ", of a robot
+  std::string clock;  ///< the clock of this process, or of a robot if it begins with "robot "
   Duration offset{0};
 };
 
 struct History {
   Scenario scenario;
   std::vector<Jump> jumps;
-  Duration agree_at{0};  ///< from then on, all clocks agree
+  Duration agree_at{0};  ///< from this time on, all clocks agree
 };
 
 /// 1 ms to an hour, forth or back.
@@ -119,9 +119,9 @@ void run_all(std::uint64_t first, std::uint64_t last) {
       part(0.99), part(1), seconds.size()));
 }
 
-TEST_CASE("after clocks have jumped forth and back, all robots drive within five seconds") { run_all(1, 25); }
+TEST_CASE("after clocks have jumped back and forth, all robots drive within five seconds") { run_all(1, 25); }
 
-TEST_CASE("after clocks have jumped forth and back, all robots drive within five seconds, in 500 histories",
+TEST_CASE("after clocks have jumped back and forth, all robots drive within five seconds, in 500 histories",
           "[.long][slow]") {
   run_all(1, 500);
 }
@@ -143,7 +143,7 @@ TEST_CASE("a robot whose clock goes back drives again once the clock is right") 
 }
 
 TEST_CASE("an agent whose clock was ahead hears its robot again although epochs are nearly an hour ahead") {
-  // What it hears decides how it corrects its clock, so what it may hear must not depend on that.
+  // What the agent hears decides how it corrects its clock, so what it may hear must not depend on that.
   const double ahead_s = GENERATE(10.0, 500.0, 3400.0);
   CAPTURE(ahead_s);
   SimSystem system(shuttles(3, 2), 1, {}, kBegin);
@@ -161,7 +161,7 @@ TEST_CASE("an agent whose clock was ahead hears its robot again although epochs 
   system.set_clock("agent 1", from_seconds(ahead_s));
   system.run_for(std::chrono::seconds(1));
   system.set_clock("agent 1", Duration{0});
-  // What still moves ends meanwhile.
+  // Motions that are still under way end meanwhile.
   system.run_for(kMaxRecovery);
   motion.begin();
   system.run_for(std::chrono::seconds(2));

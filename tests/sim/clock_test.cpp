@@ -141,7 +141,7 @@ TEST_CASE(
   CHECK(floor.violations() == 0);
 }
 
-/// What runs with one delay have shown.
+/// The results of runs with one delay.
 struct SlowRuns {
   double max_offset_s = 0;     ///< between a robot's clock and the coordinator's that an interval permitted
   double min_clearance_m = 1;  ///< between two references, each at its own robot's time
@@ -218,7 +218,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a robot measures the clocks again after a long wait, before it moves on") {
+TEST_CASE("a robot measures the clocks again after a long wait before it continues") {
   // A robot with a wrong clock rests at the other robot's goal until its clock is corrected.
   Scenario scenario = parse_scenario(
       "field: {length_m: 6, width_m: 4}\nrobots:\n"

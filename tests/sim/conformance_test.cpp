@@ -28,7 +28,7 @@ Scenario lone_robot() {
   return scenario;
 }
 
-/// The same with vision as in the league, and a budget for bases of others.
+/// The same robot with vision as in the league, and a budget for third-party bases.
 Scenario lone_league_robot() {
   Scenario scenario = lone_robot();
   scenario.vision.position_noise_m = 0.0015;
@@ -81,7 +81,7 @@ TEST_CASE("a healthy robot with Sidestep's firmware conforms") {
 // Measured by the first examination; see "the latency that is measured".
 constexpr Duration kObeysAfter = 118ms;
 
-TEST_CASE("a base of others that is driven in single precision conforms") {
+TEST_CASE("a third-party base that is driven in single precision conforms") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const ConformanceReport report = examine_driven(lone_league_robot(), {}, kObeysAfter, seed);
   INFO("seed " << seed << "\n" << to_text(report));
@@ -89,7 +89,7 @@ TEST_CASE("a base of others that is driven in single precision conforms") {
   CHECK(report.figures.is_within_limits);
 }
 
-TEST_CASE("the latency that is measured is the one with which the robot conforms") {
+TEST_CASE("a robot conforms with the latency that was measured") {
   const auto [latency, counted] =
       GENERATE(table<Duration, Duration>({{60ms, 100ms}, {100ms, 60ms}, {100ms, 100ms}, {140ms, 100ms}}));
   BaseSettings bases;
@@ -114,7 +114,7 @@ TEST_CASE("a robot that brakes at 60 % fails in the row of its braking") {
   CHECK_FALSE(report.figures.is_within_limits);
 }
 
-TEST_CASE("a robot that counts on 100 ms of latency and has 150 fails in the row of its latency") {
+TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails in the row of its latency") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;
   bases.latency = 150ms - 18ms;
@@ -174,7 +174,7 @@ TEST_CASE("a robot that obeys new agents late fails in the row of its pending ve
   CHECK(failed(report) == std::vector<std::string>{"pending versions"});
 }
 
-TEST_CASE("a robot that nobody drives or sees is not judged further") {
+TEST_CASE("a robot that is neither driven nor seen is not judged further") {
   const Scenario scenario = lone_robot();
   SimNetwork network(1, kBegin, scenario.network);
   const ConformanceReport report = examine(network, scenario);

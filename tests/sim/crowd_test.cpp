@@ -12,7 +12,7 @@ namespace sidestep::crowd_test {
 
 constexpr std::size_t kPeople = 32;
 
-/// What the robots see, how fast they may be, and how fast their messages are.
+/// Samples what the robots see, how fast they may be, and how fast their messages are.
 void sample_conditions(Scenario& scenario, Rng& rng) {
   scenario.radius_m = rng.uniform(0.06, 0.15);
   scenario.limits.speed_mps = rng.uniform(0.8, 2);
@@ -98,11 +98,11 @@ void drive_through_crowds(std::uint64_t seeds) {
   CHECK(totals.arrived > totals.robots / 4);
 }
 
-TEST_CASE("among thirty-two people no robot is moving when it is touched, over twenty scenes") {
+TEST_CASE("among thirty-two people no robot is moving when it is touched, in twenty scenes") {
   drive_through_crowds(20);
 }
 
-TEST_CASE("among thirty-two people no robot is moving when it is touched, over two thousand scenes",
+TEST_CASE("among thirty-two people no robot is moving when it is touched, in two thousand scenes",
           "[.long][slow]") {
   drive_through_crowds(2000);
 }

@@ -67,7 +67,7 @@ Moment moment_of(const msg::GroundTruth& truth) {
 struct BodyPath {
   Vec2 from_m, direction;
   double speed_mps, deceleration_mps2;
-  double end_s;  ///< when it is at rest
+  double end_s;  ///< time at which it is at rest
 
   static BodyPath coasting(const State& state) {
     const double speed = state.velocity_mps.norm();
@@ -83,8 +83,8 @@ struct BodyPath {
   }
 };
 
-/// Whether a robot that moves as in `undisturbed` for the detection time, and then brakes, stays clear of the
-/// body. Half the margin is for its tracking error.
+/// Whether a robot that moves as in `undisturbed` for the detection time and then brakes stays clear of the
+/// body. Half the margin covers its tracking error.
 bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const BodyPath& body, Time fault,
                     const Scenario& scenario) {
   const auto is_clear = [&](const Vec2& position, double t_s) {
@@ -115,7 +115,7 @@ bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const
 struct Fault {
   RobotId robot = 0;
   Time switched_off{};
-  Time moved{};  ///< when its body begins to move without control
+  Time moved{};  ///< time at which its body begins to move without control
   bool is_carried = false;
   Vec2 target_m{0, 0};
   Duration duration{0};
@@ -145,14 +145,14 @@ struct Run {
   };
   std::vector<Touch> touches;
   std::uint64_t contacts = 0;
-  std::map<RobotId, Time> named;  ///< when each robot was first named as displaced
+  std::map<RobotId, Time> named;  ///< time at which each robot was first named as displaced
 };
 
 struct Totals {
   int cases = 0;
   int judged = 0;          ///< robots that could stop clear of the body
-  int touched = 0;         ///< of those
-  int other_contacts = 0;  ///< of two robots that nothing displaced
+  int touched = 0;         ///< number of those that touched
+  int other_contacts = 0;  ///< number of contacts of two robots that nothing displaced
   int unnamed = 0;         ///< bodies not named within a second
   int wrongly_named = 0;   ///< robots named before the fault
   Duration slowest_name{0};
@@ -202,7 +202,7 @@ Fault choose_fault(Run& run, const Scenario& scenario, Rng& rng, bool is_carried
 void count_touches(const Run& run, std::size_t first, const Fault& fault, const std::set<RobotId>& judged,
                    std::uint64_t seed, Totals& totals) {
   bool is_on_path = true;
-  std::set<RobotId> displaced{fault.robot};  // also those that it has pushed
+  std::set<RobotId> displaced{fault.robot};  // including those that it has pushed
   for (std::size_t i = first; i < run.touches.size(); ++i) {
     const Run::Touch& touch = run.touches[i];
     const RobotId low = std::min(touch.pair.first(), touch.pair.second());
@@ -243,7 +243,7 @@ void run_case(std::uint64_t seed, bool is_carried, Totals& totals) {
   run.system.disturb(off);
   if (is_carried) {
     run.system.run_until(fault.moved);
-    run.named.erase(fault.robot);  // by where it has rolled
+    run.named.erase(fault.robot);  // named because it has rolled
     auto carry = disturbance(fault.robot, msg::DisturbanceKind::DISTURBANCE_CARRY);
     carry.x_m(fault.target_m.x());
     carry.y_m(fault.target_m.y());
@@ -287,18 +287,19 @@ void check(const Totals& totals) {
   CHECK(totals.wrongly_named == 0);
 }
 
-TEST_CASE("robots stay clear of those that roll on without power or are carried, and these are named") {
+TEST_CASE("robots stay clear of robots that roll without power or are carried, and these are named") {
   check(run_cases(1, 40));
 }
 
-// What agents do about such robots was tuned on seeds 1 to 1000.
-TEST_CASE("a thousand coasting and carried robots are named and not driven into", "[.long][slow]") {
+// The agents' handling of such robots was tuned on the seeds 1 to 1000.
+TEST_CASE("a thousand coasting and carried robots are named, and no robot drives into them",
+          "[.long][slow]") {
   check(run_cases(1001, 1000));
 }
 
 // Robot 1 loses power and is carried to where robot 0 is about to drive. By the coordinator's clock, vision
 // may see robots in the future.
-TEST_CASE("a carried robot is named, or nobody drives, wherever clocks are within their bound") {
+TEST_CASE("a carried robot is named, or no robot drives, whatever the clocks within their bound") {
   Scenario scenario;
   scenario.name = "lax clocks";
   scenario.field = {6, 4};
@@ -340,7 +341,7 @@ TEST_CASE("a carried robot is named, or nobody drives, wherever clocks are withi
   CHECK(is_named == is_in_bound);
 }
 
-TEST_CASE("a robot that is switched on elsewhere drives on, and is no longer named") {
+TEST_CASE("a robot that is switched on elsewhere resumes driving, and is no longer named") {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     CAPTURE(seed);
     Scenario scenario = random_floor(seed);

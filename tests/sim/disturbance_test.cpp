@@ -140,7 +140,7 @@ TEST_CASE("a false fact about a robot quarantines it for a moment, and all conti
   CHECK(floor.unknown_versions() == 0);
 }
 
-TEST_CASE("a robot that computes with less precision is quarantined and named, and the others arrive") {
+TEST_CASE("a robot that computes with lower precision is quarantined and named, and the others arrive") {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
     CAPTURE(seed);
     IdealFloor floor(circle_scenario(8, 2), seed);
@@ -210,7 +210,7 @@ TEST_CASE("robots are lifted and placed among others while agents and coordinato
 }
 
 TEST_CASE("an absent robot does not block others, and joins when it is placed") {
-  // In a corridor wide enough for one robot.
+  // The corridor is wide enough for only one robot.
   IdealFloor floor(
       parse_scenario("field: {length_m: 6, width_m: 0.5}\nrobots:\n" + robot(1, "[-2, 0]", "[2, 0]") +
                          robot(2, "[0, 0]", "[-1, 0]", ", absent: true"),
@@ -221,7 +221,7 @@ TEST_CASE("an absent robot does not block others, and joins when it is placed") 
   // The absent robot's start position is free, so the other robot drives through it.
   for (int i = 0; i < 600 && floor.arrived() < 1; ++i) (void)floor.run(0.01);
   CHECK((floor.robots.position_m(1, floor.network.now()) - Vec2(2, 0)).norm() < 0.02);
-  floor.robots.place(2, {2, 0.05});  // where the other robot rests
+  floor.robots.place(2, {2, 0.05});  // the place where the other robot rests
   (void)floor.run(1);
   CHECK_FALSE(floor.robots.is_on_floor(2));
   floor.robots.place(2, {1, 0});

@@ -133,7 +133,7 @@ TEST_CASE("a restarted agent does not return to a coordinator that its robot has
   floor.require_clear();
   CHECK(floor.right.rest_x() == 1);
 
-  // With the new coordinator the robot approaches the other one up to the required separation.
+  // Under the new coordinator the robot approaches the other one up to the required separation.
   successor.receive_heartbeat(floor.second, floor.now);
   successor.register_with(floor.second, floor.now);
   successor.drive(floor.second, floor.right, -1, 60, floor.now);

@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
-// By then all robots know their poses and drive.
+// After this time all robots know their poses and drive.
 constexpr Duration kWarmUp = 8s;
 
 /// Eight robots that drive to and fro across each other's ways.
@@ -36,7 +36,7 @@ Scenario shuttles() {
 
 struct Outcome {
   std::uint64_t contacts = 0, violations = 0;
-  int own_stops = 0;  ///< after the warm-up, but for those of the next line
+  int own_stops = 0;  ///< after the warm-up, not counting those of the next line
   int drifts = 0;     ///< stops of robots that had drifted, which happens without restarts too
   int restarts = 0, twins = 0;
   double driven_m = 0;
@@ -153,7 +153,7 @@ Outcome run_floor(std::uint64_t seed, Duration length, bool is_disturbed) {
   return floor.outcome();
 }
 
-/// Runs floors of half a minute until robots have driven for so many hours together.
+/// Runs floors of half a minute each until robots have driven for this number of hours in total.
 Outcome run_floors(std::uint64_t first_seed, double robot_hours, bool is_disturbed) {
   constexpr Duration kLength = 30s;
   const double hours_each = 8 * to_seconds(kLength) / 3600;
@@ -183,14 +183,15 @@ double from_environment(const char* name, double otherwise) {
 
 }  // namespace
 
-TEST_CASE("restarts and twins of agents make no driven robot leave its version, and nobody touches") {
+TEST_CASE("restarts and second agents make no driven robot leave its version, and robots never touch") {
   const Outcome outcome = run_floors(1, 0.5, true);
   CHECK(outcome.restarts > 100);
   CHECK(outcome.twins > 50);
   CHECK(outcome.driven_m > 200);
 }
 
-TEST_CASE("the same for a thousand robot-hours or as many as the environment says", "[.][slow]") {
+TEST_CASE("restarts and second agents make no driven robot leave its version, for a thousand robot-hours",
+          "[.][slow]") {
   const double hours = from_environment("SIDESTEP_ROBOT_HOURS", 1000);
   const auto first = static_cast<std::uint64_t>(from_environment("SIDESTEP_FIRST_SEED", 1'000'000));
   const Outcome outcome = run_floors(first, hours, true);

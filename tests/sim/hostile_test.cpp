@@ -14,7 +14,7 @@ Scenario crossing() {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/crossing.yaml");
 }
 
-TEST_CASE("one hostile message of any kind costs no robot more than a moment") {
+TEST_CASE("one hostile message of any kind disturbs no robot for more than a moment") {
   for (const Forgery& forgery : forgeries()) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       CAPTURE(forgery.name, seed);
@@ -52,7 +52,7 @@ TEST_CASE("a hostile message of any kind stops no robot that has lost its pose")
   }
 }
 
-TEST_CASE("robots arrive although somebody reports higher and higher epochs") {
+TEST_CASE("robots arrive although a hostile process reports higher and higher epochs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   SimSystem system(crossing(), seed);

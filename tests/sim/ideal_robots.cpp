@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-// Agents number their versions upwards from their incarnations; none counts this far in a year.
+// Agents number their versions upwards from their incarnations. No agent counts this far in a year.
 constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 32;
 
 Vec2 rounded(const Vec2& v) { return v.cast<float>().cast<double>(); }

@@ -25,7 +25,7 @@ Scenario one_robot(const Vec2& start, const Vec2& goal) {
   return scenario;
 }
 
-TEST_CASE("no robot is moving when somebody steps out of a place that its laser does not see") {
+TEST_CASE("no robot is moving when a person steps out of a place that its laser does not see") {
   int arrived = 0, cases = 0;
   std::uint64_t touched_at_rest = 0;
   for (std::size_t kind = 0; kind < kCornerKinds.size(); ++kind) {
@@ -44,7 +44,7 @@ TEST_CASE("no robot is moving when somebody steps out of a place that its laser 
   CHECK(touched_at_rest > 10);  // people do walk into robots
 }
 
-TEST_CASE("no robot is moving when somebody steps out of a doorway that is hardly wider than he is") {
+TEST_CASE("no robot is moving when a person steps out of a doorway that is hardly wider than the person") {
   int arrived = 0, cases = 0;
   std::uint64_t touched_at_rest = 0;
   for (std::size_t kind = 0; kind < kDoorwayKinds.size(); ++kind) {
@@ -63,7 +63,7 @@ TEST_CASE("no robot is moving when somebody steps out of a doorway that is hardl
   CHECK(touched_at_rest > 10);
 }
 
-TEST_CASE("six robots work among ten people whom they see by their own lasers") {
+TEST_CASE("six robots work among ten people whom they see only with their own lasers") {
   const Scenario scenario =
       load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/house-laser.yaml");
   SimSystem system(scenario, 1);

@@ -34,8 +34,8 @@ using Matrix = std::map<std::pair<std::string, std::string>, Link>;
 
 bool is_coordinator(const std::string& process) { return process.starts_with("coordinator"); }
 
-/// How likely the link is bad. Links that robots need whoever coordinates are rarely cut: then nobody can
-/// help.
+/// Samples how bad the link is. Links that robots need whichever coordinator is active are rarely cut,
+/// because then no coordinator can help.
 Link sample_link(const std::string& from, const std::string& to, double share, Rng& rng) {
   const bool is_of_coordinator = is_coordinator(from) || is_coordinator(to);
   if (!rng.chance(is_of_coordinator ? share : 0.05 * share)) return Link::kGood;
@@ -229,7 +229,8 @@ TEST_CASE("robots drive on although a standby hears robots but neither the activ
   require_motion(2, {{"coordinator 0", "coordinator 1"}, {"agent 2", "coordinator 1"}});
 }
 
-TEST_CASE("robots drive on although coordinators do not hear each other, and one of them not an agent") {
+TEST_CASE(
+    "robots drive on although coordinators do not hear each other, and one of them does not hear an agent") {
   require_motion(
       2,
       {{"coordinator 0", "coordinator 1"}, {"coordinator 1", "coordinator 0"}, {"agent 2", "coordinator 1"}});

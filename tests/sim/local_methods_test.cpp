@@ -44,7 +44,7 @@ TEST_CASE("local methods that follow a path drive robots among each other to the
   require_safe(system);
 }
 
-TEST_CASE("a local method without a path drives robots over an open floor, without contact") {
+TEST_CASE("a local method without a path drives robots across an open floor without contact") {
   const std::string planner = GENERATE(as<std::string>(), "dynamic-window", "potential-field");
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 9));
   CAPTURE(planner, seed);

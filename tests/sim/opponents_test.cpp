@@ -140,7 +140,7 @@ TEST_CASE("among more opponents than a list holds, robots drive, and none is mov
     ++lists;
     if (list.obstacles().size() < msg::MAX_OBSTACLES || list.complete_within_m() >= kCompleteEverywhere_m)
       return;
-    incomplete += list.complete_within_m() > 1;  // and far enough to be of use
+    incomplete += list.complete_within_m() > 1;  // and far enough to be useful
   });
   double longest_way_m = 0;
   system.on_truth([&](const msg::GroundTruth& truth) {

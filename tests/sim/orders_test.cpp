@@ -42,7 +42,7 @@ TEST_CASE("robots without goals wait, and go where they are ordered, pose by pos
   run.require_safe();
 }
 
-TEST_CASE("twenty-two robots that are held at full speed rest after the time to brake and three cycles") {
+TEST_CASE("twenty-two robots that are held at full speed rest after the braking time and three cycles") {
   const double loss = GENERATE(0.0, 0.05);
   CAPTURE(loss);
   std::vector<double> delays_s;
@@ -184,7 +184,8 @@ TEST_CASE("a client learns the end of every order, whatever is killed meanwhile"
     for (int i = 0; i < 400; ++i) {
       run.system.run_for(milliseconds(100));
       if (rng.below(3) == 0) random.send_one(static_cast<RobotId>(rng.below(8)));
-      // If all who know that there was no order before are killed, robots are held until an operator resumes.
+      // If every process that knows that there was no order before is killed, robots are held until an
+      // operator resumes them.
       if (run.system.now() < run.system.begin() + seconds(3)) continue;
       for (const std::string& process : SimSystem::process_names(scenario)) {
         if (process == "simulator" || process == "vision") continue;
@@ -266,7 +267,7 @@ TEST_CASE("another robot's agent restores an order that coordinator and agent ha
   }
 }
 
-TEST_CASE("a client without a second chance is told only of orders that outlive the coordinator") {
+TEST_CASE("a client that sends each order only once is told only of orders that outlive the coordinator") {
   int answered = 0, lost = 0, unanswered = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);

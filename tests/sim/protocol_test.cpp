@@ -58,7 +58,7 @@ TEST_CASE("an undisturbed robot never brakes because a verdict is missing") {
   CHECK(peak == Approx(scenario.limits.speed_mps).margin(0.02));
 }
 
-TEST_CASE("of two robots with equal claims neither always yields") {
+TEST_CASE("neither of two robots with equal claims always yields") {
   // Two robots cross at right angles, almost simultaneously, at a random time of the control cycle.
   int won[2] = {0, 0};
   Rng rng(1);

@@ -10,7 +10,7 @@ using league::RefereeCommand;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr double kMaxSpeed_mps = 1.5, kMinDistance_m = 0.5;  // of the league's rules for STOP
+constexpr double kMaxSpeed_mps = 1.5, kMinDistance_m = 0.5;  // limits of the league's rules for STOP
 
 /// Twenty-two robots that drive to and fro, except for two without goals beside the ball and two whose goals
 /// are beside the ball.
@@ -101,7 +101,7 @@ TEST_CASE("robots give way to a ball that rolls through them after STOP") {
     const double angle_rad = 0.6 * static_cast<double>(seed);
     RefereedSystem match(busy_teams({rotated(Vec2(-3, 0.3), angle_rad), rotated(Vec2(1.2, 0), angle_rad)}),
                          seed);
-    // In a crowd, some robots are in the way of others.
+    // In a crowd, some robots block others.
     match.play(RefereeCommand::kStop, seconds(5), seconds(2));
     CHECK(match.max_speed_mps <= kMaxSpeed_mps);
     CHECK(match.min_distance_m >= 0.3);

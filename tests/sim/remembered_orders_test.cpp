@@ -89,7 +89,8 @@ TEST_CASE("a hold outlives its only coordinator, although another agent's memory
 }
 
 // The agent that remembers the hold hears coordinator 1, which does not hear it for a while.
-TEST_CASE("a hold that one agent remembers holds, although the new coordinator does not hear that agent") {
+TEST_CASE(
+    "a hold that one agent remembers stays in force although the new coordinator does not hear that agent") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 2, seed);
@@ -167,7 +168,7 @@ TEST_CASE("after a restart of everything robots hold, also if none has moved") {
   run.require_safe();
 }
 
-TEST_CASE("robots with goals hold after a restart of everything, at any time from the first epoch on") {
+TEST_CASE("robots with goals are held after a restart of everything, at any time from the first epoch on") {
   for (const int started_ms : {100, 300, 1000, 1300, 1700}) {
     const int coordinators = GENERATE(1, 2);
     CAPTURE(started_ms, coordinators);
@@ -185,7 +186,7 @@ TEST_CASE("robots with goals hold after a restart of everything, at any time fro
   }
 }
 
-TEST_CASE("coordinators and agents that restart while a fleet starts do not make it hold") {
+TEST_CASE("coordinators and agents that restart while a fleet starts do not cause it to be held") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);

@@ -110,7 +110,7 @@ TEST_CASE("an agent with other rules is refused and named, and no other robot dr
   CHECK(system.run_until_arrived(system.now() + 20s));
 }
 
-TEST_CASE("what a vision process with another roster sees is not used") {
+TEST_CASE("observations by a vision process with another roster are not used") {
   const Scenario scenario = crossing();
   SimSystem system(scenario, 6);
   system.run_for(1s);

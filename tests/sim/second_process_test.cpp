@@ -198,7 +198,7 @@ TEST_CASE("a second vision ends by itself, and robots arrive") {
   watch.require_safe();
 }
 
-TEST_CASE("two coordinators of one number are named, and robots arrive") {
+TEST_CASE("two coordinators with the same number are named, and robots arrive") {
   const auto seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -213,7 +213,7 @@ TEST_CASE("two coordinators of one number are named, and robots arrive") {
   watch.require_safe();
 }
 
-TEST_CASE("a simulator that restarts is no second one") {
+TEST_CASE("a simulator that restarts does not count as a second one") {
   SimSystem system(circle(), 1);
   Watch watch(system);
   system.run_for(2s);

@@ -58,7 +58,7 @@ void count_own_stops(SimSystem& system, int& own_stops) {
   });
 }
 
-TEST_CASE("robots arrive whatever rate of cameras and error of wheels a scenario may state") {
+TEST_CASE("robots arrive with any camera rate and wheel error that a scenario may state") {
   const auto [rate_hz, scale_error] = GENERATE(table<double, double>({{5, 0.005}, {7, 0.02}, {1000, 0.05}}));
   Scenario scenario = shipped("crossing");
   scenario.vision.rate_hz = rate_hz;
@@ -69,7 +69,7 @@ TEST_CASE("robots arrive whatever rate of cameras and error of wheels a scenario
   run.require_safe();
 }
 
-TEST_CASE("simulated robots keep to whatever limits of motion a scenario states") {
+TEST_CASE("simulated robots obey any motion limits that a scenario states") {
   const auto seed = GENERATE(range(1u, 31u));
   Rng rng(seed);
   Scenario scenario = shipped("crossing");
@@ -89,7 +89,7 @@ TEST_CASE("simulated robots keep to whatever limits of motion a scenario states"
   CHECK(own_stops == 0);
 }
 
-TEST_CASE("a robot arrives however long or short its control cycle and strong its motors are") {
+TEST_CASE("a robot arrives whatever the length of its control cycle and the strength of its motors") {
   const auto seed = GENERATE(range(1u, 61u));
   Rng rng(seed);
   const double rate_hz = 5 * std::pow(100, rng.uniform()),

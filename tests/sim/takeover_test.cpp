@@ -77,7 +77,7 @@ TEST_CASE("coordinators that repeatedly die and restart only interrupt the robot
   }
 }
 
-TEST_CASE("a coordinator that is stopped and resumed does no harm and stands by") {
+TEST_CASE("a coordinator that is stopped and resumed does no harm and becomes a standby") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     IdealFloor floor(circle_scenario(12, 2), seed);

@@ -20,7 +20,7 @@ struct AgentTraffic {
   std::map<Incarnation, int> messages;
 };
 
-TEST_CASE("of two running agents of one robot the later one drives, and clearances hold") {
+TEST_CASE("if two agents of one robot run, the later one drives it, and clearances are kept") {
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     CAPTURE(seed);
     Scenario scenario = parse_scenario(

@@ -51,7 +51,7 @@ TEST_CASE("robots change rooms through doors of random floor plans, without cont
   require_safe(system);
 }
 
-TEST_CASE("robots that are localised in camera images change rooms among walls and map cells") {
+TEST_CASE("robots that are localised in camera images move from room to room among walls and map cells") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);

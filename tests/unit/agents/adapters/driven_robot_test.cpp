@@ -38,7 +38,7 @@ TEST_CASE(
   CHECK_FALSE(fact.has_moved);
 }
 
-TEST_CASE("a driven robot follows a version that comes in time to its end, turning as it is told") {
+TEST_CASE("a driven robot follows a version that arrives in time to its end, and turns as commanded") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
@@ -71,7 +71,7 @@ TEST_CASE("a driven robot follows a version that comes in time to its end, turni
   CHECK(wrapped_rad(scene.heading_rad - 2) == Approx(0).margin(0.1));
 }
 
-TEST_CASE("a driven robot that is moved makes its own stop where it is seen") {
+TEST_CASE("a driven robot that is moved makes an own stop where it is seen") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
@@ -116,7 +116,7 @@ double drive_and_measure(Scene& scene, const std::function<void()>& step) {
 
 }  // namespace
 
-TEST_CASE("by its base's odometry a driven robot knows where it is although it obeys only in part") {
+TEST_CASE("with its base's odometry a driven robot knows where it is although the base obeys only partly") {
   // Reports are dated between the periods of the control.
   const auto [report_every, ago] = GENERATE(table<int, Duration>({{1, 0ms}, {1, 3ms}, {1, 7ms}, {2, 5ms}}));
   CAPTURE(report_every, ago.count());
@@ -124,7 +124,7 @@ TEST_CASE("by its base's odometry a driven robot knows where it is although it o
   scene.desired_heading_rad = 2;  // it turns as it drives
   scene.run(1500ms);
   scene.desired_heading_rad = 0.4;
-  // By its commands it would be 7 mm farther at the end.
+  // According to its commands it would be 7 mm farther at the end.
   scene.obeyed_part = 0.995;
   scene.sees = false;
   int periods = 0;
@@ -138,7 +138,7 @@ TEST_CASE("by its base's odometry a driven robot knows where it is although it o
   CHECK(scene.robot.misdated_odometry() == 0);
 }
 
-TEST_CASE("fixes that are newer than the odometry count when that has come") {
+TEST_CASE("fixes that are newer than the odometry are used once the odometry has arrived") {
   Scene scene;
   scene.run(1500ms);
   // The base is pushed, of which its odometry knows nothing.
@@ -174,7 +174,7 @@ TEST_CASE("odometry whose dates are wrong is counted, and does not mislead a dri
   CHECK_FALSE(scene.robot.side().has_pending());
 }
 
-TEST_CASE("a clock of a base that is set back during the drive misleads a driven robot for a moment only") {
+TEST_CASE("if a base's clock is set back during the drive, the robot is misled only for a moment") {
   Scene scene;
   scene.run(1500ms);
   scene.sees = false;
@@ -187,7 +187,7 @@ TEST_CASE("a clock of a base that is set back during the drive misleads a driven
   CHECK(scene.robot.misdated_odometry() > 50);
 }
 
-TEST_CASE("a driven robot is less certain where its odometry is not believed") {
+TEST_CASE("a driven robot is less certain of its position while its odometry is not trusted") {
   const auto error_after = [](Duration date_error) {
     Scene scene;
     scene.run(1500ms);
@@ -201,7 +201,7 @@ TEST_CASE("a driven robot is less certain where its odometry is not believed") {
   CHECK(error_after(100ms) > 3 * error_after(0ms));
 }
 
-TEST_CASE("a driven robot whose odometry is no number stands and is silent until it has found its pose") {
+TEST_CASE("a driven robot whose odometry is NaN stands still and is silent until it has found its pose") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Scene scene;
   scene.run(1500ms);

@@ -68,7 +68,8 @@ TEST_CASE("a new agent does not make a robot leave the version that it executes"
   CHECK(scene.robot.side().own_stops() == 1);
 }
 
-TEST_CASE("a version that starts later than the lead is discarded, and the new agent acknowledged at once") {
+TEST_CASE(
+    "a version that starts later than the lead is discarded, and the new agent is acknowledged at once") {
   const Duration latency = GENERATE(0ms, 50ms, 300ms);
   PendingScene scene(latency);
   scene.run(10ms);
@@ -80,10 +81,10 @@ TEST_CASE("a version that starts later than the lead is discarded, and the new a
   CHECK(scene.fact().executing.number == scene.base.number);
 }
 
-TEST_CASE("of a chain of versions those remain that start within the lead") {
+TEST_CASE("of a chain of versions, those that start within the lead remain") {
   PendingScene scene(200ms);
   scene.run(10ms);
-  // Others of which the robot will execute none: on another base, and too late.
+  // Further versions that the robot will not execute: on another base, and too late.
   Version second =
       continuation(scene.pending, 100, scene.pending.number + 1, scene.start + 50ms, Vec2(0, 3), 300ms);
   Version third = continuation(second, 100, second.number + 1, scene.start + 150ms, Vec2(0, -3), 300ms);
@@ -143,7 +144,7 @@ namespace {
 class ExpectedVersions {
  public:
   void grant(const Version& version) { versions_.push_back(version); }
-  /// Whether the fact is one that they expect.
+  /// Returns whether the fact is one of the expected ones.
   bool apply(const Feedback& fact) {
     const VersionNumber f = fact.executing.number;
     const auto is_f = [=](const Version& version) { return version.number == f; };
@@ -164,7 +165,7 @@ class ExpectedVersions {
 
 }  // namespace
 
-TEST_CASE("whatever agents restart, a robot executes what is expected, and its body is there") {
+TEST_CASE("whichever agents restart, a robot executes what is expected, and its body is there") {
   int restarts = 0, deferred = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     INFO("seed " << seed);
@@ -188,7 +189,7 @@ TEST_CASE("whatever agents restart, a robot executes what is expected, and its b
         last = fact.executing;
         next = scene.now;
       }
-      // What the acknowledgement did not state is not executed.
+      // A version that the acknowledgement did not state is not executed.
       REQUIRE((fact.executing.incarnation == acknowledged || fact.executing.number == begun_with));
       if (is_waiting && acknowledged == scene.agent) is_waiting = false;
       const bool has_restarted = rng.chance(0.04), is_twin = rng.chance(0.3);

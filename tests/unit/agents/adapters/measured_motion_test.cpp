@@ -7,7 +7,7 @@ namespace sidestep::measured_motion_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a base's velocity follows from its odometry, whatever the frame of that") {
+TEST_CASE("a base's velocity follows from its odometry, whatever the odometry's frame") {
   const Time begin = time_from_ns(1'000'000'000'000);
   const double frame_rad = 2.1;
   MeasuredMotion measured;
@@ -27,7 +27,7 @@ TEST_CASE("a base's velocity follows from its odometry, whatever the frame of th
   CHECK_FALSE(measured.mean(begin - 5ms, begin + 5ms));
 }
 
-TEST_CASE("a base that moves and turns moves in the direction that it has in the middle of an interval") {
+TEST_CASE("a base that moves and turns moves in the direction that it has at the middle of an interval") {
   const Time begin = time_from_ns(1'000'000'000'000);
   const double turn_radps = GENERATE(-2.5, 2.5);
   MeasuredMotion measured;

@@ -110,7 +110,7 @@ TEST_CASE("a motion that accelerates, brakes and rests is fitted within a fracti
   CHECK(motion.error_m < 0.0004);
 }
 
-TEST_CASE("a fitted motion takes as long as the path, ends at its velocity, and is as near as it says") {
+TEST_CASE("a fitted motion takes as long as the path, ends at its velocity, and is as near as it claims") {
   double worst_ratio = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     CAPTURE(seed);
@@ -138,7 +138,7 @@ TEST_CASE("a fitted motion takes as long as the path, ends at its velocity, and 
   CHECK(worst_ratio < 1.2);
 }
 
-TEST_CASE("a path that is no number has an error that is none") {
+TEST_CASE("a path with NaN has an error that is NaN") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   auto path = path_of({{1, 0}, {1, 0}, {1, 0}, {1, 0}}, 10ms);
   path[2].position_m.x() = nan;

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-TEST_CASE("dates are believed once a report has arrived at its date, and not for ever") {
+TEST_CASE("dates are trusted once a report has arrived at its date, but not for ever") {
   OdometryDates dates(4ms);
   CHECK_FALSE(dates.is_believed(kBegin, kBegin + 10ms));
   CHECK(dates.is_believed(kBegin + 20ms, kBegin + 24ms));
@@ -20,7 +20,7 @@ TEST_CASE("dates are believed once a report has arrived at its date, and not for
   CHECK_FALSE(dates.is_believed(kBegin + 520ms, kBegin + 530ms));
 }
 
-TEST_CASE("what comes from the future is refused, and nothing is believed until another proof") {
+TEST_CASE("a report from the future is refused, and ends the trust until another proof") {
   OdometryDates dates(4ms);
   CHECK(dates.is_believed(kBegin, kBegin));
   CHECK(dates.is_believed(kBegin + 14ms, kBegin + 10ms));
@@ -29,7 +29,7 @@ TEST_CASE("what comes from the future is refused, and nothing is believed until 
   CHECK(dates.is_believed(kBegin + 40ms, kBegin + 40ms));
 }
 
-TEST_CASE("a base whose clock is off by more than the error and the delay is never believed") {
+TEST_CASE("a base whose clock is off by more than the error plus the delay is never trusted") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -38,7 +38,7 @@ TEST_CASE("a base whose clock is off by more than the error and the delay is nev
                    jitter = from_seconds(rng.uniform(0, 0.005));
     const Duration behind = from_seconds(rng.uniform(0.001, 0.2));
     const bool is_ahead = rng.chance(0.5);
-    // Of a clock that is ahead, the delay hides a part.
+    // With a clock that is ahead, the delay hides a part of the offset.
     const Duration offset = is_ahead ? max_error + least_delay + jitter + behind : -max_error - behind;
     OdometryDates dates(max_error);
     Time now = kBegin;

@@ -14,8 +14,7 @@ using test::beyond_m;
 using test::continuation;
 using test::DrivenScene;
 
-/// How far the body comes out of the robot's first own stop after `before`, and its inflation, within a
-/// second.
+/// How far the body leaves the robot's first own stop after `before`, beyond its inflation, within a second.
 struct Excursion {
   std::optional<Version> stop;
   double beyond_m = 0;
@@ -74,7 +73,7 @@ std::optional<Excursion> push_at_random(std::uint64_t seed) {
   Vec2 aim_mps2(0, 0);
   for (Time next = scene.now; scene.now < push_at; scene.step()) {
     if (scene.now < next) continue;
-    // Agents propose about so long ahead, and hold an acceleration for about as long.
+    // Agents propose about this far ahead, and hold an acceleration for about this long.
     const Duration ahead = latency + 10ms + from_seconds(rng.uniform(0, 0.03));
     if (rng.chance(0.4)) {
       const double size_mps2 = rng.uniform(0, 5), angle_rad = rng.uniform(-3.14, 3.14);
@@ -118,6 +117,9 @@ void check_pushes(std::uint64_t first, std::uint64_t count) {
 
 TEST_CASE("whenever a robot is pushed, its body stays within its own stop") { check_pushes(1, 2000); }
 
-TEST_CASE("the same for a hundred thousand pushes", "[.][slow]") { check_pushes(1'000'000, 100'000); }
+TEST_CASE("whenever a robot is pushed, its body stays within its own stop, for a hundred thousand pushes",
+          "[.][slow]") {
+  check_pushes(1'000'000, 100'000);
+}
 
 }  // namespace sidestep::own_stop_test

@@ -9,7 +9,7 @@
 
 namespace sidestep::robot_memory_test {
 
-TEST_CASE("a robot remembers by its file what it stored") {
+TEST_CASE("a robot's file preserves what the robot stored") {
   const TemporaryFolder folder;
   const std::string robots = folder.file("a/b");
   const robot::DurableState state{1'795'644'474'375'210'547u, 17, 18'446'744'073'709'551'615u, true};
@@ -23,7 +23,7 @@ TEST_CASE("a robot remembers by its file what it stored") {
   CHECK(RobotMemory(robots, 4).state() == robot::DurableState{});
 }
 
-TEST_CASE("a memory that is broken is refused with its file and line, and not overwritten") {
+TEST_CASE("a broken memory is refused with its file and line, and is not overwritten") {
   const TemporaryFolder folder;
   const std::string path = folder.file("robot-3.memory");
   const auto broken = GENERATE(
@@ -39,7 +39,7 @@ TEST_CASE("a memory that is broken is refused with its file and line, and not ov
   CHECK(std::string(std::istreambuf_iterator<char>(file), {}) == broken.first);
 }
 
-TEST_CASE("only one process has the memory of a robot") {
+TEST_CASE("only one process can have the memory of a robot") {
   const TemporaryFolder folder;
   {
     const RobotMemory memory(folder.path(), 3);
@@ -50,7 +50,7 @@ TEST_CASE("only one process has the memory of a robot") {
   CHECK_NOTHROW(RobotMemory(folder.path(), 3));
 }
 
-TEST_CASE("a robot whose folder is gone cannot store") {
+TEST_CASE("a robot whose folder is gone cannot store anything") {
   const TemporaryFolder folder;
   RobotMemory memory(folder.file("robots"), 3);
   REQUIRE(memory.store({1, 2, 3, false}));

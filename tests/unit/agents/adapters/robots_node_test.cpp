@@ -29,7 +29,7 @@ class IdleDriver : public Driver {
     report = std::move(callback);
   }
   int periods = 0;
-  double max_speed_mps = 0;  ///< of the latest commands
+  double max_speed_mps = 0;  ///< maximum in the latest commands
   std::function<void(const OdometryReport&)> report;
 };
 
@@ -95,7 +95,7 @@ TEST_CASE("driven robots report at least once per cycle, and at once when they o
   CHECK(scene.driver.periods > 100);
 }
 
-TEST_CASE("odometry that is dated wrongly is counted for its robot") {
+TEST_CASE("odometry with a wrong date is counted for its robot") {
   Scene scene;
   scene.run(100ms);
   const Time now = scene.network.now();
@@ -110,7 +110,7 @@ TEST_CASE("odometry that is dated wrongly is counted for its robot") {
   CHECK(drops.total(DropReason::kMisdatedOdometry) == 2);
 }
 
-TEST_CASE("robots whose process must end drive their versions to the end, and take no others") {
+TEST_CASE("robots whose process must end drive their versions to the end and accept no others") {
   Scene scene;
   for (int i = 0; i < 60; ++i) {
     scene.command(0, 100, 1);

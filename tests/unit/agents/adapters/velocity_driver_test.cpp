@@ -78,7 +78,7 @@ TEST_CASE("odometry with numbers that are none is dropped and counted") {
   ros::Odometry place = scene.odometry(), turn = scene.odometry(), none = scene.odometry();
   place.position[1] = bad;
   turn.orientation[2] = bad;
-  none.orientation = {0, 0, 0, 0};  // of a message whose orientation nobody has set
+  none.orientation = {0, 0, 0, 0};  // as in a message whose orientation was never set
   scene.report(place);
   scene.report(turn);
   scene.report(none);

@@ -52,7 +52,7 @@ TEST_CASE("each step of an agent's start is reported once") {
   for (const LogEvent& event : f.events.all()) CHECK(event.robot == 3);
 }
 
-TEST_CASE("an agent that its robot no longer obeys says so, and if it obeys it after all") {
+TEST_CASE("an agent reports that its robot no longer obeys it, and that the robot obeys it after all") {
   Fixture f;
   f.activity.is_superseded = true;
   f.run(1s);
@@ -88,7 +88,7 @@ TEST_CASE("a reason to wait that comes and goes in every cycle is not reported")
   CHECK(f.events.all().empty());
 }
 
-TEST_CASE("a speed limit by the clocks is reported with their offset, when it changes and when it ends") {
+TEST_CASE("a speed limit due to the clocks is reported with the offset, when it changes and when it ends") {
   Fixture f;
   f.run(2s);
   CHECK(f.events.all().empty());

@@ -164,7 +164,7 @@ TEST_CASE("cycles begin at multiples of the cycle time by the robot's clock") {
   for (const Duration gap : gaps(floor.commands)) CHECK(std::chrono::abs(gap - floor.cycle()) < 1ms);
 }
 
-TEST_CASE("an agent registers every three cycles until the coordinator's clock is measured, then seldom") {
+TEST_CASE("an agent registers every three cycles until the coordinator's clock is measured, then rarely") {
   Floor floor;
   floor.names_time = false;
   floor.denies = true;
@@ -185,7 +185,8 @@ TEST_CASE("an agent registers every three cycles until the coordinator's clock i
 }
 
 TEST_CASE("a robot that may drive again is driven at once, unless the next cycle begins soon") {
-  const double phase = GENERATE(0.1, 0.4, 0.6, 0.7, 0.8, 0.9);  // of the cycle, when the coordinator is heard
+  // Phase of the cycle in which the coordinator is heard.
+  const double phase = GENERATE(0.1, 0.4, 0.6, 0.7, 0.8, 0.9);
   CAPTURE(phase);
   Floor floor;
   floor.run(1s);

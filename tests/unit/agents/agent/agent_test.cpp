@@ -85,7 +85,7 @@ struct DrivenAgent {
     observe_self(x, observed_at, now);
     agent.on_obstacles(empty_list(observed_at), at_s(now));
   }
-  /// As observe(), with a moving obstacle.
+  /// Like observe(), with a moving obstacle.
   void observe_obstacle(double x, double y, double observed_at, double now) {
     observe_self(0, observed_at, now);
     const ObservedObstacle obstacle{0, at_s(observed_at), {x, y}, 0.09, 0};
@@ -169,7 +169,7 @@ TEST_CASE("an agent plans only as long as it receives lists of obstacles") {
   CHECK(d.plans(0.95));
 }
 
-TEST_CASE("a robot does not drive to where an obstacle that is not listed could reach it") {
+TEST_CASE("a robot does not drive to a place that an unlisted obstacle could reach") {
   const auto drives = [](double complete_within_m) {
     DrivenAgent d;
     d.observe_self(0, 0.6, 0.61);
@@ -181,7 +181,7 @@ TEST_CASE("a robot does not drive to where an obstacle that is not listed could 
   };
   CHECK(drives(kCompleteEverywhere_m));
   CHECK(drives(2));
-  CHECK_FALSE(drives(0.1));  // as large as the robot and its margin
+  CHECK_FALSE(drives(0.1));  // as large as the robot plus its margin
   CHECK_FALSE(drives(0));
 }
 
@@ -203,8 +203,8 @@ TEST_CASE(
   displaced.executing.trajectory = Trajectory::resting(at_s(0.9), {0, 0});
   displaced.is_off_reference = true;
   d.agent.on_feedback(displaced);
-  // If it drove on, the inflation would last, and it might never fit where it has to go.
-  d.observe(0, 0.85, 1.01);  // from before it rested
+  // If it drove on, the inflation would remain, and it might never fit where it has to go.
+  d.observe(0, 0.85, 1.01);  // from a time before it rested
   CHECK_FALSE(d.plans(1.02));
   d.observe(0.04, 1.02, 1.03);  // the robot has not received this observation yet
   CHECK_FALSE(d.plans(1.04));
@@ -277,7 +277,8 @@ TEST_CASE("before the robot's clock is known, an observation is forwarded but no
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 1);
 }
 
-TEST_CASE("what the laser did not see dates from its scan, as far as its pose is right") {
+TEST_CASE(
+    "the region that the laser did not see dates from its scan, and includes the error of the scan's pose") {
   Scenario scenario = two_goals();
   scenario.laser.emplace();
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));

@@ -31,7 +31,7 @@ struct Robot {
   double goal_x() const { return assignment.goal() ? assignment.goal()->position_m.x() : 0; }
 };
 
-TEST_CASE("a robot knows its orders once it has heard the whole memory of a coordinator") {
+TEST_CASE("a robot knows its orders once it has heard the complete memory of a coordinator") {
   Robot r;
   CHECK_FALSE(r.assignment.is_known());
   r.hear(change(scenario_order()));
@@ -74,7 +74,7 @@ TEST_CASE("a robot visits its goals in order, and stays at the last one") {
   CHECK(r.assignment.take_missing().empty());
 }
 
-TEST_CASE("an order of a higher rank comes first, and the interrupted one goes on") {
+TEST_CASE("an order of a higher rank goes first, and the interrupted one continues afterwards") {
   Robot r;
   r.hear(memory({go(kClient, 10, {{5, 0}, {6, 0}})}));
   r.assignment.on_arrival();
@@ -105,7 +105,7 @@ TEST_CASE("a cancelled robot has no goal, until it is given another one") {
   CHECK(r.goal_x() == 6);  // each rank cancels its own orders
 }
 
-TEST_CASE("a new agent goes on where the last one was, and leaves finished orders alone") {
+TEST_CASE("a new agent continues where the previous one was, and leaves finished orders alone") {
   Robot first;
   first.hear(memory({go(kClient, 10, {{5, 0}, {6, 0}, {7, 0}})}));
   first.assignment.on_arrival();
@@ -124,7 +124,7 @@ TEST_CASE("a new agent goes on where the last one was, and leaves finished order
   CHECK_FALSE(third.assignment.goal());  // the finished order has been left
 }
 
-TEST_CASE("an agent remembers the orders of all robots, also those that a coordinator's memory lacks") {
+TEST_CASE("an agent remembers the orders of all robots, even those that a coordinator's memory lacks") {
   const RememberedOrder other{{msg::OrderKind::ORDER_CANCEL, 4, kClient, 20}};
   const RememberedOrder another{{msg::OrderKind::ORDER_CANCEL, 5, kClient, 21}};
   Robot r;
@@ -150,7 +150,7 @@ OrderPage told_by(std::uint32_t process, Incarnation incarnation, OrderPage page
   return page;
 }
 
-TEST_CASE("an agent knows whether a coordinator has told every order that it remembers") {
+TEST_CASE("an agent knows whether a coordinator has announced every order that it remembers") {
   constexpr std::uint32_t kActive = kCoordinator, kStandby = kCoordinator + 1;
   Robot r;
   CHECK(r.assignment.remembers_nothing());
@@ -179,7 +179,7 @@ TEST_CASE("an agent knows whether a coordinator has told every order that it rem
   CHECK(r.assignment.is_told_by(kActive, 1));
 }
 
-TEST_CASE("an agent's memory outlives coordinators that have forgotten everything, one after the other") {
+TEST_CASE("an agent's memory survives successive coordinators that have forgotten everything") {
   Robot r;
   r.hear(memory({hold_of(8, 5)}));
   for (Incarnation incarnation = 2; incarnation < 10; ++incarnation) {
@@ -193,7 +193,7 @@ TEST_CASE("an agent's memory outlives coordinators that have forgotten everythin
   }
 }
 
-TEST_CASE("an agent forgets no order, however many have changed since the last whole memory") {
+TEST_CASE("an agent forgets no order, however many have changed since the last complete memory") {
   Robot r;
   r.hear(memory({hold_of(8, 5)}));
   for (OrderNumber number = 100; number < 2000; ++number) {
@@ -206,7 +206,7 @@ TEST_CASE("an agent forgets no order, however many have changed since the last w
   CHECK(r.assignment.take_missing().size() == 701);
 }
 
-TEST_CASE("of two agents in a passage the one with the older order passes first, whichever robot has it") {
+TEST_CASE("of two agents in a passage, the one with the older order passes first, whichever robot has it") {
   constexpr Duration kPeriod = std::chrono::seconds(30);
   for (const RobotId older : {RobotId{3}, RobotId{8}}) {
     CAPTURE(older);

@@ -133,7 +133,7 @@ TEST_CASE("the larger the offset that the measurements permit, the lower the spe
   CHECK(quick.clocks.max_speed_mps(at_s(1)) > 2);
   CHECK(quick.clocks.max_speed_mps(at_s(4)) == 0);  // not measured for too long
 
-  // Of the default margin, 2 mm per robot are left for clocks.
+  // The default margin leaves 2 mm per robot for clocks.
   ClockFixture slow;
   slow.min_delay_s = 0.01;
   slow.spread_s = 0;
@@ -190,7 +190,7 @@ TEST_CASE("clock measurements start anew with a new epoch and with a restarted r
   CHECK(f.clocks.is_beyond_bound(at_s(0.27)));
 }
 
-TEST_CASE("the clock that a robot had before a restart does not narrow what is known of its clock") {
+TEST_CASE("the clock that a robot had before a restart does not narrow the interval of its present clock") {
   ClockFixture f;
   f.spread_s = 0;
   f.measure_both(0, 10);

@@ -33,7 +33,7 @@ TEST_CASE("before the first list nothing is known") {
   CHECK(f.seen().radius_m == 0);
 }
 
-TEST_CASE("a complete list counts alone, an incomplete one with the world state of the same time") {
+TEST_CASE("a complete list counts alone, an incomplete one only with the world state of the same time") {
   Fixture f;
   f.monitor.on_list(list(10, kCompleteEverywhere_m));
   CHECK(f.monitor.complete_at() == at_s(10));
@@ -85,7 +85,7 @@ TEST_CASE("late and repeated lists and worlds do not replace newer ones") {
   CHECK(f.seen().is_everywhere());
 }
 
-TEST_CASE("of many world states the latest are remembered") {
+TEST_CASE("the latest of many world states are remembered") {
   Fixture f;
   for (int k = 0; k < 100; ++k) f.monitor.on_world(world(10 + 0.01 * k, {0.1 * k, 0}));
   f.monitor.on_list(list(10.9, 1));
@@ -101,7 +101,7 @@ TEST_CASE(
   f.monitor.on_forgotten({{0, 0}, 3, at_s(10), 1.5}, at_s(11));
   CHECK(f.monitor.seen(at_s(10.5)).radius_m == 3);
   f.monitor.on_forgotten({{1, 0}, 2.5, at_s(10.2), 1.5}, at_s(11.2));
-  // From the first region 3 m - 0.2 s * 1.5 m/s - 1 m are left around the new centre.
+  // Of the first region, 3 m - 0.2 s * 1.5 m/s - 1 m remain around the new centre.
   CHECK(f.monitor.seen(at_s(10.5)).centre_m == Vec2(1, 0));
   CHECK(f.monitor.seen(at_s(10.5)).radius_m == Approx(1.7));
   f.monitor.on_world(world(10.4, {1, 0.5}));

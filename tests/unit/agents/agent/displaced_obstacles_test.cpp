@@ -34,7 +34,7 @@ struct Fixture {
   }
 };
 
-TEST_CASE("displaced robots are moving obstacles, except the robot itself") {
+TEST_CASE("displaced robots are moving obstacles, but the robot itself is not") {
   Fixture f;
   msg::RobotNotice missing;
   missing.robot(8);

@@ -91,7 +91,7 @@ TEST_CASE("a lifted robot holds no version, registers as absent, and proposes a 
   CHECK(is_empty(successor.registration()));
 }
 
-TEST_CASE("a rest version that the robot did not take in time is proposed again") {
+TEST_CASE("a rest version that the robot did not receive in time is proposed again") {
   NegotiationFixture f;
   f.become_ready();
   Version none{kRobot, 0, 0, 0, Trajectory::resting(at_s(1), {0, 0})};

@@ -67,7 +67,7 @@ TEST_CASE("a late verdict leaves the robot braking") {
   CHECK(f.n.counts().missed == 1);
 }
 
-TEST_CASE("a verdict is obeyed once, and of several grants for one start only the first") {
+TEST_CASE("a verdict is obeyed once, and only the first of several grants for one start counts") {
   NegotiationFixture f;
   f.become_ready();
   const auto first = f.propose(1.0, 0.9), again = f.propose(1.0, 0.93);
@@ -178,7 +178,7 @@ TEST_CASE("a silent agent continues although its robot's clock was set back mean
   CHECK_FALSE(f.n.is_superseded());
 }
 
-TEST_CASE("a silent agent asks its robot when this says nothing any more, and only then") {
+TEST_CASE("a silent agent asks its robot when the robot has fallen silent, and only then") {
   NegotiationFixture f;
   f.become_ready();
   for (int cycle = 0; cycle < 40; ++cycle) f.n.close_cycle(at_s(1));
@@ -199,7 +199,7 @@ TEST_CASE("a silent agent asks its robot when this says nothing any more, and on
   CHECK_FALSE(f.n.must_ask_robot());
 }
 
-TEST_CASE("an agent goes on although a version starts much later, by a wrong clock") {
+TEST_CASE("an agent continues although a version starts much later because of a wrong clock") {
   NegotiationFixture f;
   f.become_ready();
   const auto granted = f.grant(f.propose(3600, 0.96), 0.97);
@@ -215,7 +215,7 @@ TEST_CASE("an agent goes on although a version starts much later, by a wrong clo
   CHECK(f.n.registration().versions->versions().size() == 1);
 }
 
-TEST_CASE("an agent asks for another coordinator if it hears none, or none answers") {
+TEST_CASE("an agent asks for another coordinator if it hears none, or gets no answer") {
   NegotiationFixture f;
   CHECK_FALSE(f.n.is_unserved(at_s(0.5)));
   SECTION("none has ever been heard") {
@@ -305,7 +305,8 @@ TEST_CASE("a coordinator with a slow clock learns the highest epoch, unless a la
   CHECK(f.n.registration().epoch == kEpoch);
 }
 
-TEST_CASE("an agent whose clock is behind an earlier one's starts above it, and yields once it was obeyed") {
+TEST_CASE(
+    "an agent whose clock is behind an earlier agent's starts above it, and yields only once it was obeyed") {
   NegotiationFixture f;
   f.n.on_feedback(fact(f.initial, 0.5, 5000));
   CHECK_FALSE(f.n.is_superseded());
@@ -420,7 +421,7 @@ TEST_CASE("a fact older than the one that ended the fencing does not exclude a v
   CHECK(registration.versions->versions()[0].number == granted->number);
 }
 
-TEST_CASE("an agent numbers a rest version above the robot's last one, also if that was never reported") {
+TEST_CASE("an agent numbers a rest version above the robot's last version, even if that was never reported") {
   NegotiationFixture f;
   f.become_ready();
   const VersionNumber unreported_stop = f.propose(1, 0.96).candidates[0]->number + (VersionNumber{1} << 20);
@@ -450,7 +451,7 @@ TEST_CASE("an agent recovers from a false fact about a version that its robot do
   CHECK(f.n.is_contradicted());
 }
 
-TEST_CASE("an agent that a later one has fenced falls silent") {
+TEST_CASE("an agent falls silent when a later agent has fenced it") {
   NegotiationFixture f;
   f.become_ready();
   const auto proposal = f.propose(1.0, 0.9);
@@ -480,7 +481,7 @@ TEST_CASE("version numbers increase over incarnations and candidates") {
   CHECK(other.propose({&rest, 1}, 5000, at_s(0.9)).candidates[0]->number > 5000);
 }
 
-TEST_CASE("a verdict on an open or late proposal yields its round trip, an unexpected verdict does not") {
+TEST_CASE("a verdict on an open or late proposal gives its round trip, an unexpected verdict does not") {
   NegotiationFixture f;
   f.become_ready();
   Verdict verdict = verdict_on(f.propose(1.0, 0.9));

@@ -152,7 +152,7 @@ TEST_CASE("old observations are dropped, and not counted as invalid") {
   }
 }
 
-TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all that are nearer are known") {
+TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all nearer ones are known") {
   const std::uint64_t seed = GENERATE(range(1u, 11u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -182,7 +182,8 @@ TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all th
   CHECK(f.obstacles.seen(now + from_seconds(1.2)).is_everywhere());
 }
 
-TEST_CASE("what was accepted when the robot's clock was ahead is forgotten, and lists count a second later") {
+TEST_CASE(
+    "observations accepted when the robot's clock was ahead are forgotten, and lists count a second later") {
   Fixture f;
   f.receive(5, 1, 3600, 3600.02);
   REQUIRE(f.obstacles.complete_at() == at_s(3600));

@@ -32,7 +32,7 @@ FloorRules rules_with(const std::vector<Shape>& obstacles) {
   return rules;
 }
 
-TEST_CASE("the world of moved obstacles is that of new ones, and each covers a goal as what it is") {
+TEST_CASE("a world with moved obstacles equals a new one, and reports correctly what covers a goal") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);

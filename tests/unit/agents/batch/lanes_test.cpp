@@ -105,7 +105,7 @@ class BatchedClearance {
   }
 
   batch::Lanes lanes_;
-  std::vector<Other> others_;  // as lanes_
+  std::vector<Other> others_;  // parallel to lanes_
   std::uint64_t decided_ = 0, undecided_ = 0;
 };
 
@@ -162,7 +162,7 @@ TEST_CASE("lanes decide as the exact clearance does, over millions of pairs and 
   }
 }
 
-TEST_CASE("of the pairs that agents compare, lanes leave few to the exact clearance") {
+TEST_CASE("few of the pairs that agents compare are left to the exact clearance") {
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     Rng rng(7);
     BatchedClearance batch(kernels);

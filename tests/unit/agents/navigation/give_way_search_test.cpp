@@ -21,7 +21,7 @@ struct Corridor {
     world = ObstacleWorld({Box{{-5, -2}, {5, -0.15}}, Box{{-5, 0.15}, {left_m, 2}},
                            Box{{right_m, 0.15}, {5, 2}}, Box{{left_m, top_m}, {right_m, 2}}});
   }
-  /// By brute force: the nearest place on a fine grid from which the other robot's centre line is far enough.
+  /// Brute force: the nearest place on a fine grid that is far enough from the other robot's centre line.
   double nearest_m() const {
     double best_m = 1e9;
     for (double x = -4; x < 0; x += 0.01)
@@ -38,7 +38,7 @@ int finish(GiveWaySearch& search, Rng& rng) {
   return steps;
 }
 
-TEST_CASE("the place to give way is the nearest one, as brute force finds it") {
+TEST_CASE("the place to give way is the nearest one, as a brute-force search confirms") {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -59,7 +59,7 @@ TEST_CASE("the place to give way is the nearest one, as brute force finds it") {
   }
 }
 
-TEST_CASE("a search for a place that does not exist takes many steps, and ends") {
+TEST_CASE("a search for a place that does not exist takes many steps but ends") {
   const ObstacleWorld corridor({Box{{-5, -2}, {5, -0.15}}, Box{{-5, 0.15}, {5, 2}}});
   Rng rng(1);
   GiveWaySearchSettings settings;
@@ -71,7 +71,7 @@ TEST_CASE("a search for a place that does not exist takes many steps, and ends")
   CHECK(search.way().empty());
 }
 
-TEST_CASE("a robot on its way to a bay is in the way as long as the other has to pass") {
+TEST_CASE("a robot on its way to a bay is in the way until the other robot has passed") {
   Rng rng(1);
   const ObstacleWorld open;
   GiveWaySearch search(kFloor);

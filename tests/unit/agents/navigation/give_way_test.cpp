@@ -86,7 +86,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a robot that gives way to nobody in the end goes on after a while") {
+TEST_CASE("a robot that gives way although nobody passes continues after a while") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
@@ -126,7 +126,7 @@ TEST_CASE("robots that block each other move to and fro, which is no progress") 
   CHECK(place);
 }
 
-TEST_CASE("a robot gives way until the other has passed, also while that is far away") {
+TEST_CASE("a robot gives way until the other has passed, even while the other is far away") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
@@ -155,7 +155,7 @@ TEST_CASE("robots that close a door together give way, although each of them alo
     CHECK_FALSE(alone.decide(0.1 * i, {0, 0.125}, {coming_from(0.4, -4.9)}, fixed));
 }
 
-TEST_CASE("a robot takes another place if its place is taken, or if it comes no nearer") {
+TEST_CASE("a robot chooses another place if its place is taken, or if it comes no nearer to it") {
   // A bay above the corridor, and another one below it.
   const ObstacleWorld fixed({Box{{-5, -2}, {-2.2, -0.15}}, Box{{-1.8, -2}, {5, -0.15}},
                              Box{{-2.2, -2}, {-1.8, -0.5}}, Box{{-5, 0.15}, {-1.2, 2}},
@@ -206,7 +206,7 @@ TEST_CASE("progress and another goal end a search") {
   CHECK_FALSE(robot.give_way.is_searching());
 }
 
-TEST_CASE("a robot does not give way to one that drives around it, nor at once after a pause") {
+TEST_CASE("a robot does not give way to one that drives around it, nor immediately after a pause") {
   const ObstacleWorld open;
   Robot robot;
   const OtherRobot other = coming_from(1, -4.9);

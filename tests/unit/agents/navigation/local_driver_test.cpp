@@ -37,7 +37,7 @@ TEST_CASE("a window that ignores the path heads for its end, behind a waypoint")
   CHECK(choice.target_m == Vec2(2, 0));
 }
 
-TEST_CASE("near the goal, too near to an obstacle, and without a window, no velocity is chosen") {
+TEST_CASE("no velocity is chosen near the goal, too near to an obstacle, or without a window") {
   const ObstacleWorld world({Circle{{0, 0.3}, 0.25}});
   const std::vector<Vec2> near{{0.1, -0.5}}, far{{2, 0}};
   LocalDriver local = driver({.uses_window = true});
@@ -106,7 +106,7 @@ TEST_CASE("a field chooses no velocity in a local minimum") {
   CHECK_FALSE(local.choose({{{-1.97, 0}, {0, 0}}, path, &wall, {}, kCycle_s}).velocity_mps);
 }
 
-TEST_CASE("a band leads around a body on the path, and its target can be reached on a straight line") {
+TEST_CASE("a band leads around a body on the path, and its target can be reached in a straight line") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
   Rng rng(seed);
@@ -132,7 +132,7 @@ TEST_CASE("a band leads around a body on the path, and its target can be reached
         body.radius_m + kSeparation_m - kTolerance_m - 1e-6);
 }
 
-TEST_CASE("a path to another goal replaces the band, and a gap that is too narrow leaves the path") {
+TEST_CASE("a path to another goal replaces the band, and if a gap is too narrow the path is followed") {
   LocalDriver local = driver({.uses_band = true});
   const ObstacleWorld open;
   const std::vector<Vec2> first{{2, 0}}, second{{0, 1}, {-2, 2}};

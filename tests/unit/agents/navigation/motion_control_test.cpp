@@ -66,7 +66,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a stop after each hold passes no goal, and halves the way to one that is nearer than a hold") {
+TEST_CASE(
+    "a stop after each hold never passes the goal, and halves the distance to a goal nearer than a hold") {
   Rng rng(2);
   for (int i = 0; i < 1000; ++i) {
     MotionLimits limits;
@@ -81,7 +82,7 @@ TEST_CASE("a stop after each hold passes no goal, and halves the way to one that
         0.5 * to_seconds(hold) * velocity + velocity * (velocity.norm() / (2 * limits.deceleration_mps2));
     CAPTURE(to_seconds(hold), limits.acceleration_mps2, limits.deceleration_mps2, to_goal_m.norm());
     CHECK(end_m.norm() <= to_goal_m.norm() + 1e-9);
-    // The time-optimal motion from rest to rest takes so long.
+    // The time-optimal motion from rest to rest takes this long.
     const double optimal_s =
         std::sqrt(2 * to_goal_m.norm() * (1 / limits.acceleration_mps2 + 1 / limits.deceleration_mps2));
     if (optimal_s < to_seconds(hold)) CHECK((to_goal_m - end_m).norm() <= 0.5 * to_goal_m.norm() + 1e-9);

@@ -15,7 +15,7 @@ Time in_period(int number) { return Time(number * kPeriod + kPeriod / 2); }
 
 }  // namespace
 
-TEST_CASE("right of way: among moving robots, each of two comes first in every second period") {
+TEST_CASE("right of way: among moving robots, each of two goes first in every second period") {
   for (int period = 0; period < 4; ++period) {
     CAPTURE(period);
     CHECK(has_right_of_way(3, 7, in_period(period), kPeriod) == (period % 2 == 0));
@@ -23,7 +23,7 @@ TEST_CASE("right of way: among moving robots, each of two comes first in every s
   }
 }
 
-TEST_CASE("right of way: in passages the older order comes first, except in every fourth period") {
+TEST_CASE("right of way: in passages the older order goes first, except in every fourth period") {
   int reversed = 0;
   for (int period = 0; period < 400; ++period) {
     CAPTURE(period);
@@ -42,7 +42,7 @@ TEST_CASE("right of way: robots in passages agree on one order in each period") 
     std::vector<Passer> passers;
     for (RobotId robot = 0; robot < 8; ++robot) passers.push_back({robot, rng.below(3)});
     const Time t = in_period(static_cast<int>(rng.below(1000)));
-    std::vector<int> ahead;  // how many come before each
+    std::vector<int> ahead;  // number of robots that go before each one
     for (const Passer& self : passers) {
       int count = 0;
       for (const Passer& other : passers)
@@ -54,7 +54,7 @@ TEST_CASE("right of way: robots in passages agree on one order in each period") 
   }
 }
 
-TEST_CASE("right of way: of robots with equal orders in a passage, each comes first soon") {
+TEST_CASE("right of way: among robots with equal orders in a passage, each soon goes first") {
   std::vector<int> first(6, 0);
   for (int period = 0; period < 600; ++period)
     for (RobotId robot = 0; robot < 6; ++robot) {

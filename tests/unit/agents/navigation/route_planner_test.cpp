@@ -248,7 +248,7 @@ std::pair<double, double> length_and_clearance(const NamedPlanner& named, const 
   return {here == goal ? length : std::numeric_limits<double>::infinity(), clearance};
 }
 
-TEST_CASE("with clearance as a cost, robots drive through the middle of gaps, at little more length") {
+TEST_CASE("with clearance as a cost, robots drive through the middle of gaps on slightly longer routes") {
   const NamedPlanner plain = make_driving_planner("estar"), clear = make_driving_planner("estar-clearance");
   int scenes = 0, clearer = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -297,7 +297,7 @@ TEST_CASE("of two equally long routes the robot keeps one while it drifts sidewa
     CHECK(route->length_m < length + 0.05);
     length = route->length_m;
     const Vec2 ahead = (route->waypoint_m - here).normalized();
-    // At first the robot drifts back and forth across the line on which both routes are equally long.
+    // Initially the robot drifts back and forth across the line on which both routes are equally long.
     const double deviation = here.x() < -0.8 ? -0.004 * std::copysign(1.0, here.y()) : 0;
     here += 0.02 * ahead + Vec2(0, deviation);
   }
@@ -313,7 +313,7 @@ TEST_CASE("a robot that was pushed off its route replans") {
   CHECK(below->waypoint_m.y() < 0);
 }
 
-TEST_CASE("routes keep the extra clearance where it exists and do without where it does not") {
+TEST_CASE("routes keep the extra clearance where it is available, and do without it elsewhere") {
   const double extra_clearance = 0.05;
   const std::vector<Circle> pair{{{0, 0.4}, 0.2}, {{0, -0.4}, 0.2}};
   PlannerInWorld generous(shortest(), shapes_of(pair), kField, kRadius_m, kMargin_m, extra_clearance,
@@ -338,7 +338,7 @@ TEST_CASE("routes keep the extra clearance where it exists and do without where 
 }
 
 TEST_CASE("a start in obstacles that overlap is left towards the nearest free position") {
-  // On the line between both centres, every way out of one leads deeper into the other at first.
+  // On the line between both centres, every way out of one circle first leads deeper into the other.
   PlannerInWorld planner(shortest(),
                          {Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}}, kField,
                          kRadius_m, kMargin_m, 0, {0, 0});
@@ -349,7 +349,7 @@ TEST_CASE("a start in obstacles that overlap is left towards the nearest free po
   CHECK(route->end_m.y() == Approx(std::sqrt(0.51 * 0.51 - 0.25 * 0.25)).margin(0.01));
 }
 
-TEST_CASE("by every planner, a robot that follows its route gets around obstacles to its goal") {
+TEST_CASE("with every planner, a robot that follows its route gets around obstacles to its goal") {
   const auto name = std::string(GENERATE(from_range(kDrivingPlanners.begin(), kDrivingPlanners.end())));
   CAPTURE(name);
   const NamedPlanner named = make_driving_planner(name);
@@ -439,7 +439,7 @@ std::vector<Shape> slalom() {
   return walls;
 }
 
-TEST_CASE("a search for a long route goes on in the next cycles, and finds the shortest route") {
+TEST_CASE("a search for a long route continues in the next cycles, and finds the shortest route") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   const Field field{80, 80};
@@ -472,7 +472,7 @@ TEST_CASE("a search for a long route goes on in the next cycles, and finds the s
   CHECK(route->length_m == Approx(shortest().plan(domain, start, unlimited, random()).length).margin(0.01));
 }
 
-TEST_CASE("around what changes nearby, a route leads back to the part that is far away") {
+TEST_CASE("a route leads around nearby changes and back to the part that is far away") {
   const Vec2 start(-29.5, 0), goal(29.5, 0);
   PlannerInWorld planner(shortest(), slalom(), {60, 4}, kRadius_m, kMargin_m, 0.02, goal);
   std::optional<Route> route;
@@ -481,7 +481,7 @@ TEST_CASE("around what changes nearby, a route leads back to the part that is fa
   const std::vector<Vec2> before(planner.remaining_waypoints_m().begin(),
                                  planner.remaining_waypoints_m().end());
   const double effort = planner.effort();
-  // On the first leg, and a little aside of it.
+  // On the first leg, slightly to its side.
   planner.world.add(Circle{(start + before.front()) / 2 + Vec2(0, 0.02), 0.1});
   planner.begin(goal);
   const std::optional<Route> around = planner.route_from(start, random());
@@ -493,7 +493,7 @@ TEST_CASE("around what changes nearby, a route leads back to the part that is fa
   const std::span<const Vec2> after = planner.remaining_waypoints_m();
   CHECK(after.front() != before.front());
   CHECK(std::equal(before.end() - 40, before.end(), after.end() - 40));
-  // Where the far part is blocked, the whole route is planned again.
+  // If the far part is blocked, the whole route is planned again.
   planner.world.add(Box{{10, -2}, {10.05, 2}});
   planner.begin(goal);
   std::optional<Route> blocked;

@@ -121,7 +121,7 @@ TEST_CASE("two groups that swap sides all arrive") {
   CHECK(nearest > kMinSeparation_m - 0.05);
 }
 
-TEST_CASE("robots that share one Steering choose as robots with one each") {
+TEST_CASE("robots that share one Steering choose the same as robots with one each") {
   std::vector<Mover> apart;
   for (int i = 0; i < 12; ++i) {
     const Vec2 start = rotated(Vec2(1.5, 0), i * 0.5236);

@@ -9,7 +9,7 @@ namespace sidestep::laser_beams_test {
 constexpr double kPi = std::numbers::pi;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-TEST_CASE("each range is interpreted") {
+TEST_CASE("each kind of range is interpreted correctly") {
   LaserBeams beams({8, 2 * kPi, 0.1, 5}, 0.1);
   const std::vector<float> ranges{1, kInfinite, -kInfinite, test::kNoRange, 6, 0.05F, -1, 2};
   const std::vector<Circle> robots{{{-1.5, 0}, 0.45}};

@@ -7,7 +7,7 @@
 
 namespace sidestep::laser_sight_test {
 
-/// The distance of the nearest frontier from a person who leans against a wall before the robot.
+/// The distance of the nearest frontier from a person who leans against a wall in front of the robot.
 double nearest_frontier_m(double person_radius_m, double range_error_m, double pose_error_m) {
   FloorRules rules;
   rules.obstacles = {Box{{1, -3}, {1.2, 3}}};
@@ -28,7 +28,7 @@ double nearest_frontier_m(double person_radius_m, double range_error_m, double p
   return nearest_m;
 }
 
-TEST_CASE("somebody who leans against a wall is not taken for the wall, however small and inexactly seen") {
+TEST_CASE("a person who leans against a wall is not mistaken for it, however small and inaccurately seen") {
   for (const double radius_m : {0.03, 0.05, 0.15})
     for (const double range_error_m : {0.0, 0.01})
       for (const double pose_error_m : {0.02, 0.07, 0.12}) {
@@ -67,7 +67,7 @@ TEST_CASE("a scan that is not newer than the last one changes nothing") {
   }
 }
 
-TEST_CASE("what stands for a while and is not known is reported by squares, the nearest ones first") {
+TEST_CASE("unknown things that stand for a while are reported as squares, the nearest ones first") {
   Watched watched;
   watched.settings.max_unknown = 3;
   const Vec2 at_m(10, -7);  // away from the origin, so that distances from there count for nothing

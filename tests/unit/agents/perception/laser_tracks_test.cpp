@@ -65,7 +65,7 @@ class Drive {
   double now_s_ = 0;
 };
 
-TEST_CASE("walls do not move while the robot drives and turns") {
+TEST_CASE("walls do not appear to move while the robot drives and turns") {
   const bool has_map = GENERATE(false, true);
   int tracks = 0, moving = 0;
   double driven_m = 0, turned_rad = 0;
@@ -101,7 +101,7 @@ TEST_CASE("people who walk among walls are tracked") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     INFO("seed " << seed << ", map " << has_map);
     Drive drive(seed, 5, has_map);
-    std::vector<double> seen_s(drive.people().size(), 0);  // for how long a person has been seen and walking
+    std::vector<double> seen_s(drive.people().size(), 0);  // how long each person has been seen and walking
     for (int scan = 0; scan < 400; ++scan) {
       drive.step();
       const auto tracks = drive.tracks().tracks();
@@ -198,7 +198,7 @@ TEST_CASE("a person who stops keeps the track and does not become a wall") {
   CHECK(hall.at(at).is_moving);
 }
 
-TEST_CASE("what has not moved since it was first seen stands") {
+TEST_CASE("something that has not moved since it was first seen counts as standing") {
   Hall hall;
   for (int i = 0; i < 60; ++i) hall.scan({{2, 1}, 0.25});
   CHECK(hall.tracks.tracks().empty());

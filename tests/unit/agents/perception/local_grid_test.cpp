@@ -15,7 +15,7 @@ constexpr LaserSettings kLaser{90, 2 * kPi, 0.05, 5};
 
 Time at_s(double seconds) { return time_from_ns(1'000'000'000) + from_seconds(seconds); }
 
-/// The same evidence, kept for cells of the whole world, with rays that are sampled finely.
+/// The same evidence, stored for cells of the whole world, with finely sampled rays.
 class SlowGrid {
  public:
   explicit SlowGrid(const LocalGridSettings& settings) : settings_(settings) {}
@@ -118,7 +118,7 @@ struct Fixture {
   CellState state(double x, double y) const { return grid.state_at({x, y}); }
 };
 
-TEST_CASE("hits, cleared rays and dropouts") {
+TEST_CASE("hits mark cells, rays clear cells, and dropouts change nothing") {
   Fixture f;
   f.scan(2.02F);
   CHECK(f.state(2.02, 0.001) == CellState::kUnknown);
@@ -171,7 +171,7 @@ TEST_CASE("evidence saturates and decays") {
   CHECK(f.grid.state(crossed) == CellState::kUnknown);
 }
 
-TEST_CASE("the time for which a cell is occupied begins anew when it was not") {
+TEST_CASE("the time for which a cell has been occupied restarts after it was not") {
   Fixture f;
   for (int i = 0; i <= 20; ++i) f.scan(2.02F);
   const Cell hit = f.grid.cell_at({2.02, 0.001});
@@ -204,7 +204,7 @@ TEST_CASE("the window moves by whole cells and forgets what leaves it") {
   CHECK(f.grid.state_at({-998.97, 777.72}) == CellState::kOccupied);
 }
 
-TEST_CASE("the occupied cells of a box are those that a look at each cell finds") {
+TEST_CASE("the occupied cells of a box are those that checking each cell finds") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

@@ -30,7 +30,7 @@ struct View {
 
 const auto kAll = [](const Vec2&) { return true; };
 
-TEST_CASE("each disc is one cluster, with its radius and the mean of its hits, wherever the scan begins") {
+TEST_CASE("each disc is one cluster, with its radius and the mean of its hits, wherever the scan starts") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

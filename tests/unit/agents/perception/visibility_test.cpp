@@ -11,14 +11,14 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 const auto kNothing = [](const Vec2&, double) { return std::optional<Vec2>(); };
 
-/// What is known of a scene, except now and then.
+/// The known part of a scene, with occasional omissions.
 auto known_in(const test::Scene& scene, Rng& rng, double unknown = 0) {
   return [&scene, &rng, unknown](const Vec2& p, double within_m) {
     return rng.chance(unknown) ? std::nullopt : KnownFloor{&scene.map()}.nearest_m(p, within_m);
   };
 }
 
-TEST_CASE("no point of a person who was hidden counts as seen free") {
+TEST_CASE("no point of a hidden person counts as seen free") {
   int hidden = 0, near = 0, wrong = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     Rng rng(seed);
@@ -103,7 +103,7 @@ struct View {
       return stand ? floor.nearest_m(p, within_m) : std::nullopt;
     });
   }
-  /// Whether a frontier crosses the line from the origin in this direction, and how near.
+  /// The distance at which a frontier crosses the line from the origin in this direction.
   double frontier_m(double angle_rad) const {
     double nearest = 1e9;
     const Segment line{{0, 0}, rotated({100, 0}, angle_rad)};
@@ -116,7 +116,7 @@ struct View {
 
 //            |   |          posts that stand at x = 3, d apart
 //   robot    :   :
-TEST_CASE("a gap is closed if it is too narrow and both sides stand") {
+TEST_CASE("a gap is closed if it is too narrow and both of its sides stand") {
   const LaserSettings laser{1440, 2 * kPi, 0.05, 8};
   const VisibilitySettings settings{0.25, 0.01};
   const auto room = [](double gap_m) {
@@ -138,7 +138,7 @@ TEST_CASE("a gap is closed if it is too narrow and both sides stand") {
   CHECK(narrow.visibility.closed_gaps().size() == 1440);
   CHECK(narrow.visibility.was_seen_free({2.9, 0}));
   CHECK_FALSE(narrow.visibility.was_seen_free({3.1, 0}));
-  // The same walls may move: every hit is a frontier.
+  // If the same walls may move, every hit is a frontier.
   const View loose(laser, room(0.005), settings, {}, false);
   CHECK(loose.visibility.closed_gaps().empty());
   CHECK(loose.frontier_m(0.3) < 3.2);
@@ -172,7 +172,7 @@ TEST_CASE("a gap is closed if it is too narrow and both sides stand") {
 //   wall |  |  wall        somebody stands in the doorway: his sides are
 //        | O|              as near to the edges as the walls
 //        o  robot
-TEST_CASE("the surface of somebody in a doorway that he can pass is a frontier, however near the walls are") {
+TEST_CASE("the surface of a person in a passable doorway is a frontier, however near the walls are") {
   const LaserSettings laser{720, 2 * kPi, 0.05, 8};
   for (const double radius_m : {0.1, 0.15, 0.25, 0.35}) {
     for (const double more_m : {0.001, 0.02, 0.05, 0.1, 0.2}) {
@@ -186,7 +186,7 @@ TEST_CASE("the surface of somebody in a doorway that he can pass is a frontier, 
       });
       CHECK(is_open);
     }
-    // Nobody passes a narrower one, so what is seen in it is of no interest.
+    // Nobody passes a narrower doorway, so what is seen in it is irrelevant.
     const double half_m = radius_m - 0.01;
     const View view(laser, {Box{{-3, 1}, {-half_m, 1.3}}, Box{{half_m, 1}, {3, 1.3}}}, {radius_m, 0.005});
     CHECK(std::ranges::none_of(view.visibility.frontiers(), [&](const Frontier& frontier) {
@@ -195,7 +195,7 @@ TEST_CASE("the surface of somebody in a doorway that he can pass is a frontier, 
   }
 }
 
-TEST_CASE("nobody hides behind a thin post") {
+TEST_CASE("a thin post hides nobody") {
   const LaserSettings laser{1440, 2 * kPi, 0.05, 8};
   const auto room = [](double radius_m) {
     return std::vector<Shape>{Segment{{3, -3}, {3, 3}}, Segment{{-3, -3}, {3, -3}}, Segment{{-3, 3}, {3, 3}},
@@ -208,13 +208,14 @@ TEST_CASE("nobody hides behind a thin post") {
   CHECK_FALSE(thick.visibility.was_seen_free({2, 0.2}));
 }
 
-TEST_CASE("people may stand behind known robots, as near as their size lets them") {
+TEST_CASE("people may stand behind known robots, as near as their size permits") {
   const LaserSettings laser{720, 2 * kPi, 0.05, 8};
   const std::vector<Shape> walls{Segment{{3, -3}, {3, 3}}, Segment{{-3, -3}, {3, -3}},
                                  Segment{{-3, 3}, {3, 3}}, Segment{{-3, -3}, {-3, 3}}};
   const std::vector<Circle> robots{{{2, 0}, 0.3}};
   const View view(laser, walls, {0.2, 0.01}, robots);
-  // A disc of 0.2 m fits into the shadow of one of 0.3 m, but not into that of one of 0.1 m before the wall.
+  // A disc of 0.2 m fits into the shadow of a disc of 0.3 m, but not into that of one of 0.1 m in front of
+  // the wall.
   CHECK(view.frontier_m(0.01) == Approx(1.69).margin(0.02));
   const std::vector<Circle> small{{{2, 0}, 0.1}};
   const View beside(laser, walls, {0.2, 0.01}, small);

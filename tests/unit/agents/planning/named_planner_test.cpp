@@ -67,7 +67,7 @@ TEST_CASE("every planner plans by its name and draws what it explored") {
   }
 }
 
-TEST_CASE("every planner's baseline is a planner") {
+TEST_CASE("every planner's baseline is also a planner") {
   for (const std::string& name : planner_names()) {
     const std::string baseline = make_planner(name).baseline;
     CAPTURE(name, baseline);
@@ -79,7 +79,7 @@ TEST_CASE("a planner with another name is refused") {
   CHECK_THROWS_WITH(make_planner("dijkstra"), ContainsSubstring("dijkstra") && ContainsSubstring("bi-errt"));
 }
 
-TEST_CASE("planners that keep a graph of one world, or use up all time, cannot drive robots") {
+TEST_CASE("planners that keep a graph of one world, or use all the time, cannot drive robots") {
   for (const std::string_view name : kDrivingPlanners)
     CHECK(make_driving_planner(std::string(name)).kind == PlannerKind::kForAnyWorld);
   CHECK(make_driving_planner("errt").name == "errt");
@@ -100,7 +100,7 @@ TEST_CASE("OMPL's namesakes sample uniformly, remember nothing and do not try th
   CHECK(planning.draw().cache.empty());
 }
 
-TEST_CASE("each addition to a namesake is a row of its own") {
+TEST_CASE("each addition to a namesake has its own row") {
   const std::string name = GENERATE(as<std::string>(), "rrt", "rrt-connect");
   CAPTURE(name);
   const PlanWorld empty = make_world("empty", 20, 1), u = make_world("u", 5, 1);

@@ -10,7 +10,7 @@
 
 namespace sidestep::robust_test {
 
-/// Whether a path that begins in obstacles comes no nearer to any of them, and touches none once it is out.
+/// Whether a path that starts in obstacles comes no nearer to any of them, and touches none once it is out.
 bool leaves_and_stays_out(const PlanWorld& world, const std::vector<Vec2>& path) {
   std::vector<double> min_distance;
   for (const Shape& shape : world.obstacles)

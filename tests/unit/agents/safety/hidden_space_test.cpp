@@ -98,7 +98,8 @@ struct Crowd {
 
   enum class Touch { kNone, kWall, kPerson };
 
-  /// Whether somebody can walk straight to the robot and touch it while it moves, or it reaches a wall first.
+  /// Whether a person can walk straight to the robot and touch it while it moves, or whether the robot
+  /// reaches a wall first.
   Touch first_touch(const Trajectory& motion) const {
     constexpr Duration kStep{10'000'000};
     for (Time t = motion.start(); t < motion.end(); t += kStep) {
@@ -116,7 +117,7 @@ struct Crowd {
   }
 };
 
-TEST_CASE("nobody who was hidden can touch a robot that moves as the check allows") {
+TEST_CASE("no hidden person can touch a robot that moves as the check allows") {
   using enum Crowd::Touch;
   int allowed = 0, refused = 0, touched = 0, walls = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
@@ -140,7 +141,7 @@ TEST_CASE("nobody who was hidden can touch a robot that moves as the check allow
                << " would have been touched, " << walls << " would have reached a wall");
   CHECK(allowed > 150);
   CHECK(refused > 100);
-  // It does not refuse much more than it has to.
+  // It does not refuse much more than necessary.
   CHECK(touched + walls > refused / 4);
 }
 
@@ -287,7 +288,7 @@ struct Doorway {
   }
 };
 
-TEST_CASE("nobody who stands in a doorway can touch a robot that moves as the check allows") {
+TEST_CASE("no person in a doorway can touch a robot that moves as the check allows") {
   using enum Crowd::Touch;
   int allowed = 0, refused = 0, touched = 0;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
@@ -320,7 +321,7 @@ TEST_CASE("nobody who stands in a doorway can touch a robot that moves as the ch
   CHECK(touched > 300);
 }
 
-TEST_CASE("the search finds no candidate that somebody who was hidden could touch in motion") {
+TEST_CASE("the search finds no candidate that a hidden person could touch in motion") {
   int found = 0, limited = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);

@@ -49,7 +49,7 @@ TEST_CASE("the passive safety check agrees with dense sampling, in both directio
   int safe = 0, unsafe = 0;
   for (int i = 0; i < 1500; ++i) {
     const Trajectory trajectory = random_trajectory(rng, kBegin);
-    if (trajectory.end() == trajectory.start()) continue;  // at rest from the beginning
+    if (trajectory.end() == trajectory.start()) continue;  // at rest from the start
     const MovingObstacle obstacle = random_obstacle(rng);
     const double true_separation = sampled_separation_m(trajectory, obstacle);
     // Close to the true separation.

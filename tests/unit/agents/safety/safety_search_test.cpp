@@ -292,7 +292,7 @@ TEST_CASE("every candidate is at rest before any moving obstacle could reach it"
     refused += result.count < without;
     for (std::size_t i = 0; i < result.count; ++i) {
       const Trajectory& candidate = result.candidates[i];
-      // By dense sampling.
+      // Checked by dense sampling.
       for (const MovingObstacle& obstacle : moving) {
         for (Time t = candidate.start(); t < candidate.end(); t += Duration{500'000}) {
           const double distance = (candidate.state_at(t).position_m - obstacle.position_m).norm();
@@ -327,7 +327,7 @@ TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen
     refused += result.count < without;
     for (std::size_t i = 0; i < result.count; ++i) {
       const Trajectory& candidate = result.candidates[i];
-      // By dense sampling.
+      // Checked by dense sampling.
       for (Time t = candidate.start(); t < candidate.end(); t += Duration{500'000}) {
         const double distance = (candidate.state_at(t).position_m - query.seen.centre_m).norm();
         REQUIRE(distance + rules.radius_m + rules.margin_m < query.seen.radius_at_m(t));
@@ -367,7 +367,7 @@ TEST_CASE(
       return is_passively_safe_from_all(candidate, moving, rules.radius_m + rules.margin_m);
     };
     REQUIRE(std::all_of(result.candidates.begin(), result.candidates.begin() + result.count, is_safe));
-    // If none has to be refused, the search takes the same ones.
+    // If no candidate must be refused, the search finds the same ones.
     const bool is_restricted =
         !std::all_of(all.candidates.begin(), all.candidates.begin() + all.count, is_safe);
     if (!is_restricted) REQUIRE(result.count == all.count);

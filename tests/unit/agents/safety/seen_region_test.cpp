@@ -31,14 +31,15 @@ SeenRegion random_region(Rng& rng) {
   return {centre, radius_m, kBegin + from_seconds(observed_s), rng.chance(0.2) ? 0 : rng.uniform(0, 2)};
 }
 
-TEST_CASE("the check is never passed if a sampled instant is too near to the edge, and mostly if none is") {
+TEST_CASE(
+    "the check never passes if a sampled instant is too near to the edge, and mostly passes if none is") {
   const std::uint64_t seed = GENERATE(range(1u, 25u));
   CAPTURE(seed);
   Rng rng(seed);
   int safe = 0, unsafe = 0, needlessly_unsafe = 0;
   for (int i = 0; i < 1500; ++i) {
     const Trajectory trajectory = random_trajectory(rng, kBegin);
-    if (trajectory.end() == trajectory.start()) continue;  // at rest from the beginning
+    if (trajectory.end() == trajectory.start()) continue;  // at rest from the start
     const SeenRegion seen = random_region(rng);
     const double separation = rng.uniform(0, 0.5);
     const double true_separation = sampled_separation_m(trajectory, seen);
@@ -53,7 +54,7 @@ TEST_CASE("the check is never passed if a sampled instant is too near to the edg
   CHECK(needlessly_unsafe < safe / 10);
 }
 
-TEST_CASE("an unknown obstacle right beyond the edge must not reach the robot before it is at rest") {
+TEST_CASE("an unknown obstacle just beyond the edge must not reach the robot before it is at rest") {
   // Braking at 5 m/s² from 1 m/s takes 0.2 s and 0.1 m. Meanwhile an obstacle approaches by 0.4 m at 2 m/s.
   Trajectory braking(kBegin, {{0, 0}, {1, 0}});
   append_stop(braking, 5);
@@ -67,12 +68,12 @@ TEST_CASE("an unknown obstacle right beyond the edge must not reach the robot be
   CHECK_FALSE(is_passively_safe_from_unseen(braking, seen, separation));
   seen.radius_m += 0.02;
   CHECK(is_passively_safe_from_unseen(braking, seen, separation));
-  // Where the robot was seen does not matter, only that the region is around it.
+  // The position at which the robot was seen does not matter, only that the region is around it.
   seen.centre_m.x() -= 0.01;
   CHECK_FALSE(is_passively_safe_from_unseen(braking, seen, separation));
 }
 
-TEST_CASE("a robot at rest needs no region, and a moving one that is known everywhere does not either") {
+TEST_CASE("a robot at rest needs no region, and neither does a moving robot if all obstacles are known") {
   const SeenRegion nothing{{0, 0}, 0, kBegin, 2};
   CHECK(is_passively_safe_from_unseen(Trajectory::resting(kBegin, {0, 0}), nothing, 0.1));
   Trajectory leaving(kBegin, {{0, 0}, {0, 0}});

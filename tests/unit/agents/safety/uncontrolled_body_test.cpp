@@ -48,13 +48,13 @@ TEST_CASE("the path of a body widens ahead of it and ends behind it") {
   CHECK(body.required_distance_m({3, 1}) == Approx(0.52));
 }
 
-TEST_CASE("a body whose direction is not known is kept clear of all around") {
+TEST_CASE("a body in an unknown direction of motion is avoided on all sides") {
   const UncontrolledBody body = moving({0, 0});
   CHECK(body.distance_from_path_m({-0.3, 0.4}) == Approx(0.5));
   CHECK(body.required_distance_m({3, 1}) == Approx(0.4));
 }
 
-TEST_CASE("a robot may not come to rest in a path, unless its stop ends nearer to the middle") {
+TEST_CASE("a robot may not come to rest in a body's path, unless its stop ends nearer to the middle") {
   const Trajectory beside = resting(0, 5), within = resting(2, 0.1);
   CHECK(may_rest(2, 0.45, moving(), beside));
   CHECK_FALSE(may_rest(2, 0.35, moving(), beside));
@@ -81,7 +81,7 @@ TEST_CASE("a robot may pass before the body if it would be hit where it stops") 
   CHECK(spare_distance_m(across, kNow, body) >= 0);
   CHECK_FALSE(is_passively_safe(across, body.reach, kSeparation_m - 0.09));
   CHECK(may_follow(across, stop, body));
-  // Also by driving on later.
+  // This also works by driving on later.
   const Trajectory shorter = driving({1.2, -0.25}, {0, 1.6}, 0.05);
   CHECK(spare_distance_m(shorter, kNow, body) < 0);
   CHECK(may_follow(shorter, stop, body));
@@ -92,7 +92,7 @@ TEST_CASE("a robot may pass before the body if it would be hit where it stops") 
   CHECK_FALSE(may_follow(passing, short_stop, body));
 }
 
-TEST_CASE("a robot that cannot avoid a body altogether drives where it stays farther from it") {
+TEST_CASE("a robot that cannot avoid a body completely drives where it stays farther from it") {
   // The body touches it wherever it drives, but not everywhere as much.
   const UncontrolledBody body = moving({2, 0});
   const Trajectory stop = driving({0.6, -0.2}, {0, 1.6}, 0);

@@ -22,7 +22,7 @@ double distance_m(const Zone& zone, const Vec2& p) {
   return signed_distance(p, zone.corners_m) - zone.radius_m;
 }
 
-TEST_CASE("every command either stops play, with its speed limit, or does not") {
+TEST_CASE("every command either stops play and limits the speed, or does neither") {
   const RefereeRules rules(kDivisionA, {});
   for (std::size_t i = 0; i < league::kRefereeCommands; ++i) {
     const auto command = static_cast<RefereeCommand>(i);
@@ -89,7 +89,7 @@ TEST_CASE("ball placement closes the area between the ball and its new place to 
   CHECK(place.corners_m[0] == Vec2(-1, 2));
 }
 
-TEST_CASE("a team keeps off the ball before the other team's kicks, but not before its own") {
+TEST_CASE("a team keeps off the ball before the other team's kicks, but not before its own kicks") {
   RefereeSettings settings;
   settings.team = Team::kBlue;
   const RefereeRules rules(kDivisionA, settings);
@@ -110,7 +110,7 @@ TEST_CASE("there is no zone around a ball that was never seen") {
   CHECK(demands.zones.contains(kFloorZone));
 }
 
-TEST_CASE("defence areas are closed if asked for, with a distance while the ball is not in play") {
+TEST_CASE("defence areas are closed if requested, with an extra distance while the ball is not in play") {
   RefereeSettings settings;
   settings.closes_defence_areas = true;
   const RefereeRules rules(kDivisionA, settings);

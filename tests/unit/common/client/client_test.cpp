@@ -106,7 +106,7 @@ TEST_CASE("an operator's orders are sent in the operator's name") {
   CHECK(coordinator.last_sender() == static_cast<std::uint32_t>(Sender::kOperator));
 }
 
-TEST_CASE("a zone is over when it is accepted, and replaced by the next one of its number") {
+TEST_CASE("a zone is over when it is accepted, and the next zone with its number replaces it") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -122,7 +122,7 @@ TEST_CASE("a zone is over when it is accepted, and replaced by the next one of i
   CHECK(client.state(other)->phase == OrderPhase::kAccepted);
 }
 
-TEST_CASE("callbacks are told of every change, and may give orders, but do not wait") {
+TEST_CASE("callbacks are told of every change and may give orders, but do not wait") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -160,7 +160,7 @@ TEST_CASE("threads may use a client at the same time") {
   CHECK(accepted == 40);
 }
 
-TEST_CASE("a client knows what a robot does") {
+TEST_CASE("a client knows what a robot is doing") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -172,7 +172,7 @@ TEST_CASE("a client knows what a robot does") {
   CHECK(client.robots()[0].has_own_order);
 }
 
-TEST_CASE("orders that are wrong are refused without a coordinator") {
+TEST_CASE("invalid orders are refused without a coordinator") {
   const TestDomain domain;
   Client client(settings_for(domain));
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

@@ -88,7 +88,7 @@ TEST_CASE("a zone that the client moves is not reported as replaced") {
   CHECK(system.book.zones()[0].zone.corners_m[0] == Vec2(0.99, 0));
 }
 
-TEST_CASE("of a zone that moves while nobody answers only the last position is repeated") {
+TEST_CASE("if a zone moves while nobody answers, only its last position is repeated") {
   System system;
   system.answers_orders = false;
   OrderHandle last = 0;
@@ -194,7 +194,7 @@ TEST_CASE("a hold that was lifted, by its owner or an operator, is not sent agai
   CHECK_FALSE(is_sent_again(system, hold));
 }
 
-TEST_CASE("an order that has ended another is sent again when the other returns without it") {
+TEST_CASE("an order that has ended another order is sent again when the other returns without it") {
   System system;
   const auto kind =
       GENERATE(msg::OrderKind::ORDER_CANCEL, msg::OrderKind::ORDER_RESUME, msg::OrderKind::ORDER_REMOVE_ZONE);
@@ -219,7 +219,7 @@ TEST_CASE("an order that has ended another is sent again when the other returns 
   CHECK_FALSE(is_sent_again(system, ending));
 }
 
-TEST_CASE("an order to go that the robot has finished is sent again when the one before it returns") {
+TEST_CASE("an order to go that the robot has finished is sent again when the previous order returns") {
   System system;
   system.client.go(0, {{{1, 0}}});
   system.run_for(100ms);
@@ -236,7 +236,7 @@ TEST_CASE("an order to go that the robot has finished is sent again when the one
   CHECK(system.client.find(second)->phase == OrderPhase::kArrived);
 }
 
-TEST_CASE("a hold of one robot is still in force after its client has resumed another") {
+TEST_CASE("a hold of one robot stays in force after its client has resumed another robot") {
   System system;
   const OrderHandle hold = system.client.hold(3);
   system.run_for(100ms);
@@ -273,7 +273,7 @@ TEST_CASE("a zone that another process of the same name sets is reported as repl
   CHECK(system.client.find(zone)->phase == OrderPhase::kReplaced);
 }
 
-TEST_CASE("a client may send the next position of a zone when it hears of the last") {
+TEST_CASE("a client may send the next position of a zone when it hears of the previous one") {
   System system;
   int sent = 1;
   system.client.on_change([&](const SentOrder&) {
@@ -300,7 +300,7 @@ TEST_CASE("a resume that was lost is not repeated after the next hold") {
   CHECK(system.book.is_held(3));
 }
 
-TEST_CASE("a resume of all robots that was lost does not end a later hold of one") {
+TEST_CASE("a lost resume of all robots does not end a later hold of one robot") {
   System system;
   system.answers_orders = false;
   system.client.resume(kAllRobots);
@@ -334,7 +334,7 @@ TEST_CASE(
   CHECK((sent->order.number > hold.number) == is_clock_behind);
 }
 
-TEST_CASE("a robot goes where it was ordered last, although the order before was lost") {
+TEST_CASE("a robot goes where it was last ordered, although the previous order was lost") {
   System system;
   system.answers_orders = false;
   const OrderHandle first = system.client.go(0, {{{1, 0}}});

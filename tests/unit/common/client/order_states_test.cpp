@@ -26,7 +26,7 @@ TEST_CASE("the state of an order changes until the order is over") {
   CHECK_FALSE(states.update(order + 1, kDriving, false));
 }
 
-TEST_CASE("a thread waits until its order is over, whatever becomes of others") {
+TEST_CASE("a thread waits until its order is over, whatever happens to other orders") {
   OrderStates states;
   const OrderId order = states.add(), other = states.add();
   std::optional<OrderState> seen;
@@ -38,7 +38,7 @@ TEST_CASE("a thread waits until its order is over, whatever becomes of others") 
   CHECK(seen == kArrived);
 }
 
-TEST_CASE("an order that is over for those who wait may change until it is final") {
+TEST_CASE("an order that is over for waiting threads may change until it is final") {
   OrderStates states;
   const OrderId zone = states.add();
   const OrderState accepted{OrderPhase::kAccepted, Refusal::kNone, 0, true};
@@ -50,7 +50,7 @@ TEST_CASE("an order that is over for those who wait may change until it is final
   CHECK(states.find(zone) == replaced);
 }
 
-TEST_CASE("waiting ends with the timeout, however short or long that is") {
+TEST_CASE("waiting ends after the timeout, however short or long that is") {
   OrderStates states;
   const OrderId order = states.add();
   states.update(order, kDriving, false);
@@ -61,7 +61,7 @@ TEST_CASE("waiting ends with the timeout, however short or long that is") {
   CHECK(states.wait(order, std::chrono::nanoseconds::max()) == kArrived);
 }
 
-TEST_CASE("of the orders that do not change any more only the latest are remembered, and all others") {
+TEST_CASE("all orders that may still change are remembered, but only the latest final ones") {
   OrderStates states;
   const OrderId open = states.add();
   std::vector<OrderId> orders;

@@ -43,7 +43,7 @@ msg::WorldState world_with(RobotId robot, double x_m, Time observed_at) {
   return world;
 }
 
-TEST_CASE("a robot is free when its agent and vision report it, nobody holds it and it has nothing to do") {
+TEST_CASE("a robot is free if its agent and vision report it, nobody holds it and it has nothing to do") {
   RobotTable table(kSelf);
   CHECK(table.robots(kBegin).empty());
   table.on_status(status_of(3), kBegin);
@@ -65,7 +65,7 @@ TEST_CASE("a robot is free when its agent and vision report it, nobody holds it 
   CHECK_FALSE(table.robots(kBegin)[0].is_free());
 }
 
-TEST_CASE("a robot tells whose order it carries out, and how far it has got") {
+TEST_CASE("the table shows whose order a robot carries out, and how far it has got") {
   RobotTable table(kSelf);
   table.on_world(world_with(3, 1, kBegin), kBegin);
   const auto after = [&](ClientId client, msg::OrderState state) {
@@ -94,7 +94,7 @@ TEST_CASE("a robot that is no longer heard or seen is not free") {
   CHECK(table.robots(kBegin + RobotTable::kPoseTimeout)[0].is_free());
 
   const Time later = kBegin + RobotTable::kPoseTimeout + milliseconds(1);
-  table.on_world(world_with(3, 1, kBegin), later);  // the same observation once more
+  table.on_world(world_with(3, 1, kBegin), later);  // the same observation again
   CHECK(table.robots(later)[0].is_heard);
   CHECK_FALSE(table.robots(later)[0].pose.has_value());
 

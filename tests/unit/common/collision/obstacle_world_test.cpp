@@ -162,7 +162,7 @@ TEST_CASE("a world answers correctly after obstacles were added, moved and remov
   CAPTURE(seed, structure, count);
   Rng rng(seed);
   ObstacleWorld world(random_shapes(rng, count, 2), structure);
-  // At first more obstacles are added than removed, later more are removed.
+  // Initially more obstacles are added than removed, later more are removed.
   for (int round = 0; round < 60; ++round) {
     const double add_probability = round < 30 ? 0.3 : 0.05;
     for (int change = 0; change < 15; ++change) {

@@ -182,7 +182,7 @@ TEST_CASE("missing robots, ids, starts and goals are rejected") {
   check_rejected(kRobot + "obstacles:\n- {centre_m: [2, 2]}\n", 3, "key \"radius_m\" is missing");
 }
 
-TEST_CASE("two robots with one id are rejected at the second") {
+TEST_CASE("two robots with the same id are rejected at the second one") {
   check_rejected(
       "robots:\n"
       "- {id: 4, start_m: [0, 0], goals_m: [[1, 0]]}\n"
@@ -249,7 +249,8 @@ TEST_CASE("starts and goals in blocked cells, and maps that cannot be read, are 
   CHECK_THAT(error("[1, 2]", "[0, 0]", "[1, 0]"), ContainsSubstring("scenario.yaml:1: map: "));
 }
 
-TEST_CASE("robots drive through unknown cells of a map only if the scenario says so, and the map says it") {
+TEST_CASE(
+    "robots drive through unknown cells of a map only if the scenario allows it, and a notice says so") {
   const test::MapFolder folder;
   // 4 x 4 m of cells of 0.1 m, free but for unknown ones from x = 0 on.
   std::string image = "P5 40 40 255\n";
@@ -310,7 +311,7 @@ TEST_CASE("text that is not a single YAML document is rejected with its line") {
   check_rejected(std::string(100000, '['), 1, "expected at most 500 brackets within each other");
 }
 
-TEST_CASE("a file of more values than memory is meant for is rejected, also where anchors multiply them") {
+TEST_CASE("a file with more values than permitted is rejected, even if anchors multiply them") {
   std::string many = kRobot + "obstacles: [";
   for (int i = 0; i < 400'000; ++i) many += "0,";
   check_rejected(many + "]\n", 2, "more than 400000 values");

@@ -190,7 +190,7 @@ robots:
   CHECK(find_robot(s, 8) == nullptr);
 }
 
-TEST_CASE("a scenario without a name has that of its file, in any language") {
+TEST_CASE("a scenario without a name is named after its file, in any language") {
   const auto [file, name] = GENERATE(table<std::string, std::string>({
       {"dir/lone.yaml", "lone"},
       {"dir/\xe4\xba\xa4\xe5\xb7\xae-\xc3\xa4.yaml", "\xe4\xba\xa4\xe5\xb7\xae-\xc3\xa4"},
@@ -205,7 +205,7 @@ TEST_CASE("a scenario without a name has that of its file, in any language") {
   CHECK(parse_scenario("name: " + name + "\n" + kRobot, "other.yaml").name == name);
 }
 
-TEST_CASE("missing keys leave the defaults") {
+TEST_CASE("missing keys keep the defaults") {
   const Scenario given = parse_scenario(kRobot, "dir/lone.yaml"), defaults;
   CHECK(given.name == "lone");
   CHECK(given.cycle == defaults.cycle);

@@ -38,7 +38,7 @@ TEST_CASE("the rules are listed as keys and values of the scenario") {
         "max_opponent_speed_mps: 1.5\n");
 }
 
-TEST_CASE("goals, noise and the network are no rules") {
+TEST_CASE("goals, noise and the network are not rules") {
   Scenario other = scenario_of(kRobots);
   const SharedRules rules(other);
   other.robots.front().goals = {{{2, 2}, 1.0}};
@@ -48,7 +48,7 @@ TEST_CASE("goals, noise and the network are no rules") {
   CHECK(SharedRules(other).fingerprint() == rules.fingerprint());
 }
 
-TEST_CASE("maps that differ in one cell or in their place are different rules") {
+TEST_CASE("maps that differ in one cell or in their position are different rules") {
   const auto with_map = [](double origin_m, int column) {
     MapGrid grid;
     grid.columns = 300, grid.rows = 200, grid.origin_m = {origin_m, -5};
@@ -68,7 +68,7 @@ TEST_CASE("maps that differ in one cell or in their place are different rules") 
   }
 }
 
-TEST_CASE("rules that have been sent are equal to their origin") {
+TEST_CASE("rules that have been sent equal the original rules") {
   const SharedRules rules(scenario_of(kRobots));
   const auto received = SharedRules::parse(rules.text());
   REQUIRE(received);
@@ -94,7 +94,7 @@ TEST_CASE("differing rules are named with both values") {
         "robots.blue is unknown instead of 0-2, 5, wings is 2 instead of unknown");
 }
 
-TEST_CASE("the largest roster and the most obstacles fit, and each obstacle counts") {
+TEST_CASE("the largest roster and the maximum number of obstacles fit, and each obstacle matters") {
   std::string text = "field: {length_m: 1000, width_m: 1000}\nrobots:\n";
   for (int i = 0; i < 500; ++i)
     text += fmt::format("  - {{id: {}, start_m: [{}, 0], goals_m: [[{}, 1]]}}\n", 2 * i, i - 250, i - 250);
@@ -110,7 +110,7 @@ TEST_CASE("the largest roster and the most obstacles fit, and each obstacle coun
   CHECK(differences.front().key == "obstacles");
 }
 
-TEST_CASE("texts that are no rules are refused") {
+TEST_CASE("texts that are not rules are refused") {
   for (const std::string text : {"margin_m", "margin_m: 0.01", ": 0.01\n", "margin_m: \n", "margin_m:0.01\n",
                                  "a: 1\na: 2\n", "a: \x1b[2J\n", "a: 1\n\n", "\n", "a: 1\nb\n"}) {
     CAPTURE(text);
@@ -126,7 +126,7 @@ TEST_CASE("texts that are no rules are refused") {
   CHECK(none->fingerprint() != 0);
 }
 
-TEST_CASE("random bytes are refused or make printable rules") {
+TEST_CASE("random bytes are refused or give printable rules") {
   Rng rng(7);
   const std::string original = SharedRules(scenario_of(kRobots)).text();
   for (int i = 0; i < 20'000; ++i) {

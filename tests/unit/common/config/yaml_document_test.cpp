@@ -16,7 +16,7 @@ std::string yaml_error(const std::string& text) {
   return "accepted";
 }
 
-TEST_CASE("a tab that indents a line is named, whatever the line holds") {
+TEST_CASE("a tab that indents a line is reported, whatever the line contains") {
   const auto [text, line] = GENERATE(table<std::string, int>({
       {"robots:\n\t- {id: 0}\n", 2},
       {"field:\n  length_m: 3\n\twidth_m: 3\n", 3},
@@ -30,7 +30,7 @@ TEST_CASE("a tab that indents a line is named, whatever the line holds") {
         "file.yaml:" + std::to_string(line) + ": a tab indents this line, expected spaces");
 }
 
-TEST_CASE("tabs elsewhere are allowed, and other errors are not taken for tabs") {
+TEST_CASE("tabs elsewhere are allowed, and other errors are not mistaken for tabs") {
   CHECK(yaml_error("a:\t[1,\t2]\t# three\ttabs\n") == "accepted");
   CHECK_THAT(yaml_error("a: [1,\tb: {\n"), ContainsSubstring("not YAML"));
 }
@@ -86,7 +86,7 @@ TEST_CASE("robots of a scenario share keys by a merge key, and an error names th
       3, "unknown key \"colour\"");
 }
 
-TEST_CASE("merged values count towards the greatest number of values") {
+TEST_CASE("merged values count towards the maximum number of values") {
   std::string text = "- &a {";
   for (int i = 0; i < 1000; ++i) text += "k" + std::to_string(i) + ": 1, ";
   text += "}\n";

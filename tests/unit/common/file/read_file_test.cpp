@@ -21,7 +21,7 @@ TEST_CASE("a regular file is read as a whole, up to a size") {
   CHECK_FALSE(read_file("/proc/self/status", 1'000'000).empty());
 }
 
-TEST_CASE("what is no regular file is refused at once") {
+TEST_CASE("anything but a regular file is refused at once") {
   const TemporaryFolder folder;
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
   CHECK_THROWS_WITH(read_file(folder.file("pipe"), 100), Equals("not a regular file"));

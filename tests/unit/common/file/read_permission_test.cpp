@@ -27,7 +27,7 @@ struct Tree {
   TemporaryFolder temporary;
 };
 
-TEST_CASE("what may be read is not denied, nor what does not exist") {
+TEST_CASE("readable and missing files are not denied") {
   SIDESTEP_NEEDS_ROOT();
   const Tree tree;
   for (const char* name : {"open", "open/closed/file", "link/file", "none", "open/none/file"}) {
@@ -36,7 +36,7 @@ TEST_CASE("what may be read is not denied, nor what does not exist") {
   }
 }
 
-TEST_CASE("a denied read names the user, the path, and the file or folder that is closed") {
+TEST_CASE("a denied read names the user, the path, and the file or folder without permission") {
   SIDESTEP_NEEDS_ROOT();
   const Tree tree;
   const auto denied = [&](const std::string& path, const std::string& closed, const std::string& mode) {

@@ -7,7 +7,7 @@
 
 namespace sidestep::utf8_test {
 
-TEST_CASE("valid sequences have their length, and all others none") {
+TEST_CASE("valid sequences have a length, and all others have none") {
   const auto [text, length] = GENERATE(table<std::string, std::size_t>({
       {"a", 1},
       {"\t", 1},

@@ -28,7 +28,7 @@ std::string content(const fs::path& path) {
 
 }  // namespace
 
-TEST_CASE("a file is written with its folder, and replaced as a whole") {
+TEST_CASE("a file is written with its folder, and is replaced as a whole") {
   const TemporaryFolder folder;
   const std::string path = folder.file("a/b/report.json");
   write_file(path, "a long text\n");
@@ -49,7 +49,7 @@ TEST_CASE("a file that cannot be written is reported with the reason, and nothin
   CHECK(count_files(folder) == 1);
 }
 
-TEST_CASE("a pipe that nobody reads is reported, and keeps nobody waiting") {
+TEST_CASE("a pipe without a reader is reported and does not block") {
   const TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);

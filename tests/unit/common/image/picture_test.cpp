@@ -80,7 +80,7 @@ TEST_CASE("a picture whose header states a huge size is refused before memory is
   CHECK(peak_memory_kb() - before_kb < 50'000);
 }
 
-TEST_CASE("what is no picture is refused, and so is a damaged one") {
+TEST_CASE("data that is not a picture is refused, and so is a damaged picture") {
   CHECK(error_of({}) == "expected a picture in PNG, JPEG or PNM");
   CHECK(error_of(Bytes(100, 'P')) == "expected a picture in PNG, JPEG or PNM");
   CHECK(error_of(encoded(".bmp")) == "expected a picture in PNG, JPEG or PNM");

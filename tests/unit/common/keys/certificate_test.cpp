@@ -16,7 +16,7 @@ struct Fixture {
   Certificate certificate = authority.issue({Role::kAgent, 3, 3}, make_private_key(), now, now + hours(1));
 };
 
-TEST_CASE("a certificate says whose it is, who has issued it, and how long it is valid") {
+TEST_CASE("a certificate states its owner, its issuer and its validity") {
   const Fixture f;
   const Authority other("identity authority", f.now, f.now + hours(24));
   CHECK(f.certificate.identity() == Identity{Role::kAgent, 3, 3});
@@ -28,7 +28,7 @@ TEST_CASE("a certificate says whose it is, who has issued it, and how long it is
   CHECK_FALSE(f.authority.certificate().identity());
 }
 
-TEST_CASE("a certificate survives DER, and other bytes are no certificate") {
+TEST_CASE("a certificate survives DER encoding, and other bytes are not a certificate") {
   const Fixture f;
   const std::vector<std::uint8_t> der = f.certificate.der();
   REQUIRE(Certificate::from_der(der));
@@ -40,7 +40,7 @@ TEST_CASE("a certificate survives DER, and other bytes are no certificate") {
   CHECK_FALSE(Certificate::from_der(longer));
 }
 
-TEST_CASE("a certificate of which a bit has changed is not that of the authority") {
+TEST_CASE("a certificate with a changed bit is not accepted as the authority's") {
   const Fixture f;
   const std::vector<std::uint8_t> der = f.certificate.der();
   const std::uint64_t seed = 44;
@@ -68,7 +68,7 @@ TEST_CASE("prefixes of different identities differ, and have their first bit set
   CHECK(prefixes.size() == 30);
 }
 
-TEST_CASE("a list of revoked keys holds their serial numbers, and only the authority makes one") {
+TEST_CASE("a list of revoked keys contains their serial numbers, and only the authority can make one") {
   const Fixture f;
   const Authority other("identity authority", f.now, f.now + hours(24));
   const TemporaryFolder folder;

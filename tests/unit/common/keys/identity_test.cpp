@@ -25,7 +25,7 @@ std::set<std::string> topics_of(const Identity& who,
   return result;
 }
 
-TEST_CASE("identities are read as they are written") {
+TEST_CASE("identities are parsed from the text that they are written as") {
   for (const char* text :
        {"agent 0", "agent 3", "coordinator 1", "vision", "simulator", "robot 3", "robot 0-10", "referee",
         "client forklift", "client a_b-C9", "operator", "viewer", "judge"}) {
@@ -72,7 +72,7 @@ TEST_CASE("each identity has one text, and other texts are refused") {
   }
 }
 
-TEST_CASE("only judges read the ground truth, and whoever watches writes nothing that moves a robot") {
+TEST_CASE("only judges read the ground truth, and watchers write nothing that moves a robot") {
   for (const Role role : kAllRoles) {
     const Identity who{role, 0, 0, "a"};
     CAPTURE(to_text(who));
@@ -86,7 +86,7 @@ TEST_CASE("only judges read the ground truth, and whoever watches writes nothing
                                                                          "clock_probe", "rules"});
 }
 
-TEST_CASE("agents and robots have the channels of their own robots only") {
+TEST_CASE("agents and robots have only the channels of their own robots") {
   const Identity agent = identity("agent 3"), robots = identity("robot 2-4");
   for (std::uint32_t robot = 0; robot < 8; ++robot) {
     CAPTURE(robot);
@@ -102,7 +102,7 @@ TEST_CASE("agents and robots have the channels of their own robots only") {
   }
 }
 
-TEST_CASE("agents exchange no messages with each other, and all others that work together do") {
+TEST_CASE("agents exchange no messages with each other, but all other processes that work together do") {
   const auto exchange = [](const char* a, const char* b) {
     return exchange_messages(identity(a), identity(b));
   };

@@ -34,7 +34,7 @@ TEST_CASE("keys are loaded as they were issued") {
   for (const char* name : key_files::kAll) CHECK(fs::exists(folder.file(name)));
 }
 
-TEST_CASE("what is wrong with keys is said in plain words") {
+TEST_CASE("problems with keys are explained in plain words") {
   TestKeys keys({"agent", "3-4"}), others({"agent", "3"});
   const std::string folder = keys.folder_of("agent 3");
   const auto problem = [&] { return problem_of(folder, keys.now()); };
@@ -105,7 +105,7 @@ std::string permissions_of(const TestKeys& keys, Time from, Time until) {
       .sign(permissions_text(identity, "CN=agent 3,O=Sidestep", from, until));
 }
 
-TEST_CASE("keys that are not valid yet are no wrong usage, because the clock may still be set") {
+TEST_CASE("keys that are not valid yet are not wrong usage, because the clock may still be set") {
   const TestKeys keys({"agent", "3"});
   const Time now = keys.now(), before = now - hours(1), later = now + hours(1);
   const auto check = [&](const std::string& folder, Time time, const std::string& what) {
@@ -136,7 +136,7 @@ TEST_CASE("keys that are not valid yet are no wrong usage, because the clock may
   }
 }
 
-TEST_CASE("what Fast DDS would refuse without a reason is named") {
+TEST_CASE("keys that Fast DDS would refuse without a reason are named") {
   const TestKeys keys({"agent", "3-4"}), others({"agent", "3"});
   const Time now = keys.now(), earlier = now - hours(2);
   SECTION("a list of revoked keys that has expired") {
@@ -197,7 +197,7 @@ TEST_CASE("a user without permission is told so, with the file, the user and the
   CHECK(problem(folder) == problem(keys.folder()));
 }
 
-TEST_CASE("a process takes its own keys from a folder with those of several") {
+TEST_CASE("a process uses its own keys from a folder with those of several processes") {
   TestKeys keys({"agent", "3", "robot", "0-10", "vision"});
   const auto own = [&](const char* text) {
     return own_key_folder(keys.folder(), parse_identity(text).value());
@@ -207,7 +207,7 @@ TEST_CASE("a process takes its own keys from a folder with those of several") {
   CHECK(own("robot 2-7") == keys.folder() + "/enclaves/robot-0-10");
   CHECK_THROWS_WITH(own("robot 9-11"), ContainsSubstring("has no keys of robot 9-11"));
   CHECK_THROWS_WITH(own("agent 4"), ContainsSubstring("sidestep keys issue"));
-  // Somebody who names the folder of one identity means that one.
+  // If somebody names the folder of one identity, that identity is meant.
   CHECK(own_key_folder(keys.folder_of("vision"), {Role::kViewer}) == keys.folder_of("vision"));
   CHECK_THROWS_WITH(key_folder_of(keys.folder_of("vision"), {Role::kVision}),
                     ContainsSubstring("sidestep keys init"));

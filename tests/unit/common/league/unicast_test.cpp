@@ -8,7 +8,7 @@
 
 namespace sidestep::league {
 
-TEST_CASE("a datagram reaches a socket, and its answer the sender") {
+TEST_CASE("a datagram reaches a socket, and the reply reaches the sender") {
   const TestEndpoint test;
   UnicastSocket server(test.unicast()), client(std::nullopt);
   const std::byte question[]{std::byte{1}, std::byte{2}}, answer[]{std::byte{3}};

@@ -7,7 +7,7 @@
 
 namespace sidestep::bit_grid_test {
 
-TEST_CASE("runs of bits are found as by looking at each bit") {
+TEST_CASE("runs of bits are found as by checking each bit") {
   const std::uint64_t seed = GENERATE(range(1, 60));
   CAPTURE(seed);
   Rng rng(seed);

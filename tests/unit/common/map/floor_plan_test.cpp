@@ -58,7 +58,7 @@ TEST_CASE("all free cells of a floor plan are connected") {
   if (is_usual && std::min(grid.columns, grid.rows) > 30) CHECK(free > grid.columns * grid.rows / 10);
 }
 
-TEST_CASE("a seed gives its floor plan") {
+TEST_CASE("the same seed gives the same floor plan") {
   const MapGrid grid{300, 200, 0.05, {1, 2}};
   const OccupancyMap plan = make_floor_plan(7, grid);
   CHECK(plan.blocked() == make_floor_plan(7, grid).blocked());

@@ -20,7 +20,7 @@ std::string row_of(const std::string& pixels) {
   return "P5 " + std::to_string(pixels.size()) + " 1 255\n" + pixels;
 }
 
-TEST_CASE("a map is read with its place, unknown cells blocked") {
+TEST_CASE("a map is read with its position, and unknown cells are blocked") {
   const MapFolder folder;
   const OccupancyMap map =
       folder.load(kMapYaml, "P5\n# by hand\n3 2\n255\n" + std::string("\xfe\xcd\0\xfe\xfe\xff", 6));
@@ -52,7 +52,7 @@ TEST_CASE("probabilities follow map_server's rules") {
         "..###/");
 }
 
-TEST_CASE("the grey of map savers is unknown whatever the thresholds say, and blocked unless it is allowed") {
+TEST_CASE("the grey of map savers is unknown regardless of the thresholds, and blocked unless allowed") {
   const MapFolder folder;
   // Free, unknown, likely free, likely occupied, occupied.
   const std::string image = row_of(std::string("\xfe\xcd\xd2\x80\0", 5));
@@ -66,7 +66,7 @@ TEST_CASE("the grey of map savers is unknown whatever the thresholds say, and bl
     CHECK(drawing(allowed.cells) == "....#/");
     CHECK(allowed.unknown == blocked.unknown);
   }
-  // In mode scale every grey is a probability.
+  // In mode scale, every grey is a probability.
   const LoadedMap scaled = folder.load_all(replaced(kMapYaml, "0.196\n", "0.25\n") + "mode: scale\n", image);
   CHECK(drawing(scaled.cells) == "...##/");
   CHECK(scaled.unknown == 1);
@@ -203,7 +203,7 @@ TEST_CASE("a map of a mobile robot is read") {
   CHECK(map.grid().rows == 384);
   CHECK(map.grid().resolution_m == 0.05);
   CHECK(map.grid().origin_m == Vec2(-10, -10));
-  // Where its robot starts, in the middle of a pillar, and in the unknown corner.
+  // At the robot's start, in the middle of a pillar, and in the unknown corner.
   CHECK(map.distance_m({-2, -0.5}) > 0.3);
   CHECK(map.distance_m({0, 0}) == 0);
   CHECK(map.distance_m({-9.9, -9.9}) == 0);

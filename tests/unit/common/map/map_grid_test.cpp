@@ -8,7 +8,7 @@
 
 namespace sidestep::map_grid_test {
 
-TEST_CASE("a point is in the cell whose borders are around it") {
+TEST_CASE("a point is in the cell whose borders surround it") {
   const std::uint64_t seed = GENERATE(range(1, 40));
   CAPTURE(seed);
   Rng rng(seed);
@@ -24,7 +24,7 @@ TEST_CASE("a point is in the cell whose borders are around it") {
   }
 }
 
-TEST_CASE("far points are outside on their side") {
+TEST_CASE("far points are outside, on their side of the map") {
   const MapGrid grid{3, 2, 0.5, {1, 1}};
   const double infinite = std::numeric_limits<double>::infinity();
   CHECK(grid.cell_at({-1e300, infinite}) == Cell{-1, 2});

@@ -16,7 +16,7 @@ double distance_to_outside(const Vec2& p, const Box& map) {
   return std::min((p - map.min_m).minCoeff(), (map.max_m - p).minCoeff());
 }
 
-/// By comparing with every blocked cell.
+/// Compares with every blocked cell.
 double slow_distance(const Vec2& p, const OccupancyMap& map) {
   double nearest_m = std::max(0.0, distance_to_outside(p, map.extent()));
   for (const Box& box : test::blocked_boxes(map))
@@ -58,7 +58,7 @@ OccupancyMap drawn(const std::vector<std::string>& rows) {
   return {MapGrid{bits.columns(), bits.rows(), 1, {0, 0}}, bits};
 }
 
-TEST_CASE("cells keep their place and all outside is blocked") {
+TEST_CASE("cells keep their positions, and everything outside is blocked") {
   const OccupancyMap map = drawn({"..#",  //
                                   "#.."});
   CHECK(map.is_blocked({0, 0}));
@@ -87,7 +87,7 @@ TEST_CASE("distances equal those to the nearest of all cells") {
   }
 }
 
-TEST_CASE("moving discs touch what they come near to") {
+TEST_CASE("moving discs touch whatever they come near enough to") {
   const std::uint64_t seed = GENERATE(range(1, 60));
   CAPTURE(seed);
   Rng rng(seed);

@@ -80,7 +80,7 @@ TEST_CASE("a PNG image is read as a map") {
   CHECK_THAT(folder.error(yaml, ""), ContainsSubstring("map.png: it is not a valid PNG image"));
 }
 
-TEST_CASE("grey values are taken as they are stored") {
+TEST_CASE("grey values are used as stored") {
   std::vector<png_byte> all(256);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<png_byte>(i);
   const std::string png = grey(256, 1, all);

@@ -12,7 +12,7 @@ namespace sidestep::ray_cast_test {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTolerance_m = 1e-9;
 
-/// Where a ray enters a box, by the slabs of both axes.
+/// Where a ray enters a box, from its intersections with the slabs of both axes.
 double entry_m(const Vec2& from, const Vec2& direction, const Box& box) {
   double enters_m = 0, leaves_m = kInfinite;
   for (int axis = 0; axis < 2; ++axis) {
@@ -28,7 +28,7 @@ double entry_m(const Vec2& from, const Vec2& direction, const Box& box) {
   return enters_m <= leaves_m ? enters_m : kInfinite;
 }
 
-/// By comparing with every blocked cell, inflated a little.
+/// Compares with every blocked cell, slightly inflated.
 double slow_cast(const std::vector<Box>& cells, const Box& map, const Vec2& from, const Vec2& direction,
                  double inflation_m) {
   double nearest_m = kInfinite;

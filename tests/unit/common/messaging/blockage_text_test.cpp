@@ -5,7 +5,7 @@
 
 namespace sidestep::blockage_text_test {
 
-TEST_CASE("what blocks a robot is said in a clause") {
+TEST_CASE("the cause of a blockage is described in a clause") {
   const auto text = [](msg::BlockReason reason) {
     return to_text(Blockage{reason, 5, {1.234, -2}, {0.5, 0.25}});
   };

@@ -94,7 +94,7 @@ TEST_CASE("the names of a host and a scenario cannot contain escape sequences") 
   const std::string longest(300, 'x');
   CHECK(encode_place(longest, longest).size() == msg::MAX_PLACE);
   CHECK(printable_name(std::string(300, 'x')).size() == msg::MAX_PLACE_NAME);
-  // Letters of other languages stay, and none is cut in two.
+  // Letters of other languages are kept, and none is cut in two.
   CHECK(printable_name("über-halle-東") == "über-halle-東");
   CHECK(printable_name("\xc2\x9b"
                        "2J\x7f\xff") == "??2J??");

@@ -44,7 +44,7 @@ TEST_CASE("any number of robots takes the same memory, and no count is lost") {
   CHECK(drops.total(DropReason::kFencedCommand) == 1);
 }
 
-TEST_CASE("every reason has a name of its own in lower case, and a description") {
+TEST_CASE("every reason has its own lower-case name, and a description") {
   std::set<std::string> names;
   for (const DropReasonInfo& info : kDropReasons) {
     const std::string name = info.name;
@@ -118,7 +118,7 @@ TEST_CASE("a process publishes its counters and those of its bus once per second
   CHECK((*counts)[1].count == 2);
 }
 
-TEST_CASE("the simulated network counts what it loses, and what does not fit a paused process's queue") {
+TEST_CASE("the simulated network counts lost messages, and those that do not fit a paused process's queue") {
   NetworkSpec spec;
   spec.loss = 0.5;
   SimNetwork network{1, time_from_ns(1'000'000'000'000), spec};

@@ -18,14 +18,14 @@ Version resting(VersionNumber number, RobotId robot = kRobot) {
   return {robot, 1, number, 5, Trajectory::resting(Time{}, {1, 2})};
 }
 
-/// With all candidates.
+/// A proposal with the maximum number of candidates.
 msg::Proposal full_proposal() {
   Proposal proposal{kRobot, 1000, 7, time_from_ns(5), 10, msg::MAX_CANDIDATES};
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i) proposal.candidates[i] = resting(10 + i);
   return message_of(proposal);
 }
 
-/// With as many versions as fit.
+/// A registration with as many versions as fit.
 msg::Registration full_registration() {
   Registration registration{kRobot, 1000, 7, time_from_ns(5), VersionSet()};
   for (VersionNumber number = 1; !registration.versions->is_full(); ++number)
@@ -144,7 +144,7 @@ TEST_CASE("candidates with another base or start than the first one are malforme
   CHECK_FALSE(decode(message, kNow)->candidates[1]);
 }
 
-TEST_CASE("a proposal without candidates, or with too many, has none") {
+TEST_CASE("a proposal without candidates, or with too many, is decoded without candidates") {
   for (const int count : {0, msg::MAX_CANDIDATES + 1, 255}) {
     CAPTURE(count);
     msg::Proposal message = full_proposal();
@@ -157,7 +157,7 @@ TEST_CASE("a proposal without candidates, or with too many, has none") {
   }
 }
 
-TEST_CASE("a registration with hostile versions has none") {
+TEST_CASE("a registration with hostile versions is decoded without versions") {
   using Message = msg::Registration;
   const auto is_malformed = [](auto spoil) {
     Message message = full_registration();
@@ -234,7 +234,7 @@ TEST_CASE("only a coordinator speaks for a coordinator") {
   }
   state.header().sender(10007);
   verdict.header().sender(10007);
-  CHECK_FALSE(decode(state, kNow));  // of another number
+  CHECK_FALSE(decode(state, kNow));  // a coordinator with another number
   state.coordinator(7);
   CHECK(decode(state, kNow));
   CHECK(decode(verdict, kRobot));
@@ -270,7 +270,7 @@ TEST_CASE("a coordinator's heartbeat is decoded unchanged") {
   CHECK(decode(message, kNow)->epoch == 0);
 }
 
-TEST_CASE("a coordinator's heartbeat that places a displaced robot nowhere is refused") {
+TEST_CASE("a coordinator's heartbeat with an invalid place of a displaced robot is refused") {
   msg::CoordinatorState message;
   message.header().sender(10000);
   msg::RobotNotice good;

@@ -45,7 +45,7 @@ TEST_CASE("orders survive encoding and decoding") {
   CHECK(area->zone.speed_limit_mps == 1.5);
 }
 
-TEST_CASE("orders of those who may not give them, or with a value out of range, are refused") {
+TEST_CASE("orders from senders who may not give them, or with a value out of range, are refused") {
   const auto is_refused = [](msg::Order message, auto spoil) {
     REQUIRE(decode(message, kNow));
     spoil(message);
@@ -79,7 +79,7 @@ TEST_CASE("orders of those who may not give them, or with a value out of range, 
   }
 }
 
-TEST_CASE("a memory of any size survives on as many pages as it needs") {
+TEST_CASE("a memory of any size survives on as many pages as necessary") {
   std::vector<RememberedOrder> orders;
   for (RobotId robot = 0; robot < 100; ++robot) {
     RememberedOrder order{go(robot), {msg::OrderState::ORDER_ARRIVED, 1}};
@@ -119,7 +119,7 @@ TEST_CASE("a memory of any size survives on as many pages as it needs") {
   CHECK(encode(std::span<const RememberedOrder>(), true, false).size() == 1);
 }
 
-TEST_CASE("scenarios only send robots to their own goals, and coordinators only hold") {
+TEST_CASE("scenarios only send robots to their own goals, and coordinators only hold robots") {
   const auto page_with = [](const Order& order) {
     const RememberedOrder remembered{order};
     msg::OrderMemory message = encode({&remembered, 1}, true, false).front();
@@ -136,7 +136,7 @@ TEST_CASE("scenarios only send robots to their own goals, and coordinators only 
   CHECK_FALSE(page_with({msg::OrderKind::ORDER_HOLD, 3, 20000, 1}));
 }
 
-TEST_CASE("what an agent does with its order survives encoding and decoding") {
+TEST_CASE("an agent's report on its order survives encoding and decoding") {
   OrderReport report{3, kClient, 17, {msg::OrderState::ORDER_DRIVING, 2}};
   report.is_held = true;
   report.blockage = Blockage{msg::BlockReason::BLOCK_ROBOT, 5, {1, 2}, {3, 4}};
@@ -156,7 +156,7 @@ TEST_CASE("what an agent does with its order survives encoding and decoding") {
   CHECK(decoded->blockage->blocker_m == Vec2(1, 2));
   CHECK(decoded->blockage->nearest_m == Vec2(3, 4));
   CHECK_FALSE(decoded->remaining_s);
-  // A robot that has arrived, and has to leave a zone, has still arrived.
+  // A robot that has arrived and then must leave a zone has still arrived.
   report.progress.state = msg::OrderState::ORDER_ARRIVED;
   CHECK(encode(report).order_state() == msg::OrderState::ORDER_ARRIVED);
   report.blockage.reset();

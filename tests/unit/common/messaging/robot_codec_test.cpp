@@ -15,12 +15,12 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kHostileTimes_ns[] = {to_ns(kNow + std::chrono::hours(1)), -1, to_ns(kMaxTime) + 1,
                                              to_ns(Time::max()), to_ns(Time::min())};
-/// As incarnation, epoch or version number.
+/// Hostile values of an incarnation, epoch or version number.
 constexpr std::uint64_t kHostileNumbers[] = {static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1))),
                                              std::uint64_t{1} << 62, std::uint64_t{1} << 63,
                                              std::numeric_limits<std::uint64_t>::max()};
 
-/// With all optional parts.
+/// A command with all optional parts.
 msg::Command full_command() {
   Command command{kRobot, 1000, 7, time_from_ns(5)};
   command.version = Version{kRobot, 1000, 20, 0, Trajectory::resting(Time{}, {1, 2})};
@@ -28,7 +28,7 @@ msg::Command full_command() {
   return message_of(command);
 }
 
-/// With all optional parts.
+/// Feedback with all optional parts.
 msg::Feedback full_feedback() {
   Feedback feedback;
   feedback.robot = feedback.executing.robot = kRobot;

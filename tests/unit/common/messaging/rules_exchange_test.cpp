@@ -48,7 +48,8 @@ struct Process {
 
 SimNetwork lossless() { return {1, time_from_ns(1'000'000'000'000), NetworkSpec{}}; }
 
-TEST_CASE("messages of a process with other rules are refused on both sides, and both name the difference") {
+TEST_CASE(
+    "messages from a process with different rules are refused on both sides, and both name the difference") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01), b(network, 10001, 0.02);
   for (int i = 0; i < 200; ++i) {
@@ -63,7 +64,7 @@ TEST_CASE("messages of a process with other rules are refused on both sides, and
   CHECK(drops_of(b.bus).total(DropReason::kOtherRules) == 200);
   const std::string refuses_b = "refuses coordinator 1, which works by other rules",
                     refuses_a = "refuses coordinator, which works by other rules";
-  // b learns first that a is there; a learns of b by its rules.
+  // b learns first that a is there; a learns of b from its rules.
   CHECK(b.mismatches == std::vector{refuses_a, refuses_a + ": margin_m is 0.01 instead of 0.02"});
   CHECK(a.mismatches == std::vector{refuses_b + ": margin_m is 0.02 instead of 0.01"});
 }
@@ -88,7 +89,7 @@ TEST_CASE("rules are sent rarely, however many messages are refused") {
     network.run_until(network.now() + 10ms);
   }
   CHECK(sent >= 34);  // the first ones are lost: nobody has found their writers
-  CHECK(sent <= 42);  // of two processes, for ten seconds
+  CHECK(sent <= 42);  // rules of two processes, for ten seconds
   CHECK(a.mismatches.size() == 2);
 }
 
@@ -105,7 +106,7 @@ TEST_CASE("one refused message is enough for both sides to name the difference")
             "refuses coordinator, which works by other rules: margin_m is 0.01 instead of 0.02"});
 }
 
-TEST_CASE("of any number of invented processes 256 are named, and then one in ten seconds") {
+TEST_CASE("of any number of invented processes, 256 are named, and then one every ten seconds") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01);
   a.bus.subscribe(topics::kRegistration, [](const msg::Registration&) {});

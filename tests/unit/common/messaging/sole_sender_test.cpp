@@ -33,7 +33,7 @@ TEST_CASE(
   for (int i = 0; i < 100; ++i) CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kCounts);
 }
 
-TEST_CASE("one message of another process costs nothing") {
+TEST_CASE("a single message from another process has no effect") {
   SoleSender sender;
   for (int i = 0; i < 100; ++i) {
     const Time now = kBegin + kCycle * i;
@@ -42,7 +42,7 @@ TEST_CASE("one message of another process costs nothing") {
   }
 }
 
-TEST_CASE("of two processes that both go on nothing counts from their second cycle on, until one is gone") {
+TEST_CASE("if two processes both continue, nothing counts from their second cycle on, until one is gone") {
   const std::uint64_t first = GENERATE(kOne, kThree);
   SoleSender sender;
   Time now = kBegin;
@@ -77,7 +77,7 @@ TEST_CASE("of two processes that both go on nothing counts from their second cyc
   }
 }
 
-TEST_CASE("a process that starts among others believes nobody until it has listened") {
+TEST_CASE("a process that starts among others trusts no sender until it has listened") {
   SoleSender sender(SoleSender::kListening);
   Time now = kBegin;
   for (; now < kBegin + SoleSender::kListening; now += kCycle)
@@ -85,7 +85,7 @@ TEST_CASE("a process that starts among others believes nobody until it has liste
   for (int i = 0; i < 100; ++i) CHECK(sender.receive(1, now += kCycle) == Outcome::kCounts);
 }
 
-TEST_CASE("a process that starts while two speak believes neither, whomever it hears first") {
+TEST_CASE("a process that starts while two are sending trusts neither, whichever it hears first") {
   const auto seed = GENERATE(range(1u, 101u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -93,7 +93,7 @@ TEST_CASE("a process that starts while two speak believes neither, whomever it h
   int reported = 0;
   for (int cycle = 0; cycle < 600; ++cycle) {
     for (const std::uint64_t incarnation : {1u, 2u}) {
-      // In any order, with losses.
+      // The messages arrive in any order, with losses.
       if (rng.chance(0.3)) continue;
       const Time now = kBegin + kCycle * cycle + from_seconds(rng.uniform(0, 0.001));
       const Outcome outcome = sender.receive(incarnation, now);
@@ -129,7 +129,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("of three or more processes nothing counts either") {
+TEST_CASE("with three or more processes nothing counts either") {
   const auto seed = GENERATE(range(1u, 51u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -142,7 +142,7 @@ TEST_CASE("of three or more processes nothing counts either") {
   }
 }
 
-TEST_CASE("a robot that raises its incarnation is heard at once, but not what it sent before") {
+TEST_CASE("a robot that raises its incarnation is heard at once, but its earlier messages are not") {
   SoleSender sender;
   Time now = kBegin;
   for (std::uint64_t life = 0; life < 5; ++life) {
@@ -157,7 +157,7 @@ TEST_CASE("a robot that raises its incarnation is heard at once, but not what it
   CHECK(sender.receive(kOne - 1, now) != Outcome::kCounts);
 }
 
-TEST_CASE("a reader of a topic for one process gets nothing of two, and says so once") {
+TEST_CASE("a reader of a single-writer topic gets nothing from two writers, and reports that once") {
   SimNetwork network(1, kBegin, {});
   SimBus first(network), second(network), reader(network);
   auto one = first.advertise(topics::kFeedback, 3), two = second.advertise(topics::kFeedback, 3);
@@ -186,7 +186,7 @@ TEST_CASE("a reader of a topic for one process gets nothing of two, and says so 
   CHECK(drops_of(reader).total(DropReason::kContestedSender) >= 98);
 }
 
-/// A process that counts, and knows who else has its id.
+/// A process that counts messages, and knows which others have its id.
 struct Part {
   SimBus bus;
   std::vector<Incarnation> others;
@@ -209,7 +209,7 @@ struct Part {
   }
 };
 
-TEST_CASE("processes with one id that must be alone find each other, once, and not by one message") {
+TEST_CASE("processes with one id that must run alone find each other, once, and not by a single message") {
   const auto id = static_cast<std::uint32_t>(
       GENERATE(Sender::kSimulator, Sender::kVision, Sender::kReferee, Sender::kCoordinator));
   SimNetwork network(1, kBegin, {});
@@ -230,7 +230,7 @@ TEST_CASE("processes with one id that must be alone find each other, once, and n
   CHECK(other.others.empty());
 }
 
-TEST_CASE("another process is found also after very many messages of invented ones") {
+TEST_CASE("another process is found even after very many messages from invented ones") {
   SimNetwork network(1, kBegin, {});
   const auto id = static_cast<std::uint32_t>(Sender::kVision);
   Part first(network, id, 100), second(network, id, 200), inventor(network, id, 0);

@@ -143,7 +143,7 @@ TEST_CASE("the clearance covers all time, long after both trajectories have ende
   CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-8));
 }
 
-TEST_CASE("a motion with numbers that are none is clear of nothing, however far away") {
+TEST_CASE("a motion with NaN is clear of nothing, however far away") {
   const double bad = std::numeric_limits<double>::quiet_NaN();
   const Trajectory far = Trajectory::resting(kBegin, {40, 30});
   const Trajectory good = moving(kBegin, {0, 0}, {1, 0.5}, {0.5, 0}, 0.3);
@@ -231,7 +231,7 @@ TEST_CASE("a trajectory is clear of a map exactly if it is clear of each blocked
       double clearance = std::numeric_limits<double>::infinity();
       for (const Box& cell : cells) clearance = std::min(clearance, clearance_m(a, Shape(cell), separation));
       CAPTURE(i, k, clearance);
-      // The edges of merged cells are rounded like those of the cells.
+      // The edges of merged cells are rounded like the edges of the cells.
       if (std::abs(clearance) > 1e-9) REQUIRE(is_clear(a, map, separation) == (clearance >= 0));
       clear += clearance >= 0 ? 1 : 0;
       near += std::abs(clearance) < 0.1 ? 1 : 0;

@@ -39,7 +39,8 @@ TEST_CASE("samples lie in A(v) and fill it, and limited accelerations respect th
   CHECK(furthest_behind < -4.9);
 }
 
-TEST_CASE("an acceleration that may be held is admissible at every moment, and others are not at some") {
+TEST_CASE(
+    "an acceleration that may be held is admissible at every moment, and others are not at some moment") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);

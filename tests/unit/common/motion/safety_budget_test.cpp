@@ -9,7 +9,7 @@
 
 namespace sidestep::safety_budget_test {
 
-TEST_CASE("the budget line shows the composition of the margin and the spare part") {
+TEST_CASE("the budget line shows how the margin is composed, and the spare part") {
   CHECK(budget_line({}, 0.014) ==
         "safety budget: margin 14.0 mm = 2 x 5.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s");
   CHECK(

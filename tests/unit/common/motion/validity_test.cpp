@@ -36,7 +36,7 @@ TEST_CASE("violations of limits, rest and workspace are detected") {
   CHECK(check_workspace(stop_from({0, 1.3}, {0, 1}, {0, -3}, 0.66), rules) == Validity::kOutsideField);
 }
 
-TEST_CASE("a phase that brakes at D may not go on at D after the velocity has reversed") {
+TEST_CASE("a phase that brakes at D may not continue at D after the velocity has reversed") {
   const Time t = time_from_ns(1'000'000'000);
   const auto held_for = [&](Vec2 velocity, Vec2 acceleration, double seconds) {
     Trajectory trajectory(t, {{0, 0}, velocity});

@@ -16,7 +16,7 @@ DdsSettings with_keys(const TestDomain& domain, const TestKeys& keys) {
   return settings;
 }
 
-TEST_CASE("bases have no keys, so that with keys their topics need a domain of their own") {
+TEST_CASE("bases have no keys, so with keys their topics need a separate domain") {
   const TestDomain domain;
   const TestKeys keys({"robot", "0-1"});
   DdsBus bus(with_keys(domain, keys));
@@ -28,7 +28,7 @@ TEST_CASE("bases have no keys, so that with keys their topics need a domain of t
                                       " is that of this process already"));
 }
 
-TEST_CASE("without keys and without a domain of their own, bases are on the network of the agents") {
+TEST_CASE("without keys and without a separate domain, bases use the agents' network") {
   const TestDomain domain;
   DdsBus bus(domain.settings());
   CHECK_FALSE(bus.has_keys());

@@ -51,7 +51,7 @@ TEST_CASE("options set their variables, and the others keep their defaults") {
   CHECK_FALSE(f.report);
 }
 
-TEST_CASE("negative numbers are no options, also without the zero before the point") {
+TEST_CASE("negative numbers are not options, even without the zero before the point") {
   Fixture f;
   std::string place;
   f.line.root().add_option("PLACE", place);
@@ -130,7 +130,7 @@ TEST_CASE("a number is decimal, also with a zero or a plus in front") {
   CHECK_FALSE(Fixture().error_of({"--count", "0x10"}).empty());
 }
 
-TEST_CASE("a word that is no command is named, and the commands are listed") {
+TEST_CASE("an unknown command is named, and the commands are listed") {
   CommandLine line("A program under test.", "sidestep-test");
   line.root().require_subcommand();
   const CliCommand outer = line.root().add_subcommand("outer", "Has commands");
@@ -142,7 +142,7 @@ TEST_CASE("a word that is no command is named, and the commands are listed") {
   CHECK_THROWS_WITH(line.parse({"outer"}), ContainsSubstring("subcommand is required"));
 }
 
-TEST_CASE("what has to be positive is neither so large nor so small that it cannot be a duration") {
+TEST_CASE("numbers that must be positive are neither too large nor too small to be a duration") {
   const auto [text, is_valid] = GENERATE(table<std::string, bool>({{"1e-9", true},
                                                                    {"0.5", true},
                                                                    {"1e9", true},

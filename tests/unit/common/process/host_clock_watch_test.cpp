@@ -48,7 +48,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a process adopts its host's clock some seconds after that was set, if its references agree") {
+TEST_CASE("a process adopts its host's clock some seconds after it was set, if its references agree") {
   const ClockReference reference = GENERATE(ClockReference::kCoordinators, ClockReference::kRobots);
   const bool uses_heartbeats = reference == ClockReference::kCoordinators;
   CAPTURE(uses_heartbeats);
@@ -57,14 +57,14 @@ TEST_CASE("a process adopts its host's clock some seconds after that was set, if
   CHECK(scene.adopted == 0);
   CHECK(scene.steps.empty());
   scene.host_ahead = 24h;
-  scene.run(20s, !uses_heartbeats, uses_heartbeats);  // those of others do not count
+  scene.run(20s, !uses_heartbeats, uses_heartbeats);  // messages from other processes do not count
   CHECK(scene.adopted == 0);
   CHECK(scene.steps == std::vector<Duration>{24h});
   scene.run(5s, true, true);
   CHECK(scene.adopted == 1);
 }
 
-TEST_CASE("a process in use, or one that is right, keeps its clock when the host's is set") {
+TEST_CASE("a process that is in use or has the right clock keeps its clock when the host's is set") {
   const bool is_right = GENERATE(true, false);
   CAPTURE(is_right);
   Scene scene(ClockReference::kCoordinators, is_right ? Duration(0s) : Duration(-1h));

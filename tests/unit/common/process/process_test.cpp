@@ -106,7 +106,7 @@ TEST_CASE("a process whose keys are not valid yet exits with 1, so that a servic
   CHECK_THAT(late.err, ContainsSubstring("the key of agent 1 expired on"));
 }
 
-TEST_CASE("an option without a value has its default, and an option that is not given has none") {
+TEST_CASE("an option without a value has its default, and an option that is absent has no value") {
   const auto parsed = [](std::vector<std::string> arguments) {
     CommandLine command_line("test", "test");
     const CliCommand app = command_line.root();
@@ -154,7 +154,7 @@ TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit 
   CHECK_THAT(outcome.err, ContainsSubstring("agent-3: Fast DDS " + fast_dds_version() + ", domain "));
 }
 
-TEST_CASE("a later run of a process has a higher incarnation, unless others would refuse that") {
+TEST_CASE("a later run of a process has a higher incarnation, unless others would refuse it") {
   const Time now = time_from_ns(1'000'000'000'000'000);
   const auto reading = static_cast<Incarnation>(to_ns(now)), minute = Incarnation{60'000'000'000};
   CHECK(next_incarnation(0, now) == reading);

@@ -19,7 +19,7 @@ TEST_CASE("drops are counted by reason and robot") {
   CHECK(drops.total() == 8);
 }
 
-TEST_CASE("what was never dropped takes no place") {
+TEST_CASE("a reason that never occurred takes no space") {
   DropCounters drops;
   const std::size_t rows = drops.counts().size();
   drops.count(DropReason::kLateFact, RobotId{3}, 0);
@@ -32,7 +32,7 @@ TEST_CASE("what was never dropped takes no place") {
   CHECK(drops.total() == 4);
 }
 
-TEST_CASE("drops of more robots than there are places for are counted without them") {
+TEST_CASE("drops of more robots than there is space for are counted without the robots") {
   DropCounters drops;
   for (RobotId robot = 0; robot < 1000; ++robot) drops.count(DropReason::kLateFact, robot, 2);
   CHECK(drops.counts().size() == DropCounters::kCapacity);

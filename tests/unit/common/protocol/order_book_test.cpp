@@ -117,7 +117,7 @@ TEST_CASE("only its owner or an operator lifts a hold, also for one robot of all
   CHECK(book.is_held(4));
 }
 
-TEST_CASE("an order is known by its number, and a late one changes nothing") {
+TEST_CASE("an order is known by its number, and a late order changes nothing") {
   OrderBook book;
   CHECK(book.merge(go(3, kAnna, 10)) == OrderBook::Outcome::kStored);
   CHECK(book.merge(go(3, kAnna, 10)) == OrderBook::Outcome::kKnown);
@@ -138,7 +138,7 @@ TEST_CASE("progress only grows, and a robot leaves what it has finished when it 
   CHECK(book.drive_order(3, Rank::kOperator)->progress.is_finished());
   CHECK(book.report(3, kAnna, 10, {msg::OrderState::ORDER_DRIVING, 0}));
   CHECK(book.drive_order(3, Rank::kOperator)->progress.state == msg::OrderState::ORDER_LEFT);
-  CHECK_FALSE(book.report(3, kAnna, 9, {msg::OrderState::ORDER_ARRIVED, 0}));  // of an earlier order
+  CHECK_FALSE(book.report(3, kAnna, 9, {msg::OrderState::ORDER_ARRIVED, 0}));  // progress of an earlier order
   CHECK_FALSE(book.drive_order(3, Rank::kClient)->progress.is_finished());
   RememberedOrder further = go(3, kAnna, 10);
   further.progress = {msg::OrderState::ORDER_ARRIVED, 0};
@@ -155,7 +155,8 @@ RememberedOrder removal(ClientId client, std::uint32_t zone_number, OrderNumber 
   return remembered;
 }
 
-TEST_CASE("a zone stays until it is removed, each client has its own numbers, and clients' room is bounded") {
+TEST_CASE(
+    "a zone stays until it is removed, each client has its own numbers, and each client's room is bounded") {
   OrderBook book;
   book.merge(zone(kAnna, 1, 10));
   book.merge(zone(kBert, 1, 11));
@@ -174,7 +175,7 @@ TEST_CASE("a zone stays until it is removed, each client has its own numbers, an
   CHECK(book.is_held(1));
 }
 
-TEST_CASE("of two orders with one number that of the higher client counts, whichever comes first") {
+TEST_CASE("of two orders with the same number, the one of the client with the higher id counts") {
   for (const auto kind : {msg::OrderKind::ORDER_GO, msg::OrderKind::ORDER_CANCEL}) {
     const RememberedOrder of_anna = order(kind, 3, kAnna, 10), of_bert = go(3, kBert, 10);
     OrderBook first, second;
@@ -203,7 +204,7 @@ TEST_CASE("a resume lifts only holds with lower numbers: an operator's with the 
   }
 }
 
-TEST_CASE("holds that are lifted and zones that are removed give their places back for ever") {
+TEST_CASE("lifted holds and removed zones free their places permanently") {
   OrderBook book;
   OrderNumber number = 0;
   std::size_t most = 0;
@@ -222,7 +223,7 @@ TEST_CASE("holds that are lifted and zones that are removed give their places ba
   CHECK(most <= OrderBook::kMaxResumes + OrderBook::kMaxRemovals);
 }
 
-TEST_CASE("the owner of a hold can lift it, one by one or all at once, however many stand") {
+TEST_CASE("the owner of a hold can lift it, one by one or all at once, however many there are") {
   for (const bool all_at_once : {true, false}) {
     OrderBook book;
     OrderNumber number = 0;
@@ -272,7 +273,7 @@ TEST_CASE(
   CHECK(book.admit(hold(4, kOperator, 5).order) == OrderBook::Outcome::kStored);
 }
 
-TEST_CASE("one robot that was released of all stays released, whatever else is lifted") {
+TEST_CASE("a robot that was released from a hold of all stays released, whatever else is lifted") {
   OrderBook book;
   OrderNumber number = 0;
   book.admit(hold(kAllRobots, kAnna, ++number).order);
@@ -328,7 +329,7 @@ TEST_CASE("exceptions from holds of all that other processes remember are bounde
   CHECK(book.is_held(0));  // rather than released
 }
 
-TEST_CASE("what another process remembers is never refused, however full a book is") {
+TEST_CASE("orders that another process remembers are never refused, however full a book is") {
   OrderBook book;
   OrderNumber number = 0;
   for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)

@@ -5,7 +5,7 @@
 
 namespace sidestep::role_cause_test {
 
-TEST_CASE("the reason of an epoch is told with the silence in milliseconds") {
+TEST_CASE("the reason for an epoch is described with the silence in milliseconds") {
   const RoleCause lost{msg::RoleReason::ROLE_HEARTBEATS_LOST, 3, std::chrono::milliseconds(120), 0};
   CHECK(describe(lost) == "no heartbeat of coordinator 3 for 120 ms");
   const RoleCause first{msg::RoleReason::ROLE_NO_COORDINATOR, 0, std::chrono::milliseconds(1500), 0};
@@ -14,7 +14,7 @@ TEST_CASE("the reason of an epoch is told with the silence in milliseconds") {
   CHECK(describe(returned) == "no heartbeat of a higher epoch for 400 ms after yielding to it");
 }
 
-TEST_CASE("the reason of an epoch names who knew a higher one") {
+TEST_CASE("the reason for an epoch names who knew a higher one") {
   CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_COORDINATOR, 1, Duration{0}, 77}) ==
         "coordinator 1 has the higher epoch 77");
   CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_AGENT, 5, Duration{0}, 77}) ==

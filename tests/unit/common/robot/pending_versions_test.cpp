@@ -11,7 +11,7 @@ using test::command;
 using test::rest_version;
 using test::TestMemory;
 
-TEST_CASE("of versions with one start the lower number comes first, in whatever order they arrive") {
+TEST_CASE("of versions with the same start, the lower number goes first, in whatever order they arrive") {
   const bool is_lower_first = GENERATE(true, false);
   // The second version continues the first one, or the same base.
   const bool is_chain = GENERATE(true, false);

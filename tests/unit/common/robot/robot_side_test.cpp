@@ -111,7 +111,8 @@ TEMPLATE_TEST_CASE("a robot side's own stop brakes to rest from the estimate", "
   }
 }
 
-TEST_CASE("a robot whose motors obey late refuses versions that start too soon for them, and says so") {
+TEST_CASE(
+    "a robot whose motors respond late refuses versions that start too soon for them, and reports its lead") {
   TestMemory memory;
   Settings<double> settings;
   settings.actuation_lead_ns = 100'000'000;
@@ -154,7 +155,7 @@ TEST_CASE("a robot whose motors obey late begins its own stop with the motion un
   CHECK(braked.velocity_mps.y == Approx(0.5));
   CHECK(braked.position_m.x == Approx(1 + 0.078 + 0.056));
   CHECK(braked.position_m.y == Approx(0.01));
-  CHECK(stop.end_ns() == at_ms(101 + 260));  // from 1.3 m/s
+  CHECK(stop.end_ns() == at_ms(101 + 260));  // starting at 1.3 m/s
   CHECK(stop.inflation_m == Approx(0.007));
 }
 
@@ -257,7 +258,7 @@ TEST_CASE("a robot does not plan to switch to a version that it will refuse") {
   CHECK(side.executing().number == 106);
 }
 
-TEST_CASE("a robot that is switched off and on in somebody's hand is put down at its rest version") {
+TEST_CASE("a robot that is switched off and on while being carried is put down at its rest version") {
   TestMemory memory;
   RobotSide<double> side({}, {});
   side.begin_at_rest(0, 0);
@@ -323,7 +324,7 @@ TEST_CASE(
   CHECK(facts.executing->start_ns == now_ns + 1'000'000);
   CHECK(facts.executing->number >= 102 + RobotSide<double>::kOwnNumberGap);
   CHECK(facts.executing->vx_mps == estimate.velocity_mps.x);
-  // By its new clock that version is in time, but it was granted by the old one.
+  // By its new clock that version would be in time, but it was granted by the old one.
   (void)side.on_command(command(100, 1, &pending), now_ns + 2'000'000, memory);
   CHECK_FALSE(side.switch_next(before_ns + 20'000'000));
 }

@@ -106,7 +106,7 @@ TEST_CASE("a robot stores rarely: a day of commands costs a few writes") {
   side.begin_at_rest(0, 0);
   std::uint64_t number = 1'700'000'000'000'000'000;
   const std::uint64_t agent = number;
-  // At 60 cycles a second, with four proposals of five candidates each.
+  // 60 cycles a second, with four proposals of five candidates each.
   for (int i = 0; i < 86'400 * 60; i += 100) {
     number += 20 * 100;
     const Version version = rest_version(number, 0, 0, agent);

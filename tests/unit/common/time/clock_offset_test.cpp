@@ -16,9 +16,9 @@ constexpr Duration kPeriod{16'666'667};
 /// Two clocks and messages between them with random delays: the ground truth for the estimates.
 struct TwoClocks {
   Rng rng;
-  Duration offset;  // of the peer's clock, at kBegin
+  Duration offset;  // offset of the peer's clock at kBegin
   double drift_ppm = 0;
-  double min_s, mean_s;  // of a delay: exponential above the minimum
+  double min_s, mean_s;  // of a delay, which is exponential above the minimum
   double loss = 0;
 
   Duration true_offset(Time local) const {

@@ -15,8 +15,8 @@ constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 struct Scene {
   ClockRecovery recovery;
   Time now = kBegin;
-  Duration own_ahead{0};   ///< of true time
-  Duration host_ahead{0};  ///< of true time
+  Duration own_ahead{0};   ///< relative to true time
+  Duration host_ahead{0};  ///< relative to true time
   bool is_in_use = false;
 
   void hear(std::uint32_t reference, Duration ahead, Duration delay, int messages = 10) {
@@ -37,7 +37,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a process adopts its host's clock once that agrees with others, and its own does not") {
+TEST_CASE("a process adopts its host's clock once that agrees with others and its own does not") {
   const Duration wrong = GENERATE(Duration(-24h), Duration(-1h), Duration(-1s), Duration(-20ms),
                                   Duration(300ms), Duration(2s), Duration(24h));
   const Duration delay = GENERATE(Duration(100us), Duration(5ms));
@@ -48,7 +48,7 @@ TEST_CASE("a process adopts its host's clock once that agrees with others, and i
   CHECK(scene.adopts(0s, delay, 1));
 }
 
-TEST_CASE("a process keeps its clock if that is within the clock bound of others'") {
+TEST_CASE("a process keeps its clock if it is within the clock bound of the others' clocks") {
   Scene scene;
   scene.recovery = ClockRecovery(100ms);
   scene.own_ahead = -90ms;
@@ -57,7 +57,7 @@ TEST_CASE("a process keeps its clock if that is within the clock bound of others
   CHECK(scene.adopts(0s));
 }
 
-TEST_CASE("a step of the host's clock changes nothing while another agrees with the process") {
+TEST_CASE("a step of the host's clock changes nothing while another process agrees with this one") {
   const Duration step =
       GENERATE(Duration(-24h), Duration(-1s), Duration(-20ms), Duration(20ms), Duration(1s), Duration(24h));
   const Duration delay = GENERATE(Duration(100us), Duration(20ms), Duration(150ms));
@@ -65,7 +65,7 @@ TEST_CASE("a step of the host's clock changes nothing while another agrees with 
   Scene scene;
   scene.host_ahead = step;
   CHECK_FALSE(scene.adopts(0s, delay, 20));
-  // Nor if somebody who was started since agrees with the host.
+  // A process started since then that agrees with the host makes no difference.
   for (int i = 0; i < 20; ++i) {
     scene.hear(1, 0s, delay);
     scene.hear(2, step, delay);
@@ -88,7 +88,7 @@ TEST_CASE("a process that agrees with others neither by its own clock nor by its
   CHECK_FALSE(scene.adopts(0s, 1ms, 20));
 }
 
-TEST_CASE("nobody to be heard, too few messages and impossible stamps are no evidence") {
+TEST_CASE("no references, too few messages and impossible stamps are no evidence") {
   Scene scene;
   scene.own_ahead = -24h;
   for (int i = 0; i < 20; ++i) {
@@ -101,7 +101,7 @@ TEST_CASE("nobody to be heard, too few messages and impossible stamps are no evi
   }
 }
 
-TEST_CASE("the evidence begins anew when the host's clock is set again, or one period has none") {
+TEST_CASE("the evidence restarts when the host's clock is set again, or one period has none") {
   Scene scene;
   scene.own_ahead = -24h;
   scene.host_ahead = 100ms;

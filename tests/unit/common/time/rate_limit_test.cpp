@@ -14,7 +14,7 @@ TEST_CASE("a burst of events is admitted at once, and then one per period") {
   CHECK(admitted == 3 + 4);
 }
 
-TEST_CASE("a clock that is set back does not stop events for longer than a burst takes") {
+TEST_CASE("a clock that is set back does not block events for longer than a burst takes") {
   const int back_ms = GENERATE(1, 900, 2500, 3'600'000);
   CAPTURE(back_ms);
   RateLimit limit(3, std::chrono::seconds(1));

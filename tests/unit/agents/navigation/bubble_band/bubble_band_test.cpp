@@ -44,7 +44,7 @@ ObstaclePoints obstacles_of(std::span<const Vec2> points) {
   return result;
 }
 
-TEST_CASE("forces on bubbles agree with their definition, written out") {
+TEST_CASE("forces on bubbles agree with their written-out definition") {
   const BubbleForces forces;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     CAPTURE(seed);
@@ -73,7 +73,7 @@ TEST_CASE("forces on bubbles agree with their definition, written out") {
   }
 }
 
-TEST_CASE("the passage between bubbles is that of the largest disc that fits through") {
+TEST_CASE("the passage between bubbles is as wide as the largest disc that fits through") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -205,7 +205,7 @@ TEST_CASE("the band's beginning follows the robot to the goal") {
   CHECK(band.bubbles().size() == 2);
 }
 
-TEST_CASE("bubbles far along the band ignore what is near the robot") {
+TEST_CASE("bubbles far along the band ignore obstacles near the robot") {
   BubbleBandSettings settings;
   settings.max_masked_m = 4;
   BubbleBand band(kRadius_m, settings);

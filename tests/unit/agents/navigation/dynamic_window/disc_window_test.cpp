@@ -26,7 +26,7 @@ std::vector<Vec2> random_points(Rng& rng, std::size_t count) {
   return points;
 }
 
-TEST_CASE("a disc may use exactly the velocities that it can reach and stop from") {
+TEST_CASE("a disc may use exactly those velocities that it can reach and stop from") {
   DiscWindow exact(kRadius_m, kLimits, settings_for(CollisionMethod::kExact));
   DiscWindow table(kRadius_m, kLimits, settings_for(CollisionMethod::kUniformTable));
   std::size_t by_exact = 0, by_table = 0;

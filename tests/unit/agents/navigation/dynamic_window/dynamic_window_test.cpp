@@ -28,7 +28,7 @@ std::vector<Vec2> random_points(Rng& rng, std::size_t count, double half_side_m,
 
 using Admissible = std::map<std::pair<int, int>, RatedWheelSpeeds>;
 
-/// By index of the wheel speeds.
+/// Indexed by the wheel speeds.
 Admissible by_index(const WindowChoice& choice, const DifferentialDrive& drive) {
   const auto index = [&](double speed) {
     return static_cast<int>(std::lround(speed / drive.wheel_speed_mps * (kGridSide / 2))) + kGridSide / 2;
@@ -126,7 +126,7 @@ TEST_CASE("the exact window agrees with a slow reference") {
   }
 }
 
-TEST_CASE("what tables admit is admissible exactly, and they admit nearly as much") {
+TEST_CASE("everything that tables admit is admissible exactly, and they admit nearly as much") {
   const DifferentialDrive drive;
   DynamicWindow exact(drive, kHull, settings_for(CollisionMethod::kExact));
   DynamicWindow tables[] = {{drive, kHull, settings_for(CollisionMethod::kUniformTable)},
@@ -170,7 +170,7 @@ TEST_CASE("a point within the padded hull makes the robot brake") {
     CHECK(choice.is_touching);
     CHECK(choice.admissible.empty());
     CHECK_FALSE(choice.best);
-    // In proportion: the robot stays on its arc.
+    // The wheels slow down in proportion, so the robot stays on its arc.
     CHECK(choice.command.left_mps == Approx(0.4 - 0.0572));
     CHECK(choice.command.right_mps == Approx(choice.command.left_mps / 2));
   }

@@ -22,7 +22,7 @@ void step(const Vec2& point_m, const ArcMotion& motion, Visit visit) {
   }
 }
 
-TEST_CASE("what the robot sees after a time agrees with integrating its motion") {
+TEST_CASE("the robot's view after a time agrees with integrating its motion") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);
   Rng rng(seed);
@@ -59,7 +59,7 @@ TEST_CASE("exact times to collision agree with dense time steps") {
       ++misses;
       continue;
     }
-    // On the outline at the time, and inside soon after it unless it only grazes the outline.
+    // On the outline at that time, and inside soon after, unless it only grazes the outline.
     ++hits;
     const Vec2 entry = seen_after(point, motion, time_s);
     REQUIRE(std::abs(signed_distance(entry, hull.corners_m)) < 1e-8);

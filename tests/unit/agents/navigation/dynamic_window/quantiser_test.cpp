@@ -67,7 +67,7 @@ TEST_CASE("uniform levels are off by at most one step") {
   }
 }
 
-TEST_CASE("Lloyd and Max separate two crowds of times") {
+TEST_CASE("the Lloyd-Max levels separate two clusters of times") {
   Rng rng(5);
   const std::vector<float> times = random_times(rng, 20'000);
   const Quantiser fitted = Quantiser::lloyd_max(times, kHorizon_s, 4);
@@ -78,7 +78,7 @@ TEST_CASE("Lloyd and Max separate two crowds of times") {
   CHECK(fitted.encode(0.2F) != fitted.encode(0.7F));
 }
 
-TEST_CASE("more levels make smaller errors, and few fitted levels smaller ones than even steps") {
+TEST_CASE("more levels give smaller errors, and a few fitted levels give smaller errors than uniform steps") {
   Rng rng(6);
   const std::vector<float> times = random_times(rng, 20'000);
   const double coarse_s = mean_error_s(Quantiser::lloyd_max(times, kHorizon_s, 16), times);

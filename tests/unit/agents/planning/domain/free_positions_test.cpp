@@ -27,7 +27,7 @@ Vec2 random_position(Rng& rng) {
   return {x, y};
 }
 
-TEST_CASE("the nearest free position is as near as the first of all") {
+TEST_CASE("the nearest free position is as near as the first of the list") {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
@@ -49,7 +49,8 @@ TEST_CASE("the nearest free position is as near as the first of all") {
   CHECK(found > 150);
 }
 
-TEST_CASE("the exit of a blocked start is the nearest that a straight motion out of the obstacles reaches") {
+TEST_CASE(
+    "the exit of a blocked start is the nearest one that a straight motion out of the obstacles reaches") {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);

@@ -57,7 +57,7 @@ double shortest(const BitGrid& blocked, const Cell& start, const Cell& goal) {
   return at(goal.column, goal.row);
 }
 
-TEST_CASE("with an admissible heuristic A* finds the shortest path on cells, by valid steps") {
+TEST_CASE("with an admissible heuristic A* finds the shortest path on cells, in valid steps") {
   const CellHeuristic heuristic =
       GENERATE(CellHeuristic::kNone, CellHeuristic::kStraight, CellHeuristic::kOctile);
   CellAstar astar(heuristic);
@@ -90,7 +90,7 @@ TEST_CASE("with an admissible heuristic A* finds the shortest path on cells, by 
   CHECK(none > 10);
 }
 
-TEST_CASE("the octile heuristic never exceeds the remaining path, and Manhattan does") {
+TEST_CASE("the octile heuristic never exceeds the remaining path, but Manhattan does") {
   // On a free grid the octile heuristic is exact.
   const BitGrid free(9, 9);
   for (int x = 0; x < 9; ++x) {

@@ -40,7 +40,7 @@ Outcome plan_world(Planner planner, const std::string& name, std::uint64_t seed)
   return outcome;
 }
 
-TEST_CASE("grid search finds paths little longer than the shortest") {
+TEST_CASE("grid search finds paths only slightly longer than the shortest") {
   const auto seed = GENERATE(1u, 2u, 3u);
   for (const std::string name : {"empty", "circles", "mixed", "maze", "u"}) {
     CAPTURE(name, seed);
@@ -50,7 +50,7 @@ TEST_CASE("grid search finds paths little longer than the shortest") {
     CHECK(a_star.solved >= 9);
     CHECK(breadth.solved == a_star.solved);
     CHECK(depth.solved == a_star.solved);
-    // At most 8.3 % longer for eight directions, plus the cells' width.
+    // At most 8.3 % longer because of the eight directions, plus the width of the cells.
     CHECK(a_star.over_shortest < 1.12);
     CHECK(a_star.over_shortest <= breadth.over_shortest);
     CHECK(breadth.over_shortest <= depth.over_shortest);
@@ -149,7 +149,7 @@ PlanWorld aligned_world(Rng& rng) {
   return world;
 }
 
-TEST_CASE("the decomposition solves what the visibility graph does, also if boundaries coincide") {
+TEST_CASE("the decomposition solves whatever the visibility graph solves, even if boundaries coincide") {
   TrapezoidalDecomposition trapezoids;
   LazyVisibility visibility;
   int solved = 0, unsolvable = 0;

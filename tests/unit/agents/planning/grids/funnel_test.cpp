@@ -42,7 +42,7 @@ double shortest_m(const Vec2& from, const std::vector<Gate>& gates, const Vec2& 
   return length.back();
 }
 
-TEST_CASE("the path through gates is the shortest") {
+TEST_CASE("the path through gates is the shortest one") {
   const std::uint64_t seed = GENERATE(range(1, 101));
   CAPTURE(seed);
   Rng rng(seed);
@@ -67,7 +67,7 @@ TEST_CASE("the path through gates is the shortest") {
   for (std::size_t i = 1; i < path.size(); ++i) REQUIRE(passes(path[i - 1], path[i], gates));
   CHECK(length_of(path) == Approx(shortest_m(from, gates, to)).epsilon(1e-9));
 
-  // The same way back.
+  // The same path backwards.
   std::vector<Gate> reversed;
   for (auto gate = gates.rbegin(); gate != gates.rend(); ++gate)
     reversed.push_back({gate->right_m, gate->left_m});

@@ -28,7 +28,7 @@ std::int64_t compare_heights(const GridSegment& a, const GridSegment& b, const G
   return a_numerator < at.y * a_width ? steeper : -steeper;
 }
 
-/// The segments directly below and above a point that lies on none, by comparison with all.
+/// The segments directly below and above a point that lies on no segment, found by comparing with all.
 std::pair<Index, Index> segments_around(const TrapezoidalMap& map, const GridPoint& p) {
   Index below = map.box_bottom(), above = map.box_top();
   for (Index i = 0; i + 2 < map.segments().size(); ++i) {

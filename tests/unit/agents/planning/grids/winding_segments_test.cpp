@@ -13,7 +13,7 @@ bool is_on(const GridPoint& p, const GridSegment& s) {
          std::min(s.left.y, s.right.y) <= p.y && p.y <= std::max(s.left.y, s.right.y);
 }
 
-/// Whether segments have more in common than ends.
+/// Whether segments have anything in common other than ends.
 bool overlap_or_cross(const GridSegment& a, const GridSegment& b) {
   const auto is_inner = [](const GridPoint& p, const GridSegment& s) {
     return p != s.left && p != s.right && is_on(p, s);
@@ -40,7 +40,7 @@ std::vector<GridPoint> random_triangle(Rng& rng, std::int32_t half) {
   }
 }
 
-TEST_CASE("divided segments have no more than ends in common") {
+TEST_CASE("divided segments have only ends in common") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   const std::int32_t half = GENERATE(4, 30, 1000, kMaxGridCoordinate);
   CAPTURE(seed, half);
@@ -53,7 +53,7 @@ TEST_CASE("divided segments have no more than ends in common") {
   }
 }
 
-TEST_CASE("dividing polygons does not change how many cover a point far from their boundaries") {
+TEST_CASE("dividing polygons does not change how many of them cover a point far from their boundaries") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   CAPTURE(seed);
   Rng rng(seed);

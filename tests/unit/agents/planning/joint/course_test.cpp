@@ -67,7 +67,7 @@ TEST_CASE("a clipped trajectory equals the whole one within its interval, and re
   }
 }
 
-TEST_CASE("a course answers as a sampled comparison does whether a motion is clear of it") {
+TEST_CASE("a course agrees with a sampled comparison on whether a motion is clear of it") {
   int clear = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     CAPTURE(seed);

@@ -29,7 +29,7 @@ Floor random_floor(Rng& rng, int robots) {
   return floor;
 }
 
-TEST_CASE("a composite motion is free as the independent check of its courses says") {
+TEST_CASE("a composite motion is free exactly if the independent check of its courses says so") {
   int free = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -77,7 +77,7 @@ TEST_CASE("an extension of the composite tree is free, and nearer to its target"
   CHECK(extended > 50);
 }
 
-TEST_CASE("a motion in space and time is free as the independent check of both courses says") {
+TEST_CASE("a motion in space and time is free exactly if the independent check of both courses says so") {
   int free = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -132,7 +132,7 @@ TEST_CASE("a state that is too early cannot be reached, but its position can") {
   CHECK(domain.distance(domain.goal(*reached), domain.goal(domain.goal(*reached))) == 0);
 }
 
-TEST_CASE("shortening leaves a path free, and no later at its goal") {
+TEST_CASE("shortening keeps a path free, and never makes it arrive later") {
   int shorter = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);

@@ -95,7 +95,7 @@ TEST_CASE("robots in a corridor pass each other by way of its bay") {
   }
 }
 
-TEST_CASE("priorities fail where the first robot's path leaves the second no room") {
+TEST_CASE("priorities fail if the first robot's path leaves no room for the second") {
   // The robots drive as fast as they can, so whichever is first is past the bay before the other is in it.
   const BayFloor floor;
   Rng rng(1);
@@ -127,7 +127,7 @@ void check_refusals() {
   CHECK(planner.plan(problem, kBudget, rng).arrives());
 }
 
-TEST_CASE("joint planners refuse what cannot be planned") {
+TEST_CASE("joint planners refuse invalid problems") {
   check_refusals<CompositePlanner>();
   check_refusals<PrioritisedPlanner>();
 }

@@ -63,7 +63,7 @@ TEST_CASE("roadmaps find valid paths in all worlds, the same ones from the same 
   }
 }
 
-TEST_CASE("a roadmap's path is its shortest also after obstacles moved") {
+TEST_CASE("a roadmap's path is its shortest one, also after obstacles have moved") {
   const auto seed = GENERATE(1u, 2u, 3u);
   const PlanWorld world = make_world("circles", 30, seed);
   ObstacleWorld obstacles(world.obstacles);
@@ -133,7 +133,7 @@ double shortest_on_new(const Roadmap<DiscDomain>& old, const DiscDomain& domain)
 }
 
 TEST_CASE("a dynamic roadmap uses a gap that was closed when the roadmap was built") {
-  Distribution same_nodes, new_nodes;  // length relative to that of a new roadmap
+  Distribution same_nodes, new_nodes;  // length relative to that in a new roadmap
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
     GapWorld gap;
@@ -143,7 +143,7 @@ TEST_CASE("a dynamic roadmap uses a gap that was closed when the roadmap was bui
     REQUIRE(closed.arrives());
     REQUIRE_FALSE(goes_through_gap(closed.states));
     gap.open();
-    // With this budget, no node is added.
+    // With this budget no node is added.
     const Budget budget{.nodes = planner.roadmap().size()};
     const Plan<Vec2> opened = planner.plan(gap.domain(), gap.start_m, budget, rng);
     REQUIRE(opened.arrives());

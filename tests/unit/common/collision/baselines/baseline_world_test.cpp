@@ -95,7 +95,7 @@ TEST_CASE("a textbook structure follows obstacles that are added, moved and remo
     CAPTURE(structure, seed, count);
     Rng rng(seed);
     baselines::BaselineWorld<Set> world(random_shapes(rng, count, 2));
-    // At first more obstacles are added than removed, later more are removed.
+    // Initially more obstacles are added than removed, later more are removed.
     for (int round = 0; round < 60; ++round) {
       const double add_probability = round < 30 ? 0.3 : 0.05;
       for (int change = 0; change < 15; ++change) {
@@ -115,7 +115,7 @@ TEST_CASE("a textbook structure follows obstacles that are added, moved and remo
   });
 }
 
-TEST_CASE("a textbook structure finds every obstacle that only touches") {
+TEST_CASE("a textbook structure finds every obstacle that is only just touched") {
   const std::uint64_t seed = GENERATE(range(1, 4));
   each_structure([&]<typename Set>(const char* structure, const Set&) {
     CAPTURE(structure, seed);

@@ -53,7 +53,7 @@ struct WorldPair {
   std::vector<Vec2> positions;
 };
 
-/// The clearance of a swept disc according to FCL: that of a capsule lying on the floor.
+/// The clearance of a swept disc according to FCL, computed for a capsule lying on the floor.
 double clearance_in_fcl(const SolidWorld& solids, const Vec2& from, const Vec2& to, double radius) {
   const Vec2 displacement = to - from, middle = 0.5 * (from + to);
   Eigen::Isometry3d pose = on_floor(middle);

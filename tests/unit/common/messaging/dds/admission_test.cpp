@@ -39,7 +39,7 @@ struct Fixture {
     keys[certificate.serial()] = key;
     return certificate;
   }
-  /// What the owner of the certificate's key announces. The signature is made once for each id.
+  /// What the owner of the certificate's key announces. A signature is made once for each id.
   const std::vector<std::uint8_t>& announced(const ParticipantId& id, const Certificate& certificate,
                                              const std::string& version = kVersion,
                                              std::optional<Time> given_start = std::nullopt) {
@@ -64,7 +64,7 @@ struct Fixture {
   Admission admission{identity("coordinator 0"), authority.certificate(), kVersion};
 };
 
-TEST_CASE("a participant with a valid certificate is admitted, and known by its identity") {
+TEST_CASE("a participant with a valid certificate is admitted, and its identity is known") {
   Fixture f;
   const Certificate agent = f.issue("agent 3");
   const ParticipantId id = id_with(agent);
@@ -76,7 +76,7 @@ TEST_CASE("a participant with a valid certificate is admitted, and known by its 
   CHECK(*f.admission.identity_of(id) == identity("agent 3"));
 }
 
-TEST_CASE("whoever has no valid certificate of this network is refused") {
+TEST_CASE("participants without a valid certificate of this network are refused") {
   Fixture f;
   const Certificate agent = f.issue("agent 3"), foreign = f.issue(f.other, "agent 3", 1h);
   const ParticipantId id = id_with(agent);
@@ -97,7 +97,7 @@ TEST_CASE("whoever has no valid certificate of this network is refused") {
   CHECK(f.announce(id, agent, "2.14.0") == Refusal::kNone);
 }
 
-TEST_CASE("announcements of random bytes, or with a bit changed, are refused") {
+TEST_CASE("announcements of random bytes, or with a changed bit, are refused") {
   Fixture f;
   const Certificate agent = f.issue("agent 3");
   const std::vector<std::uint8_t> genuine = f.announced(id_with(agent), agent);
@@ -115,7 +115,7 @@ TEST_CASE("announcements of random bytes, or with a bit changed, are refused") {
   }
 }
 
-TEST_CASE("an announcement counts for one participant only") {
+TEST_CASE("an announcement is valid for one participant only") {
   Fixture f;
   const Certificate agent = f.issue("agent 3"), thief = f.issue("agent 4");
   const ParticipantId id = id_with(agent, 1), other = id_with(agent, 2);
@@ -178,7 +178,7 @@ TEST_CASE("a certificate counts only while it is valid") {
   CHECK(f.announce(id, agent) == Refusal::kNotValidNow);
 }
 
-TEST_CASE("a revoked key is refused, also that of a participant that was admitted") {
+TEST_CASE("a revoked key is refused, even that of a participant that was already admitted") {
   Fixture f;
   const Certificate agent = f.issue("agent 3"), newer = f.issue("agent 3");
   const ParticipantId id = id_with(agent);
@@ -225,7 +225,7 @@ TEST_CASE("one certificate cannot take the places of all others") {
   CHECK(f.announce(id_with(other), other) == Refusal::kNone);
 }
 
-TEST_CASE("participants that prove nothing are admitted at a low rate, and genuine ones at any") {
+TEST_CASE("unauthenticated participants are admitted at a low rate, and genuine ones at any rate") {
   Fixture f;
   const Certificate thief = f.issue("agent 3"), other = f.issue("agent 4");
   std::uint16_t strangers = 0, admitted = 0, genuine = 0;
@@ -248,10 +248,11 @@ TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
   Fixture f;
   const Certificate robot = f.issue("agent 3"), idle = f.issue("agent 4");
   const int strangers = GENERATE(24, 40, 400), attacked_for_s = GENERATE(0, 600);
-  // Of a host whose clock was set back, the latest start is not the latest.
+  // If the clock of a host was set back, its latest start is not the greatest.
   const bool is_clock_right = GENERATE(true, false);
   CAPTURE(strangers, attacked_for_s, is_clock_right);
-  // What these processes have announced is repeated once a second, before the genuine one announces itself.
+  // The announcements of these processes are repeated once a second, before the genuine process announces
+  // itself.
   const auto strangers_announce = [&] {
     int admitted = 0;
     for (int i = 0; i < strangers; ++i)
@@ -278,7 +279,7 @@ TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
     static_cast<void>(f.admission.newly_refused(f.now));
   }
   INFO("waited " << waited_s << " s");
-  // With a wrong clock, at worst each stranger had a turn meanwhile, one every kUnprovenPeriod.
+  // With a wrong clock, in the worst case each stranger has had a turn meanwhile, one every kUnprovenPeriod.
   CHECK(waited_s <= (is_clock_right ? 0 : strangers <= 40 ? 20 : 5 * strangers));
 }
 
@@ -347,7 +348,7 @@ TEST_CASE("places taken with many certificates are freed for a genuine one of an
   CHECK(f.admission.newly_refused(f.now).size() == 1);
 }
 
-TEST_CASE("a participant that was displaced waits longer each time, and not after it proved to be genuine") {
+TEST_CASE("a displaced participant waits longer each time, but not after it has proved to be genuine") {
   Fixture f;
   const Certificate robot = f.issue("agent 3", 24h);
   const ParticipantId slow = id_with(robot, 60'000);
@@ -380,7 +381,7 @@ TEST_CASE("a participant that was displaced waits longer each time, and not afte
   }
 }
 
-TEST_CASE("checks of signatures are limited, and known certificates need none") {
+TEST_CASE("signature checks are limited, and known certificates need none") {
   Fixture f;
   const Certificate known = f.issue("agent 3");
   CHECK(f.announce(id_with(known), known) == Refusal::kNone);
@@ -400,7 +401,7 @@ TEST_CASE("checks of signatures are limited, and known certificates need none") 
   CHECK(f.announce(id_with(fresh), fresh) == Refusal::kNone);
 }
 
-TEST_CASE("certificates that nobody uses any more make room for later ones") {
+TEST_CASE("certificates that nobody uses any more are dropped in favour of later ones") {
   Fixture f;
   const Certificate first = f.issue("agent 3", 24h);
   CHECK(f.announce(id_with(first), first) == Refusal::kNone);
@@ -417,7 +418,7 @@ TEST_CASE("certificates that nobody uses any more make room for later ones") {
   CHECK(to_text(*f.admission.identity_of(id_with(first))) == "agent 3");
 }
 
-TEST_CASE("who announces a genuine certificate and does not prove it is reported once") {
+TEST_CASE("a participant that announces a genuine certificate without proving it is reported once") {
   Fixture f;
   const Certificate genuine = f.issue("agent 3"), impostor = f.issue("agent 4"),
                     self = f.issue("coordinator 0");

@@ -120,7 +120,7 @@ TEST_CASE("a shared topic carries the state of hundreds of robots") {
   CHECK(run_until(all_are_received, coordinator));
 }
 
-TEST_CASE("of states that wait, a reader gets the latest, or all if it keeps them") {
+TEST_CASE("a reader gets the latest of the waiting states, or all of them if it keeps them") {
   constexpr std::uint64_t kStates = 20;
   DdsSettings settings = test_settings("keeper");
   settings.keeps_all = true;

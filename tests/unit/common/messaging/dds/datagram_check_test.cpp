@@ -124,7 +124,7 @@ std::vector<Bytes> valid_submessages() {
 
 bool passes(const Bytes& bytes) { return !checked_datagram(bytes).empty(); }
 
-TEST_CASE("what processes with keys send passes, without the statistics at its end") {
+TEST_CASE("everything that processes with keys send passes, without the statistics at its end") {
   const std::vector<Bytes> all = valid_submessages();
   for (const Bytes& one : all) {
     CAPTURE(int{one[0]});
@@ -134,7 +134,7 @@ TEST_CASE("what processes with keys send passes, without the statistics at its e
   CHECK(checked_datagram(datagram({joined(all), statistics()})).size() == 20 + joined(all).size());
 }
 
-TEST_CASE("a datagram that is cut anywhere but between submessages is dropped") {
+TEST_CASE("a datagram that is cut anywhere except between submessages is dropped") {
   for (const Bytes& one : valid_submessages()) {
     const Bytes whole = datagram({one, one});
     for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -145,7 +145,7 @@ TEST_CASE("a datagram that is cut anywhere but between submessages is dropped") 
   }
 }
 
-TEST_CASE("statistics anywhere but at the end, twice, alone or of another size are dropped") {
+TEST_CASE("statistics that are not at the end, occur twice, are alone or have another size are dropped") {
   CHECK_FALSE(passes(datagram({statistics()})));
   CHECK_FALSE(passes(datagram({statistics(), data()})));
   CHECK_FALSE(passes(datagram({data(), statistics(), statistics()})));
@@ -218,7 +218,7 @@ TEST_CASE("numbers are as small as those of discovery") {
   }
 }
 
-TEST_CASE("only messages of discovery are not encrypted") {
+TEST_CASE("only discovery messages may be unencrypted") {
   for (const std::uint8_t kind : {0x06, 0x07, 0x08, 0x15}) {
     CAPTURE(int{kind});
     CHECK(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 3, 0xc7})})));
@@ -232,7 +232,7 @@ TEST_CASE("only messages of discovery are not encrypted") {
   }
 }
 
-TEST_CASE("what passes after random changes is a beginning of the datagram that passes again") {
+TEST_CASE("after random changes, what passes is a prefix of the datagram and passes again") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);

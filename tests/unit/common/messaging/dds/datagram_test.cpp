@@ -16,7 +16,7 @@ std::vector<PresenceNotice> some_notices() {
           {kSender, PresenceNotice::Kind::kAgreed, 1}};
 }
 
-TEST_CASE("notices survive a presence announcement, and its sender is known") {
+TEST_CASE("notices survive a presence announcement, and its sender is recognised") {
   for (const auto& notices :
        {std::vector<PresenceNotice>(), some_notices(), std::vector<PresenceNotice>(Presence::kMaxNotices)}) {
     const Datagram datagram = presence_datagram(kSender, notices);
@@ -47,7 +47,7 @@ TEST_CASE("a presence announcement of another length, kind or size is refused") 
   CHECK_FALSE(presence_notices(departure_of(kSender)));
 }
 
-TEST_CASE("random bytes are no presence announcement") {
+TEST_CASE("random bytes are not a presence announcement") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);
@@ -72,7 +72,7 @@ TEST_CASE("a departure is an announcement of its sender only") {
   CHECK_FALSE(is_plain);
 }
 
-TEST_CASE("an announcement that changes its source, or is cut off, is refused") {
+TEST_CASE("an announcement that changes its source, or is truncated, is refused") {
   const Datagram valid = departure_of(kSender);
   bool is_plain = false;
   for (std::size_t size = 0; size < valid.size(); ++size) {

@@ -41,7 +41,7 @@ struct Fixture {
   Gate gate{load_key_folder(keys.folder_of("coordinator 0"), keys.now()), "2.9.1"};
 };
 
-TEST_CASE("messages of participants that have not announced themselves do not pass") {
+TEST_CASE("messages from participants that have not announced themselves are not passed on") {
   Fixture f;
   const ParticipantId stranger{1, 2, 3};
   const Datagram message{'R', 'T', 'P', 'S'};
@@ -52,7 +52,7 @@ TEST_CASE("messages of participants that have not announced themselves do not pa
   CHECK(f.gate.unknown() == 1);
 }
 
-TEST_CASE("a process may send what its keys say, and what it may not send is logged once") {
+TEST_CASE("a process may send what its keys permit, and anything else is logged once") {
   Fixture f;
   const CaptureStderr log;
   const ParticipantId agent = f.announce("agent 3"), viewer = f.announce("viewer"),

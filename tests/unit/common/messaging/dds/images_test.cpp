@@ -146,7 +146,7 @@ TEST_CASE("only the shared memory of killed processes is removed") {
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a camera that is killed is followed by the next one") {
+TEST_CASE("after a camera process is killed, the next one is received") {
   Watcher watcher(test_settings("watcher"), kUsualBytes);
   for (int run = 0; run < 3; ++run) {
     CAPTURE(run);

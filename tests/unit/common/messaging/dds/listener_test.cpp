@@ -24,7 +24,7 @@ const DiscoveredEndpoint* find(const std::vector<DiscoveredEndpoint>& endpoints,
   return found == endpoints.end() ? nullptr : &*found;
 }
 
-TEST_CASE("a listener lists writers and readers, and notices when they leave") {
+TEST_CASE("a listener lists writers and readers, and detects when they leave") {
   constexpr Topic<msg::Verdict> kEvent{{"test/event",
                                         {},
                                         {},

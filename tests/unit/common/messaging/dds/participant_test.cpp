@@ -22,7 +22,7 @@ DdsSettings settings_with(const TestKeys& keys) {
   return settings;
 }
 
-TEST_CASE("Fast DDS's own reason is told if keys look right but it refuses them") {
+TEST_CASE("Fast DDS's own reason is reported if keys look right but Fast DDS refuses them") {
   const TestKeys keys({"agent", "3"});
   const Authority authority(keys.folder() + "/public/permissions_ca.cert.pem",
                             keys.folder() + "/private/permissions_ca.key.pem");
@@ -54,7 +54,7 @@ class TimeZone {
   std::optional<std::string> before_;
 };
 
-TEST_CASE("keys that were issued now are valid on hosts of every time zone") {
+TEST_CASE("newly issued keys are valid on hosts in every time zone") {
   const TestKeys keys({"agent", "3"});
   const char* const zone = GENERATE("UTC", "XXX+12", "XXX-14");
   CAPTURE(zone);

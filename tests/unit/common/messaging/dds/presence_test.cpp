@@ -71,7 +71,7 @@ TEST_CASE("a silent participant is removed once, and refused until it has forgot
   CHECK(a.presence.accept(kOther, a.now));
 }
 
-TEST_CASE("who is told that it was forgotten removes the other side once, and says so") {
+TEST_CASE("a participant that is told that it was forgotten removes the other side once, and confirms that") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   CHECK(a.hears(std::array{forgotten(kSelf, 7)}));
@@ -87,7 +87,7 @@ TEST_CASE("who is told that it was forgotten removes the other side once, and sa
   CHECK(a.hears(std::array{forgotten(kSelf, 9), forgotten(kSelf, 9)}));
 }
 
-TEST_CASE("a process that was stopped itself forgets nobody") {
+TEST_CASE("a process that was itself stopped forgets nobody") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   a.run_until(a.now + 1s);
@@ -97,7 +97,7 @@ TEST_CASE("a process that was stopped itself forgets nobody") {
   CHECK(a.presence.accept(kOther, a.now));
 }
 
-TEST_CASE("forgotten participants are remembered up to a bound, the oldest are dropped first") {
+TEST_CASE("forgotten participants are remembered up to a bound, and the oldest are dropped first") {
   Clocked a;
   const auto id = [](std::size_t i) {
     return ParticipantId{9, static_cast<std::uint8_t>(i >> 8), static_cast<std::uint8_t>(i)};
@@ -130,8 +130,9 @@ TEST_CASE("an announcement names a bounded number of participants") {
 
 /// Two participants and a model of what Fast DDS knows: each side counts how often it has removed the other
 /// one. Both are matched if each learned of the other after the other one had last removed it; if only one
-/// side removes the other, they stay unmatched. Each side also acknowledges what it knows, and that arrives
-/// late. An acknowledgement from before a removal that is taken for a newer one misleads for ever.
+/// side removes the other, they stay unmatched. Each side also acknowledges what it knows, and the
+/// acknowledgement arrives late. If an acknowledgement from before a removal is mistaken for a newer one, it
+/// misleads permanently.
 struct Pair {
   struct Side {
     Presence presence;
@@ -139,7 +140,7 @@ struct Pair {
     bool knows = false;       ///< the other side
     int generation = 0;       ///< how often it has removed the other side
     int seen_generation = 0;  ///< the other side's generation when it learned of it
-    bool is_misled = false;   ///< by an acknowledgement that is too old
+    bool is_misled = false;   ///< misled by an outdated acknowledgement
     bool is_stopped = false, was_stopped = false;
     Time next_announcement{};
     std::multimap<Time, std::function<void()>> late;
@@ -221,7 +222,7 @@ struct Pair {
 
   Rng rng;
   Side sides[2];
-  bool is_cut[2] = {false, false};  ///< what this side sends is lost
+  bool is_cut[2] = {false, false};  ///< messages from this side are lost
   double loss = 0;
   Time now = time_from_ns(0) + 1h;
 };

@@ -220,7 +220,7 @@ struct Victim {
     return status == 0 || (WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
   }
 
-  std::string name;  ///< of its participant
+  std::string name;  ///< name of the endpoint's participant
   pid_t pid = 0;
 
  private:
@@ -257,7 +257,7 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
   Rng rng(seed);
   DdsListener listener(test_settings("listener"));
   DdsBus bus(test_settings());
-  std::map<std::uint32_t, std::uint64_t> answered;  // by victim
+  std::map<std::uint32_t, std::uint64_t> answered;  // indexed by victim
   for (std::uint32_t robot = 1; robot <= count; ++robot) {
     bus.subscribe<msg::Verdict>(topics::kVerdict, robot, [&answered, robot](const msg::Verdict& verdict) {
       answered[robot] = verdict.proposal_number();
@@ -291,7 +291,8 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
       until.push_back(bus.now() + kSilenceLimit +
                       (i == 0 ? from_seconds(2) : from_seconds(rng.uniform(-1, 4))));
     }
-    // When victims announce their readers to these, they send heartbeats to all participants.
+    // When victims announce their readers to these participants, the victims send heartbeats to all
+    // participants.
     std::vector<std::unique_ptr<DdsBus>> others;
     for (int i = 0; i < 5; ++i)
       subscribe_to_many(*others.emplace_back(std::make_unique<DdsBus>(test_settings("other"))));
@@ -316,7 +317,10 @@ TEST_CASE("a process that is stopped until it is forgotten reconnects, even if o
   stop_and_continue(2, 3, 1);
 }
 
-TEST_CASE("the same for two hundred pauses", "[.long][slow]") { stop_and_continue(10, 20, 2); }
+TEST_CASE("a process that is stopped until it is forgotten reconnects after two hundred pauses",
+          "[.long][slow]") {
+  stop_and_continue(10, 20, 2);
+}
 
 /// Starts neighbours one after another and ends each after a random time, half of them by kill -9; requires
 /// that nobody else aborts or loses contact.
@@ -362,7 +366,9 @@ void let_neighbours_leave(int times, std::uint64_t seed) {
 
 TEST_CASE("neighbours that leave at any moment disturb nobody") { let_neighbours_leave(10, 3); }
 
-TEST_CASE("the same for two hundred neighbours", "[.long][slow]") { let_neighbours_leave(200, 4); }
+TEST_CASE("two hundred neighbours that leave at any moment disturb nobody", "[.long][slow]") {
+  let_neighbours_leave(200, 4);
+}
 
 TEST_CASE("a process is known while it is alive, and forgotten some seconds after it is killed") {
   DdsListener listener(test_settings("listener"));

@@ -112,7 +112,7 @@ TEST_CASE("a sequence as long as the type's bound is accepted, in either byte or
   CHECK_FALSE(decoder.accepts(too_long));
 }
 
-TEST_CASE("a payload that ends too early is refused at every length") {
+TEST_CASE("a payload that is too short is refused at every length") {
   Rng rng(9);
   msg::Command command = random_message<msg::Command>(rng, false, 0);
   msg::WorldState world = random_message<msg::WorldState>(rng, true, 3);

@@ -137,7 +137,7 @@ TEST_CASE("the channels of a per-robot topic are separate") {
   CHECK(four == 0);
 }
 
-TEST_CASE("a subscription gets no message in the name of a process that may not write the topic") {
+TEST_CASE("a subscription gets no message from a sender that may not write the topic") {
   const auto of = [](Sender sender, std::uint32_t number = 0) {
     return static_cast<std::uint32_t>(sender) + number;
   };

@@ -38,7 +38,7 @@ TEST_CASE("events come in order of time, and of insertion at equal times, both n
   }
 }
 
-TEST_CASE("an event may be inserted before one whose time was already asked for") {
+TEST_CASE("an event may be inserted before one whose time has already been requested") {
   EventQueue<int> queue;
   queue.push(time_from_ns(5'000'000'000), 1);
   CHECK(queue.next_time() == time_from_ns(5'000'000'000));

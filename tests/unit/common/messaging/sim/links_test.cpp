@@ -227,7 +227,7 @@ struct ReliablePair {
     message.robot(1);
     from_b.publish(message, b.now());
   }
-  /// From a to b.
+  /// Cuts the link from a to b.
   void set_cut(bool is_cut) {
     LinkQuality quality;
     quality.is_cut = is_cut;
@@ -236,7 +236,7 @@ struct ReliablePair {
   void run_for(Duration duration) { network.run_until(network.now() + duration); }
 };
 
-TEST_CASE("processes of which one hears the other for less than six seconds keep reliable messages") {
+TEST_CASE("processes of which one hears the other after less than six seconds keep reliable messages") {
   ReliablePair pair;
   pair.set_cut(true);
   pair.send(1);
@@ -319,7 +319,7 @@ TEST_CASE("reliable messages do not change the losses and delays of others") {
     std::ranges::sort(numbers);
     return numbers;
   };
-  // With time in between, heartbeats and repetitions happen between the states.
+  // Because of the time in between, heartbeats and resent messages occur between the states.
   CHECK(run(true) == run(false));
 }
 

@@ -14,9 +14,9 @@ namespace sidestep::thinned_history_test {
 
 using namespace std::chrono_literals;
 
-/// All messages of a trial of the random campaign: with deaths, partitions, twins, pushes, lifted robots,
-/// clocks that are set, and so on. None if the campaign does not judge it by its audit: some process believed
-/// a second simulator.
+/// All messages of a trial of the random campaign, with deaths, partitions, second agents, pushes, lifted
+/// robots, clocks that are set, and so on. nullopt if the campaign does not judge the trial by its audit,
+/// because some process believed a second simulator.
 std::optional<History> history_of_trial(std::uint64_t seed) {
   const Trial trial = sample_trial(seed, 12s, std::nullopt);
   History history{trial.scenario, {}};

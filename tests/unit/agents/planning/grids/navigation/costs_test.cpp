@@ -7,7 +7,7 @@
 
 namespace sidestep::costs_test {
 
-TEST_CASE("discs in cells that a shape does not block do not touch it, and no cell far away is blocked") {
+TEST_CASE("discs in cells that a shape does not block never touch it, and no cell far away is blocked") {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

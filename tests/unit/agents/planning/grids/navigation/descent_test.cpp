@@ -7,7 +7,7 @@
 
 namespace sidestep::descent_test {
 
-/// Whether a segment passes through the inside of a blocked cell: the slow way, with all of them.
+/// Whether a segment passes through the interior of a blocked cell, by checking all blocked cells.
 bool crosses_blocked(const CostGrid& grid, const Vec2& from_m, const Vec2& to_m) {
   const GridLayout& layout = grid.layout();
   for (GridCell cell = 0; cell < layout.size(); ++cell) {

@@ -70,7 +70,7 @@ void change(ObstacleWorld& world, Rng& rng) {
   world.add(Circle{{x, y}, rng.uniform(0.1, 0.5)});
 }
 
-TEST_CASE("after obstacles have moved, the path is exactly that of a planner without a past") {
+TEST_CASE("after obstacles have moved, the path is exactly that of a newly created planner") {
   const auto kernel = GENERATE(GridKernel::kLsm, GridKernel::kNf1);
   const auto seed = GENERATE(1u, 2u, 3u);
   const PlanWorld world = make_world(seed == 2 ? "mixed" : "circles", 6, seed);
@@ -178,7 +178,7 @@ TEST_CASE("a goal in a free cell that is cut off from the others is joined to on
   CHECK(is_valid_path(world, plan.states, 1e-9));
 }
 
-TEST_CASE("without a path, the plan says so and stays at the start") {
+TEST_CASE("without a path, the plan reports that and stays at the start") {
   //  +---+
   //  | g |    s
   //  +---+
@@ -232,7 +232,7 @@ TEST_CASE("with a cost of clearance, paths keep to the middle of a corridor and 
   }
 }
 
-TEST_CASE("on floors where a disc has no room, there is no path") {
+TEST_CASE("on floors without room for a disc, there is no path") {
   const ObstacleWorld nothing({Circle{{0, 0}, 0.1}});
   NavigationPlanner planner;
   Rng rng(1);

@@ -47,7 +47,8 @@ class AllPairs {
   bool is_pinched(int x, int y) const {
     return (is_blocked(x, y) && is_blocked(x - 1, y - 1)) || (is_blocked(x - 1, y) && is_blocked(x, y - 1));
   }
-  /// Whether a segment avoids the interior of a square: clipped to it, nothing or only its border is left.
+  /// Whether a segment avoids the interior of a square: when clipped to the square, nothing or only a part of
+  /// its border is left.
   static bool avoids(const Vec2& a, const Vec2& b, int x, int y) {
     double first = 0, last = 1;
     const Vec2 along = b - a, low(x, y);
@@ -111,7 +112,7 @@ SightLengths lengths_of(const CostGrid& grid, const Vec2& goal_m) {
   return lengths;
 }
 
-TEST_CASE("lengths by line of sight are those of all straight motions between corners") {
+TEST_CASE("lengths by line of sight equal those over all straight motions between corners") {
   const double blocked = GENERATE(0.0, 0.1, 0.2, 0.4);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(blocked, seed);
@@ -136,7 +137,7 @@ TEST_CASE("lengths by line of sight are those of all straight motions between co
   }
 }
 
-TEST_CASE("paths by line of sight are as long as their lengths, and free") {
+TEST_CASE("paths by line of sight are free, and as long as their stated lengths") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

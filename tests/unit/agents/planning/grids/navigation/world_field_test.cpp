@@ -6,7 +6,7 @@
 
 namespace sidestep::world_field_test {
 
-TEST_CASE("cells lie where the disc can be and leave margins narrower than a cell") {
+TEST_CASE("cells cover the positions of the disc and leave margins narrower than a cell") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     Rng rng(seed);
     const double length_m = rng.uniform(0.05, 40), width_m = rng.uniform(0.05, 40);
@@ -35,7 +35,7 @@ TEST_CASE("cells lie where the disc can be and leave margins narrower than a cel
   }
 }
 
-TEST_CASE("floors whose length is a multiple of the cells' are covered completely") {
+TEST_CASE("floors whose length is a multiple of the cell size are covered completely") {
   const auto layout = layout_of({10, 7}, 0.1, {.cell_m = 0.05});
   REQUIRE(layout);
   CHECK(layout->columns == 196);
@@ -63,7 +63,7 @@ EStar from_scratch(const GridLayout& layout, const ObstacleWorld& world, double 
     bool is_blocked = false;
     for (const ObstacleId id : world.obstacles()) {
       nearest_m = std::min(nearest_m, signed_distance(centre, world.shape(id)));
-      // The distance from the cell: that of its edges, or 0 if the shape lies within it.
+      // The distance of the shape from the cell: that of the cell's edges, or 0 if the shape lies within it.
       const std::array<Vec2, 4> corners = corners_of(Box{centre - half, centre + half});
       for (std::size_t i = 0; i < 4; ++i)
         is_blocked |= squared_distance(Segment{corners[i], corners[(i + 1) % 4]}, world.shape(id)) <=
