@@ -26,12 +26,12 @@ constexpr Duration kOnceDuration = std::chrono::milliseconds(2500);
 
 struct ClockOptions {
   DdsSettings dds;
-  std::optional<std::uint32_t> reference;  ///< process; none: this command
+  std::optional<std::uint32_t> reference;  ///< process; nullopt: this command
   std::string reference_name;
   bool once = false;
 };
 
-/// Sends probes, and passes on what processes say of their clocks.
+/// Sends probes, and passes on what processes report about their clocks.
 class ClockProber {
  public:
   ClockProber(Bus& bus, std::uint32_t client)

@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kSecondsFrom_s = 10;
-// A reading of the host's clock and of the process's is not exact, and time daemons slew.
+// The host's clock and the process's clock are not read at exactly the same time, and time daemons slew.
 constexpr Duration kSet{1'000'000};
 
 const char* verdict_text(ClockVerdict verdict) {

@@ -46,7 +46,7 @@ const RobotSpec& only_robot(const Scenario& scenario) {
   return scenario.robots.front();
 }
 
-/// Starts what moves the robot, and vision, unless they run already.
+/// Starts the processes that move the robot, and vision, unless they run already.
 class Floor {
  public:
   explicit Floor(const ConformanceOptions& options) : group_(folder_.file("log")) {
@@ -60,7 +60,7 @@ class Floor {
           std::to_string(options.dds.domain),    "--interface", options.dds.interface};
       if (!options.dds.peers.empty())
         argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options.dds.peers, ","))});
-      // Each takes its own from a folder with the keys of all.
+      // Each process takes its own keys from a folder with the keys of all.
       if (!options.dds.keys.empty()) argv.insert(argv.end(), {"--keys", options.dds.keys});
       if (options.dds.insecure) argv.emplace_back("--insecure");
       argv.insert(argv.end(), process.arguments.begin(), process.arguments.end());

@@ -15,16 +15,16 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kRestTime = 1500ms, kSettlingTime = 700ms, kDriveTimeout = 20s;
-// From the field's edge, beyond the robot's radius.
+// Distance from the field's edge, in addition to the robot's radius.
 constexpr double kEdge_m = 0.35;
 // The part of the acceleration limit that the curves of the figure of eight use.
 constexpr double kUsedAcceleration = 0.5;
 constexpr double kSpeedRamp_mps2 = 1, kMaxAmplitude_m = 3;
 constexpr int kSpeedLevels = 4;
 constexpr Duration kLevelTime = 5s;
-// The noise of vision may cause so much of an error.
+// The noise of vision may cause an error of this many standard deviations.
 constexpr double kNoiseDeviations = 4;
-// The tracking bound is above the largest error measured by this factor.
+// The tracking bound exceeds the largest measured error by this factor.
 constexpr double kReserve = 1.25;
 // The starts by which the latency is measured, and the part of each start in which the control has not
 // corrected it yet.
@@ -34,7 +34,8 @@ constexpr Duration kMaxLate = 150ms;
 
 Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
 
-/// A robot whose motors obey at another time than it assumes cannot follow; that row says so.
+/// A robot whose motors respond later or earlier than it assumes cannot follow; the row of its latency
+/// reports that.
 Conformity judged(bool is_passed, const ConformanceContext& context, std::string& figures) {
   if (is_passed || !context.is_late) return passed_if(is_passed);
   figures += "; its latency prevents it from following";
@@ -112,8 +113,8 @@ class RestStep final : public ConformanceStep {
   std::vector<Vec2> seen_m_;
 };
 
-/// Starts from rest again and again. How far the robot is behind its reference by then shows how late its
-/// motors obey, compared with what the robot assumes.
+/// Starts from rest again and again. How far the robot is behind its reference afterwards shows how late its
+/// motors respond, compared with what the robot assumes.
 class LatencyStep final : public ConformanceStep {
  public:
   std::string name() const override { return "latency"; }
@@ -178,7 +179,7 @@ class LatencyStep final : public ConformanceStep {
     samples_.push_back({start_->trajectory, robot_at, sample.seen_m - before_m_ / before_count_});
   }
 
-  /// The delay of the reference at which it fits best to what was seen.
+  /// The delay of the reference at which it fits the observations best.
   Duration late() const {
     Duration best{0};
     double least = INFINITY;
@@ -215,7 +216,7 @@ class LatencyStep final : public ConformanceStep {
   int before_count_ = 0;
   struct Start {
     Trajectory trajectory;
-    Time at;  ///< by the robot's clock
+    Time at;  ///< measured with the robot's clock
     Vec2 seen_m;
   };
   std::vector<Start> samples_;
@@ -483,7 +484,7 @@ class RunOutStep final : public ConformanceStep {
   std::vector<MotionSample> seen_;
 };
 
-/// Shows the robot where it is not, as if it had been moved.
+/// Reports a false position to the robot, as if it had been moved.
 class OwnStopStep final : public ConformanceStep {
  public:
   std::string name() const override { return "own stop"; }
@@ -503,7 +504,7 @@ class OwnStopStep final : public ConformanceStep {
       took_ = now - *since_;
     }
     if (!own_ && now - *since_ < 2s) return false;
-    // Back to the truth, which is another displacement.
+    // Reports the true position again, which is another displacement.
     probe.fix_error_m = Vec2(0, 0);
     if (now - *since_ < took_ + 2s) return false;
     context.stream.forget();

@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kReadyTimeout = 15s, kAnswerTimeout = 1s;
-// A process that misses a cycle and a half by its scheduling is still on time.
+// A process that misses one and a half cycles because of its scheduling is still on time.
 constexpr double kMaxGapCycles = 2.5;
 // After a version's start, a fact about it arrives within this time.
 constexpr Duration kFactTime = 100ms;
@@ -133,7 +133,7 @@ class RefusalStep : public ConformanceStep {
       before_ = fact;
     }
     if (probe.robot_now() < sent_->trajectory.start()) {
-      // Each in two cycles at least, as an agent repeats its commands.
+      // Each command is sent in at least two cycles, as an agent repeats its commands.
       msg::Command message = command(context);
       attempts_[index_].spoil(message, context);
       probe.send(message);
@@ -183,7 +183,7 @@ class RefusalStep : public ConformanceStep {
   std::vector<std::string> obeyed_;
 };
 
-/// A new agent and a new epoch, before the refusals of the old ones.
+/// Sends commands of a new agent and in a new epoch, before the step that checks the refusal of the old ones.
 class FenceStep final : public ConformanceStep {
  public:
   std::string name() const override { return "fences"; }
@@ -246,8 +246,8 @@ class SwitchStep final : public ConformanceStep {
   std::optional<Feedback> seen_;
 };
 
-/// A new agent while a version of the last one is pending. Motors that obey late have been sent the beginning
-/// of one that starts within the lead.
+/// Starts a new agent while a version of the previous one is pending. Motors that respond late have already
+/// received the beginning of a version that starts within the lead.
 class TakeoverStep final : public ConformanceStep {
  public:
   std::string name() const override { return "takeover"; }
@@ -263,7 +263,7 @@ class TakeoverStep final : public ConformanceStep {
       return false;
     }
     const Time start = sent_->trajectory.start();
-    // Half a lead before the start, or so early that the lead has not begun.
+    // Half a lead before the start, or early enough that the lead has not begun.
     const Duration before = is_committed_ ? fact.lead / 2 : fact.lead + kPause / 2;
     if (probe.incarnation == earlier_ && probe.robot_now() >= start - before) {
       probe.version.reset();
@@ -285,7 +285,7 @@ class TakeoverStep final : public ConformanceStep {
     context.stream.forget();
     sent_.reset();
     acknowledged_.reset();
-    // A robot whose motors obey at once has no lead.
+    // A robot whose motors respond at once has no lead.
     if (!is_committed_ && fact.lead > 2 * probe.cycle()) {
       is_committed_ = true;
       return false;
@@ -338,7 +338,7 @@ std::unique_ptr<ConformanceStep> make_fence_step() {
 
 std::unique_ptr<ConformanceStep> make_versions_step() {
   const auto delayed = [](Message& m, const Context& context) {
-    // Half of the robot's lead, or nothing, is left when it arrives.
+    // When the version arrives, half of the robot's lead is left, or nothing if it has no lead.
     const Time now = context.probe.robot_now();
     m.version().start_ns(to_ns(now + context.probe.fact()->lead / 2 - 1ms));
   };

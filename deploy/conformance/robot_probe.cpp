@@ -41,7 +41,7 @@ void RobotProbe::send_command() {
   command.incarnation = incarnation;
   command.epoch = epoch;
   command.version = version;
-  // By the robot's clock, so that a wrong clock shows in its own row only.
+  // Uses the robot's clock, so that a wrong clock shows only in its own row.
   if (fix_)
     command.fix =
         PoseFix{fix_->captured_at + robot_ahead(), fix_->position_m + fix_error_m, fix_->heading_rad};

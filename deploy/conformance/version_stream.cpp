@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr int kHeldCycles = 3;
-// After its start a version shows in facts within this time.
+// Facts show a version within this time after its start.
 constexpr Duration kFactTimeout = std::chrono::milliseconds(200);
 
 }  // namespace

@@ -24,7 +24,7 @@ struct AttestOptions {
   DdsSettings dds;
 };
 
-/// Attests until the active coordinator does not wait for the robot.
+/// Attests until the active coordinator no longer waits for the robot.
 class Attestation {
  public:
   Attestation(DdsBus& bus, RobotId robot)
@@ -33,7 +33,7 @@ class Attestation {
   }
 
   const AttestationExchange& exchange() const { return exchange_; }
-  /// Of the last state heard from an active coordinator; nullopt: none.
+  /// The epoch of the last state heard from an active coordinator; nullopt: none was heard.
   std::optional<Epoch> epoch() const { return epoch_; }
 
  private:

@@ -15,7 +15,7 @@
 namespace sidestep {
 namespace {
 
-constexpr int kResolution = 10000;  ///< of a probability
+constexpr int kResolution = 10000;  ///< resolution of a probability
 
 void nft(const std::string& namespace_name, const std::string& rules) {
   run_command({"ip", "netns", "exec", namespace_name, "nft", "-f", "-"}, rules);

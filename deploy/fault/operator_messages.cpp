@@ -16,9 +16,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kDiscoveryTimeout = 5s;       ///< longer than the period of participant announcements
-constexpr Duration kDiscoverySettling = 1500ms;  ///< without new subscribers, all are known after this time
-constexpr Duration kSilenceSlack = 2s;  ///< a dead participant is forgotten this long after the limit
+constexpr Duration kDiscoveryTimeout = 5s;  ///< longer than the period of participant announcements
+/// If no new subscribers appear for this time, all are known.
+constexpr Duration kDiscoverySettling = 1500ms;
+constexpr Duration kSilenceSlack = 2s;  ///< a dead participant is forgotten this much later than the limit
 constexpr auto kPollPeriod = 10ms;
 
 template <typename Condition>

@@ -50,7 +50,8 @@ std::shared_ptr<X509_NAME> subject_name(const std::string& common_name) {
 void set_random_serial(X509* certificate) {
   std::array<unsigned char, 16> bytes{};
   require(RAND_bytes(bytes.data(), bytes.size()) == 1);
-  bytes[0] = static_cast<unsigned char>((bytes[0] & 0x7f) | 0x40);  // positive, and of full length
+  // Makes the number positive and of full length.
+  bytes[0] = static_cast<unsigned char>((bytes[0] & 0x7f) | 0x40);
   const std::unique_ptr<BIGNUM, decltype(&BN_free)> number(BN_bin2bn(bytes.data(), bytes.size(), nullptr),
                                                            BN_free);
   require(BN_to_ASN1_INTEGER(number.get(), X509_get_serialNumber(certificate)) != nullptr);

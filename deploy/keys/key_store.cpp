@@ -25,7 +25,7 @@ constexpr const char* kPermissionsKey = "permissions_ca.key.pem";
 /// Copies of all certificates that have been issued: public/issued/SERIAL.pem.
 constexpr const char* kIssued = "issued";
 
-/// Fast DDS takes the times of permissions for times of the host's time zone. That of the certificate beside
+/// Fast DDS interprets the times of permissions in the host's time zone. The time of the certificate beside
 /// them is UTC, and limits how long they are used.
 constexpr std::chrono::hours kTimeZones(24);
 /// A handshake sends them in one datagram, with the certificate and what the participant announces.
@@ -172,7 +172,7 @@ std::vector<IssuedKey> KeyStore::keys() const {
   const std::set<std::string> serials = revoked_serials(folder_);
   std::vector<IssuedKey> result;
   for (const auto& entry : fs::directory_iterator(public_file(kIssued))) {
-    if (entry.path().extension() != ".pem") continue;  // what a process that was killed has left
+    if (entry.path().extension() != ".pem") continue;  // left by a process that was killed
     IssuedKey& key = result.emplace_back();
     key.serial = entry.path().stem().string();
     try {

@@ -27,7 +27,7 @@ struct KeysOptions {
   bool again = false;
 };
 
-/// Hosts whose clocks are behind this one's by up to this accept what is issued now.
+/// Hosts whose clocks are behind this one's by up to this much accept newly issued keys.
 constexpr Duration kClockSlack = std::chrono::minutes(10);
 
 Duration days(double count) { return from_seconds(count * 24 * 3600); }

@@ -23,20 +23,20 @@ using namespace std::chrono_literals;
 
 constexpr Duration kPollPeriod = 20ms;      // maximum delay before a death is noticed
 constexpr Duration kStartInterval = 100ms;  // simultaneous starts would stall DDS discovery
-constexpr Duration kStartupTimeout = 20s;   // since the last start
-constexpr Duration kSettlingTime = 500ms;   // after all arrivals, for the final status messages
-constexpr Duration kStuckTimeout = 2s;      // since the last death
+constexpr Duration kStartupTimeout = 20s;   // time since the last start
+constexpr Duration kSettlingTime = 500ms;   // time after all arrivals, for the final status messages
+constexpr Duration kStuckTimeout = 2s;      // time since the last death
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
 constexpr const char* kMonitor = "monitor";
 
-/// Of robots that take no more commands: the longest acceleration of a version, the latency of bases, and the
-/// braking after them.
+/// For robots that accept no more commands: the longest acceleration of a version, the latency of bases, and
+/// the braking after them.
 Duration time_to_rest(const MotionLimits& limits) {
   return 1s + from_seconds(limits.speed_mps / limits.deceleration_mps2);
 }
 
-/// For audit and recording.
+/// Settings of a bus that receives everything, for audit and recording.
 DdsSettings seeing_all(DdsSettings dds) {
   dds.keeps_all = true;
   return dds;
@@ -62,7 +62,7 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       metrics_(scenario),
       auditor_(scenario, {}) {
   metrics_.set_auditor(auditor_);
-  bus_.follow_first_senders();  // those that this launcher starts
+  bus_.follow_first_senders();  // the senders that this launcher starts
   auditor_.on_violation([this](const Violation& violation) {
     if (printed_violations_++ < AuditTotals::kMaxKept)
       print("audit: " + to_line(violation), LogLevel::kError);
@@ -229,7 +229,7 @@ void Launcher::start_core() {
         is_driven ? time_to_rest(scenario_.limits) : 0s);
   start(vision.name, vision.program, restart.vision, vision.arguments);
   if (scenario_.coordinators == 1) return start("coordinator", "sidestep-coordinator", restart.coordinator);
-  // All begin as standbys, so a restarted coordinator does not take over from the active one.
+  // All coordinators begin as standbys, so a restarted coordinator does not take over from the active one.
   for (int number = 0; number < scenario_.coordinators; ++number) {
     start(coordinator_process(number), "sidestep-coordinator", restart.coordinator,
           {"--standby", "--number", std::to_string(number)});
@@ -256,7 +256,7 @@ void Launcher::send_revoked_keys() try {
 
 void Launcher::handle(const ChildEvent& event) {
   if (event.name == kMonitor) {
-    // The run does not need it.
+    // The run does not need the monitor.
     print(fmt::format("the monitor ended: {}", event.reason), LogLevel::kWarning);
     return print_last_lines(kMonitor);
   }

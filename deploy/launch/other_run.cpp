@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration kListeningTime = 500ms, kAnswerTime = 2s, kProbePeriod = 100ms;
 
-/// Hears a coordinator of the domain, and asks it for its host and scenario.
+/// Listens for a coordinator in the domain, and asks it for its host and scenario.
 class OtherRun {
  public:
   explicit OtherRun(const DdsSettings& dds) : bus_(dds), client_(client_id(fmt::format("run {}", getpid()))) {
@@ -51,7 +51,7 @@ class OtherRun {
 
  private:
   void ask() {
-    if (!bus_.may_write(topics::kClockProbe, 0)) return;  // e.g. with the keys of a judge
+    if (!bus_.may_write(topics::kClockProbe, 0)) return;  // for example with the keys of a judge
     Writer<msg::ClockProbe> writer = bus_.advertise(topics::kClockProbe);
     msg::ClockProbe probe;
     probe.client(client_);
@@ -68,7 +68,7 @@ class OtherRun {
   std::optional<ClockAnswer> answer_;
 };
 
-/// As the operator, who may ask, if the folder has the operator's keys.
+/// Uses the identity of the operator, who may ask, if the folder has the operator's keys.
 DdsSettings as_operator(const DdsSettings& given) {
   DdsSettings dds = given;
   dds.identity = {Role::kOperator};

@@ -44,7 +44,8 @@ kill "$watchdog"
 rm -r "$folder"
 exit "$status")";
 
-/// From when a remote process is asked to end until it is killed, besides its robots' time to rest.
+/// Time from when a remote process is asked to end until it is killed, in addition to its robots' time to
+/// rest.
 constexpr double kGrace_s = 3;
 
 std::string shell_quoted(const std::string& word) {
@@ -98,9 +99,9 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, int ni
           fmt::format("{}", fmt::join(remote, " "))};
 }
 
-/// How far agents give way to processes that all robots need, where they share a machine. Of a machine with
-/// too little time for all, each process gets the same part. The simulator, vision and the coordinator need
-/// more than an agent does, so that all robots would wait for them.
+/// How far agents give way to processes that all robots need, if they share a machine. On a machine with too
+/// little time for all, each process would otherwise get the same share. The simulator, vision and the
+/// coordinator need more than an agent does, so all robots would wait for them.
 constexpr int kAgentNiceness = 15;
 
 int niceness(const ProcessSpec& process, const HostSpec& host) {

@@ -78,7 +78,7 @@ Pipe new_pipe() {
   return {ends[0], ends[1]};
 }
 
-/// Sockets, because writing to a pipe whose reader has ended would end this process by a signal.
+/// Sockets are used because writing to a pipe whose reader has ended would end this process by a signal.
 Pipe new_input() {
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail("cannot make a socket");
@@ -103,11 +103,11 @@ struct ProcessGroup::Child {
   int input = -1;
   int output = -1;
   bool is_running = false;
-  bool must_restart = false;  // once, as soon as it has ended
+  bool must_restart = false;  // restart the process once, as soon as it has ended
   SteadyTime started{};
   SteadyTime restart_at = SteadyTime::max();
   Milliseconds backoff = kMinBackoff;
-  std::string unsent;  // of its stdin
+  std::string unsent;  // input that was not yet sent to its stdin
   std::string partial;
   std::deque<std::string> lines;
 };
@@ -225,7 +225,7 @@ void ProcessGroup::send_input(Child& child) {
         send(child.input, child.unsent.data(), child.unsent.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && errno == EAGAIN) return;
-    // A child that does not read any more is about to end.
+    // A child that no longer reads is about to end.
     child.unsent.erase(0, sent < 0 ? child.unsent.size() : static_cast<std::size_t>(sent));
   }
 }

@@ -34,7 +34,7 @@ using Json = nlohmann::json;
 using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
-constexpr int kDirectorSocket = 3;  // in the director
+constexpr int kDirectorSocket = 3;  // descriptor of the socket in the director
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr auto kRepeatedStop = 1000ms;  // a director that begins does not hear signals yet
 constexpr auto kMaxIdle = 15'000ms;     // a director whose processes have ended is killed after so long
@@ -69,14 +69,14 @@ bool receive_all(int socket, void* data, std::size_t size) {
   return true;
 }
 
-/// Sends a message with its size in front; false if the other side has ended.
+/// Sends a message preceded by its size. Returns false if the other side has ended.
 bool send_message(int socket, const Json& message) {
   const std::vector<std::uint8_t> bytes = Json::to_cbor(message);
   const auto size = static_cast<std::uint32_t>(bytes.size());
   return send_all(socket, &size, sizeof size) && send_all(socket, bytes.data(), bytes.size());
 }
 
-/// nullopt if the other side has ended.
+/// Returns nullopt if the other side has ended.
 std::optional<Json> receive_message(int socket) {
   std::uint32_t size = 0;
   if (!receive_all(socket, &size, sizeof size) || size > kMaxMessage) return std::nullopt;
@@ -110,7 +110,8 @@ ChildEvent child_event(const Json& json) {
   return {kind, json.at("name"), json.at("pid"), json.at("reason"), json.at("will_restart")};
 }
 
-/// The processes as the director sees them. Once the process that keeps them has ended, all have.
+/// The processes as the director sees them. When the process that keeps them has ended, all of them have
+/// ended.
 class KeptProcesses : public Processes {
  public:
   explicit KeptProcesses(int socket) : socket_(socket) {}
@@ -144,7 +145,7 @@ class KeptProcesses : public Processes {
   void log(const std::string& line) override { ask({{"do", "log"}, {"line", line}}, true); }
 
  private:
-  /// `if_ended`: the answer once the keeping process has ended.
+  /// `if_ended`: the answer if the keeping process has ended.
   template <typename Answer>
   Answer ask(const Json& request, Answer if_ended) const {
     if (!send_message(socket_, request)) return if_ended;
@@ -162,7 +163,7 @@ class Keeper {
  public:
   explicit Keeper(ProcessGroup& group) : group_(group) {}
 
-  /// A new director hears again of those that have died for good.
+  /// A new director is told again of those that have died for good.
   void begin() {
     events_ = ended_;
     is_ending_ = false;
@@ -178,7 +179,7 @@ class Keeper {
       add(group_.poll(std::chrono::ceil<ProcessGroup::Milliseconds>(end - steady_clock::now())));
   }
 
-  /// False if the director has ended.
+  /// Returns false if the director has ended.
   bool serve(int socket) {
     const auto request = receive_message(socket);
     if (!request) return false;
@@ -240,8 +241,8 @@ class Keeper {
   ProcessGroup& group_;
   bool is_ending_ = false;
   std::map<std::string, pid_t> pids_;
-  std::vector<ChildEvent> events_;  // which the director has not heard of
-  std::vector<ChildEvent> ended_;   // the last one of each process that has died for good
+  std::vector<ChildEvent> events_;  // events of which the director has not been told
+  std::vector<ChildEvent> ended_;   // the last event of each process that has died for good
 };
 
 struct Director {
@@ -255,15 +256,15 @@ struct Director {
   setpgid(0, 0);  // Ctrl-C comes from the parent only
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
-  if (getppid() != parent) std::_Exit(kExitFailure);  // it died before the lines above
+  if (getppid() != parent) std::_Exit(kExitFailure);  // the parent died before the lines above
   dup2(socket, kDirectorSocket);
-  close_range(kDirectorSocket + 1, ~0U, 0);  // above all, the stdin of processes
+  close_range(kDirectorSocket + 1, ~0U, 0);  // above all, descriptors for the stdin of processes
   int code = kExitFailure;
   {
     KeptProcesses processes(kDirectorSocket);
     code = work.run(processes, deaths);
   }
-  // Not the destructors of the parent's objects, which would end its processes.
+  // Does not run the destructors of the parent's objects, which would end its processes.
   std::exit(code);
 }
 
@@ -278,7 +279,7 @@ Director start_director(const DirectorWork& work, const std::vector<std::string>
   return {pid, pidfd, ends[0]};
 }
 
-/// Waits for the end of a director. Returns its exit code, or nullopt and why it died.
+/// Waits for a director to end. Returns its exit code, or nullopt and the reason why it died.
 std::optional<int> end_of(const Director& director, std::string& reason) {
   int status = 0;
   while (waitpid(director.pid, &status, 0) < 0 && errno == EINTR) {

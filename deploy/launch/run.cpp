@@ -64,7 +64,7 @@ int run(const RunOptions& given) {
       {{"SCENARIO", options.scenario_file}, {"--hosts", options.hosts_file}},
       {{"the log", log_path}, {"--report", report_path}, {"--record", options.recording_file}});
   require_keys(options, scenario);
-  const TemporaryFolder robot_memory;  // begins anew with each run
+  const TemporaryFolder robot_memory;  // starts empty with each run
   options.floor.memory_folder = robot_memory.path();
   ProcessGroup group(log_path);
   const auto finish = [&](const Report& report) {

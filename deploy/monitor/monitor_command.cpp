@@ -42,8 +42,8 @@ constexpr Duration kPollPeriod = 5ms, kFlushPeriod = 1s;
 constexpr const char *kPageProtocol = "sidestep.monitor.v1", *kPlanningProtocol = "sidestep.planning.v1";
 
 struct MonitorOptions {
-  std::string file;            ///< a scenario or a recording; empty: an unknown scenario
-  std::string recording_file;  ///< to write; empty: none
+  std::string file;            ///< a scenario or a recording; empty: the scenario is unknown
+  std::string recording_file;  ///< file to write; empty: none
   AccessSettings access;
   std::uint32_t port = 8080;
   bool has_control = false;
@@ -63,7 +63,7 @@ WebResponse page_file(const WebRequest& request) {
   return {200, file->content_type, request.method == "GET" ? std::string(file->content) : std::string()};
 }
 
-/// What a monitor can do besides showing; nullptr: it cannot.
+/// What a monitor can do besides showing; nullptr: it cannot do it.
 struct MonitorParts {
   ControlApi* control = nullptr;
   NetworkView* network = nullptr;
@@ -103,7 +103,7 @@ class MonitorServer {
   }
 
   WebServer& server() { return server_; }
-  /// Sends what is shown at present. `clock`: the real time.
+  /// Sends the data to be shown at present. `clock`: the real time.
   void update(Time clock) {
     monitor_.update_viewers(clock);
     foxglove_.publish_scene(monitor_.floor(), monitor_.radius_m(), monitor_.now());
@@ -126,7 +126,7 @@ class MonitorServer {
     foxglove_.add(socket);
   }
 
-  /// False: the message makes no sense.
+  /// Returns false if the message makes no sense.
   bool plan(WebSocket& socket, const std::string& message) {
     if (!planning_[&socket].apply(parse_viewer_json(message))) return false;
     send_plan(socket);
@@ -290,7 +290,7 @@ int monitor_recording(const MonitorOptions& options) {
   Time next_snapshot{}, next_update{};
   bool is_over = false;
   while (!is_stopped) {
-    // Reads on as fast as it can, and serves viewers meanwhile.
+    // Keeps reading as fast as possible, and serves viewers meanwhile.
     for (int i = 0; i < 500 && !is_over; ++i) {
       is_over = !bus.play_next(result);
       if (!is_over && bus.now() < next_snapshot) continue;

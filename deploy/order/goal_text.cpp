@@ -19,7 +19,7 @@ namespace {
 
 constexpr Range kCoordinate{-kMaxCoordinate_m, kMaxCoordinate_m};
 
-/// Reads a comma-separated list of up to three numbers; empty if the text is anything else.
+/// Reads a comma-separated list of up to three numbers. Returns an empty list if the text is anything else.
 std::vector<double> parse_numbers(const std::string& text) {
   std::vector<double> numbers;
   const char *at = text.data(), *const end = at + text.size();

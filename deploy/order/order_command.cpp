@@ -31,7 +31,7 @@ constexpr Duration kOnceDuration = std::chrono::milliseconds(1500);
 
 struct OrderOptions {
   DdsSettings dds;
-  std::string client;  ///< empty: the operator
+  std::string client;  ///< empty: acts as the operator
   RobotId robot = 0;
   std::vector<std::string> goals;
   std::string file;
@@ -55,7 +55,7 @@ DdsSettings dds_of(const OrderOptions& options) {
   return dds;
 }
 
-/// Sends orders by `send`, and prints what becomes of them until they are accepted or, with `waits`, over.
+/// Sends orders by `send`, and prints what happens to them until they are accepted or, with `waits`, over.
 int give_orders(const OrderOptions& options,
                 const std::function<std::vector<OrderHandle>(OrderClient&)>& send) {
   DdsBus bus(dds_of(options));

@@ -26,7 +26,7 @@ struct PlayedReferee {
   league::RefereePacket packet;
 };
 
-/// Throws UsageError.
+/// Throws UsageError if the text is not a command of the referee.
 league::RefereeCommand parse_command(const std::string& text) {
   std::string names;
   for (std::size_t i = 0; i < league::kRefereeCommands; ++i) {
@@ -37,7 +37,7 @@ league::RefereeCommand parse_command(const std::string& text) {
   throw UsageError(fmt::format("\"{}\" is no command of the referee: expected one of {}", text, names));
 }
 
-/// Throws UsageError.
+/// Throws UsageError if the text is not a position.
 Vec2 parse_place(const std::string& text) {
   const Vec2 place_m = parse_corner(text);
   if (place_m.cwiseAbs().maxCoeff() <= league::kMaxPosition_m) return place_m;
@@ -52,7 +52,7 @@ int play(PlayedReferee& referee) {
   referee.packet.commanded = Duration{to_ns(EventLoop::now())};
   const std::function<void()> send = [&] {
     referee.packet.sent = Duration{to_ns(EventLoop::now())};
-    (void)sender.send(encode(referee.packet));  // summed up at the end
+    (void)sender.send(encode(referee.packet));  // failures are summed up at the end
     loop.at(EventLoop::now() + kPacketPeriod, send);
   };
   send();

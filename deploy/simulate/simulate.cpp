@@ -62,7 +62,7 @@ class ProgressLine {
   steady_clock::time_point next_{};
 };
 
-/// Runs the system until all robots have arrived. Returns why the run was aborted; empty: it was not.
+/// Runs the system until all robots have arrived. Returns why the run was aborted; empty: it was not aborted.
 std::string run_until_arrived(SimSystem& system, double limit_s) {
   ProgressLine progress;
   while (!system.metrics().granting_since()) {
@@ -98,7 +98,7 @@ class SimRecorder {
     bus_->become_observer();
     record(*bus_, scenario, *writer_);
   }
-  /// Call it while the network exists.
+  /// Must be called while the network exists.
   void stop() {
     if (bus_) stopped_at_ = bus_->now();
     bus_.reset();
@@ -137,7 +137,7 @@ class SightRecorder {
     bus_.observe<msg::LaserScan>(topics::kScan, *options.sight_of,
                                  [this](const msg::LaserScan& scan) { picture_->add(scan); });
   }
-  /// Null if no picture was asked for.
+  /// nullptr: no picture was requested.
   SightPicture* picture() { return picture_ ? &*picture_ : nullptr; }
 
  private:

@@ -21,7 +21,7 @@ struct Options {
   CampaignOptions campaign;
 };
 
-/// Throws UsageError.
+/// Throws UsageError if the text is invalid.
 void read_seeds(const std::string& text, CampaignOptions& campaign) {
   const SeedRange seeds = parse_seed_range(text);
   campaign.first_seed = seeds.first;

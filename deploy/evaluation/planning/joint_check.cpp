@@ -33,7 +33,7 @@ std::vector<Vec2> sampled(const Course& course, std::size_t samples) {
       v += a * seconds;
       begin_s += seconds;
     }
-    // Rests here until the next leg, which overwrites what follows.
+    // The robot rests here until the next leg, which overwrites these positions.
     for (; k < samples; ++k) positions[k] = p;
   }
   return positions;
@@ -54,7 +54,7 @@ std::string fault_of_robot(const JointProblem& problem, std::span<const RoundedS
     const double t = static_cast<double>(k) * kStep_s;
     if (!problem.field.contains(at[k], far_m))
       return fmt::format("robot {} leaves the field after {:.3f} s", robot, t);
-    if (k > 0 && at[k] == at[k - 1]) continue;  // At rest.
+    if (k > 0 && at[k] == at[k - 1]) continue;  // The robot is at rest.
     for (const RoundedShape& obstacle : obstacles)
       if (distance_m(at[k], obstacle) < far_m)
         return fmt::format("robot {} comes too close to an obstacle after {:.3f} s", robot, t);

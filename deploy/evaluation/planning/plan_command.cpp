@@ -31,7 +31,7 @@ Time now() {
   return Time(std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch()));
 }
 
-/// Loads a world file, or makes one of the benchmark's worlds by its name.
+/// Loads a world file, or makes one of the benchmark's worlds, given by its name.
 PlanWorld world_of(const PlanOptions& options) {
   const auto& names = world_names();
   const bool is_name = std::find(names.begin(), names.end(), options.world) != names.end();
@@ -39,7 +39,7 @@ PlanWorld world_of(const PlanOptions& options) {
                  : load_plan_world(options.world);
 }
 
-/// All planners, also those that only drive.
+/// All planners, including those that only drive.
 std::vector<std::string> names() {
   std::vector<std::string> names = planner_names();
   for (const std::string& name : driving_planners())
@@ -52,7 +52,7 @@ NamedPlanner planner_of(const std::string& name) {
   return only_drives ? make_driving_planner(name) : make_planner(name);
 }
 
-/// The bubbles of a local method's band along a path, once the forces on them hardly move it any more.
+/// The bubbles of a local method's band along a path, after the forces on them hardly move it any more.
 std::vector<Circle> band_along(const std::vector<Vec2>& path_m, const NamedPlanner& planner,
                                const PlanWorld& world, const ObstacleWorld& obstacles) {
   constexpr int kUpdates = 100;

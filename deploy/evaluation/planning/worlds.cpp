@@ -28,7 +28,7 @@ Vec2 sample_free_position(const PlanWorld& world, Rng& rng) {
 
 Vec2 sample_free_position(const PlanWorld& world, const Box& within, Rng& rng) {
   for (;;) {
-    // y first: the order of arguments would be unspecified.
+    // y is sampled first, because the evaluation order of arguments would be unspecified.
     const double y = rng.uniform(within.min_m.y(), within.max_m.y());
     const double x = rng.uniform(within.min_m.x(), within.max_m.x());
     const Vec2 position(x, y);

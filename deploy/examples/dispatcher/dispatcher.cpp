@@ -20,14 +20,14 @@ namespace {
 using namespace sidestep::client;
 using Clock = std::chrono::steady_clock;
 
-/// A robot that has been blocked for so long makes room for another.
+/// A robot that has been blocked for this long makes room for another one.
 constexpr std::chrono::seconds kPatience{10};
 /// All robots are heard of within this time: DDS discovery, and the period of reports.
 constexpr std::chrono::milliseconds kDiscovery{2000};
 
 struct Job {
   Goal place;
-  std::optional<RobotId> robot{};  ///< that is on its way
+  std::optional<RobotId> robot{};  ///< the robot that is on its way to the job
   OrderId order = 0;
   std::optional<Clock::time_point> blocked_since{};
   std::set<RobotId> failed{};  ///< robots that did not get there
@@ -46,7 +46,7 @@ class Dispatcher {
   }
   ~Dispatcher() { client_.on_change(nullptr); }
 
-  /// Returns when all jobs are over: whether all could be done.
+  /// Returns when all jobs are over. Returns whether all could be done.
   bool run() {
     while (!std::all_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.is_over; })) {
       for (Job& job : jobs_) follow(job);
@@ -112,7 +112,7 @@ class Dispatcher {
       if (!robot.is_free() || is_busy(robot.id)) continue;
       if (!nearest || distance_m(robot, job) < distance_m(*nearest, job)) nearest = &robot;
     }
-    if (have_all_failed) job.failed.clear();  // they may try again
+    if (have_all_failed) job.failed.clear();  // All robots may try again.
     if (!nearest) return;
     job.robot = nearest->id;
     job.order = client_.go(nearest->id, {job.place});

@@ -18,14 +18,14 @@ int usage() {
   return 2;
 }
 
-/// The whole text as a number that is not negative; -1: it is none.
+/// The whole text as a non-negative number; -1: it is not one.
 long number_from(const char* text) {
   char* end = nullptr;
   const long number = std::strtol(text, &end, 10);
   return *text != '\0' && *end == '\0' && number >= 0 ? number : -1;
 }
 
-/// Drives through the places once. Whether the robot has arrived at the last one.
+/// Drives through the places once. Returns whether the robot has arrived at the last one.
 bool drive_round(Client& client, RobotId robot, const std::vector<Goal>& places) {
   const OrderId order = client.go(robot, places);
   std::optional<OrderState> state = client.wait(order, std::chrono::seconds(5));
@@ -33,7 +33,7 @@ bool drive_round(Client& client, RobotId robot, const std::vector<Goal>& places)
     std::fprintf(stderr, "no coordinator answers on this domain\n");
     return false;
   }
-  // A blocked robot goes on by itself when it can.
+  // A blocked robot continues by itself when it can.
   while (state && !state->is_over) state = client.wait(order, std::chrono::minutes(1));
   if (!state || state->phase == OrderPhase::kRefused)
     std::fprintf(stderr, "the order was refused\n");

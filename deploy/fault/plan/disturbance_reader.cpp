@@ -31,7 +31,7 @@ constexpr std::array<DisturbanceKey, 14> kDisturbanceKeys{{{"push", Kind::DISTUR
                                                            {"seen_as", Kind::DISTURBANCE_SEEN_AS},
                                                            {"seen_frozen", Kind::DISTURBANCE_SEEN_FROZEN}}};
 
-// As the options of `sidestep fault`, or narrower where the simulator takes less.
+// The ranges of the options of `sidestep fault`, or narrower ones where the simulator accepts less.
 constexpr Range kPush_mps{-10, 10};
 constexpr Range kSightError_m{-10, 10};
 constexpr Range kOffset_ms{-1e6, 1e6};

@@ -67,7 +67,7 @@ class FaultReader {
     return robot;
   }
 
-  /// A process, also a second agent or the active coordinator.
+  /// Reads the name of a process, which may be a second agent or the active coordinator.
   std::string read_running_process() {
     Names names = processes_;
     names.emplace_back(kActiveCoordinator);
@@ -82,7 +82,7 @@ class FaultReader {
 
   RestartFault read_restart() {
     Names names = processes_;
-    std::erase(names, "simulator");  // holds the ground truth
+    std::erase(names, "simulator");  // the simulator holds the ground truth
     RestartFault fault{subject_ = process_from(map_, key_, names), {}};
     const YAML::Node file = map_.find("scenario");
     if (!file.IsDefined()) return fault;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kAtRest_mps = 0.02;
 constexpr double kMoving_mps = 0.05;
-// A robot that is not heard of for longer may have moved meanwhile.
+// A robot that is not heard from for longer may have moved meanwhile.
 constexpr double kMaxUnheardRest_s = 0.25;
 
 Judgement not_on_floor(RobotId robot, double from_s, double to_s) {
@@ -21,7 +21,7 @@ Judgement not_on_floor(RobotId robot, double from_s, double to_s) {
       fmt::format("robot {} was not on the floor between {:.3f} s and {:.3f} s", robot, from_s, to_s));
 }
 
-/// When the robot came to rest within the span, and then stayed at rest for long enough.
+/// The time at which the robot came to rest within the span and then stayed at rest long enough.
 std::optional<double> rest_time(RobotId robot, const ExpectAtRest& check, const RunHistory& history) {
   std::optional<double> rest_since, heard_s;
   for (const TruthSample& sample : history.truths) {

@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-// After the last deadline and arrival, for the final messages.
+// Time after the last deadline and arrival, for the final messages.
 constexpr double kSettlingTime_s = 0.5;
 
 std::vector<RobotId> arriving_robots(const FaultTest& test) {

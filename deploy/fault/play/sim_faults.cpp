@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-// About as much as the launcher takes.
+// About as long as the launcher takes.
 constexpr Duration kRestartDelay = std::chrono::milliseconds(200);
 // Messages that a paused process can still receive afterwards, as in the buffer of a socket.
 constexpr std::size_t kMaxQueued = 1000;

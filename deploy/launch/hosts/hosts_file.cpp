@@ -150,7 +150,7 @@ HostSpec read_host(const YAML::Node& node, const YamlLocation& location) {
   return host;
 }
 
-/// `peers: hosts`, or a list of addresses besides those of the hosts.
+/// Reads `peers: hosts`, or a list of addresses in addition to those of the hosts.
 void read_peers(YamlMap& map, Hosts& hosts) {
   const YAML::Node node = map.find("peers");
   if (!node.IsDefined()) return;

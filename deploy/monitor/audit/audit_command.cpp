@@ -17,7 +17,7 @@ namespace {
 
 struct AuditOptions {
   std::string scenario_file;
-  std::string recording_file;  ///< empty: a running system
+  std::string recording_file;  ///< empty: audits a running system
   std::optional<double> seconds;
   bool is_json = false;
   DdsSettings dds;

@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// The latest known proposal of a robot that matches; nullptr: none.
+/// The latest known proposal of a robot that matches; nullptr: there is none.
 template <typename Robot, typename Matches>
 auto last_proposal(Robot& robot, Matches matches) -> decltype(&robot.proposals[0]) {
   constexpr std::size_t kMax = AuditedRobot::kMaxProposals;
@@ -166,7 +166,8 @@ void AuditedRobot::forget_times() {
   drifted_since_ns = beyond_bound_since_ns = kNever;
   for (KnownVersion& version : versions) {
     version.executed_until_ns = kAlways;
-    // By the clock that was ahead: a message may arrive before the first fact by the clock that was set.
+    // According to the clock that was ahead. A message may arrive before the first fact that uses the
+    // corrected clock.
     if (version.exclusion != Exclusion::kLate) continue;
     version.exclusion = Exclusion::kNone;
     version.excluded_ns = kNever;
@@ -188,7 +189,7 @@ Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& versi
   if (version.number < fact.executing) return Exclusion::kOlder;
   if (version.number == fact.executing || !version.has_content) return Exclusion::kNone;
   if (version.path.start_ns() <= fact.at_ns) return Exclusion::kLate;
-  // The firmware drops the versions of agents that it has ceased to obey.
+  // The firmware drops the versions of agents that it no longer obeys.
   if (version.version.incarnation() < fact.obeyed_incarnation) return Exclusion::kFenced;
   return Exclusion::kNone;
 }

@@ -14,7 +14,7 @@ constexpr std::size_t kMaxEpochs = 64;
 constexpr Duration kAdvancePeriod = std::chrono::milliseconds(100);
 // Robots in contact may appear this far apart, because their positions are sampled.
 constexpr double kContactTolerance_m = 0.001;
-// For messages and a few cycles, beyond braking itself.
+// Time for messages and a few cycles, in addition to braking itself.
 constexpr Duration kReactionTime = std::chrono::milliseconds(200);
 
 DisturbanceSettings disturbance_settings(const Scenario& scenario, bool is_complete) {
@@ -23,7 +23,7 @@ DisturbanceSettings disturbance_settings(const Scenario& scenario, bool is_compl
           from_seconds(braking_s) + kReactionTime, is_complete};
 }
 
-/// How far a robot may seem to be from its version because of errors of vision and clocks.
+/// How far a robot may appear to be from its version because of errors of vision and clocks.
 double sight_allowance_m(const Scenario& scenario) {
   return position_error_m(scenario.vision) + 2 * scenario.clock_bound_s * scenario.limits.speed_mps;
 }
@@ -199,7 +199,7 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     ++totals_.invalid;
     return;
   }
-  // Registers nobody, and tells a coordinator only the epoch.
+  // Such a registration registers nobody, and only tells a coordinator the epoch.
   if (registration.version_count() == 0 && !registration.is_absent()) return;
   orders_.on_registration(registration);
   AuditedRobot::Registered registered;
@@ -330,7 +330,7 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
     subscribe(topics::kCommand, &Auditor::on_command, robot.id);
     subscribe(topics::kFeedback, &Auditor::on_feedback, robot.id);
   }
-  // Also when no message arrives.
+  // Advances also when no message arrives.
   call_periodically(bus, kAdvancePeriod, [&bus, &auditor] { auditor.advance(bus.now()); });
 }
 

@@ -68,7 +68,7 @@ Coverage Auditor::coverage() const {
     versions.traced += executed.traced;
   }
   Coverage coverage;
-  // Agents' messages are judged by their effect, as versions: those of a host that is cut off have none.
+  // Agents' messages are judged by their effect, as versions; those of a host that is cut off have no effect.
   const std::uint64_t distinct = trace_.distinct();
   coverage.messages = distinct > 0 ? share_of(distinct, distinct + trace_.missed()) : 0;
   coverage.versions = share_of(versions.traced, versions.all);

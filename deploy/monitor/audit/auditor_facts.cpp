@@ -16,7 +16,7 @@ constexpr std::int64_t kRetention_ns = 1'500'000'000;
 constexpr std::int64_t kRecentWindow_ns = 50'000'000;
 // A robot checks its tracking error once per millisecond, but reports the position in between.
 constexpr double kReportingTolerance_m = 0.0005;
-// Robots whose motors obey later than this are not driven.
+// Robots whose motors respond later than this are not driven.
 constexpr std::int64_t kMaxMotorLead_ns = 300'000'000;
 // Robots check themselves every millisecond. Beyond the drift bound they may take 25 ms to return.
 constexpr std::int64_t kCheckPeriod_ns = 1'000'000;
@@ -25,7 +25,7 @@ constexpr std::int64_t kRecoveryTimeout_ns = 25'000'000 + kCheckPeriod_ns;
 // A robot counts its incarnations on from that of its simulator, which is a clock reading in nanoseconds.
 // Another simulator starts later than that.
 constexpr std::uint64_t kMaxSetbacks = 100'000;
-// Of a robot that is silent for so long, facts of an earlier simulator may be the true ones (PROTOCOL.md,
+// If a robot is silent for this long, facts of an earlier simulator may be the true ones (PROTOCOL.md,
 // "Processes that must be alone").
 constexpr Duration kGoneAfter = std::chrono::seconds(1);
 
@@ -118,7 +118,7 @@ void Auditor::on_feedback(const msg::Feedback& feedback, Time now) {
     check_obeyed_epochs(*robot, executing, feedback, reception);
     if (executing.is_own_stop && !executing.was_executed)
       check_own_stop(*robot, executing, feedback.lead_ns());
-    // The times of a clock that is out of bound prove nothing, also after it has been set.
+    // The times of a clock that is out of bound prove nothing, even after the clock has been set.
     if (is_clock_sound(feedback, reception)) {
       KnownVersion* base = robot->find(executing.version.base());
       if (base && base->was_executed && robot->fact && robot->fact->executing == base->number)
@@ -229,13 +229,13 @@ void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_
   const auto fail = [&](const std::string& detail) {
     report(AuditRule::kOffReference, robot.id, &own_stop, 0, detail);
   };
-  // With the same number it is the stop that the robot executes already, of which messages were missed.
+  // With the same number, it is the stop that the robot is already executing, of which messages were missed.
   if (robot.fact && own_stop.number < robot.fact->executing)
     fail(fmt::format("is not numbered above version {}, which it replaces", robot.fact->executing));
   const AuditPath::Node& end = own_stop.path.last();
   if (std::hypot(end.vx, end.vy) > 1e-5)
     fail(fmt::format("ends at {:.6f} m/s instead of at rest", std::hypot(end.vx, end.vy)));
-  // The stop brakes at D to rest, after the motion that is under way in motors that obey late.
+  // The stop brakes at D to rest, after the motion that is already under way in motors that respond late.
   const double lead_s = static_cast<double>(std::clamp<std::int64_t>(lead_ns, 0, kMaxMotorLead_ns)) * 1e-9;
   const AuditPath::Node braked = own_stop.path.at_s(lead_s);
   const double speed = std::hypot(braked.vx, braked.vy);

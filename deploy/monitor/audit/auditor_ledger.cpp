@@ -9,7 +9,7 @@
 namespace sidestep {
 namespace {
 
-/// Whether the candidates that a verdict does not grant are denied for good.
+/// Whether the candidates that a verdict does not grant are denied permanently.
 bool is_final(const msg::Verdict& verdict) {
   if (verdict.granted_version() != 0) return true;
   switch (verdict.reasons().front()) {
@@ -259,7 +259,7 @@ void Auditor::check_ledger_page(const msg::LedgerPage& page) {
       // The version's content may have been evicted here before a delayed coordinator granted the version.
       if (!known.has_content) continue;
       if (known.exclusion != Exclusion::kNone || known.is_own_stop || !known.is_in(page.epoch())) continue;
-      // The ledger still tells of the robot on its former floor.
+      // The ledger still describes the robot on its former floor.
       if (known.number == 0 && page.epoch() <= robot.forgotten_in) continue;
       if (std::ranges::find(page_numbers_, known.number) != page_numbers_.end()) continue;
       report(AuditRule::kLedgerPage, id, &known, page.epoch(),

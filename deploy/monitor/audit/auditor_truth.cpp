@@ -12,7 +12,7 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxSimulatorLives = 16;
-// Of positions and velocities in messages.
+// Rounding of positions and velocities in messages.
 constexpr double kRounding_m = 1e-5;
 
 }  // namespace
@@ -34,12 +34,12 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     pending = Observation();
     return;
   }
-  // By the robot's clock.
+  // According to the robot's clock.
   const std::int64_t at_ns = pending.at_ns + (is_by_bound ? 0 : ahead_ns);
   if (feedback.valid_at_ns() < at_ns) return;
   const Observation observation = std::exchange(pending, Observation());
   if (!input_.is_complete && !reception.is_next) {
-    // What the robot did meanwhile is not known.
+    // What the robot did meanwhile is unknown.
     seen_displacements_[index] = {};
     return;
   }
@@ -121,7 +121,7 @@ bool Auditor::are_excuses_known(std::optional<std::size_t> robot, std::int64_t a
   // A robot that is not seen now may have been disturbed since it was last seen.
   if (!robot || !observed_[*robot] || are_contacts_unknown_ || disturbances_.is_uncertain(*robot))
     return false;
-  // By vision, robots that touch may have done so since one of them was out of place.
+  // When vision is the reference, robots that touch may have done so since one of them was out of place.
   const bool is_vision = totals_.reference == AuditReference::kVision;
   return !is_vision || seen_displacements_[*robot].in_place_since_ns <= apart_ns;
 }
@@ -233,7 +233,7 @@ ObservedRobot Auditor::observed_robot(std::size_t index, const Vec2& position_m,
   const KnownVersion* const version = is_executing ? robot.find(robot.fact->executing) : nullptr;
   if (!version || !version->has_content) return observed;
   observed.inflation_m = version->version.inflation_m();
-  // By now it may execute another version.
+  // By now the robot may execute another version.
   const bool is_recent = input_.is_complete || now_ - robot.heard_at <= 2 * scenario_.cycle;
   observed.is_in_place = is_recent && version->was_in_ledger() &&
                          error_m <= tracking_bound_m_ + observed.inflation_m + allowance_m;

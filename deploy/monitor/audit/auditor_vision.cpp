@@ -11,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-// Ground truth would have arrived by then.
+// Ground truth would have arrived within this time.
 constexpr Duration kGroundTruthWait = std::chrono::seconds(1);
 // A robot that was moved learns that from vision, and then reports that it is off its reference.
 constexpr std::int64_t kMaxSeenDisplacement_ns = 300'000'000;
@@ -140,7 +140,7 @@ void Auditor::check_seen_position(const AuditedRobot& robot, const KnownVersion&
     displacement = {kNever, false, was_in_place ? displacement.in_place_since_ns : at_ns};
     return;
   }
-  // Who joins a run does not know what has displaced a robot before.
+  // An auditor that joins a run does not know what has displaced a robot before.
   if (!input_.is_complete && displacement.in_place_since_ns == kNever) return;
   if (is_known_to_be_displaced(robot)) {
     ++totals_.excused_displacements;

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxKept = 4096;
 // do so before the next one.
 constexpr std::size_t kManyResumes = 256, kManyRemovals = 128;
 constexpr auto kOperator = static_cast<std::uint32_t>(Sender::kOperator);
-// Clients other than operator, referee and scenario share one place for orders to drive.
+// Clients other than operator, referee and scenario share one entry for orders to drive.
 constexpr std::uint32_t kAnyClient = 0;
 
 std::uint32_t driver_of(std::uint32_t client) {
@@ -89,7 +89,7 @@ class OrderAudit::Memory {
       case Matter::kResume:
         break;
     }
-    // Otherwise the absence of the hold shows that it was lifted.
+    // Otherwise, the absence of the hold shows that it was lifted.
     return !excepts(order) || resumed >= order.number;
   }
   /// Whether the resume excepts a robot from a hold of all that stands.
@@ -162,7 +162,7 @@ void OrderAudit::on_answer(const msg::OrderAnswer& answer) {
   const Coordinator* coordinator = coordinator_of(answer.header());
   if (!coordinator || answer.result() != msg::OrderResult::RESULT_REMEMBERED) return;
   const auto sent = sent_.find({answer.order_number(), answer.client()});
-  if (sent == sent_.end()) return;  // a repetition may have been numbered otherwise, or it was missed
+  if (sent == sent_.end()) return;  // A repetition may have been numbered differently, or it was missed.
   const Terms& order = sent->second;
   Confirmed& last = confirmed_[order.subject];
   if (std::pair(last.terms.number, last.terms.client) < std::pair(order.number, order.client))

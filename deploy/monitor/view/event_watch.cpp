@@ -17,7 +17,7 @@
 namespace sidestep {
 namespace {
 
-/// Of senders that are remembered: anybody can invent some.
+/// Bound of the senders that are remembered, because anybody can invent some.
 constexpr std::size_t kMaxSenders = 1000;
 
 std::string who(std::uint32_t robot) {

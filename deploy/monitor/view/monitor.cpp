@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 enum Slot : unsigned { kFrameSlot, kPanelSlot, kTimeSlot, kInspectionSlot };
-constexpr std::size_t kMaxInspected = 500;  // messages that are kept for slow viewers
+constexpr std::size_t kMaxInspected = 500;  // number of messages that are kept for slow viewers
 constexpr double kMaxPlaySpeed = 100;
 constexpr std::size_t kHistoryBytes = 512 << 20;
 /// The panels of large fleets are too long for every half second.
@@ -33,7 +33,7 @@ std::shared_ptr<const std::string> shared_text(const Json& json) {
   return std::make_shared<const std::string>(text_of(json));
 }
 
-/// `is_new`: they do not follow the messages that were sent before.
+/// `is_new`: the messages do not continue those that were sent before.
 template <typename Messages>
 std::shared_ptr<const std::string> messages_text(const std::string& channel, bool is_new,
                                                  const Messages& messages) {
@@ -51,7 +51,7 @@ std::optional<double> number_in(const Json& json, const char* key) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// nullopt: beyond what a time can be.
+/// nullopt: the value is beyond the range of times.
 std::optional<Time> time_in(const Json& json) {
   const std::optional<double> at_s = number_in(json, "at_s");
   if (!at_s || std::abs(*at_s) > 9e9) return std::nullopt;

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Describes the bytes of a message; null if they are none of its topic.
+/// Describes the bytes of a message; null if they are not a message of its topic.
 using Describe = std::function<Json(std::span<const std::uint8_t> cdr)>;
 
 Describe describe_by(const std::string& channel) {
@@ -39,7 +39,8 @@ Describe describe_by(const std::string& channel) {
 
 std::vector<std::string> RecordedMessages::between(const std::string& channel, Time from, Time to) {
   constexpr std::size_t kEncapsulation = 4;
-  constexpr auto kDisorder = std::chrono::seconds(1);  // by which messages may be out of order in the file
+  // The time by which messages may be out of order in the file.
+  constexpr auto kDisorder = std::chrono::seconds(1);
   const Describe describe_message = describe_by(channel);
   const auto& chunks = playback_.chunks();
   if (!describe_message || chunks.empty()) return {};

@@ -30,9 +30,9 @@ double time_limit_s(const Scenario& scenario, int goals) {
   return 60 + 4 * goals * (scenario.field.length_m + scenario.field.width_m) / scenario.limits.speed_mps;
 }
 
-/// Throws std::invalid_argument.
+/// Throws std::invalid_argument if the building has too little room.
 void require_room(const Scenario& scenario, int robots) {
-  constexpr double kRoom_m2 = 1;  // for each robot, so that random places are found soon
+  constexpr double kRoom_m2 = 1;  // area for each robot, so that random positions are found soon
   const MapGrid& grid = scenario.map->cells().grid();
   long cells = 0;
   for (int row = 0; row < grid.rows; ++row)
@@ -76,7 +76,7 @@ std::string scenario_text(const BuildingOptions& options, const Scenario& scenar
 }  // namespace
 
 void write_building(const BuildingOptions& options) {
-  // First, because the building takes seconds.
+  // The folder is created first, because the building takes seconds.
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
   if (!std::filesystem::is_directory(options.folder))

@@ -79,7 +79,7 @@ class DisturbanceSampler {
     add(times_.after(ready, log_uniform(0.05, 10)), std::move(place));
   }
 
-  /// Somebody changes the battery of a lifted robot. When it is on again.
+  /// Somebody changes the battery of a lifted robot. Returns when it is on again.
   Duration sample_restart_in_hand(RobotId robot, Duration lifted_at) {
     const Duration off = times_.after(lifted_at, log_uniform(0.02, 1));
     const Duration on = times_.after(off, log_uniform(0.02, 4));
@@ -131,7 +131,7 @@ class DisturbanceSampler {
     if (plan_.ends.contains(robot) || !handled_.insert(robot).second) return;
     add(times_.sample(rng_), robot, Kind::DISTURBANCE_FORGET_POSE);
   }
-  /// The clock jumps, and mostly is set right later.
+  /// The clock jumps, and is usually set right later.
   void sample_clock_step() {
     const RobotSpec& robot = scenario_.robots[rng_.below(scenario_.robots.size())];
     if (plan_.ends.contains(robot.id) || !handled_.insert(robot.id).second) return;
@@ -163,8 +163,8 @@ class DisturbanceSampler {
   FaultPlan& plan_;
   Rng& rng_;
   PositionSampler positions_;
-  std::set<RobotId>
-      handled_;  // lifted, without power, with a wrong clock or without a pose; at most once each
+  std::set<RobotId> handled_;  // robots that are lifted, without power, with a wrong clock or without a pose;
+                               // each at most once
 };
 
 }  // namespace

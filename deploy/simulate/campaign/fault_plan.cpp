@@ -143,7 +143,7 @@ class Describe {
   static std::string place(const Vec2& place_m) {
     return fmt::format("({:.3f}, {:.3f}) m", place_m.x(), place_m.y());
   }
-  /// A short name: a whole host by its number, and almost all processes by the exceptions.
+  /// A short name, which gives a whole host by its number, and almost all processes by the exceptions.
   std::string group(const ProcessNames& names) const {
     ProcessNames others;
     for (std::size_t i = 0; i < plan_.hosts.size(); ++i) {

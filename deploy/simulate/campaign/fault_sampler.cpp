@@ -156,7 +156,7 @@ class FaultSampler {
     add(times_.after(at, dead_s), Start{victim});
   }
 
-  /// A process works by other rules for a while. A standby may do so for good if there is another
+  /// Makes a process work with other rules for a while. A standby may do so for good if there is another
   /// coordinator.
   void sample_other_rules() {
     const double u = rng_.uniform();
@@ -189,7 +189,7 @@ class FaultSampler {
       const std::string first = agent_process(robot), second = twin_process(robot);
       if (std::ranges::find(processes_, second) != processes_.end()) return;
       processes_.push_back(second);
-      // An agent is not restarted sooner than this after the start of its twin.
+      // An agent is not restarted earlier than this after the start of its second agent.
       const Duration at = std::max(Duration{0}, std::min(time(), plan_.healed_at - kMinTwinLifetime));
       add(at, Start{second});
       const Duration first_kill = at + until_healed(at, log_uniform(0.02, 10)) - Duration{4};
@@ -204,8 +204,8 @@ class FaultSampler {
     });
   }
 
-  /// Starts a second process of a kind that must be alone, on a host of its own. It may not hear the first
-  /// one, or some of the others, for a while.
+  /// Starts a second process of a kind that must run alone, on a host of its own. For a while, it may not
+  /// hear the first one or some of the others.
   void sample_second() {
     const std::string first = rng_.chance(0.6) ? "simulator" : "vision", second = second_process(first);
     const Duration at = time();

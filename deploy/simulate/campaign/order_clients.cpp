@@ -106,7 +106,7 @@ void OrderClients::on_truth(const msg::GroundTruth& truth) {
     Time& disturbed_until = disturbed_until_[body.robot()];
     if (body.disturbance_end_ns() >= 0)
       disturbed_until = std::max(disturbed_until, time_from_ns(body.disturbance_end_ns()));
-    // Somebody may carry another robot against it.
+    // Somebody may carry another robot against this one.
     if (touches_another(body, truth)) disturbed_until = std::max(disturbed_until, now);
     const bool is_disturbed = disturbed_until != Time{} && now <= disturbed_until + kTimeToRest;
     if (!hold || now < *hold->confirmed_at + kTimeToRest || is_disturbed) continue;
@@ -126,9 +126,9 @@ void OrderClients::on_truth(const msg::GroundTruth& truth) {
 void OrderClients::on_memory(const msg::OrderMemory& message) {
   if (message.page_count() == 0) return;
   const auto page = decode(message, bus_.now());
-  if (!page) return;  // e.g. of a coordinator with other rules
+  if (!page) return;  // for example from a coordinator with other rules
   if (!page->is_complete) {
-    // It was started again, and may know no order yet.
+    // The process was restarted, and may know no order yet.
     memories_.erase(page->process);
     return;
   }

@@ -63,7 +63,7 @@ bool PositionSampler::is_apart(const Vec2& p, const std::vector<Vec2>& others) c
 Vec2 PositionSampler::sample(double share) {
   for (int i = 0;; ++i) {
     const double part = i < kMaxAttempts ? share / 2 : 0.5;
-    // y first: the order of arguments would be unspecified.
+    // y is sampled first, because the evaluation order of arguments would be unspecified.
     const double y = rng_.uniform(-part, part) * scenario_.field.width_m;
     const double x = rng_.uniform(-part, part) * scenario_.field.length_m;
     const Vec2 p(x, y);

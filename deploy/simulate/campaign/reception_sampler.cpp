@@ -48,7 +48,7 @@ class ReceptionSampler {
            : u < 0.7 ? "vision"
                      : agent_process(scenario_.robots[rng_.below(scenario_.robots.size())].id);
   }
-  /// All processes but this one, or some of them.
+  /// All processes except this one, or some of them.
   ProcessNames sample_others(const std::string& process) {
     ProcessNames others;
     const double share = rng_.chance(0.5) ? 1 : rng_.uniform(0.1, 0.9);

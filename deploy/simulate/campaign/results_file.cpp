@@ -24,7 +24,7 @@ ResultsFile::ResultsFile(const std::string& path, const std::string& campaign) :
 void ResultsFile::read(const std::string& campaign) {
   std::ifstream in(path_);
   if (!in) throw std::runtime_error(fmt::format("{}: cannot be read: {}", path_, std::strerror(errno)));
-  std::uintmax_t complete = 0;  // bytes in complete lines
+  std::uintmax_t complete = 0;  // number of bytes in complete lines
   std::string line;
   for (int number = 1; std::getline(in, line) && !in.eof(); ++number) {
     complete += line.size() + 1;

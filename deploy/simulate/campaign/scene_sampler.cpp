@@ -54,7 +54,7 @@ void sample_floor(Scenario& scenario, std::size_t robots, Rng& rng) {
   for (std::uint64_t left = rng.chance(0.5) ? rng.below(6) : 0; left > 0; --left) {
     scenario.obstacles.push_back(sample_obstacle(scenario.field, rng));
   }
-  constexpr double kMinWidth_m = 3, kMinAreaPerRobot_m2 = 1.5;  // for rooms
+  constexpr double kMinWidth_m = 3, kMinAreaPerRobot_m2 = 1.5;  // minimum sizes of rooms
   if (rng.chance(0.3) && scenario.field.width_m > kMinWidth_m &&
       area_m2 > kMinAreaPerRobot_m2 * static_cast<double>(robots))
     scenario.map = sample_building(scenario.field, scenario.radius_m, rng);
@@ -101,7 +101,7 @@ void sample_paths(Scenario& scenario, Rng& rng) {
   }
 }
 
-/// People who walk around obstacles and through the rooms of a building.
+/// Samples people who walk around obstacles and through the rooms of a building.
 void sample_people(Scenario& scenario, double min_radius_m, double max_radius_m, Rng& rng) {
   const auto is_near_robot = [&](const Vec2& p, double radius_m) {
     return std::ranges::any_of(scenario.robots, [&](const RobotSpec& robot) {
@@ -144,7 +144,7 @@ Scenario sample_scene(Rng& rng, bool has_driven_bases) {
   if (has_driven_bases) use_bases(scenario);
   sample_floor(scenario, robots, rng);
   sample_sensors(scenario, rng);
-  if (has_driven_bases) scenario.command_loss = 0;  // which is the firmware's
+  if (has_driven_bases) scenario.command_loss = 0;  // the firmware's value
   scenario.robots.resize(robots);
   std::vector<RobotLines> lines(robots);
   for (std::size_t i = 0; i < robots; ++i) {

@@ -22,7 +22,7 @@ namespace {
 constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
 // This long after the last fault, all processes must work again.
 constexpr Duration kRecoveryTime = std::chrono::seconds(2);
-/// A robot waits for less, e.g. after its own stop, unless it is stuck.
+/// A robot waits for less time than this, for example after its own stop, unless it is stuck.
 constexpr Duration kLongestWait = std::chrono::seconds(3);
 // With more ghosts, some are always taken for obstacles that come nearer, and robots on a small floor stay
 // put.
@@ -34,9 +34,11 @@ std::string list(const std::vector<RobotId>& robots) { return fmt::format("{}", 
 /// Robots whose agents are in a wrong state at the end, long after the last fault.
 struct UnexpectedStates {
   std::vector<RobotId> not_driving;
-  std::vector<RobotId> undetected_clock;  ///< the clock is out of bound, but the agent does not report it
-  std::vector<RobotId> driven;            ///< the clock is out of bound, but versions were granted
-  std::vector<RobotId> not_absent;        ///< off the floor, but the agent does not report it
+  /// Robots whose clock is out of bound, but whose agent does not report it.
+  std::vector<RobotId> undetected_clock;
+  /// Robots whose clock is out of bound, but to which versions were granted.
+  std::vector<RobotId> driven;
+  std::vector<RobotId> not_absent;  ///< robots off the floor whose agent does not report it
 };
 
 bool is_driving(const RobotProgress& row) {
@@ -61,7 +63,7 @@ UnexpectedStates find_unexpected_states(const std::vector<RobotProgress>& progre
   return unexpected;
 }
 
-/// Bases that get no commands go on by themselves, off their versions; see the protocol's assumptions.
+/// Bases that get no commands continue by themselves, off their versions; see the protocol's assumptions.
 void keep_driving(FaultPlan& plan) {
   for (TimedFault& timed : plan.faults) {
     if (auto* const pause = std::get_if<Pause>(&timed.fault)) std::erase(pause->processes, "simulator");
@@ -180,7 +182,7 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   if (disturbance_rng.chance(0.08)) trial.scenario.vision.ghost_probability = disturbance_rng.uniform(0, 0.2);
   if (disturbance_rng.chance(0.08))
     trial.scenario.vision.ghost_obstacle_probability = disturbance_rng.uniform(0, kMaxGhostObstacles);
-  // Disturbances are the firmware's.
+  // Only robots with firmware have these disturbances.
   if (!trial.base_latency) sample_disturbances(trial.scenario, times, plan, disturbance_rng);
   sample_reception(trial.scenario, times, plan, reception_rng);
   sample_clock_jumps(trial.scenario, times, plan, clock_jump_rng);

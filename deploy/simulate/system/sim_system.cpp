@@ -48,7 +48,7 @@ struct VisionProcess {
 
 }  // namespace
 
-/// The process that a second one of its kind is named after; of another process its own name.
+/// The name of the process that a second one of its kind duplicates; for any other process, its own name.
 std::string first_of(const std::string& process) {
   return process.ends_with(kSecond) ? process.substr(0, process.size() - kSecond.size()) : process;
 }
@@ -201,7 +201,7 @@ void SimSystem::watch_beliefs(SimBus& bus) {
 void SimSystem::on_other(const std::string& name, std::uint32_t id, Incarnation own, Incarnation other) {
   processes_.at(name)->report(LogLevel::kError, describe_other(id, own, other));
   if (stays_with_others_ || !must_be_alone(id) || own < other) return;
-  // Not here, in a callback of its bus.
+  // Not done here, because this is a callback of its bus.
   observer_bus_.at(now(), [this, name] { processes_.erase(name); });
 }
 

@@ -34,7 +34,7 @@ class OwnPlanner {
         domain_settings_(planner_.domain_settings(world.world.field, world.world.radius_m)),
         rng_(seed) {}
 
-  /// Limited only by time, as the peers are, except for anytime planners. Making the domain is part of the
+  /// Limited only by time, like the peers, except for anytime planners. Making the domain is part of the
   /// measured time.
   TimedPlan plan(const PlanQuery& query, double max_ms) {
     const std::size_t samples = planner_.kind == PlannerKind::kAnytime ? kAnytimeSamples : kUnlimited;

@@ -20,7 +20,7 @@
 namespace sidestep {
 namespace {
 
-/// Writes the scenario without goals, which clients give, to a file in another folder.
+/// Writes the scenario to a file in another folder, without the goals, which clients give.
 void write_without_goals(const std::string& file, const std::string& to) {
   YAML::Node scenario = parse_yaml(read_yaml_file(file, "a scenario"), file, "a scenario");
   for (YAML::Node robot : scenario["robots"]) robot.remove("goals_m");
@@ -31,7 +31,7 @@ void write_without_goals(const std::string& file, const std::string& to) {
   write_file(to, YAML::Dump(scenario) + "\n");
 }
 
-/// Sends the robots to random places while the launcher runs.
+/// Sends the robots to random positions while the launcher runs.
 class DrivenRun {
  public:
   DrivenRun(Launcher& launcher, const Scenario& places, const BuildingRunOverDds& run)

@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// Robots at their places leave this much more than the margin to each other.
+// Robots at their positions leave this much more than the margin between each other.
 constexpr double kExtraSeparation_m = 0.02;
 
 }  // namespace

@@ -8,7 +8,8 @@
 namespace sidestep {
 namespace {
 
-constexpr double kBorder_m = 0.3;       // of free places and obstacles' centres from the field's border
+// Distance of free positions and obstacles' centres from the field's border.
+constexpr double kBorder_m = 0.3;
 constexpr double kFreeAtEnds_m = 0.35;  // clearance of start and target
 
 Vec2 sample_place(double border_m, Rng& rng) {

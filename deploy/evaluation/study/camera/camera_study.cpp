@@ -20,7 +20,7 @@ constexpr CameraSizes kQuick{1, 4, 10};
 constexpr std::array<PixelPlanner, 2> kDriving{PixelPlanner::kCells, PixelPlanner::kDiamonds};
 constexpr std::array<const char*, kPixelPlanners> kPlannerNames{"cells", "diamonds", "discs"};
 
-/// The drives of one row.
+/// The results of the drives of one row.
 struct DriveSum {
   int drives = 0, arrived = 0, contacts = 0, replans = 0, without_cause = 0, false_alarms = 0;
   int noticed = 0, max_frames = 0;
@@ -40,8 +40,8 @@ struct DriveSum {
 };
 
 struct Lengths {
-  Distribution cells, discs;  ///< relative to the path around the diamonds
-  int none = 0;               ///< drives in which one of the planners found no path
+  Distribution cells, discs;  ///< lengths relative to the path around the diamonds
+  int none = 0;               ///< number of drives in which one of the planners found no path
 };
 
 void add(const StageTimes& from, StageTimes& to) {
@@ -151,7 +151,7 @@ StudyTable heuristic_table(const CameraSizes& sizes, std::uint64_t seed) {
         CellAstar astar(kHeuristics[k]);
         const CellRoute& route = astar.search(blocked, start, goal);
         if (k == 0) shortest = route.length_cells;
-        if (shortest == 0) break;  // no path, or start is goal
+        if (shortest == 0) break;  // There is no path, or the start is the goal.
         expanded[k].add(static_cast<double>(route.expanded));
         excess[k].add(100 * (route.length_cells / shortest - 1));
         longer[k] += route.length_cells > shortest + 1e-6 ? 1 : 0;

@@ -37,7 +37,7 @@ class DriveWorld {
     bumped_renderer_.emplace(renderer_of(bumped(guiding_camera(), angle_rad, rng_)));
   }
 
-  /// Lets happen what happens before a frame.
+  /// Carries out the events that happen before a frame.
   void happen(int frame) {
     const bool is_now = frame == first_ || frame == first_ + kSecondEventAfter;
     if (is_now && event_ == DriveEvent::kTargetMoves) floor_.target_m = sample_free_place(floor_, 0.35, rng_);
@@ -121,7 +121,8 @@ void count(const PixelGuide::Guidance& guidance, int frame, const DriveWorld& wo
   if (guidance.camera_is_known) return;
   if (world.is_bumped(frame) && !result.noticed_after_frames)
     result.noticed_after_frames = frame - world.first_event() + 1;
-  const bool is_returning = frame >= world.first_event();  // known again after some good frames
+  // The robot counts as known again after some good frames.
+  const bool is_returning = frame >= world.first_event();
   result.false_alarms += is_returning ? 0 : 1;
 }
 

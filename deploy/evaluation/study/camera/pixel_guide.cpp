@@ -79,7 +79,8 @@ void PixelGuide::look(const ImageView& image) {
     has_robot_ = pixel && camera_.is_in_image(*pixel);
     if (has_robot_) robot_px_ = *pixel;
   }
-  // A target that is not seen is where it was: the robot hides it, or it will be seen elsewhere.
+  // A target that is not seen is assumed where it was, because the robot hides it or it will be seen
+  // elsewhere.
   if (!blobs_->target) return;
   target_px_ = *blobs_->target;
   has_target_ = true;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPersonRadius_m = 0.25, kMaxPersonSpeed_mps = 1.2;
 constexpr int kGoalsPerRobot = 3, kWalks = 4, kHallObstacles = 10;
 constexpr double kTimeLimit_s = 300;
-// Robots begin this far from people at least.
+// Robots start at least this far from people.
 constexpr double kStartDistance_m = 1;
 
 void sample_building_floor(Scenario& scenario, Rng& rng) {
@@ -59,7 +59,7 @@ void sample_people(Scenario& scenario, int count, Rng& rng) {
   }
 }
 
-/// A robot at a free place away from others and from people, with goals that it can reach.
+/// Adds a robot at a free position away from others and from people, with goals that it can reach.
 void add_robot(Scenario& scenario, std::vector<Vec2>& starts, std::vector<Vec2>& lasts, Rng& rng) {
   PositionSampler positions(scenario, rng);
   WalkSampler walks(scenario, scenario.radius_m + scenario.margin_m, rng);

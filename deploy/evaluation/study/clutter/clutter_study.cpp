@@ -21,7 +21,7 @@ struct ClutterSizes {
 };
 ClutterSizes quick_clutter_sizes() { return {{"lazy-visibility", "errt"}, {5}, 1, 2, 2, 1}; }
 
-// Columns that have to be zero.
+// Columns that must be zero.
 constexpr const char *kContacts = "contacts", *kCrashesInMotion = "crashes_in_motion";
 constexpr const char *kAudit = "audit", *kPassed = "passed";
 

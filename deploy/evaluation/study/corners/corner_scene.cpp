@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWall_m = 0.1;
 constexpr double kMinWay_m = 3;       // of the robot
-constexpr double kPersonApart_m = 1;  // from the robot's start
+constexpr double kPersonApart_m = 1;  // distance from the robot's start
 constexpr int kTries = 2000;
 
 /// A vertical wall from one height to another.
@@ -88,7 +88,7 @@ void sample_robot_and_laser(Scenario& scenario, Rng& rng) {
   laser.person_radius_m = rng.uniform(0.15, 0.3);
 }
 
-/// A place on a way that begins at `from_m`.
+/// A position on a path that begins at `from_m`.
 Vec2 point_on(const Vec2& from_m, const std::vector<Vec2>& way_m, double part) {
   double length_m = 0;
   Vec2 last = from_m;

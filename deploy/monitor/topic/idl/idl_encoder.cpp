@@ -22,7 +22,7 @@ class Encoder {
   explicit Encoder(bool is_little_endian)
       : is_swapped_(is_little_endian != (std::endian::native == std::endian::little)) {}
 
-  /// `json`: nullptr: the member was left out.
+  /// `json`: nullptr if the member was left out.
   void encode(const IdlType& type, const Json* json, const std::string& name) {
     switch (type.kind) {
       case Kind::kBoolean:

@@ -24,7 +24,7 @@ constexpr std::size_t kMaxFiles = 1000;
 // Types that hold each other several times grow exponentially.
 constexpr std::uint64_t kMaxValues = 10'000'000;
 
-/// What annotations say of the definition or member that follows.
+/// What annotations say about the definition or member that follows.
 struct Annotations {
   bool is_key = false, is_optional = false;
   std::optional<Extensibility> extensibility{};
@@ -263,7 +263,7 @@ class Parser {
       fail(fmt::format("a message of this type has {} values, more than {}", type.values, kMaxValues));
   }
 
-  /// A message of no bytes would have any number of elements that hold nothing.
+  /// A message without bytes could then have any number of elements that contain nothing.
   void check_element(const IdlType& element) const {
     if (element.values == 0) fail("a list of elements that hold nothing");
   }

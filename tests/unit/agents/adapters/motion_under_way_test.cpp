@@ -138,7 +138,7 @@ TEST_CASE("a fitted motion takes as long as the path, ends at its velocity, and 
   CHECK(worst_ratio < 1.2);
 }
 
-TEST_CASE("a path with NaN has an error that is NaN") {
+TEST_CASE("the fit of a path with NaN has no small error") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   auto path = path_of({{1, 0}, {1, 0}, {1, 0}, {1, 0}}, 10ms);
   path[2].position_m.x() = nan;
