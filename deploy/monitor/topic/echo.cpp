@@ -36,9 +36,7 @@ int echo_recording(const TopicOptions& options, MessagePrinter& printer) {
 }
 
 /// The type of a foreign topic. Throws IdlError if the file does not have it.
-IdlTypePtr find_type(const TopicOptions& options, const std::string& announced) {
-  const IdlTypes types = load_idl(options.idl_file);
-  const std::string& name = options.type.empty() ? announced : options.type;
+IdlTypePtr find_type(const TopicOptions& options, const IdlTypes& types, const std::string& name) {
   const auto found = types.find(name);
   if (found != types.end() && found->second->kind == IdlType::Kind::kStruct) return found->second;
   std::string known;
@@ -49,11 +47,14 @@ IdlTypePtr find_type(const TopicOptions& options, const std::string& announced) 
 }
 
 int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
+  const IdlTypes types = load_idl(options.idl_file);
+  IdlTypePtr type;
+  if (!options.type.empty()) type = find_type(options, types, options.type);
   DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   const std::optional<DiscoveredEndpoint> writer = find_writer(listener, options);
   if (!writer) return listener.stopped() ? 0 : kExitFailure;
-  const IdlTypePtr type = find_type(options, writer->type);
+  if (!type) type = find_type(options, types, writer->type);
   bool is_decodable = true;
   listener.listen(*writer, [&](const RawSample& sample) {
     try {

@@ -20,11 +20,33 @@ namespace {
 constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
 constexpr Duration kStep = std::chrono::milliseconds(10);
 
-/// The name of a topic's type: as given, of one of ours, or as somebody in the domain announces it.
-std::string type_name(const TopicOptions& options, const DdsListener& listener) {
+struct EncodedMessage {
+  IdlTypePtr type;
+  std::vector<std::uint8_t> bytes;
+  CdrKey key;
+};
+
+/// Throws std::invalid_argument if there is no such type, or the message does not fit it.
+EncodedMessage encode_message(const TopicOptions& options, const IdlTypes& types, const std::string& name,
+                              const nlohmann::ordered_json& json) {
+  const auto type = types.find(name);
+  if (type == types.end())
+    throw std::invalid_argument(
+        fmt::format("there is no type {} in {}", name,
+                    options.idl_file.empty() ? "Sidestep's IDL; see --idl" : options.idl_file));
+  return {type->second, encode_by_idl(*type->second, json), key_by_idl(*type->second, json)};
+}
+
+/// The name of a topic's type: as given, or of one of ours; nullopt: only others can say it.
+std::optional<std::string> known_type_name(const TopicOptions& options) {
   if (!options.type.empty()) return options.type;
   for (const TopicInfo& topic : all_topics())
     if (channel_robot(topic, options.topic)) return topic.type.name;
+  return std::nullopt;
+}
+
+/// The name of a topic's type, as somebody in the domain announces it.
+std::string announced_type_name(const TopicOptions& options, const DdsListener& listener) {
   for (const DiscoveredEndpoint& endpoint : listener.endpoints())
     if (endpoint.topic == options.topic) return endpoint.type;
   throw std::invalid_argument(
@@ -36,19 +58,19 @@ std::string type_name(const TopicOptions& options, const DdsListener& listener) 
 int publish_topic(const TopicOptions& options) {
   const auto json = nlohmann::ordered_json::parse(options.message, nullptr, false);
   if (json.is_discarded()) throw std::invalid_argument("MESSAGE: is no valid JSON");
+  const IdlTypes types = options.idl_file.empty() ? parse_idl(kIdlText, "idl") : load_idl(options.idl_file);
+  std::optional<std::string> name = known_type_name(options);
+  std::optional<EncodedMessage> message;
+  // What is wrong with the message is said before the network is touched, where that is possible.
+  if (name) message = encode_message(options, types, *name, json);
   DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
-  const std::string name = type_name(options, listener);
-  const IdlTypes types = options.idl_file.empty() ? parse_idl(kIdlText, "idl") : load_idl(options.idl_file);
-  const auto type = types.find(name);
-  if (type == types.end())
-    throw std::invalid_argument(
-        fmt::format("there is no type {} in {}", name,
-                    options.idl_file.empty() ? "Sidestep's IDL; see --idl" : options.idl_file));
-  const std::vector<std::uint8_t> bytes = encode_by_idl(*type->second, json);
-  const auto key = key_by_idl(*type->second, json);
-  DdsRawPublisher publisher(options.dds, options.topic, name, is_keyed(*type->second));
+  if (!message) {
+    name = announced_type_name(options, listener);
+    message = encode_message(options, types, *name, json);
+  }
+  DdsRawPublisher publisher(options.dds, options.topic, *name, is_keyed(*message->type));
   const Time deadline = listener.now() + kAnswerTimeout;
   while (publisher.readers() == 0 && listener.now() < deadline && !listener.stopped())
     listener.run_until(listener.now() + kStep);
@@ -59,7 +81,7 @@ int publish_topic(const TopicOptions& options) {
   const std::uint64_t count = std::max<std::uint64_t>(options.printer.count, 1);
   for (std::uint64_t i = 0; i < count && !listener.stopped(); ++i) {
     if (i > 0) listener.run_until(listener.now() + from_seconds(1 / options.rate_hz));
-    publisher.write(bytes, key);
+    publisher.write(message->bytes, message->key);
   }
   if (!publisher.wait_until_acknowledged(kAnswerTimeout)) {
     fmt::print(stderr, "not all readers have acknowledged\n");

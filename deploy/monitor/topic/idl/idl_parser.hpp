@@ -10,9 +10,9 @@
 
 namespace sidestep {
 
-/// An error in IDL, with its location: "order.idl:7: expected ';', got 'long'".
-class IdlError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// What is wrong with IDL, and where: "order.idl:7: expected ';', got 'long'".
+class IdlError : public std::invalid_argument {
+  using std::invalid_argument::invalid_argument;
 };
 
 /// Enums and structs, indexed by their full names.

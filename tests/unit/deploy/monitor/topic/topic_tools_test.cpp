@@ -370,6 +370,12 @@ TEST_CASE("topic pub says what is wrong with a message, and when nobody reads it
   CHECK(outcome.err == "topic 'disturbance' has no reader that matches\n");
 }
 
+TEST_CASE("IDL that cannot be used is wrong usage of topic pub and topic echo") {
+  const std::string missing = "/missing.idl";
+  CHECK_THROWS_AS(topic({"pub", "x", "{}", "--idl", missing, "--type", "A"}), std::invalid_argument);
+  CHECK_THROWS_AS(topic({"echo", "x", "--idl", missing}), std::invalid_argument);
+}
+
 TEST_CASE("topic bw measures bandwidth and sizes") {
   const Publisher publisher;
   const Outcome outcome = topic({"bw", "world", "--seconds", "1"});
