@@ -69,10 +69,10 @@ Goal parse_goal(const std::string& text) {
   return goal_from(numbers);
 }
 
-Vec2 parse_corner(const std::string& text) {
+Vec2 parse_place(const std::string& text, const std::string& what) {
   const auto numbers = parse_numbers(text);
   if (numbers.size() != 2)
-    throw UsageError(fmt::format("\"{}\" is no corner of a zone, expected X,Y in metres", text));
+    throw UsageError(fmt::format("\"{}\" is no {}, expected X,Y in metres", text, what));
   require_near(text, numbers);
   return {numbers[0], numbers[1]};
 }

@@ -12,8 +12,8 @@ namespace sidestep {
 /// Reads "X,Y" or "X,Y,HEADING", in metres and radians. Throws UsageError.
 [[nodiscard]] Goal parse_goal(const std::string& text);
 
-/// Reads "X,Y", in metres. Throws UsageError.
-[[nodiscard]] Vec2 parse_corner(const std::string& text);
+/// Reads "X,Y", in metres. `what` ("corner of a zone") appears in the message. Throws UsageError.
+[[nodiscard]] Vec2 parse_place(const std::string& text, const std::string& what);
 
 /// Reads a robot's number, or "all" for kAllRobots. Throws UsageError.
 [[nodiscard]] RobotId parse_robots(const std::string& text);

@@ -37,9 +37,9 @@ league::RefereeCommand parse_command(const std::string& text) {
   throw UsageError(fmt::format("\"{}\" is no command of the referee: expected one of {}", text, names));
 }
 
-/// Throws UsageError if the text is not a position.
-Vec2 parse_place(const std::string& text) {
-  const Vec2 place_m = parse_corner(text);
+/// Throws UsageError.
+Vec2 parse_ball_place(const std::string& text) {
+  const Vec2 place_m = parse_place(text, "place for the ball");
   if (place_m.cwiseAbs().maxCoeff() <= league::kMaxPosition_m) return place_m;
   throw UsageError(fmt::format("\"{}\": expected coordinates from {} to {} m", text, -league::kMaxPosition_m,
                                league::kMaxPosition_m));
@@ -78,7 +78,7 @@ void add_referee_command(const CliCommand& root, std::function<int()>& action) {
       .required();
   command.add_option(
       "--place",
-      [referee](const std::string& text) { referee->packet.designated_position_m = parse_place(text); },
+      [referee](const std::string& text) { referee->packet.designated_position_m = parse_ball_place(text); },
       "X,Y in metres: where the ball is to be placed");
   command.add_option("--referee", referee->endpoint, "ADDRESS:PORT to send the packets to").show_default();
   command.add_option("--league-interface", referee->interface, "address of the network interface to use")

@@ -34,7 +34,7 @@ Zone parse_zone(const std::vector<std::string>& corners, double radius_m,
   if (corners.size() > kMaxZoneCorners)
     throw UsageError(fmt::format("expected at most {} corners", kMaxZoneCorners));
   Zone zone{{}, radius_m, speed_limit_mps};
-  for (const std::string& corner : corners) zone.corners_m.push_back(parse_corner(corner));
+  for (const std::string& corner : corners) zone.corners_m.push_back(parse_place(corner, "corner of a zone"));
   if (radius_m == 0 && !has_area(zone.corners_m))
     throw UsageError("the zone covers no area: expected three corners that are not in line, or --radius");
   return zone;

@@ -24,7 +24,8 @@ TEST_CASE("commands of the referee are checked before anything is sent") {
   CHECK_THAT(usage_error({"referee"}), ContainsSubstring("COMMAND"));
   CHECK_THAT(usage_error({"referee", "PAUSE"}), ContainsSubstring("\"PAUSE\" is no command of the referee") &&
                                                     ContainsSubstring("HALT, STOP, "));
-  CHECK_THAT(usage_error({"referee", "STOP", "--place", "1"}), ContainsSubstring("X,Y"));
+  CHECK_THAT(usage_error({"referee", "STOP", "--place", "1"}),
+             ContainsSubstring("\"1\" is no place for the ball, expected X,Y in metres"));
   CHECK_THAT(usage_error({"referee", "STOP", "--place", "101,0"}), ContainsSubstring("from -100 to 100 m"));
 }
 
