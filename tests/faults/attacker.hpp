@@ -27,7 +27,7 @@ struct AttackerSettings {
   std::optional<AttackerKeys> keys{};  ///< nullopt: no security
   /// Its user data, by its id.
   std::function<std::vector<std::uint8_t>(const ParticipantId&)> announced{};
-  std::optional<CertifiedPrefix> prefix{};  ///< with which its id begins; nullopt: Fast DDS's choice
+  std::optional<CertifiedPrefix> prefix{};  ///< how its id begins; nullopt: chosen by Fast DDS
 };
 
 /// A participant of Fast DDS that checks nothing and is checked by nobody but its own library.

@@ -385,7 +385,7 @@ TEST_CASE("replayed and altered datagrams do no harm to robots that drive with k
   repeat_and_alter(seconds(15), 41);
 }
 
-TEST_CASE("replayed and altered datagrams do no harm for ten minutes", "[.long][slow]") {
+TEST_CASE("ten minutes of repeated and changed datagrams do no harm", "[.long][slow]") {
   repeat_and_alter(std::chrono::minutes(10), 42);
 }
 

@@ -157,7 +157,7 @@ TEST_CASE("a robot that computes with lower precision is quarantined and named, 
     const Epoch epoch = highest_epoch(floor);
     clearance = std::min(clearance, floor.run(20));
     CHECK(highest_epoch(floor) == epoch);
-    // It rests at the goal of the robot opposite.
+    // The quarantined robot rests at the goal of the robot opposite, so both do not arrive.
     CHECK(floor.arrived() == 6);
     // Rounding moves the robot by less than a micrometre.
     CHECK(clearance >= floor.scenario.margin_m - 1e-6);

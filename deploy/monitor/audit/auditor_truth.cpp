@@ -183,7 +183,7 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   }
   if (!reception.is_newest) return;
   if (!has_ground_truth()) use_reference(AuditReference::kGroundTruth);
-  // Its counters report contacts that happened while it was not received.
+  // The ground truth's counters report contacts even if they happened while no ground truth was received.
   reference_time_->hear(0, now_, Duration{0});
   if (truths_.size() >= kMaxSimulatorLives && !truths_.contains(truth.header().incarnation()))
     truths_.erase(truths_.begin());

@@ -54,7 +54,7 @@ class Disturbances {
 
   /// Messages were missed. From now on it is unknown when a currently disturbed robot will be back in place.
   void on_missed();
-  /// Messages that show positions were missed, with the same consequence.
+  /// Messages that show positions were missed, with the same consequence as in on_missed().
   void on_reference_missed();
   /// Whether the robot may be disturbed although no received message says so.
   bool is_uncertain(std::size_t robot) const { return states_[robot].is_uncertain; }

@@ -26,7 +26,7 @@ struct Sight {
 /// A contact seen by vision between a robot and another robot or an obstacle.
 struct SeenContact {
   std::size_t first = 0;              ///< index in the roster
-  std::optional<std::size_t> second;  ///< nullopt: an obstacle
+  std::optional<std::size_t> second;  ///< nullopt: the contact is with an obstacle
   double distance_m = 0;              ///< between the centres, or from the centre to the obstacle's edge
   /// When they were last seen apart; the lowest number if never.
   std::int64_t apart_ns = std::numeric_limits<std::int64_t>::min();

@@ -139,7 +139,7 @@ TEST_CASE("every registration is answered, and the answer echoes its time stamp"
   CHECK(missing(floor.coordinator) == std::vector<RobotId>{2});
 }
 
-TEST_CASE("a verdict echoes the time stamp of its proposal, also of a repeated one") {
+TEST_CASE("a verdict echoes the time stamp of its proposal, even if the proposal is a repetition") {
   Floor floor;
   floor.register_both();
   auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);

@@ -228,7 +228,7 @@ TEST_CASE(
   CHECK(active.takeover_timeout() < std::chrono::milliseconds(300));
 }
 
-TEST_CASE("a coordinator keeps working while somebody reports higher and higher epochs") {
+TEST_CASE("a coordinator keeps working while another process reports higher and higher epochs") {
   const bool is_granting = GENERATE(true, false);
   const Duration period = std::chrono::milliseconds(GENERATE(5, 100, 3000));
   CAPTURE(is_granting, to_seconds(period));

@@ -92,7 +92,7 @@ TEST_CASE("a hold that was lifted or replaced before it was confirmed is waited 
   CHECK(confirmed[0].number == last.number);
 }
 
-TEST_CASE("an order that is no hold is confirmed once another process's memory lists it") {
+TEST_CASE("an order other than a hold is confirmed once another process's memory lists it") {
   const auto kind =
       GENERATE(msg::OrderKind::ORDER_GO, msg::OrderKind::ORDER_CANCEL, msg::OrderKind::ORDER_RESUME,
                msg::OrderKind::ORDER_ZONE, msg::OrderKind::ORDER_REMOVE_ZONE);

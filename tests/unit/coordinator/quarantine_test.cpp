@@ -5,7 +5,7 @@
 
 namespace sidestep::coordinator_test {
 
-TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the others go on") {
+TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the others continue") {
   Floor floor;
   floor.register_both();
   const Version granted = continued(floor.a, 10, 1, {0, 3});

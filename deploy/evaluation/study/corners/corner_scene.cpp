@@ -13,7 +13,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kWall_m = 0.1;
-constexpr double kMinWay_m = 3;       // of the robot
+constexpr double kMinWay_m = 3;       // minimum length of the robot's path
 constexpr double kPersonApart_m = 1;  // distance from the robot's start
 constexpr int kTries = 2000;
 

@@ -113,7 +113,7 @@ TEST_CASE("agents that fence a robot in turn do not delay each other for longer 
   double beyond = 0;
   while (scene.fact().obeyed_incarnation == 100) {
     ++scene.agent;
-    // Each sends a version that would continue the pending one.
+    // Each agent sends a version that would continue the pending one.
     scene.send(continuation(scene.pending, scene.agent, scene.pending.number + scene.agent, scene.now + 310ms,
                             Vec2(0, 3), 100ms));
     beyond = std::max(beyond, run_and_measure(scene, 10ms));

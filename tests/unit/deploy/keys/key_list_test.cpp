@@ -24,7 +24,7 @@ TEST_CASE("identities stand one after another, and ranges of processes are singl
   CHECK(texts({}).empty());
 }
 
-TEST_CASE("what is no identity is named") {
+TEST_CASE("text that is not an identity is named in the error") {
   for (const std::vector<std::string>& words : {std::vector<std::string>{"agnet", "3"},
                                                 {"agent"},
                                                 {"agent", "3-1"},

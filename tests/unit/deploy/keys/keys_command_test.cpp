@@ -81,7 +81,7 @@ TEST_CASE("wrong uses are explained") {
   CHECK_FALSE(run({"keys"}).empty());
 }
 
-TEST_CASE("what is issued or revoked now counts on hosts whose clocks are ten minutes behind") {
+TEST_CASE("keys issued or revoked now count on hosts whose clocks are ten minutes behind") {
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys"), agent = keys + "/enclaves/agent-3";
   const Time behind = DdsBus::clock() - std::chrono::minutes(9);
@@ -91,7 +91,7 @@ TEST_CASE("what is issued or revoked now counts on hosts whose clocks are ten mi
   CHECK_NOTHROW(load_key_folder(agent, behind));
 }
 
-TEST_CASE("a user who may not read the authorities' keys is told so") {
+TEST_CASE("a user without permission to read the authorities' keys gets an error that says this") {
   SIDESTEP_NEEDS_ROOT();
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys"), closed = keys + "/private";

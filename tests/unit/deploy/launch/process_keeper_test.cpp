@@ -61,7 +61,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("processes go on when their director dies, and the next one takes over") {
+TEST_CASE("processes continue when their director dies, and the next director takes over") {
   Fixture f;
   const int code = f.keep([&](Processes& processes, const Deaths& deaths) {
     const pid_t pid = processes.start(shell("agent", "exec sleep 1000"));
@@ -107,7 +107,7 @@ TEST_CASE("each director hears of the processes that have died for good") {
   CHECK(f.group.running() == 0);
 }
 
-TEST_CASE("what a director cannot do is an exception there") {
+TEST_CASE("a failed request of a director throws an exception in the director") {
   Fixture f;
   const int code = f.keep([](Processes& processes, const Deaths&) {
     try {

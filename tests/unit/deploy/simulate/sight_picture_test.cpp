@@ -28,7 +28,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST_CASE("a picture of what a laser shows has the scan, where people may step out, and who moves") {
+TEST_CASE("a picture of a laser's view shows the scan, where people may step out, and what moves") {
   const Scenario scenario = scene();
   SimSystem system(scenario, 1);
   SightPicture picture(scenario, 7);

@@ -204,7 +204,7 @@ TEST_CASE("opponents are detected as obstacles, with noise and dropouts") {
   CHECK(std::sqrt(square / (2 * count)) == Approx(0.002).epsilon(0.05));
 }
 
-TEST_CASE("of more opponents than a frame holds, those nearest to a detected robot are listed") {
+TEST_CASE("if there are more opponents than a frame holds, those nearest to a detected robot are listed") {
   Scenario scenario = scene();
   scenario.vision.columns = 1;
   scenario.vision.position_noise_m = 0;

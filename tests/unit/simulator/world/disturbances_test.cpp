@@ -39,7 +39,7 @@ bool truth_has(const World& world, RobotId robot) {
                      [robot](const msg::TrueRobotState& seen) { return seen.robot() == robot; });
 }
 
-TEST_CASE("a lifted robot is no obstacle, invisible, and executes nothing") {
+TEST_CASE("a lifted robot is not an obstacle, is invisible, and executes nothing") {
   Scenario scenario = separated_robots(2);
   scenario.field = {4, 4};
   scenario.robots[0].start_m = Vec2(0, 0);

@@ -125,7 +125,7 @@ Version own_stop(double off_m, double speed_mps) {
   return v;
 }
 
-TEST_CASE("an own stop that keeps the rules is no violation") {
+TEST_CASE("an own stop that follows the rules is not a violation") {
   Scene scene;
   // A slow one takes few nanoseconds.
   const double speed = GENERATE(0.0, 1e-9, 4e-9, 1e-8, 3e-7, 1e-5, 1.0);

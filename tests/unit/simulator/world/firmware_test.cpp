@@ -95,7 +95,7 @@ TEST_CASE("the base of a version may arrive after it") {
   CHECK(robot.feedback(at(40)).executing.number == 102);
 }
 
-TEST_CASE("of two versions on one base only one is executed") {
+TEST_CASE("only one of two versions on the same base is executed") {
   auto robot = firmware();
   robot.on_command(command_with(version(102, 0, 30)), at(5));
   robot.on_command(command_with(version(101, 0, 20)), at(6));
@@ -304,7 +304,7 @@ TEST_CASE("hostile commands change nothing and are counted") {
   }
 }
 
-TEST_CASE("a robot whose odometry is no number brakes, and is silent until a fix shows it at rest") {
+TEST_CASE("a robot whose odometry is NaN brakes, and is silent until a fix shows it at rest") {
   const double bad = std::numeric_limits<double>::quiet_NaN();
   auto robot = firmware();
   for (int ms = 1; ms < 10; ++ms) (void)robot.tick(at(ms), {});

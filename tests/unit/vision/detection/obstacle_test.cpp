@@ -268,7 +268,7 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
   }
 }
 
-TEST_CASE("a finder says so if an image has more blobs than it handles") {
+TEST_CASE("a finder reports if an image has more blobs than it handles") {
   ObstacleFixture fixture(21);
   const Image image = fixture.floor.frame({});
   const ColourClasses classes(default_colours(PixelFormat::kYuv422).boxes);

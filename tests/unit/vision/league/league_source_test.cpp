@@ -109,7 +109,7 @@ TEST_CASE("robots without a heading are dropped") {
   CHECK(source.counts().dropped == 1);
 }
 
-TEST_CASE("of too many balls those with the highest confidence are kept") {
+TEST_CASE("if there are too many balls, those with the highest confidence are kept") {
   LeagueSource source(two_teams());
   synchronise(source, kCaptured);
   league::DetectionFrame detection = detection_at(kCaptured, 1);

@@ -40,7 +40,7 @@ TEST_CASE("an observation belongs to a track within the gate, and not a milliont
   CHECK_FALSE(accepts(gate_m * (1 + 1e-6)));
 }
 
-TEST_CASE("of two observations off a track the one nearer to it is its candidate, wherever the track is") {
+TEST_CASE("of two observations away from a track, the nearer one is its candidate, wherever the track is") {
   TrackModel model;
   model.displaced_hits = 100;
   const Vec2 place_m(2, 1), far_m(1, 1), near_m(2.5, 1);

@@ -79,7 +79,7 @@ TEST_CASE("the passage between bubbles is as wide as the largest disc that fits 
     Rng rng(seed);
     const Bubble a{{0, 0}, rng.uniform(0.1, 1), {0, 0}, 0};
     const Bubble b{{rng.uniform(0, 1.5), 0}, rng.uniform(0.1, 1), {0, 0}, 0};
-    // Slowly: the largest disc at each position of the axis, limited by the boundary of the union.
+    // Computed slowly: the largest disc at each position of the axis, limited by the boundary of the union.
     double least = std::min(a.radius_m, b.radius_m);
     for (int k = 0; k <= 200; ++k) {
       const Vec2 at = k / 200.0 * b.centre_m;

@@ -69,7 +69,7 @@ TEST_CASE(
       for (double d = 0.005; d < reference_m && d < 3; d += 0.005)
         if (can_exit(start + d * rotated(Vec2(1, 0), i * 2 * std::numbers::pi / 256)))
           reference_m = std::min(reference_m, d);
-    if (!exit) continue;  // gaps between the steps of the search
+    if (!exit) continue;  // the search misses gaps between its steps
     ++found;
     CHECK(can_exit(*exit));
     CHECK((*exit - start).norm() >= 0.97 * reference_m - 0.005);

@@ -23,7 +23,7 @@ TEST_CASE("an audit that heard nothing does not judge") {
   CHECK(verdict_line(AuditTotals()) == "not judged: no messages were received");
 }
 
-TEST_CASE("an audit that refused everything says so") {
+TEST_CASE("an audit that refused everything reports that") {
   AuditTotals totals;
   totals.refused = 7;
   CHECK(verdict_line(totals) == "not judged: all 7 messages come from processes with other rules");

@@ -47,7 +47,7 @@ TEST_CASE("a robot's recent versions stay recent when older ones are evicted or 
   CHECK(first_recent(robot) == 7);
 }
 
-TEST_CASE("a version that arrives late is recent, also if later ones were excluded long ago") {
+TEST_CASE("a version that arrives late is recent, even if later ones were excluded long ago") {
   AuditedRobot robot;
   for (const VersionNumber number : {2u, 4u, 6u}) {
     KnownVersion& known = robot.find_or_insert(number);
@@ -80,7 +80,7 @@ void add_content(AuditedRobot& robot, VersionNumber number, VersionNumber base, 
   known.path = AuditPath(known.version);
 }
 
-TEST_CASE("of a lifted robot only what it was granted to do later remains possible") {
+TEST_CASE("after a robot is lifted, only versions that were granted to it for later remain possible") {
   AuditedRobot robot;
   AuditedRobot::Fact lifted;
   lifted.at_ns = 100;
@@ -98,7 +98,7 @@ TEST_CASE("of a lifted robot only what it was granted to do later remains possib
   CHECK(exclusion_by(lifted, *robot.find(11)) == Exclusion::kLifted);
 }
 
-TEST_CASE("what was too late by a clock that has been set back is possible again") {
+TEST_CASE("a version that was too late by a clock that has been set back is possible again") {
   AuditedRobot robot = robot_with(5, 3);
   robot.fact.emplace().at_ns = 1000;
   robot.find(4)->exclusion = Exclusion::kLate;
@@ -112,7 +112,7 @@ TEST_CASE("what was too late by a clock that has been set back is possible again
   CHECK(first_recent(robot) <= 4);
 }
 
-TEST_CASE("what a robot executed between two versions is known if every base is") {
+TEST_CASE("the versions that a robot executed between two others are known if every base is known") {
   AuditedRobot robot;
   for (const VersionNumber number : {3u, 5u, 6u, 9u})
     add_content(robot, number, number == 9 ? 6 : number - 1, 0);
@@ -127,7 +127,7 @@ TEST_CASE("what a robot executed between two versions is known if every base is"
   CHECK_FALSE(robot.continues(3, 8));
 }
 
-TEST_CASE("executed versions are counted with what was received of them, also after they are forgotten") {
+TEST_CASE("executed versions are counted by what was received of them, even after they are forgotten") {
   AuditedRobot robot;
   robot.traceable_from_ns = 100;
   for (VersionNumber number = 1; number <= 10; ++number) {

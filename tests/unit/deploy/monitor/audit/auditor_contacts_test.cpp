@@ -29,7 +29,7 @@ TEST_CASE("contacts are reported one by one, in the order in which ground truth 
   CHECK(shown.auditor.totals().unidentified_contacts == 0);
 }
 
-TEST_CASE("of many contacts at once the last eight are known") {
+TEST_CASE("the last eight of many simultaneous contacts are known") {
   const auto [added, unidentified] = GENERATE(table<int, std::uint64_t>({{8, 0}, {9, 1}, {20, 12}}));
   Shown shown;
   shown.run(50ms);
@@ -134,7 +134,7 @@ TEST_CASE("robots in contact may appear a millimetre apart, and then push each o
   CHECK(shown.count(AuditRule::kContact) == (apart_m < 0.181 ? 0 : 1));
 }
 
-TEST_CASE("the counters of every simulator begin anew") {
+TEST_CASE("the counters of every simulator start again from zero") {
   Shown shown;
   shown.run(20ms);
   shown.touch(0, 1);

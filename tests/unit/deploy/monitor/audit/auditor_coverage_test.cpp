@@ -28,7 +28,7 @@ TEST_CASE("an audit that hears everything covers everything") {
   CHECK(totals.excused_time_share() == 0);
 }
 
-TEST_CASE("an audit that loses nothing judges a run, also if it joins late") {
+TEST_CASE("an audit that loses nothing judges a run, even if it joins late") {
   const Duration joined_after = GENERATE(Duration{0}, Duration{1'700'000'000});
   CAPTURE(to_seconds(joined_after));
   require_covered(audit_of(degraded(crossing(), 1, 0, joined_after), {}));
@@ -63,7 +63,7 @@ AuditTotals audit_without(const AuditInput& input) {
   return audit_of(history, input);
 }
 
-TEST_CASE("an audit that ceases to hear one kind of message does not pass, although there is no gap") {
+TEST_CASE("an audit that no longer hears one kind of message does not pass, although there is no gap") {
   const AuditInput input;
   AuditTotals totals;
   SECTION("facts") {
@@ -127,7 +127,7 @@ TEST_CASE("agents' messages without any effect need not be heard, as those of a 
   require_covered(totals);
 }
 
-TEST_CASE("a robot that is silent by itself is covered, one whose facts are missed is not") {
+TEST_CASE("a robot that sends nothing is covered, but a robot whose facts are missed is not") {
   History history = crossing();
   const Time begin = history.messages.front().at, from = begin + 1500ms, until = begin + 2500ms;
   const bool were_sent = GENERATE(false, true);
@@ -141,7 +141,7 @@ TEST_CASE("a robot that is silent by itself is covered, one whose facts are miss
       ++removed;
       continue;
     }
-    // As if the robot had not sent them: the numbers have no gap.
+    // Closes the gap in the message numbers, as if the robot had not sent the removed messages.
     if (is_of_robot && !were_sent)
       feedback->header().message_number(feedback->header().message_number() - removed);
     // What it executed meanwhile remains unknown.

@@ -83,7 +83,7 @@ TEST_CASE("a robot that still obeys an older epoch than that of a grant is repor
   CHECK(stage.count(AuditRule::kAllRegistered) == (is_complete && !is_excused ? 1 : 0));
 }
 
-TEST_CASE("a robot that executes a version of an epoch obeys that epoch, also if messages may be missed") {
+TEST_CASE("a robot that executes a version of an epoch obeys that epoch, even if messages may be missed") {
   Stage stage(stage_scenario(), kIncomplete);
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1);

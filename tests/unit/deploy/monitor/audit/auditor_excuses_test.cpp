@@ -35,7 +35,7 @@ TEST_CASE("a contact soon after a push is excused, one long after it is not, alt
   CHECK((totals.excused_contacts == 1) == is_excused);
 }
 
-TEST_CASE("a contact of neighbours is not excused by a push of somebody else") {
+TEST_CASE("a contact of neighbours is not excused by a push of another robot") {
   History history = crossing();
   const Time push = history.messages.front().at + 1500ms;
   history.push(2, push);

@@ -84,7 +84,7 @@ TEST_CASE("a version is compared for a while after a fact has excluded it, becau
   CHECK(narrow.too_close() == 1);
 }
 
-TEST_CASE("a robot's own stop is not compared, except with what is granted after a page has listed it") {
+TEST_CASE("a robot's own stop is compared only with versions granted after a page has listed it") {
   const bool is_listed = GENERATE(true, false);
   Narrow narrow(kComplete);
   msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.01);
@@ -106,7 +106,7 @@ TEST_CASE("a robot's own stop is not compared, except with what is granted after
   CHECK(narrow.too_close() == (is_listed ? 1 : 0));
 }
 
-TEST_CASE("a robot's own stop that comes too close is no violation") {
+TEST_CASE("a robot's own stop that comes too close is not a violation") {
   Narrow narrow(kComplete);
   msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.05);
   narrow.facts[0].executing(stop);
@@ -161,7 +161,7 @@ TEST_CASE("versions that were forgotten because of many others break no rule") {
   CHECK(stage.violations.empty());
 }
 
-TEST_CASE("of many violations the first twenty are kept, and all are counted") {
+TEST_CASE("the first twenty of many violations are kept, and all are counted") {
   Stage stage;
   stage.begin();
   for (VersionNumber number = 1; number <= 30; ++number) {

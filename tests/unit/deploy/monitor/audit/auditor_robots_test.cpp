@@ -238,7 +238,7 @@ TEST_CASE("a robot's own stop ends at rest") {
   check_only(stage, AuditRule::kOffReference, is_reported ? 1 : 0);
 }
 
-TEST_CASE("a version that was sent is no own stop, though a robot off its reference executes it") {
+TEST_CASE("a version that was sent is not an own stop, even if a robot off its reference executes it") {
   Stage stage;
   stage.begin();
   msg::Version first = stage.next(stage.rest(0), 1);

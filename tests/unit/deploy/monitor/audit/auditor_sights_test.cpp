@@ -295,7 +295,7 @@ TEST_CASE("a contact of two world states counts only if none was missed in betwe
   CHECK(seen.contact() + seen.auditor.totals().undecided_contacts == (is_missed && !is_complete ? 0 : 1));
 }
 
-TEST_CASE("what is no number, or of no robot, is no sight, and counted") {
+TEST_CASE("an observation with NaN or infinity, or of an unknown robot, is not used but counted as invalid") {
   Seen seen;
   seen.run(2s);
   msg::TrackedRobot& robot = seen.world.robots()[0];

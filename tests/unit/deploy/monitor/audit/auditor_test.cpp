@@ -41,7 +41,7 @@ TEST_CASE("an unmodified history that is received incompletely raises no false a
   if (loss > 0) CHECK(totals.missed > 100);
 }
 
-TEST_CASE("versions too close to each other are found, also from an incomplete history") {
+TEST_CASE("versions too close to each other are found even in an incomplete history") {
   const bool is_degraded = GENERATE(false, true);
   CAPTURE(is_degraded);
   History history = is_degraded ? degraded(crossing(), 5, 0.2, Duration{0}) : crossing();

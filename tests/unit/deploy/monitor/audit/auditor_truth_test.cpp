@@ -203,7 +203,7 @@ TEST_CASE(
   CHECK_FALSE(is_excused_after(braking + 60ms));
 }
 
-TEST_CASE("positions that are no numbers, or of no robot, are not used") {
+TEST_CASE("positions that are not finite, or of unknown robots, are not used") {
   Shown shown;
   shown.run(50ms);
   msg::TrueRobotState& robot = shown.truth.robots()[0];

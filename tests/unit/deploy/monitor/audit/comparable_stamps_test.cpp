@@ -43,7 +43,7 @@ TEST_CASE("a clock that was set back tells no order any more, until the process 
   CHECK(stamps.tell_order(kSender + 1, 1));
 }
 
-TEST_CASE("of very many runs of processes the stamps of the latest tell the order") {
+TEST_CASE("among very many runs of processes, the stamps of the latest ones give the order") {
   ComparableStamps stamps;
   for (Incarnation run = 1; run <= 10'000; ++run) {
     stamps.record(0, header(1, 100, run));

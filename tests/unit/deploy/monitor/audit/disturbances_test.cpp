@@ -76,7 +76,7 @@ TEST_CASE("a robot rests where a disturbance has left it until it moves or is ba
   CHECK_FALSE(floor.disturbances.rests_where_left(0));
 }
 
-TEST_CASE("a robot whose clock has jumped is excused until it rests, also if it drives in place") {
+TEST_CASE("a robot whose clock has jumped is excused until it rests, even if it drives in place") {
   Floor floor;
   floor.robots[0]->speed_mps = 1;
   floor.disturbances.announce(0, Disturbances::kClockCause);

@@ -66,7 +66,7 @@ TEST_CASE("only silence during which messages were missed counts") {
   }
 }
 
-TEST_CASE("what was heard before the beginning does not count") {
+TEST_CASE("messages heard before the beginning do not count") {
   HeardTime time(1);
   time.hear(0, at(-10s), kEverything);
   time.begin(kBegin);

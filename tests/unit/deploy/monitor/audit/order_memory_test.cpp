@@ -30,7 +30,7 @@ TEST_CASE("a single message tells a hold, too, but only a whole memory shows tha
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
-TEST_CASE("what was not granted while the hold stood breaks no rule") {
+TEST_CASE("a version that was not granted while the hold was in force breaks no rule") {
   Run run;
   SECTION("a grant before the hold was told") {
     run.grant(kFirst, 4, 31);
@@ -157,7 +157,7 @@ TEST_CASE("a coordinator that forgets what it has confirmed is reported once, wi
   CHECK(run.found == std::vector<Found>{{AuditRule::kForgottenOrder, robot == 5 ? 5u : 3u, 0, 9}});
 }
 
-TEST_CASE("what a coordinator has not confirmed, or not yet, it may forget") {
+TEST_CASE("a coordinator may forget orders that it has not confirmed, or not yet") {
   Run run;
   SECTION("not answered") { run.send(hold(4, 100)); }
   SECTION("answered otherwise") {
@@ -179,7 +179,8 @@ TEST_CASE("what a coordinator has not confirmed, or not yet, it may forget") {
   CHECK(run.found.empty());
 }
 
-TEST_CASE("of two confirmed orders with one subject the later one must be remembered, whichever came first") {
+TEST_CASE(
+    "of two confirmed orders on the same subject, the later one must be remembered, whichever came first") {
   const bool is_in_order = GENERATE(true, false);
   const bool is_kept = GENERATE(true, false);
   CAPTURE(is_in_order, is_kept);
@@ -210,7 +211,7 @@ TEST_CASE("orders to drive share one place, but operator, referee and scenario h
   }
 }
 
-TEST_CASE("of two orders with one number that of the higher client replaces the other") {
+TEST_CASE("of two orders with the same number, the one of the client with the higher id replaces the other") {
   const auto go = [](std::uint32_t client) { return order(msg::OrderKind::ORDER_GO, 4, client, 100); };
   Run run;
   run.confirm(kFirst, go(kClient));
@@ -221,8 +222,7 @@ TEST_CASE("of two orders with one number that of the higher client replaces the 
   CHECK(run.count(AuditRule::kForgottenOrder) == 1);
 }
 
-TEST_CASE(
-    "a coordinator that may have dropped old resumes may lack holds, and one with many removals zones") {
+TEST_CASE("a coordinator with many resumes may lack holds, and one with many zone removals may lack zones") {
   const bool are_many = GENERATE(true, false);
   CAPTURE(are_many);
   Run run;
@@ -266,7 +266,7 @@ TEST_CASE("a grant during a hold of all robots is not judged once resumes may ha
   CHECK(run.count(AuditRule::kHeld) == (robot == 4 ? 1 : 0));
 }
 
-TEST_CASE("of very many orders the latest are judged") {
+TEST_CASE("the latest of very many orders are judged") {
   Run run;
   SECTION("confirmed ones") {
     for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.confirm(kFirst, hold(i, 100 + i));

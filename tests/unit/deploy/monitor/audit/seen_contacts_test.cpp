@@ -64,7 +64,7 @@ TEST_CASE("a contact tells when the two were seen apart, if ever") {
   for (const SeenContact& contact : then) CHECK(contact.apart_ns == apart_ns);
 }
 
-TEST_CASE("one false observation is no contact") {
+TEST_CASE("a single false observation does not count as a contact") {
   Frames frames;
   CHECK(frames.show_apart(0.1) == 0);
   CHECK(frames.show_apart(0.3) == 0);

@@ -90,7 +90,7 @@ std::vector<Message> write_file(const std::string& path, std::uint64_t seed, std
   return messages;
 }
 
-TEST_CASE("what was written to an MCAP file is read from it") {
+TEST_CASE("messages written to an MCAP file are read back from it") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const bool is_compressed = GENERATE(false, true);
@@ -104,7 +104,7 @@ TEST_CASE("what was written to an MCAP file is read from it") {
   CHECK(result.metadata == std::vector<std::string>{"begin:a=1", "begin:b="});
 }
 
-TEST_CASE("of an MCAP file that is cut anywhere, all whole messages before the cut are read") {
+TEST_CASE("from an MCAP file that is cut anywhere, all complete messages before the cut are read") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const auto written = write_file(file, 2, 60, {.max_chunk_ns = 100'000'000});

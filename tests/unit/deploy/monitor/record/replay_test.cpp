@@ -122,7 +122,7 @@ TEST_CASE("a replay ends when a process that drives or coordinates appears") {
   CHECK(feedbacks < 10);
 }
 
-TEST_CASE("what agents, coordinators, robots and operators write commands") {
+TEST_CASE("messages that agents, coordinators, robots and operators write count as commands") {
   std::string names;
   for (const TopicInfo& topic : all_topics())
     if (is_commanding(topic)) names += std::string(topic.name) + " ";

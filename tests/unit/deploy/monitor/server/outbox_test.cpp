@@ -33,7 +33,7 @@ TEST_CASE("states take turns, so that none of them starves") {
   CHECK(taken == "120120");
 }
 
-TEST_CASE("an outbox with too many events says so") {
+TEST_CASE("an outbox with too many events reports that") {
   Outbox outbox;
   const WebMessage large = message(std::string(Outbox::kMaxEventBytes / 4, 'x'));
   for (int i = 0; i < 4; ++i) CHECK(outbox.add_event(large));

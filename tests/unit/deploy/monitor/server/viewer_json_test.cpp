@@ -10,7 +10,7 @@ namespace sidestep::viewer_json_test {
 /// A list in a list in a list ….
 std::string nested(std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); }
 
-TEST_CASE("what viewers send is parsed, and what is no JSON is discarded") {
+TEST_CASE("messages from viewers are parsed, and anything but JSON is discarded") {
   CHECK(parse_viewer_json(R"({"goals": [[1, 2.5], [3, 4]], "text": "a"})").at("goals")[0][1] == 2.5);
   CHECK(parse_viewer_json("7") == 7);
   for (const char* text : {"", "{", "[1,]", "{} {}", "nul"}) {

@@ -115,7 +115,7 @@ TEST_CASE("a web server answers requests and checks who sent them") {
             .status == 413);
 }
 
-TEST_CASE("a web server survives what is no HTTP") {
+TEST_CASE("a web server survives requests that are not HTTP") {
   const TestServer server;
   for (const std::string& bytes : {std::string("\x16\x03\x01\x02\x00\x01\xfc", 7), std::string(100, '\0'),
                                    std::string("GET / HTTP/9.9\r\n\r\n"), std::string("GET /"),
@@ -222,7 +222,7 @@ TEST_CASE("a viewer that does not read its events is disconnected, but not while
   CHECK(http_request(server.port(), "GET", "/").status == 200);
 }
 
-TEST_CASE("a server whose address is taken says so") {
+TEST_CASE("a server whose address is taken reports that") {
   const TestServer server;
   CHECK_THROWS_WITH(WebServer({"127.0.0.1", server.port(), {}, ""}, {"one"}, {}),
                     ContainsSubstring("Address already in use"));

@@ -235,7 +235,7 @@ TEST_CASE("topic info of a topic of ours shows its IDL") {
   CHECK(topic({"info", "nothing", "--seconds", "0.1"}).exit_code == kExitFailure);
 }
 
-TEST_CASE("what arrives of a topic is counted by sender: lost, repeated, out of order, late") {
+TEST_CASE("the messages of a topic are counted by sender: lost, repeated, out of order, late") {
   SenderMeter meter;
   const auto add = [&](std::uint32_t sender, std::uint64_t incarnation, std::uint64_t number, int delay_ms) {
     msg::Header header;
@@ -258,7 +258,7 @@ TEST_CASE("what arrives of a topic is counted by sender: lost, repeated, out of 
   CHECK_THAT(table, Matches("[^]*\ncoordinator \\(2\\) +1 +0 +0 +0  0\\.000 [^]*"));
 }
 
-TEST_CASE("of very many senders of a topic those are shown that were heard last") {
+TEST_CASE("of very many senders of a topic, those heard last are shown") {
   SenderMeter meter;
   for (std::uint32_t i = 0; i < SenderMeter::kMaxStreams + 5; ++i) {
     msg::Header header;
@@ -326,7 +326,7 @@ TEST_CASE("topic echo prints topics of other programs by the IDL that the user n
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.out, Matches("[^\n]*frames[^\n]*\n[^\n]*77[^\n]*\n[^\n]*77[^\n]*\n"));
-  // As another type, bytes are no message.
+  // The bytes are not a message of another type.
   const Outcome wrong = topic(
       {"echo", "world", "--idl", folder.file("world.idl"), "--type", "sidestep::msg::GroundTruth", "--once"});
   CHECK(wrong.exit_code == kExitFailure);

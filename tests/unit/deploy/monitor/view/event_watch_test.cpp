@@ -25,7 +25,7 @@ struct Watched {
   }
 };
 
-TEST_CASE("each contact is one event, also if several are reported at once") {
+TEST_CASE("each contact is one event, even if several are reported at once") {
   Watched w;
   msg::GroundTruth truth;
   truth.header().incarnation(1);
@@ -157,7 +157,7 @@ TEST_CASE("a flood of invented senders with other rules causes few events, and h
   CHECK(w.log.since(before)[0].text == "agent 3 works by other rules: its messages are refused");
 }
 
-TEST_CASE("a log forgets the oldest events, and numbers go on") {
+TEST_CASE("a log forgets the oldest events, and numbering continues") {
   EventLog log;
   for (std::size_t i = 0; i < EventLog::kMaxEvents + 10; ++i) log.add({0, {}, Severity::kInfo, "x", "", {}});
   CHECK(log.since(0).size() == EventLog::kMaxEvents);

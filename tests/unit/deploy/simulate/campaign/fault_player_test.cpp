@@ -35,7 +35,7 @@ struct Verdicts {
   std::uint64_t answered = 0;
 };
 
-TEST_CASE("a partition cuts links for its duration, also if two overlap") {
+TEST_CASE("a partition cuts links for its duration, even if two partitions overlap") {
   const Scenario scenario = pair_of_robots();
   const Partition first{{"coordinator"}, {"agent 0"}, 2s}, second{{"coordinator"}, {"agent 0"}, 1s};
   const FaultPlan plan = plan_of(scenario, {{1s, first}, {2500ms, second}}, 20s);
@@ -54,7 +54,7 @@ TEST_CASE("a partition cuts links for its duration, also if two overlap") {
   CHECK(verdicts.answered > within + 8);
 }
 
-TEST_CASE("a killed process is dead until it is started, and a twin runs beside the first agent") {
+TEST_CASE("a killed process is dead until it is started, and a second agent runs beside the first one") {
   const Scenario scenario = pair_of_robots();
   FaultPlan plan =
       plan_of(scenario, {{1s, Kill{"vision"}}, {2s, Start{"vision"}}, {3s, Start{twin_process(1)}}}, 20s);
@@ -188,7 +188,7 @@ TEST_CASE("a system that never starts to drive is reported as stuck") {
   trial.plan.faults.clear();
   const TrialResult alive = run_trial(trial);
   CHECK(alive.failures.empty());
-  // It is counted from three seconds on, of ten.
+  // The distance after recovery covers the time from three to ten seconds.
   CHECK(alive.distance_after_recovery_m > 0.5 * alive.distance_m);
   CHECK(alive.distance_after_recovery_m < 0.9 * alive.distance_m);
 }

@@ -74,7 +74,7 @@ TEST_CASE("the benchmark fails a path that is only wrong after smoothing, or doe
   CHECK_THAT(found[0], StartsWith("faulty: "));
 }
 
-TEST_CASE("what a planner returns for a query that it gave up is not checked") {
+TEST_CASE("the result of a planner that gave up a query is not checked") {
   CHECK(failures({planner_of("silent", [](const BenchmarkWorld&, const PlanQuery&) {
           return TimedPlan{};
         })}).empty());

@@ -62,7 +62,7 @@ TEST_CASE("texts, enumerators and nested arrays") {
         Json{{"s", "hi"}, {"known", "TWO"}, {"unknown", 9}, {"a", {{1, 2}, {3, 4}}}, {"c", "c"}});
 }
 
-TEST_CASE("bytes that are no message are refused, whatever they claim") {
+TEST_CASE("bytes that are not a message are refused, whatever they claim") {
   const std::string idl = "@final struct T { sequence<octet, 4> a; string<3> s; };";
   const auto check = [](const std::string& text, const Bytes& bytes, const std::string& reason) {
     CAPTURE(reason);
