@@ -101,7 +101,7 @@ TEST_CASE("a refused value is named with what is permitted") {
       {{"--count", "0"}, "--count: expected a number from 1e-9 to 1e9, got \"0\""},
       {{"--count", "1.5"}, "--count: expected a whole number from -2147483648 to 2147483647, got \"1.5\""},
       {{"--port", "1.5"}, "--port: expected a whole number in [0, 65535], got \"1.5\""},
-      {{"--port", "65536"}, "--port: expected a number in [0, 65535], got \"65536\""},
+      {{"--port", "65536"}, "--port: expected a whole number in [0, 65535], got \"65536\""},
       {{"--robots", "1,-2"}, "--robots: expected a whole number from 0 to 4294967295, got \"-2\""},
       {{"--position", "1,inf"}, "--position: expected a finite number, got \"inf\""},
       {{"--folder", ""}, "--folder: expected some text, got \"\""},
