@@ -315,27 +315,27 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
   while (!code) {
     const Director director = start_director(work, deaths);
     keeper.begin();
-    bool has_ended = false;
+    bool is_connected = true;
     std::optional<steady_clock::time_point> idle_since;
-    while (!has_ended) {
-      std::vector<int> watched{director.pidfd, director.socket};
+    while (!is_readable(director.pidfd)) {
+      std::vector<int> watched{director.pidfd};
+      if (is_connected) watched.push_back(director.socket);
       if (!asked_at) watched.push_back(stop);
       keeper.poll(watched);
-      if (is_readable(director.socket)) has_ended = !keeper.serve(director.socket);
-      has_ended = has_ended || is_readable(director.pidfd);
+      if (is_connected && is_readable(director.socket)) is_connected = keeper.serve(director.socket);
       const auto now = steady_clock::now();
       if (is_readable(stop) && !keeper.is_ending() && (!asked_at || now - *asked_at > kRepeatedStop)) {
         if (!first_asked_at) first_asked_at = now;
         asked_at = now;
         kill(director.pid, SIGTERM);
       }
-      if (keeper.has_ended_all() && !idle_since) idle_since = now;
+      if ((keeper.has_ended_all() || !is_connected) && !idle_since) idle_since = now;
       const bool is_stuck = (first_asked_at && now - *first_asked_at > work.max_ending) ||
                             (idle_since && now - *idle_since > kMaxIdle);
       if (is_stuck) {
         group.log("the director of the run does not end and is killed");
         kill(director.pid, SIGKILL);
-        has_ended = true;
+        break;
       }
     }
     std::string reason;

@@ -29,10 +29,11 @@ std::string numbered(const std::filesystem::path& file, std::size_t number) {
       .string();
 }
 
-bool is_newer(const std::string& file, std::filesystem::file_time_type time) {
+/// When the file was written; nullopt if there is none.
+std::optional<std::filesystem::file_time_type> written_at(const std::string& file) {
   std::error_code error;
-  const auto written = std::filesystem::last_write_time(file, error);
-  return !error && written > time;
+  const auto time = std::filesystem::last_write_time(file, error);
+  return error ? std::nullopt : std::optional(time);
 }
 
 }  // namespace
@@ -75,7 +76,7 @@ int run(const RunOptions& given) {
     return exit_code(report.verdict());
   };
   const auto began = std::chrono::steady_clock::now();
-  const auto files_began = std::filesystem::file_time_type::clock::now();
+  const auto former_report = written_at(report_path);
   DirectorWork work;
   work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
     return run_guarded("sidestep run", [&] {
@@ -86,7 +87,7 @@ int run(const RunOptions& given) {
     });
   };
   work.on_lost = [&](const std::string& reason) {
-    if (is_newer(report_path, files_began)) {
+    if (const auto report = written_at(report_path); report && report != former_report) {
       print_to(stdout,
                "\n{}: the process that directed the run died after its report: {}\nreport: {}\nlog: {}\n",
                scenario.name, reason, report_path, log_path);
