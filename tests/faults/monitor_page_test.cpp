@@ -83,7 +83,12 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   // What the selected robot could plan by.
   for (const char* layer : {"navigation", "band", "local"}) page.click(std::string("layer-") + layer);
   page.run("document.querySelector('#panel-robots [data-key=\"1\"]').click()");
-  const Json fields = Json::parse(http_request(monitor.port(), "GET", "/api/fields/1").body);
+  // The monitor knows the robot's goal when it has heard of the order.
+  Json fields;
+  REQUIRE(run.wait_until([&] {
+    fields = Json::parse(http_request(monitor.port(), "GET", "/api/fields/1").body);
+    return fields.contains("navigation");
+  }));
   CHECK(fields.at("navigation").at("values").size() > 1000);
   CHECK(http_request(monitor.port(), "GET", "/api/fields/x").status == 404);
   CHECK(run.wait_until([&] { return is_at(0, -1, -1) && is_at(1, 3, 1); }));
