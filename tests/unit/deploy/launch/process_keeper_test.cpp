@@ -193,6 +193,7 @@ TEST_CASE(
   f.max_ending = 500ms;
   const pid_t self = getpid();
   const int code = f.keep([&](Processes& processes, const Deaths&) {
+    obey_sigterm();  // which may come before the next line but one
     write_file(f.file("pid"), std::to_string(processes.start(shell("agent", "exec sleep 1000"))));
     kill(self, SIGINT);
     std::raise(SIGSTOP);
