@@ -165,6 +165,7 @@ std::vector<Bytes> seeds() {
       datagram(agent, {announcement(agent, certified)}),
       datagram(agent, {timestamp(), announcement(agent, certified)}),
       datagram(agent, {destination(), data(), heartbeat()}),
+      datagram(agent, {timestamp(), handshake()}),
       datagram(agent, {destination(), acknowledgement(33, 2)}),
       datagram(agent, {gap(), heartbeat()}),
       datagram(agent, {destination(), encrypted_timestamp, encrypted_data}),

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/rtps_bytes.hpp"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "common/messaging/dds/datagram_format.hpp"
 
 namespace sidestep::fuzz::rtps {
@@ -73,6 +77,31 @@ Bytes announcement(const ParticipantId& participant, const Bytes& user_data) {
   body.u16(kGuid).u16(16).raw(participant).u32(0xc1010000);
   body.u16(kUserData).u16(4 + user_data.size() + padding).u32(user_data.size()).raw(user_data).zeros(padding);
   return submessage(kDataSubmessage, body.u16(kEnd).u16(0), kLittleEndianFlag | kHasPayload);
+}
+
+Bytes handshake() {
+  constexpr std::uint8_t kHasPayload = 4;
+  constexpr std::size_t kLittleEndian = 0x0100, kHandshakeWriter = 0xc3010200;
+  const auto counted = [](Body& body, const std::string& content) {
+    body.u32(content.size()).raw(View(reinterpret_cast<const std::uint8_t*>(content.data()), content.size()));
+    body.zeros((4 - content.size() % 4) % 4);
+  };
+  Body body = data_header(0, kHandshakeWriter).u32(kLittleEndian).zeros(96);
+  counted(body, std::string("dds.sec.auth") + '\0');
+  body.u32(1);
+  counted(body, std::string("DDS:Auth:PKI-DH:1.0+Req") + '\0');
+  const std::vector<std::pair<std::string, std::string>> properties{
+      {"c.id", "certificate"},
+      {"c.pdata", std::string({0, 0x15, 0, 4, 2, 3, 0, 0, 0, 1, 0, 0})},
+      {"hash_c1", std::string(32, 'x')},
+      {"dh1", std::string(256, 'x')},
+      {"challenge1", std::string(32, 'x')}};
+  body.u32(0).u32(properties.size());
+  for (const auto& [name, value] : properties) {
+    counted(body, name + '\0');
+    counted(body, value);
+  }
+  return submessage(kDataSubmessage, body, kLittleEndianFlag | kHasPayload);
 }
 
 Bytes acknowledgement(std::uint32_t bits, std::size_t words) {

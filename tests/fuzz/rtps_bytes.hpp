@@ -17,6 +17,8 @@ Bytes destination();
 Bytes data();
 /// Of the writer that announces participants, with the participant's GUID and user data.
 Bytes announcement(const ParticipantId& participant, const Bytes& user_data);
+/// The first message of a handshake.
+Bytes handshake();
 Bytes acknowledgement(std::uint32_t bits, std::size_t words);
 Bytes gap();
 Bytes heartbeat();
