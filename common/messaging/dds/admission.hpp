@@ -95,8 +95,9 @@ class Admission {
   /// The identities of participants that have announced themselves for kMaxUnproven without
   /// on_authenticated(). Each participant is returned once.
   [[nodiscard]] std::vector<Identity> newly_unproven(Time now);
-  /// The serial numbers of revoked certificates.
-  void set_revoked(std::set<std::string> serials) { revoked_ = std::move(serials); }
+  /// Adds serial numbers of revoked certificates. What was revoked stays revoked.
+  void revoke(const std::set<std::string>& serials) { revoked_.insert(serials.begin(), serials.end()); }
+  const std::set<std::string>& revoked() const { return revoked_; }
   /// Participants that are no longer admitted, because they are silent or were displaced, or their
   /// certificate has expired or is revoked. Fast DDS must forget them.
   [[nodiscard]] std::vector<ParticipantId> newly_refused(Time now);

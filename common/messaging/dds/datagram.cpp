@@ -18,7 +18,10 @@ constexpr std::array<std::uint8_t, 8> kHeader{'R', 'T', 'P', 'S', 2, 2, 1, 15};
 static_assert(kHeader.size() + sizeof(ParticipantId) == kDatagramHeaderSize);
 constexpr std::array<std::uint8_t, 4> kProtocol{'R', 'T', 'P', 'S'};
 
-constexpr std::array<std::uint8_t, 4> kParticipantWriter{0, 1, 0, 0xc2};
+using EntityId = std::array<std::uint8_t, 4>;
+/// Announce participants: the first one to all, the second one to those that have shown their keys
+/// (DDS Security 1.1, 7.4.4).
+constexpr std::array<EntityId, 2> kParticipantWriters{{{0, 1, 0, 0xc2}, {0xff, 1, 1, 0xc2}}};
 constexpr std::size_t kDataHeaderSize = 20;
 
 constexpr std::array<std::uint8_t, 4> kPresenceMark{'S', 'i', 'd', '1'};
@@ -132,7 +135,8 @@ std::optional<ParticipantAnnouncement> participant_announcement(Bytes datagram, 
     left = left.subspan(size);
     if ((kind != kDataSubmessage && kind != kDataPartSubmessage) || body.size() < kDataHeaderSize) continue;
     const Bytes writer = body.subspan(8, 4);
-    if (!std::ranges::equal(writer, kParticipantWriter)) continue;
+    const auto announces = [&](const EntityId& id) { return std::ranges::equal(writer, id); };
+    if (std::ranges::none_of(kParticipantWriters, announces)) continue;
     if (kind == kDataPartSubmessage) return std::nullopt;  // announcements are not that large
     ParticipantAnnouncement found;
     if (!read_announcement(body, flags, sender, found)) return std::nullopt;

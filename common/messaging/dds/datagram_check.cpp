@@ -10,6 +10,7 @@
 #include "common/messaging/dds/datagram_format.hpp"
 #include "common/messaging/dds/handshake_check.hpp"
 #include "common/messaging/dds/number_reader.hpp"
+#include "fast_dds/plain_discovery.hpp"
 
 namespace sidestep {
 namespace {
@@ -20,10 +21,6 @@ constexpr std::size_t kStatisticsSize = 56;
 /// Above the numbers that a process gives to messages of discovery, which count its own endpoints. Fast DDS
 /// 2.9.1 visits each number below the one that a heartbeat or a gap states.
 constexpr std::int64_t kMaxPlainNumber = 1 << 15;
-/// Of announcements of participants, of their writers, their readers and their liveliness
-/// (RTPS 2.2, 9.3.1.2). Others of the library, as that of keys for messages, write encrypted messages only.
-constexpr std::array<std::uint32_t, 4> kDiscoveryWriters{0x000100c2, 0x000003c2, 0x000004c2, 0x000200c2};
-constexpr std::array<std::uint32_t, 4> kDiscoveryReaders{0x000100c7, 0x000003c7, 0x000004c7, 0x000200c7};
 /// Of the messages of handshakes (DDS Security 1.1, 7.4.3), as many as there have been participants.
 constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x000201c4;
 
@@ -34,9 +31,9 @@ bool take_entities(NumberReader& reader, bool& is_handshake) {
   if (!reader.is_valid()) return false;
   is_handshake = from == kHandshakeWriter;
   if (is_handshake) return to == 0 || to == kHandshakeReader;
-  const auto writer = std::ranges::find(kDiscoveryWriters, from);
-  if (writer == kDiscoveryWriters.end()) return false;
-  return to == 0 || to == kDiscoveryReaders[static_cast<std::size_t>(writer - kDiscoveryWriters.begin())];
+  const auto known = std::ranges::find(fast_dds::kPlainDiscovery, from, &fast_dds::DiscoveryPair::writer);
+  if (known == fast_dds::kPlainDiscovery.end()) return false;
+  return to == 0 || to == known->reader;
 }
 
 bool take_discovery_entities(NumberReader& reader) {

@@ -23,10 +23,9 @@ constexpr Duration kReportPeriod = std::chrono::seconds(10);
 Gate::Gate(const KeyFolder& keys, const std::string& version)
     : revoked_file_(keys.file(key_files::kRevoked)),
       authority_(keys.authority),
-      revoked_(load_revoked_serials(revoked_file_, authority_)),
       admission_(keys.identity, keys.authority, version),
       reports_(kMaxReported, kReportPeriod) {
-  admission_.set_revoked(revoked_);
+  admission_.revoke(load_revoked_serials(revoked_file_, authority_));
   std::error_code none;
   revoked_at_ = std::filesystem::last_write_time(revoked_file_, none);
 }
@@ -110,11 +109,10 @@ void Gate::read_revoked() {
   revoked_at_ = changed_at;
   try {
     const std::set<std::string> listed = load_revoked_serials(revoked_file_, authority_);
-    if (!std::ranges::includes(listed, revoked_))
+    if (!std::ranges::includes(listed, admission_.revoked()))
       log(LogLevel::kWarning,
           fmt::format("keys: {} lacks keys that were revoked; they stay revoked", revoked_file_));
-    revoked_.insert(listed.begin(), listed.end());
-    admission_.set_revoked(revoked_);
+    admission_.revoke(listed);
     log(LogLevel::kInfo, "read the list of revoked keys again");
   } catch (const std::invalid_argument& problem) {
     log(LogLevel::kError, fmt::format("{}; the former list still counts", problem.what()));

@@ -52,8 +52,7 @@ class Gate {
 
   const std::string revoked_file_;
   const Certificate authority_;
-  std::set<std::string> revoked_;  ///< serial numbers of all lists that were read; guarded by mutex_
-  mutable std::mutex mutex_;       ///< guards the members below
+  mutable std::mutex mutex_;  ///< guards the members below
   Admission admission_;
   std::filesystem::file_time_type revoked_at_{};
   std::set<std::string> reported_;

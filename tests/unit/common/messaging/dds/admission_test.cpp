@@ -183,7 +183,7 @@ TEST_CASE("a revoked key is refused, even that of a participant that was already
   const Certificate agent = f.issue("agent 3"), newer = f.issue("agent 3");
   const ParticipantId id = id_with(agent);
   CHECK(f.announce(id, agent) == Refusal::kNone);
-  f.admission.set_revoked({agent.serial()});
+  f.admission.revoke({agent.serial()});
   CHECK(f.admission.newly_refused(f.now) == std::vector{id});
   CHECK(f.admission.newly_refused(f.now).empty());
   CHECK_FALSE(f.admission.admits(id, f.now));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/messaging/dds/bus.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
@@ -219,16 +220,20 @@ TEST_CASE("numbers are as small as those of discovery") {
 }
 
 TEST_CASE("only discovery messages may be unencrypted") {
+  const bool is_version_3 = fast_dds_version().starts_with("3");
   for (const std::uint8_t kind : {0x06, 0x07, 0x08, 0x15}) {
     CAPTURE(int{kind});
     CHECK(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 3, 0xc7})})));
+    // Announcements of participants to those that have shown their keys.
+    CHECK(passes(datagram({numbered(kind, 5, 0, {0xff, 1, 1, 0xc2}, {0xff, 1, 1, 0xc7})})) == is_version_3);
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02}, {0, 0, 1, 0x07})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 1, 0x07})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 4, 0xc7})})));
-    // Keys for messages, and encrypted discovery.
+    // Keys for messages, liveliness and discovery that are to be encrypted.
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 2, 2, 0xc3}, {0xff, 2, 2, 0xc4})})));
-    CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 0, 3, 0xc2})})));
+    CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 2, 0, 0xc2}, {0xff, 2, 0, 0xc7})})));
+    CHECK(passes(datagram({numbered(kind, 5, 0, {0xff, 0, 3, 0xc2})})) == is_version_3);
   }
 }
 

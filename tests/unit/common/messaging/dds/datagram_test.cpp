@@ -72,6 +72,20 @@ TEST_CASE("a departure is an announcement of its sender only") {
   CHECK_FALSE(is_plain);
 }
 
+TEST_CASE("announcements to processes that have shown their keys are announcements, too") {
+  // The reader and the writer follow the headers and the first two fields of the only submessage.
+  constexpr std::size_t kReader = 20 + 4 + 4, kWriter = kReader + 4;
+  Datagram departure = departure_of(kSender);
+  bool is_plain = false;
+  departure[kReader] = departure[kWriter] = 0xff;
+  departure[kReader + 1] = departure[kWriter + 1] = departure[kReader + 2] = departure[kWriter + 2] = 1;
+  const auto announcement = participant_announcement(departure, is_plain);
+  REQUIRE(announcement);
+  CHECK(announcement->is_departure);
+  departure[kWriter + 1] = 0;
+  CHECK_FALSE(participant_announcement(departure, is_plain));
+}
+
 TEST_CASE("an announcement that changes its source, or is truncated, is refused") {
   const Datagram valid = departure_of(kSender);
   bool is_plain = false;

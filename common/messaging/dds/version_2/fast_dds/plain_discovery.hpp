@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace sidestep::fast_dds {
+
+/// The entity ids of a writer and of its readers.
+struct DiscoveryPair {
+  std::uint32_t writer, reader;
+};
+
+/// The writers of discovery whose messages Fast DDS 2.9.1 sends unencrypted: of participants, of their
+/// writers, their readers and their liveliness (RTPS 2.2, 9.3.1.2).
+constexpr std::array<DiscoveryPair, 4> kPlainDiscovery{
+    {{0x000100c2, 0x000100c7}, {0x000003c2, 0x000003c7}, {0x000004c2, 0x000004c7}, {0x000200c2, 0x000200c7}}};
+
+}  // namespace sidestep::fast_dds
