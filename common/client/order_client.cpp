@@ -7,8 +7,8 @@
 namespace sidestep {
 namespace {
 
-// An order counts as forgotten if this many complete memories in a row lack it: a single one may have been
-// sent before the coordinator heard of the order.
+// A coordinator has forgotten an order if this many of its complete memories in a row lack it: a single one
+// may have been sent before the coordinator heard of the order.
 constexpr int kRoundsUntilForgotten = 3;
 
 bool drives(const Order& order) { return order.kind == msg::OrderKind::ORDER_GO; }
@@ -221,22 +221,26 @@ void OrderClient::on_memory(const msg::OrderMemory& memory) {
   if (page->index == 0) round = {};
   if (page->index != round.next_page) return;
   for (const RememberedOrder& order : page->orders) round.book.merge(order);
-  if (++round.next_page == page->count) compare(round.book);
+  if (++round.next_page == page->count) compare(page->process, round.book);
 }
 
-bool OrderClient::is_forgotten(const SentOrder& sent) {
-  if (++missing_[sent.handle] < kRoundsUntilForgotten) return false;
-  missing_.erase(sent.handle);
-  return true;
+bool OrderClient::is_forgotten(const SentOrder& sent, std::uint32_t coordinator) {
+  return ++missing_[sent.handle][coordinator] % kRoundsUntilForgotten == 0;
 }
 
-void OrderClient::compare(const OrderBook& remembered) {
+bool OrderClient::is_listed(const SentOrder& sent) const {
+  const auto missing = missing_.find(sent.handle);
+  return missing != missing_.end() &&
+         std::ranges::any_of(missing->second, [](const auto& entry) { return entry.second == 0; });
+}
+
+void OrderClient::compare(std::uint32_t coordinator, const OrderBook& remembered) {
   for (const auto& [handle, sent] : sent_) {
     const bool has_ended_others = sent.phase == OrderPhase::kArrived || sent.phase == OrderPhase::kAccepted;
     if (!is_closed(sent) || !has_ended_others) continue;
     if (!remembered.contradicts(sent.order))
-      missing_.erase(handle);
-    else if (is_forgotten(sent))
+      missing_[handle][coordinator] = 0;
+    else if (is_forgotten(sent, coordinator))
       publish(sent.order);
   }
   std::vector<OrderHandle> open;
@@ -245,25 +249,29 @@ void OrderClient::compare(const OrderBook& remembered) {
   }
   for (const OrderHandle handle : open) {
     const auto sent = sent_.find(handle);
-    if (sent != sent_.end()) compare(sent->second, remembered);
+    if (sent != sent_.end()) compare(sent->second, coordinator, remembered);
   }
 }
 
-void OrderClient::compare(SentOrder& sent, const OrderBook& remembered) {
+void OrderClient::compare(SentOrder& sent, std::uint32_t coordinator, const OrderBook& remembered) {
   const OrderNumber number = sent.order.number;
   const RememberedOrder* const known = remembered.in_place_of(sent.order);
   if (known && known->order.number == number && known->order.client == client_) {
-    missing_.erase(sent.handle);
-    if (stops(sent.order)) return;  // for these, an answer says when others remember the order too
+    missing_[sent.handle][coordinator] = 0;
+    // Only an answer says that a second process remembers the order, or a report of the robot's agent.
+    const bool has_started = known->progress.state != msg::OrderState::ORDER_ACCEPTED;
     // The robot's status is more recent than the memory, unless it was lost.
-    if (known->progress.is_finished() || sent.phase == OrderPhase::kSent)
+    if (known->progress.is_finished() || (sent.phase == OrderPhase::kSent && has_started))
       update(sent, phase_of(known->progress), known->progress.goal_index);
   } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {
     update(sent, OrderPhase::kReplaced, sent.goal_index);
   } else if (stops(sent.order) && remembered.is_lifted(sent.order)) {
     update(sent, OrderPhase::kReplaced, sent.goal_index);
-  } else if (sent.phase != OrderPhase::kSent && is_forgotten(sent)) {
-    update(sent, OrderPhase::kSent, 0);  // the order is then repeated
+  } else if (sent.phase != OrderPhase::kSent && is_forgotten(sent, coordinator)) {
+    if (is_listed(sent))
+      publish(sent.order);
+    else
+      update(sent, OrderPhase::kSent, 0);  // the order is then repeated
   }
 }
 

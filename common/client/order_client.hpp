@@ -43,7 +43,7 @@ struct SentOrder {
 };
 
 /// Sends orders and tracks their state. An order is repeated until a coordinator has answered, and whenever
-/// all coordinators have forgotten it. Orders to go, holds and zones are kept alive while they are in force;
+/// a coordinator has forgotten it. Orders to go, holds and zones are kept alive while they are in force;
 /// other orders while coordinators remember the orders that they replaced, cancelled, lifted or removed. If
 /// this client's clock is behind other clients' clocks, an order is renumbered above every number that the
 /// coordinators know; otherwise an earlier order of another client would count as later. Renumbering never
@@ -97,10 +97,13 @@ class OrderClient {
   void on_answer(const msg::OrderAnswer& answer);
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
-  /// Whether the order is missing from enough complete memories in a row, including this one.
-  bool is_forgotten(const SentOrder& sent);
-  void compare(const OrderBook& remembered);
-  void compare(SentOrder& sent, const OrderBook& remembered);
+  /// Whether enough complete memories of this coordinator in a row lack the order, including this one. At
+  /// most once for each that many memories.
+  bool is_forgotten(const SentOrder& sent, std::uint32_t coordinator);
+  /// Whether the last complete memory of some coordinator lists the order.
+  bool is_listed(const SentOrder& sent) const;
+  void compare(std::uint32_t coordinator, const OrderBook& remembered);
+  void compare(SentOrder& sent, std::uint32_t coordinator, const OrderBook& remembered);
   void forget(std::map<OrderHandle, SentOrder>::iterator sent);
   void update(SentOrder& sent, OrderPhase phase, std::size_t goal_index);
 
@@ -111,7 +114,8 @@ class OrderClient {
   std::map<OrderHandle, SentOrder> sent_;
   std::map<OrderNumber, OrderHandle> by_number_;  // keyed by the orders' current numbers
   std::size_t closed_count_ = 0;
-  std::map<OrderHandle, int> missing_;  // number of complete memories in a row that lack the order
+  /// How many complete memories in a row of each coordinator lack the order.
+  std::map<OrderHandle, std::map<std::uint32_t, int>> missing_;
   std::map<RobotId, OrderReport> reports_;
   std::map<std::uint32_t, Round> rounds_;  // keyed by coordinator
   std::function<void(const SentOrder&)> on_change_;

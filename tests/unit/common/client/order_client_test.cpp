@@ -42,10 +42,11 @@ struct System {
     message.newest_number(book.newest_number());
     answers.publish(message, coordinator_bus.now());
   }
-  void tell_memory() {
-    for (msg::OrderMemory& page : encode(book.all(), true, false)) {
-      page.process(kCoordinator);
-      page.header().sender(kCoordinator);
+  void tell_memory() { tell_memory(kCoordinator, book); }
+  void tell_memory(std::uint32_t coordinator, const OrderBook& remembered) {
+    for (msg::OrderMemory& page : encode(remembered.all(), true, false)) {
+      page.process(coordinator);
+      page.header().sender(coordinator);
       memory.publish(page, coordinator_bus.now());
     }
     run_for(10ms);
@@ -173,6 +174,44 @@ TEST_CASE("an order to go, and a hold, that all coordinators have forgotten are 
   system.book = {};
   CHECK(is_sent_again(system, hold_all));
   CHECK(system.book.is_held(4));
+}
+
+TEST_CASE("an order that one coordinator lists is sent again to another one that has forgotten it") {
+  System system;
+  const OrderHandle go = system.client.go(0, {{{1, 0}}});
+  system.run_for(100ms);
+  const OrderBook before = system.book;
+  system.book = {};
+  system.received.clear();
+  system.phases.clear();
+  for (int i = 0; i < 5; ++i) {
+    system.tell_memory();
+    system.tell_memory(kCoordinator + 1, before);
+    system.run_for(1s);
+  }
+  REQUIRE(system.received.size() == 1);
+  CHECK(system.received[0].number == system.client.find(go)->order.number);
+  CHECK(system.book.drive_order(0, Rank::kClient));
+  CHECK(system.client.find(go)->phase == OrderPhase::kAccepted);
+  // Some process remembers the order all the time.
+  CHECK(system.phases.empty());
+}
+
+TEST_CASE("an order that a coordinator lists is repeated until one has answered or the robot has started") {
+  const auto state = GENERATE(msg::OrderState::ORDER_ACCEPTED, msg::OrderState::ORDER_DRIVING);
+  CAPTURE(static_cast<int>(state));
+  System system;
+  system.answers_orders = false;
+  const OrderHandle go = system.client.go(0, {{{1, 0}}});
+  system.run_for(10ms);
+  REQUIRE(system.received.size() == 1);
+  system.book.merge({system.received[0]});
+  system.book.report(0, kClient, system.received[0].number, {state, 0});
+  for (int i = 0; i < 5; ++i) system.tell_memory();
+  system.run_for(1s);
+  const bool has_started = state != msg::OrderState::ORDER_ACCEPTED;
+  CHECK((system.client.find(go)->phase == OrderPhase::kSent) == !has_started);
+  CHECK((system.received.size() == 1) == has_started);
 }
 
 TEST_CASE("a hold that was lifted, by its owner or an operator, is not sent again") {
