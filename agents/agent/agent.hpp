@@ -102,9 +102,11 @@ class Agent {
   /// Plans the motion from `start` on. Returns nullopt if the version that the robot holds already ends at
   /// its goal. Also returns nullopt if vision has lost the robot, which must not rely on its own pose
   /// estimate, and if the coordinator has lost vision, or the agent has had no list of obstacles
-  /// recently. `max_speed_mps`: the speed that the clocks allow.
-  [[nodiscard]] std::optional<MotionPlan> plan(
-      Time now, Time start, double max_speed_mps = std::numeric_limits<double>::infinity());
+  /// recently. `max_speed_mps`: the speed that the clocks allow. `max_lag`: how much the robot may be late,
+  /// beyond the clock bound (ClockMonitor).
+  [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start,
+                                               double max_speed_mps = std::numeric_limits<double>::infinity(),
+                                               Duration max_lag = Duration{0});
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 

@@ -284,7 +284,9 @@ void AgentNode::negotiate(Time start) {
     return;
   }
   const double max_speed_mps = clocks_.max_speed_mps(bus_.now());
-  const auto plan = timed(plan_durations_, [&] { return agent_.plan(robot_now(), start, max_speed_mps); });
+  const Duration max_lag = clocks_.max_lag(bus_.now());
+  const auto plan =
+      timed(plan_durations_, [&] { return agent_.plan(robot_now(), start, max_speed_mps, max_lag); });
   if (!plan) return;
   // More measurements narrow the interval, so that the robot may drive faster.
   if (max_speed_mps < max_speed_mps_) measure_coordinator_clock(kBetweenMeasurements);

@@ -40,7 +40,7 @@ WaitReason Agent::wait_reason(Time now) const {
   return WaitReason::kNone;
 }
 
-std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps) {
+std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps, Duration max_lag) {
   if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) return std::nullopt;
   if (now < last_plan_) restart_timers(now);
   last_plan_ = now;
@@ -89,10 +89,10 @@ std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps
   if (sight_) {
     query.hidden = hidden;
   } else {
-    query.moving = obstacles_.recent(now);
-    query.seen = obstacles_.seen(now);
+    query.moving = obstacles_.recent(now, max_lag);
+    query.seen = obstacles_.seen(now, max_lag);
   }
-  query.uncontrolled = displaced_.recent(now);
+  query.uncontrolled = displaced_.recent(now, max_lag);
   query.stop = &base.trajectory;
   query.max_speed_mps = is_creeping_ ? std::min(max_speed_mps, hidden.creep_mps) : max_speed_mps;
   query.keep_outs = zones_.keep_outs();

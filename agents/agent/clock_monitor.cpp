@@ -72,6 +72,11 @@ double ClockMonitor::max_speed_mps(Time now) const {
   return budget_.max_speed_mps(margin_m_, std::max(0.0, to_seconds(largest)));
 }
 
+Duration ClockMonitor::max_lag(Time now) const {
+  const auto offset = robot_coordinator_offset(now);
+  return offset ? std::max(Duration{0}, -offset->low - bound()) : kMaxMeasurementAge;
+}
+
 bool ClockMonitor::is_beyond_bound(Time now) const {
   const auto offset = robot_coordinator_offset(now);
   return offset && offset->is_beyond(bound());

@@ -40,6 +40,9 @@ class ClockMonitor {
   /// The speed at which even the largest offset consistent with the measurements does not use up the margin.
   /// 0 without recent measurements; above every speed limit if the network is fast enough.
   [[nodiscard]] double max_speed_mps(Time now) const;
+  /// How much the robot may be late, beyond the clock bound, with the offsets that are consistent with the
+  /// measurements. Bodies that do not negotiate get nearer meanwhile.
+  [[nodiscard]] Duration max_lag(Time now) const;
   /// Whether recent measurements prove that the offset exceeds the bound.
   [[nodiscard]] bool is_beyond_bound(Time now) const;
   /// Whether the coordinator's clock should be measured again, before the last measurement becomes too old.

@@ -43,8 +43,10 @@ void CompletenessMonitor::on_forgotten(const SeenRegion& rest, Time until) {
   forgotten_until_ = std::max(forgotten_until_, until);
 }
 
-SeenRegion CompletenessMonitor::seen(Time now) const {
-  return now < forgotten_until_ ? seen_.limited_by(not_forgotten_) : seen_;
+SeenRegion CompletenessMonitor::seen(Time now, Duration max_lag) const {
+  SeenRegion seen = now < forgotten_until_ ? seen_.limited_by(not_forgotten_) : seen_;
+  seen.observed_at -= max_lag;
+  return seen;
 }
 
 }  // namespace sidestep

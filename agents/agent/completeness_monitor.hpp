@@ -31,7 +31,8 @@ class CompletenessMonitor {
 
   /// The time of the latest usable list; Time{} if there is none.
   Time complete_at() const { return complete_at_; }
-  SeenRegion seen(Time now) const;
+  /// The region for a robot that may be late by `max_lag` beyond the clock bound.
+  SeenRegion seen(Time now, Duration max_lag = Duration{0}) const;
 
  private:
   /// A list that is not usable yet.

@@ -21,11 +21,13 @@ void DisplacedObstacles::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Tim
   }
 }
 
-std::span<const UncontrolledBody> DisplacedObstacles::recent(Time now) {
+std::span<const UncontrolledBody> DisplacedObstacles::recent(Time now, Duration max_lag) {
   std::erase_if(bodies_, [=, this](const UncontrolledBody& body) {
     return now - body.reach.observed_at > kMaxObservationAge + max_clock_difference_;
   });
-  return bodies_;
+  recent_ = bodies_;
+  for (UncontrolledBody& body : recent_) body.reach.observed_at -= max_lag;
+  return recent_;
 }
 
 }  // namespace sidestep

@@ -30,8 +30,9 @@ class DisplacedObstacles {
 
   /// Replaces all bodies with those that the heartbeat reports at `now`.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
-  /// The bodies that vision has seen recently enough. Valid until the next call.
-  std::span<const UncontrolledBody> recent(Time now);
+  /// The bodies that vision has seen recently enough, for a robot that may be late by `max_lag` beyond the
+  /// clock bound. Valid until the next call.
+  std::span<const UncontrolledBody> recent(Time now, Duration max_lag = Duration{0});
 
  private:
   RobotId self_;
@@ -40,6 +41,7 @@ class DisplacedObstacles {
   double max_speed_mps_;
   Duration max_clock_difference_;
   std::vector<UncontrolledBody> bodies_;
+  std::vector<UncontrolledBody> recent_;  // result of recent()
 };
 
 }  // namespace sidestep

@@ -23,6 +23,7 @@ ObservedObstacles::ObservedObstacles(double max_speed_mps, Duration max_clock_di
       completeness_(max_speed_mps, max_clock_difference) {
   tracks_.reserve(kCapacity);
   obstacles_.reserve(kCapacity);
+  recent_.reserve(kCapacity);
 }
 
 void ObservedObstacles::on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now) {
@@ -102,9 +103,11 @@ void ObservedObstacles::drop_old(Time now) {
   obstacles_.resize(kept);
 }
 
-std::span<const MovingObstacle> ObservedObstacles::recent(Time now) {
+std::span<const MovingObstacle> ObservedObstacles::recent(Time now, Duration max_lag) {
   drop_old(now);
-  return obstacles_;
+  recent_ = obstacles_;
+  for (MovingObstacle& obstacle : recent_) obstacle.observed_at -= max_lag;
+  return recent_;
 }
 
 }  // namespace sidestep

@@ -29,10 +29,11 @@ class ObservedObstacles {
   /// Stores observations whose times are not in the future. If the capacity is exceeded, forgets the
   /// obstacles that are farthest from the robot. `robot_m` is the robot's position.
   void on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now);
-  /// The observations that are younger than kMaxObservationAge. Valid until the next call.
-  std::span<const MovingObstacle> recent(Time now);
+  /// The observations that are younger than kMaxObservationAge, for a robot that may be late by `max_lag`
+  /// beyond the clock bound. Valid until the next call.
+  std::span<const MovingObstacle> recent(Time now, Duration max_lag = Duration{0});
   /// The region in which there are no obstacles except the recent ones.
-  SeenRegion seen(Time now) const { return completeness_.seen(now); }
+  SeenRegion seen(Time now, Duration max_lag = Duration{0}) const { return completeness_.seen(now, max_lag); }
   /// The time for which this is known; Time{} if never.
   Time complete_at() const { return completeness_.complete_at(); }
   /// Number of lists and observations with times in the future.
@@ -59,6 +60,7 @@ class ObservedObstacles {
   CompletenessMonitor completeness_;
   std::vector<Track> tracks_;              // sorted by track number
   std::vector<MovingObstacle> obstacles_;  // the obstacles in tracks_
+  std::vector<MovingObstacle> recent_;     // result of recent()
   std::uint64_t invalid_ = 0;
   Time incomplete_until_{};  // set by forget()
 };

@@ -110,6 +110,22 @@ TEST_CASE("an agent plans towards its goal as long as vision observes its robot"
   CHECK(d.plans(0.95));
 }
 
+TEST_CASE("what moves gets nearer while the robot may be late") {
+  const Duration max_lag = std::chrono::milliseconds(60);
+  DrivenAgent d;
+  d.observe_obstacle(2, 1, 0.6, 0.61);
+  const auto planned = [&](Duration lag) {
+    return d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), std::numeric_limits<double>::infinity(), lag)
+        ->query;
+  };
+  const SearchQuery on_time = planned(Duration{0});
+  REQUIRE(on_time.moving.size() == 1);
+  const double reach_m = on_time.moving[0].reach_m(at_s(1)), speed_mps = on_time.moving[0].speed_mps;
+  const SearchQuery late = planned(max_lag);
+  REQUIRE(late.moving.size() == 1);
+  CHECK(late.moving[0].reach_m(at_s(1)) == Approx(reach_m + speed_mps * to_seconds(max_lag)));
+}
+
 TEST_CASE("an agent plans only as long as the coordinator hears vision") {
   DrivenAgent d;
   d.observe(0, 0.6, 0.61);

@@ -155,6 +155,24 @@ TEST_CASE("the larger the offset that the measurements permit, the lower the spe
   }
 }
 
+TEST_CASE("the larger the offset that the measurements permit, the later the robot may be") {
+  ClockFixture f;
+  f.measure_both(0, 60);
+  CHECK(f.clocks.max_lag(at_s(1)) < Duration{500'000});
+  CHECK(f.clocks.max_lag(at_s(4)) == ClockMonitor::kMaxMeasurementAge);  // not measured for too long
+
+  const double offset_s = GENERATE(0.0, -0.06, 0.06);
+  CAPTURE(offset_s);
+  ClockFixture slow;
+  slow.robot_s = offset_s;
+  slow.min_delay_s = 0.05;
+  slow.spread_s = 0;
+  slow.measure_both(0, 60);
+  REQUIRE(slow.clocks.allows_motion(at_s(1.2)));
+  // The offset lies within 0.1 s of the true one; a robot whose clock is behind is late.
+  CHECK(to_seconds(slow.clocks.max_lag(at_s(1.2)) + kBound) == Approx(0.1 - offset_s).epsilon(0.02));
+}
+
 TEST_CASE("a clock jump while the robot drives is detected within two cycles") {
   ClockFixture f;
   f.measure_both(0, 60);

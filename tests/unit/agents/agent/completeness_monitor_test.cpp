@@ -23,7 +23,7 @@ ObstacleObservations list(double valid_at, double complete_within_m, Incarnation
 
 struct Fixture {
   CompletenessMonitor monitor{1.5, kSlack};
-  SeenRegion seen() const { return monitor.seen(at_s(10)); }
+  SeenRegion seen(Duration max_lag = Duration{0}) const { return monitor.seen(at_s(10), max_lag); }
 };
 
 TEST_CASE("before the first list nothing is known") {
@@ -46,6 +46,9 @@ TEST_CASE("a complete list counts alone, an incomplete one only with the world s
   CHECK(f.seen().radius_m == 2);
   CHECK(f.seen().observed_at == at_s(10.1) - kSlack);
   CHECK(f.seen().speed_mps == 1.5);
+  // A robot that may be late sees less.
+  CHECK(f.seen(from_seconds(0.06)).radius_at_m(at_s(11)) ==
+        Approx(f.seen().radius_at_m(at_s(11)) - 1.5 * 0.06));
   // The world state first.
   f.monitor.on_world(world(10.2, {1, 3}));
   f.monitor.on_list(list(10.2, 1));

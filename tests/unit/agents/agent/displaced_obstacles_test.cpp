@@ -48,6 +48,8 @@ TEST_CASE("displaced robots are moving obstacles, but the robot itself is not") 
   CHECK(recent[0].reach.speed_mps == 2);
   CHECK(recent[0].velocity_mps.x() == 0.5);
   CHECK(recent[0].separation_m == Approx(0.19));
+  const Duration max_lag = std::chrono::milliseconds(60);
+  CHECK(f.obstacles.recent(kNow, max_lag)[0].reach.observed_at == kNow - kClockDifference - max_lag);
   f.receive({});
   CHECK(f.obstacles.recent(kNow).empty());
 }
