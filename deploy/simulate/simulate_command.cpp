@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/simulate/simulate_command.hpp"
 
+#include <csignal>
 #include <memory>
 #include <string>
 
@@ -97,6 +98,8 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
     const bool has_faults = faults.is_given(), has_seeds = seeds.is_given();
     if (!has_faults && !scenario.is_given()) throw UsageError("SCENARIO is required");
     action = [=] {
+      // Whoever reads the output may leave; the report is written nevertheless.
+      std::signal(SIGPIPE, SIG_IGN);
       if (has_seeds) return run_seeds(*options);
       return has_faults ? simulate_trial(options->run, options->faults != "none") : simulate(options->run);
     };

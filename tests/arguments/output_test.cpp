@@ -53,6 +53,17 @@ TEST_CASE("a run goes on to its end and its report when nobody reads its output 
   CHECK_THAT(f.text("r.log"), !ContainsSubstring("SIGPIPE"));
 }
 
+TEST_CASE("a simulation goes on to its end and its report when nobody reads its output any more") {
+  const TemporaryFolder folder;
+  const std::string runs = GENERATE(as<std::string>(), kScenario + " --seconds 1",
+                                    "--faults none --seeds 1..40 --seconds 1 --jobs 2");
+  const std::string output = GENERATE("2>&1 | true", ">/dev/full 2>/dev/full", ">&- 2>&-");
+  const ProgramRun run = run_in_shell("\"$0\" simulate " + runs + " --report r.json " + output, folder);
+  CAPTURE(runs, output, run.errors);
+  CHECK((run.exit_code == 0 || run.exit_code == 1));
+  CHECK_THAT(text_of(folder.file("r.json")), ContainsSubstring("\"contacts\": 0"));
+}
+
 TEST_CASE(
     "a run whose recording cannot be written says so once, goes on, and writes the reason in its report") {
   const RunFixture f;
