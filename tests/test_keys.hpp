@@ -8,8 +8,8 @@
 #include "common/file/temporary_folder.hpp"
 #include "common/keys/key_folder.hpp"
 #include "common/messaging/dds/event_loop.hpp"
-#include "deploy/keys/key_list.hpp"
-#include "deploy/keys/key_store.hpp"
+#include "deploy/run/keys/key_list.hpp"
+#include "deploy/run/keys/key_store.hpp"
 
 namespace sidestep {
 

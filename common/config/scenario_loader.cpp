@@ -219,7 +219,7 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name,
   read_restart(map, scenario.restart);
   map.read("coordinators", {1, kMaxCoordinators}, scenario.coordinators);
   map.read("planner", kDrivingPlanners, scenario.planner);
-  // Only `sidestep test` reads these keys (deploy/fault/plan).
+  // Only `sidestep test` reads these keys (deploy/trial/test/plan).
   for (const char* key : {"faults", "expect"})
     scenario.has_test_keys = map.find(key).IsDefined() || scenario.has_test_keys;
   // Placements are checked after all keys have been read, because a misspelt key may be the reason why a

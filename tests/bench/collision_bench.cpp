@@ -12,10 +12,10 @@
 #include "common/collision/baselines/spatial_hash.hpp"
 #include "common/collision/baselines/sweep_and_prune.hpp"
 #include "common/random/rng.hpp"
-#include "deploy/evaluation/study/planning/collision_answers.hpp"
-#include "deploy/evaluation/study/planning/collision_problem.hpp"
-#include "deploy/evaluation/study/planning/fcl_tree.hpp"
 #include "tests/bench/collision_peers.hpp"
+#include "tests/study/planning/collision_answers.hpp"
+#include "tests/study/planning/collision_problem.hpp"
+#include "tests/study/planning/fcl_tree.hpp"
 
 using namespace sidestep;
 

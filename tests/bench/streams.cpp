@@ -8,7 +8,7 @@
 #include "agents/navigation/motion_control.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/version_codec.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 
 namespace sidestep::bench {
 namespace {

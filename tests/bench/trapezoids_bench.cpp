@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "agents/planning/grids/trapezoidal_map.hpp"
-#include "deploy/evaluation/planning/cpu_clock.hpp"
-#include "deploy/evaluation/planning/distribution.hpp"
+#include "tests/study/measurement/cpu_clock.hpp"
+#include "tests/study/measurement/distribution.hpp"
 #include "tests/unit/agents/planning/grids/random_segments.hpp"
 
 using namespace sidestep;

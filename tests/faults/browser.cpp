@@ -11,7 +11,7 @@
 #include <thread>
 #include <unistd.h>
 
-#include "tests/unit/deploy/monitor/server/web_client.hpp"
+#include "tests/unit/deploy/view/server/web_client.hpp"
 
 namespace sidestep {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/file/temporary_folder.hpp"
-#include "deploy/launch/process_group.hpp"
+#include "deploy/run/launch/process_group.hpp"
 
 namespace sidestep {
 

@@ -8,11 +8,11 @@
 #include <sys/wait.h>
 #include <thread>
 
-#include "deploy/monitor/topic/describe.hpp"
+#include "deploy/inspect/topic/describe.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
-#include "tests/unit/deploy/monitor/topic/compare_described.hpp"
+#include "tests/unit/deploy/inspect/topic/compare_described.hpp"
 
 using namespace sidestep;
 

@@ -48,7 +48,7 @@ TEST_CASE("22 robots on three hosts without multicast all arrive without contact
   SIDESTEP_NEEDS_ROOT();
   const auto file =
       std::filesystem::temp_directory_path() / ("sidestep-peers-" + std::to_string(getpid()) + ".yaml");
-  std::ofstream(file) << shipped("launch/hosts/three-namespaces-peers.yaml");
+  std::ofstream(file) << shipped("run/launch/hosts/three-namespaces-peers.yaml");
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"), {}, file.string());
   REQUIRE(run->wait_until([&] { return has_namespaces(run->pid()); }));
   const auto in_namespace = [&](const std::string& host, const std::string& command) {
@@ -88,7 +88,7 @@ TEST_CASE("22 robots on three hosts without multicast all arrive without contact
 
 TEST_CASE("vision finds the robots in images of cameras on another host", "[both-cores]") {
   SIDESTEP_NEEDS_ROOT();
-  std::string hosts = shipped("launch/hosts/three-namespaces.yaml");
+  std::string hosts = shipped("run/launch/hosts/three-namespaces.yaml");
   for (const auto& [from, to] : {std::pair<std::string, std::string>("simulator, vision, ", "simulator, "),
                                  {"    standbys: rest", "    processes: [vision]\n    standbys: rest"}}) {
     REQUIRE(hosts.find(from) != std::string::npos);

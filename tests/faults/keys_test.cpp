@@ -18,7 +18,7 @@
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/senders.hpp"
 #include "common/random/rng.hpp"
-#include "deploy/keys/permissions_text.hpp"
+#include "deploy/run/keys/permissions_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/attacker.hpp"
 #include "tests/faults/datagrams.hpp"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <unistd.h>
 
-#include "deploy/launch/process_group.hpp"
+#include "deploy/run/launch/process_group.hpp"
 
 namespace sidestep {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "common/geometry/vec2.hpp"
 #include "common/messaging/dds/event_loop.hpp"
-#include "deploy/launch/hosts/hosts_file.hpp"
-#include "deploy/monitor/audit/audit_totals.hpp"
+#include "deploy/audit/audit_totals.hpp"
+#include "deploy/run/launch/hosts/hosts_file.hpp"
 #include "tests/catch.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/text_of.hpp"
@@ -205,7 +205,9 @@ nlohmann::json LaunchedRun::report() const {
   return nlohmann::json::parse(text_of(folder_ / "report.json"), nullptr, false);
 }
 
-std::string three_hosts_file() { return SIDESTEP_SOURCE_DIR "/deploy/launch/hosts/three-namespaces.yaml"; }
+std::string three_hosts_file() {
+  return SIDESTEP_SOURCE_DIR "/deploy/run/launch/hosts/three-namespaces.yaml";
+}
 
 std::string shipped(const std::string& file) {
   return text_of(std::filesystem::path(SIDESTEP_SOURCE_DIR) / "deploy" / file);

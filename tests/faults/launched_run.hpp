@@ -10,8 +10,8 @@
 
 #include "common/messaging/dds/bus.hpp"
 #include "common/motion/version.hpp"
-#include "deploy/launch/hosts/namespaces.hpp"
-#include "deploy/launch/process_group.hpp"
+#include "deploy/run/launch/hosts/namespaces.hpp"
+#include "deploy/run/launch/process_group.hpp"
 #include "tests/test_domain.hpp"
 
 namespace sidestep {

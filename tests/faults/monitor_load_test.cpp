@@ -14,7 +14,7 @@
 #include "tests/catch.hpp"
 #include "tests/faults/monitored_run.hpp"
 #include "tests/faults/process_usage.hpp"
-#include "tests/unit/deploy/monitor/server/web_client.hpp"
+#include "tests/unit/deploy/view/server/web_client.hpp"
 
 namespace sidestep::monitor_load_test {
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "tests/catch.hpp"
-#include "tests/unit/deploy/monitor/server/web_client.hpp"
+#include "tests/unit/deploy/view/server/web_client.hpp"
 
 namespace sidestep {
 

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <unistd.h>
 
-#include "deploy/monitor/audit/audit_totals.hpp"
-#include "deploy/simulate/building/building.hpp"
+#include "deploy/audit/audit_totals.hpp"
+#include "deploy/trial/simulate/building/building.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 

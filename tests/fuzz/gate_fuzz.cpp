@@ -9,7 +9,7 @@
 #include "common/messaging/dds/datagram.hpp"
 #include "common/messaging/dds/datagram_check.hpp"
 #include "common/messaging/dds/datagram_format.hpp"
-#include "deploy/keys/authority.hpp"
+#include "deploy/run/keys/authority.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/rtps_bytes.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/motion/version.hpp"
-#include "deploy/launch/hosts/placement.hpp"
+#include "deploy/run/launch/hosts/placement.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace sidestep::fuzz {
@@ -99,7 +99,7 @@ bool try_input(View input) {
 
 std::vector<Bytes> seeds() {
   std::vector<Bytes> result;
-  for (const auto& file : files_in("deploy/launch/hosts", ".yaml")) result.push_back(file_content(file));
+  for (const auto& file : files_in("deploy/run/launch/hosts", ".yaml")) result.push_back(file_content(file));
   result.push_back(bytes_of(R"(launcher: {interface: 10.0.0.1}
 peers: [10.0.0.9]
 prefix_length: 16

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "common/messaging/message_schema.hpp"
-#include "deploy/monitor/topic/idl/idl_decoder.hpp"
-#include "deploy/monitor/topic/idl/idl_encoder.hpp"
-#include "deploy/monitor/topic/idl/idl_parser.hpp"
+#include "deploy/inspect/topic/idl/idl_decoder.hpp"
+#include "deploy/inspect/topic/idl/idl_encoder.hpp"
+#include "deploy/inspect/topic/idl/idl_parser.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace sidestep::fuzz {

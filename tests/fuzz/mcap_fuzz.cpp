@@ -5,10 +5,10 @@
 
 #include "common/config/config_error.hpp"
 #include "common/file/temporary_folder.hpp"
-#include "deploy/monitor/record/bag.hpp"
-#include "deploy/monitor/record/mcap/mcap_writer.hpp"
-#include "deploy/monitor/record/playback_bus.hpp"
-#include "deploy/monitor/time_range.hpp"
+#include "deploy/inspect/record/bag.hpp"
+#include "deploy/inspect/record/mcap/mcap_writer.hpp"
+#include "deploy/inspect/record/playback_bus.hpp"
+#include "deploy/inspect/time_range.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace sidestep::fuzz {

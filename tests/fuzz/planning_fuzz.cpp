@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "deploy/monitor/planning/planning_scene.hpp"
-#include "deploy/monitor/server/viewer_json.hpp"
+#include "deploy/view/planning_scene/planning_scene.hpp"
+#include "deploy/view/server/viewer_json.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace sidestep::fuzz {

@@ -6,11 +6,11 @@
 
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
-#include "deploy/monitor/control/control_api.hpp"
-#include "deploy/monitor/foxglove/foxglove_server.hpp"
-#include "deploy/monitor/server/access.hpp"
-#include "deploy/monitor/server/url.hpp"
-#include "deploy/monitor/view/monitor.hpp"
+#include "deploy/view/control/control_api.hpp"
+#include "deploy/view/foxglove/foxglove_server.hpp"
+#include "deploy/view/monitor/monitor.hpp"
+#include "deploy/view/server/access.hpp"
+#include "deploy/view/server/url.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace sidestep::fuzz {

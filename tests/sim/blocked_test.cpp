@@ -4,7 +4,7 @@
 #include "common/collision/shapes.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/random/rng.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/sim/disturbance.hpp"
 #include "tests/sim/ordered_system.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trials of a campaign that test the system rather than the campaign.
-#include "deploy/simulate/campaign/scene_sampler.hpp"
-#include "deploy/simulate/campaign/trial.hpp"
+#include "deploy/trial/simulate/campaign/scene_sampler.hpp"
+#include "deploy/trial/simulate/campaign/trial.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::campaign_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/conformance/conformance.hpp"
+#include "deploy/trial/conformance/conformance.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/random/rng.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/position_sampler.hpp"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/random/rng.hpp"
-#include "deploy/monitor/metrics/report.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/audit/metrics/report.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "simulator/world/body.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/disturbance.hpp"

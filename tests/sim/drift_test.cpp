@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Robots that receive fixes rarely and late.
 #include "common/config/scenario_loader.hpp"
-#include "deploy/monitor/metrics/report.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/audit/metrics/report.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::drift_test {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/messaging/sim/bus.hpp"
-#include "deploy/simulate/system/driven_bases.hpp"
+#include "deploy/trial/simulate/system/driven_bases.hpp"
 
 namespace sidestep {
 

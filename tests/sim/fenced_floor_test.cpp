@@ -8,7 +8,7 @@
 #include "agents/agent/planning_scratch.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "coordinator/coordinator_node.hpp"
-#include "deploy/monitor/audit/auditor.hpp"
+#include "deploy/audit/auditor.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/driven_floor.hpp"
 #include "vision/tracking/vision_node.hpp"

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/disturbance.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/scenario_loader.hpp"
-#include "deploy/simulate/campaign/forger.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/campaign/forger.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::hostile_test {

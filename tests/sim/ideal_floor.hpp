@@ -6,7 +6,7 @@
 
 #include "agents/agent/agent_node.hpp"
 #include "coordinator/coordinator_node.hpp"
-#include "deploy/monitor/audit/auditor.hpp"
+#include "deploy/audit/auditor.hpp"
 #include "tests/sim/faulty_bus.hpp"
 #include "tests/sim/ideal_robots.hpp"
 

@@ -4,10 +4,10 @@
 #include <chrono>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/evaluation/study/corners/corner_scene.hpp"
-#include "deploy/evaluation/study/corners/doorway_scene.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
+#include "tests/study/corners/corner_scene.hpp"
+#include "tests/study/corners/doorway_scene.hpp"
 
 namespace sidestep::lasers_test {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::local_methods_test {

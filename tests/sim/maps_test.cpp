@@ -6,9 +6,9 @@
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/map/floor_plan.hpp"
-#include "deploy/simulate/building/building.hpp"
-#include "deploy/simulate/campaign/position_sampler.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/building/building.hpp"
+#include "deploy/trial/simulate/campaign/position_sampler.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/map/random_map.hpp"
 

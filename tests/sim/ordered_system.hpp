@@ -9,8 +9,8 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/protocol/order.hpp"
-#include "deploy/monitor/metrics/report.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/audit/metrics/report.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep {

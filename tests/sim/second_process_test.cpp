@@ -7,8 +7,8 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/senders.hpp"
-#include "deploy/monitor/metrics/report.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/audit/metrics/report.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/disturbance.hpp"
 #include "tests/sim/ordered_system.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 
 namespace sidestep {
 

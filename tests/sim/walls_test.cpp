@@ -4,7 +4,7 @@
 
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
-#include "deploy/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::walls_test {

@@ -3,9 +3,9 @@
 
 #include "agents/navigation/bubble_band/bubble_band.hpp"
 #include "common/geometry/segment.hpp"
-#include "deploy/evaluation/planning/cpu_clock.hpp"
 #include "tests/bench/local_methods/measurement.hpp"
 #include "tests/bench/local_methods/scenes.hpp"
+#include "tests/study/measurement/cpu_clock.hpp"
 
 namespace sidestep {
 namespace {

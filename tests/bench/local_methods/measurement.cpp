@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "deploy/evaluation/planning/cpu_clock.hpp"
+#include "tests/study/measurement/cpu_clock.hpp"
 
 namespace sidestep {
 

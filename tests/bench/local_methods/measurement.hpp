@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/random/rng.hpp"
-#include "deploy/evaluation/planning/distribution.hpp"
+#include "tests/study/measurement/distribution.hpp"
 
 namespace sidestep {
 

@@ -5,9 +5,9 @@
 
 #include "agents/navigation/dynamic_window/dynamic_window.hpp"
 #include "agents/navigation/dynamic_window/hull_cell_times.hpp"
-#include "deploy/evaluation/planning/cpu_clock.hpp"
 #include "tests/bench/local_methods/measurement.hpp"
 #include "tests/bench/local_methods/scenes.hpp"
+#include "tests/study/measurement/cpu_clock.hpp"
 
 namespace sidestep {
 namespace {

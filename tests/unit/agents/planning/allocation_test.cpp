@@ -6,7 +6,7 @@
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "deploy/trial/planning/worlds.hpp"
 #include "tests/catch.hpp"
 #include "tests/counted_allocations.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "deploy/trial/planning/worlds.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::anytime_test {

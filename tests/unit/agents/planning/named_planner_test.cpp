@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/config/planner_names.hpp"
-#include "deploy/evaluation/planning/plan_picture.hpp"
+#include "deploy/trial/planning/plan_picture.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::named_planner_test {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/file/write_file.hpp"
-#include "deploy/keys/permissions_text.hpp"
+#include "deploy/run/keys/permissions_text.hpp"
 #include "tests/as_nobody.hpp"
 #include "tests/catch.hpp"
 #include "tests/needs_root.hpp"

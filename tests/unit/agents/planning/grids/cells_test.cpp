@@ -5,7 +5,7 @@
 #include "agents/planning/grids/trapezoidal_decomposition.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "deploy/trial/planning/worlds.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::cells_test {

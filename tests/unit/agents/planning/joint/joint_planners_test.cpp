@@ -4,8 +4,8 @@
 #include "agents/planning/joint/composite_planner.hpp"
 #include "agents/planning/joint/prioritised_planner.hpp"
 #include "common/motion/validity.hpp"
-#include "deploy/evaluation/planning/joint_check.hpp"
 #include "tests/catch.hpp"
+#include "tests/study/joint_planning/joint_check.hpp"
 #include "tests/unit/agents/planning/joint/random_course.hpp"
 
 namespace sidestep::joint_planners_test {

@@ -6,9 +6,9 @@
 
 #include "agents/planning/domain/disc_domain.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/evaluation/planning/distribution.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "deploy/trial/planning/worlds.hpp"
 #include "tests/catch.hpp"
+#include "tests/study/measurement/distribution.hpp"
 
 namespace sidestep::prm_test {
 

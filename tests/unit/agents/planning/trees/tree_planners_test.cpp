@@ -3,7 +3,7 @@
 #include "agents/planning/smoothing/leader_follower.hpp"
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "deploy/trial/planning/worlds.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/agents/planning/ball_domain.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "deploy/trial/planning/worlds.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/collision/random_world.hpp"
 

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "common/random/rng.hpp"
-#include "deploy/keys/authority.hpp"
+#include "deploy/run/keys/authority.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::admission_test {

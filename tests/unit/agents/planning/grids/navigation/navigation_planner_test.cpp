@@ -2,7 +2,7 @@
 #include "agents/planning/grids/navigation/navigation_planner.hpp"
 
 #include "agents/planning/visibility/tangent_graph.hpp"
-#include "deploy/evaluation/planning/worlds.hpp"
+#include "deploy/trial/planning/worlds.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::navigation_planner_test {

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/audit/audit_command.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+#include <optional>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/process/command_line.hpp"
+#include "common/process/process.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/audit/auditor.hpp"
+#include "deploy/inspect/record/playback_bus.hpp"
+
+namespace sidestep {
+namespace {
+
+struct AuditOptions {
+  std::string scenario_file;
+  std::string recording_file;  ///< empty: audits a running system
+  std::optional<double> seconds;
+  bool is_json = false;
+  DdsSettings dds;
+};
+
+/// Runs the bus until a stop signal, or for this many seconds.
+void run_for(DdsBus& bus, const std::optional<double>& seconds) {
+  const StopSignals stop_signals([&bus] { bus.stop(); });
+  if (seconds)
+    bus.run_until(bus.now() + from_seconds(*seconds));
+  else
+    bus.run();
+}
+
+void print_violations(Auditor& auditor, bool is_json) {
+  auditor.on_violation([is_json](const Violation& violation) {
+    fmt::print("{}\n", is_json ? to_json_line(violation) : to_line(violation));
+    std::fflush(stdout);
+  });
+}
+
+std::string audit_summary(const AuditTotals& totals) {
+  std::string text = fmt::format(
+      "{} violations; {} messages received, {} missed, {} invalid, {} refused because of other rules\n"
+      "{} pairs of versions compared, {} undecided because of missed messages; positions and contacts from: "
+      "{}\n",
+      totals.violations, totals.received, totals.missed, totals.invalid, totals.refused,
+      totals.compared_pairs, totals.undecided_pairs, name_of(totals.reference));
+  for (std::size_t i = 0; i < kAuditRules; ++i) {
+    const AuditRuleInfo& rule = audit_rule(static_cast<AuditRule>(i));
+    if (totals.by_rule[i] > 0)
+      text +=
+          fmt::format("  {} x {} ({}): {}\n", totals.by_rule[i], rule.name, rule.reference, rule.requirement);
+  }
+  return text;
+}
+
+/// Prints the summary and the verdict, and returns the exit code.
+int finish(const AuditTotals& totals) {
+  fmt::print(stderr, "{}audit: {}\n", audit_summary(totals), verdict_line(totals));
+  return exit_code(totals.verdict());
+}
+
+int audit_recording(const AuditOptions& options) {
+  PlaybackBus bus(options.recording_file);
+  bus.follow_first_senders();  // as the run's own audit did
+  const Scenario scenario =
+      options.scenario_file.empty() ? bus.scenario() : load_scenario(options.scenario_file);
+  AuditInput input;
+  input.is_complete = bus.header().is_complete;
+  Auditor auditor(scenario, input);
+  print_violations(auditor, options.is_json);
+  refuse_other_rules(bus, scenario, auditor);
+  listen(bus, scenario, auditor);
+  const PlaybackResult result = bus.play();
+  fmt::print(stderr, "{}: {} messages of scenario {}{}\n", options.recording_file, result.messages,
+             bus.header().scenario_name,
+             result.unreadable > 0 ? fmt::format(", {} of them unreadable", result.unreadable) : "");
+  if (!result.damage.empty())
+    fmt::print(stderr, "{}: {}; the messages before that were used\n", options.recording_file, result.damage);
+  auditor.advance(bus.now());
+  AuditTotals totals = auditor.totals();
+  totals.is_cut_off = !result.damage.empty();
+  return finish(totals);
+}
+
+int audit_live(const AuditOptions& options) {
+  const Scenario scenario = load_scenario(options.scenario_file);
+  Auditor auditor(scenario, AuditInput());
+  print_violations(auditor, options.is_json);
+  DdsBus bus(options.dds);
+  refuse_other_rules(bus, scenario, auditor);
+  listen(bus, scenario, auditor);
+  fmt::print(stderr, "auditing domain {}{}\n", options.dds.domain, options.seconds ? "" : " until Ctrl-C");
+  run_for(bus, options.seconds);
+  auditor.advance(bus.now());
+  return finish(auditor.totals());
+}
+
+}  // namespace
+
+void add_audit_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<AuditOptions>();
+  options->dds.participant = "sidestep-audit";
+  options->dds.keeps_all = true;
+  options->dds.identity = {Role::kJudge};
+  const CliCommand audit = root.add_subcommand(
+      "audit", "Checks a running system, or a recording, for violations of the safety rules");
+  const Option scenario = audit.add_option("SCENARIO", options->scenario_file,
+                                           "scenario file [with --recording: the scenario in the recording]");
+  audit.add_option("--recording", options->recording_file,
+                   "check this recording instead of a running system");
+  audit.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
+  audit.add_flag("--json", options->is_json, "print violations as JSON, one per line");
+  add_dds_options(audit, options->dds);
+  audit.on_parsed([options, scenario, &action] {
+    if (options->recording_file.empty() && !scenario.is_given())
+      throw UsageError("SCENARIO or --recording is required");
+    action = [options] {
+      return options->recording_file.empty() ? audit_live(*options) : audit_recording(*options);
+    };
+  });
+}
+
+}  // namespace sidestep

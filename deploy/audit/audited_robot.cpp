@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/audit/audited_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace sidestep {
+namespace {
+
+/// The latest known proposal of a robot that matches; nullptr: there is none.
+template <typename Robot, typename Matches>
+auto last_proposal(Robot& robot, Matches matches) -> decltype(&robot.proposals[0]) {
+  constexpr std::size_t kMax = AuditedRobot::kMaxProposals;
+  const std::size_t count = std::min<std::size_t>(robot.proposal_count, kMax);
+  for (std::size_t back = 1; back <= count; ++back) {
+    auto& record = robot.proposals[(robot.proposal_count - back) % kMax];
+    if (matches(record)) return &record;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void EpochMemory::add(Epoch epoch) {
+  if (holds(epoch)) return;
+  max_evicted_ = std::max(max_evicted_, std::min(epoch, epochs_.back()));
+  epochs_.back() = std::max(epoch, epochs_.back());
+  std::ranges::sort(epochs_, std::greater<>());
+}
+
+bool EpochMemory::holds(Epoch epoch) const {
+  return epoch != 0 && std::ranges::find(epochs_, epoch) != epochs_.end();
+}
+
+bool KnownVersion::is_in(Epoch epoch) const {
+  return epoch != 0 && (granted_in == epoch || (!is_own_stop && registered_in.holds(epoch)));
+}
+
+bool KnownVersion::may_be_in(Epoch epoch) const {
+  return is_in(epoch) || (!is_own_stop && registered_in.may_have_held(epoch));
+}
+
+const msg::Version* ProposalRecord::find(VersionNumber version) const {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (candidates[i].version_number() == version) return &candidates[i];
+  }
+  return nullptr;
+}
+
+const KnownVersion* AuditedRobot::find(VersionNumber number) const {
+  for (auto version = versions.rbegin(); version != versions.rend() && version->number >= number; ++version) {
+    if (version->number == number) return &*version;
+  }
+  return nullptr;
+}
+
+const KnownVersion* AuditedRobot::find_near(std::size_t index, VersionNumber number) const {
+  // Since then older versions may have been removed and newer ones appended.
+  if (index < versions.size()) {
+    while (index > 0 && versions[index].number > number) --index;
+    if (versions[index].number == number) return &versions[index];
+  }
+  return find(number);
+}
+
+KnownVersion* AuditedRobot::find(VersionNumber number) {
+  return const_cast<KnownVersion*>(static_cast<const AuditedRobot*>(this)->find(number));
+}
+
+KnownVersion& AuditedRobot::find_or_insert(VersionNumber number) {
+  if (KnownVersion* known = find(number)) return *known;
+  if (versions.size() >= kMaxVersions) {
+    const auto is_excluded = [](const KnownVersion& known) { return known.exclusion != Exclusion::kNone; };
+    const auto excluded = std::ranges::find_if(versions, is_excluded);
+    const auto evicted = excluded == versions.end() ? versions.begin() : excluded;
+    max_evicted_version = std::max(max_evicted_version, evicted->number);
+    forgotten_.add(*evicted, traceable_from_ns);
+    if (evicted - versions.begin() < static_cast<std::ptrdiff_t>(first_recent)) --first_recent;
+    versions.erase(evicted);
+  }
+  auto place = versions.end();
+  while (place != versions.begin() && std::prev(place)->number > number) --place;
+  place = versions.emplace(place);
+  first_recent = std::min(first_recent, static_cast<std::size_t>(place - versions.begin()));
+  place->number = number;
+  return *place;
+}
+
+ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number) {
+  return last_proposal(*this, [number](const ProposalRecord& record) { return record.number == number; });
+}
+
+ProposalRecord* AuditedRobot::find_proposal(std::uint64_t number, std::int64_t stamp_ns) {
+  return last_proposal(*this, [=](const ProposalRecord& record) {
+    return record.number == number && record.stamp_ns == stamp_ns;
+  });
+}
+
+const ProposalRecord* AuditedRobot::find_proposal_of(const msg::Version& candidate) const {
+  return last_proposal(*this, [&candidate](const ProposalRecord& record) {
+    const msg::Version* found = record.find(candidate.version_number());
+    return found && found->incarnation() == candidate.incarnation();
+  });
+}
+
+bool AuditedRobot::continues(VersionNumber from, VersionNumber to) const {
+  for (const KnownVersion* step = find(to); step; step = find(step->version.base())) {
+    if (step->number <= from) return step->number == from;
+    if (!step->has_content || step->version.base() >= step->number) return false;
+  }
+  return false;
+}
+
+void AuditedRobot::ExecutedVersions::add(const KnownVersion& version, std::int64_t from_ns) {
+  const bool is_of_agent = version.number != 0 && !version.is_own_stop;
+  if (!version.was_executed || !is_of_agent || version.path.start_ns() <= from_ns) return;
+  ++all;
+  traced += version.is_traced();
+}
+
+AuditedRobot::ExecutedVersions AuditedRobot::executed_versions() const {
+  ExecutedVersions total = forgotten_;
+  for (const KnownVersion& known : versions) total.add(known, traceable_from_ns);
+  return total;
+}
+
+void AuditedRobot::forget(std::int64_t before_ns) {
+  if (versions.empty() || versions.front().excluded_ns >= before_ns) return;
+  std::erase_if(versions, [&](const KnownVersion& known) {
+    if (known.excluded_ns >= before_ns) return false;
+    max_evicted_version = std::max(max_evicted_version, known.number);
+    forgotten_.add(known, traceable_from_ns);
+    return true;
+  });
+  first_recent = 0;
+}
+
+void AuditedRobot::advance_recent(std::int64_t since_ns) {
+  while (first_recent < versions.size() && versions[first_recent].excluded_ns < since_ns) ++first_recent;
+}
+
+void AuditedRobot::make_recent(VersionNumber number) {
+  while (first_recent > 0 && versions[first_recent - 1].number >= number) --first_recent;
+}
+
+ProposalRecord& AuditedRobot::add_proposal() {
+  ProposalRecord& record = proposals[proposal_count++ % kMaxProposals];
+  max_evicted_proposal = std::max(max_evicted_proposal, record.number);
+  record = ProposalRecord();
+  return record;
+}
+
+void AuditedRobot::reset() {
+  const RobotId kept_id = id;
+  const Epoch last_epoch = std::max(forgotten_in, registered ? registered->epoch : 0);
+  const ExecutedVersions kept_versions = executed_versions();
+  *this = AuditedRobot();
+  id = kept_id;
+  forgotten_in = last_epoch;
+  forgotten_ = kept_versions;
+}
+
+void AuditedRobot::forget_times() {
+  if (fact) fact->at_ns = kAlways;
+  drifted_since_ns = beyond_bound_since_ns = kNever;
+  for (KnownVersion& version : versions) {
+    version.executed_until_ns = kAlways;
+    // According to the clock that was ahead. A message may arrive before the first fact that uses the
+    // corrected clock.
+    if (version.exclusion != Exclusion::kLate) continue;
+    version.exclusion = Exclusion::kNone;
+    version.excluded_ns = kNever;
+  }
+  first_recent = 0;
+}
+
+Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version) {
+  if (fact.is_lifted && fact.executing == 0) {
+    // Only a rest version that was granted and not yet executed remains possible for a lifted robot, and what
+    // continues it after the robot has been put down.
+    const bool is_later =
+        version.has_content && !version.was_executed && version.path.start_ns() > fact.at_ns;
+    const bool is_rest_version =
+        is_later && version.version.base() == 0 && version.number != 0 && version.path.reach_m() == 0;
+    const bool continues_later = is_later && version.version.base() > fact.last_executed;
+    return is_rest_version || continues_later ? Exclusion::kNone : Exclusion::kLifted;
+  }
+  if (version.number < fact.executing) return Exclusion::kOlder;
+  if (version.number == fact.executing || !version.has_content) return Exclusion::kNone;
+  if (version.path.start_ns() <= fact.at_ns) return Exclusion::kLate;
+  // The firmware drops the versions of agents that it no longer obeys.
+  if (version.version.incarnation() < fact.obeyed_incarnation) return Exclusion::kFenced;
+  return Exclusion::kNone;
+}
+
+void BoundingDisc::add(const LiveVersion& version) {
+  if (reach_m < 0) {
+    *this = {version.x, version.y, version.reach_m};
+  } else {
+    const double dx = version.x - x, dy = version.y - y;
+    reach_m = std::max(reach_m, std::sqrt(dx * dx + dy * dy) + version.reach_m);
+  }
+}
+
+BoundingDisc collect_live_versions(const AuditedRobot& robot, std::vector<LiveVersion>& live) {
+  live.clear();
+  BoundingDisc bounds;
+  for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i) {
+    const KnownVersion& known = robot.versions[i];
+    if (!known.has_content) continue;
+    const auto& first = known.path.first();
+    live.push_back({first.x, first.y, known.path.reach_m(), known.path.start_ns(), known.executed_until_ns,
+                    known.granted_in == 0 ? kAlways : known.granted_by_ns, static_cast<std::uint32_t>(i),
+                    known.number});
+    bounds.add(live.back());
+  }
+  return bounds;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "common/motion/version.hpp"
+#include "deploy/audit/audit_path.hpp"
+#include "deploy/inspect/senders/message_trace.hpp"
+#include "idl/negotiation.hpp"
+#include "idl/robot.hpp"
+
+namespace sidestep {
+
+inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+inline constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::min();
+/// Versions that start this long after a robot's first fact were certainly granted after that fact, and after
+/// an auditor that joined a run had found all senders.
+inline constexpr std::int64_t kMaxLead_ns = 2'000'000'000;
+
+/// Why a fact proves that a version is not executed from then on.
+enum class Exclusion : std::uint8_t { kNone, kOlder, kLate, kFenced, kLifted };
+
+/// The highest epochs in which something was registered. Bounded in number.
+class EpochMemory {
+ public:
+  void add(Epoch epoch);
+  bool holds(Epoch epoch) const;
+  bool is_empty() const { return epochs_.front() == 0; }
+  /// Whether the epoch is held or may have been evicted.
+  bool may_have_held(Epoch epoch) const { return holds(epoch) || (epoch != 0 && epoch <= max_evicted_); }
+
+ private:
+  std::array<Epoch, 16> epochs_{};  ///< descending; 0: unused
+  Epoch max_evicted_ = 0;
+};
+
+/// What is known about one version. Sending times are by the auditor's clock, except that times of grants are
+/// by the coordinator's clock if the auditor may miss messages.
+struct KnownVersion {
+  // The members that are read for most versions come first, so that they are adjacent in memory.
+  VersionNumber number = 0;
+  bool has_content = false;
+  bool is_own_stop = false;  ///< made by the firmware when it was off its reference
+  bool was_executed = false;
+  Exclusion exclusion = Exclusion::kNone;
+  Epoch granted_in = 0;                      ///< for an own stop: the epoch whose ledger page contained it
+  std::int64_t granted_by_ns = kNever;       ///< latest sending time of the verdict, or of that page
+  std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
+  /// Lower bound of the time until which the ledger contained it, see Auditor::granter_time_ns.
+  std::int64_t alive_until_ns = kAlways;
+  std::int64_t excluded_ns = kNever;
+  // What the pages of the ledger show, by the coordinator's clock. Unused if the auditor receives every
+  // message.
+  Epoch listed_in = 0;                      ///< the latest epoch whose pages listed it
+  std::int64_t listed_from_ns = kNever;     ///< the first page that listed it
+  std::int64_t entered_after_ns = kAlways;  ///< the last page before that one without it
+  AuditPath path;
+  EpochMemory registered_in;
+  std::int64_t sent_ns = kNever;    ///< earliest sending time of the first command that contains it
+  Epoch sent_epoch = 0;             ///< the highest epoch of these commands
+  bool is_granted_by_page = false;  ///< inferred from a ledger page, because the verdict was missed
+  bool is_proposed = false;         ///< its proposal was received, or was received and may have been evicted
+  bool is_reported_unsent = false;  ///< ensures that a violation is reported only once
+  bool is_content_checked = false;  ///< including the check against its base
+  bool is_pair_checked = false;     ///< checked against the other robots' versions in the ledger
+  msg::Version version;
+
+  /// Whether it was granted or registered in the epoch.
+  bool is_in(Epoch epoch) const;
+  /// Whether a ledger has contained it, as far as is known.
+  bool was_in_ledger() const { return number == 0 || granted_in != 0 || !registered_in.is_empty(); }
+  /// Whether its proposal, its grant and a command with it were all received, together with everything that
+  /// they are compared with.
+  bool is_traced() const {
+    return is_proposed && granted_in != 0 && sent_ns != kNever && is_content_checked && is_pair_checked;
+  }
+  /// Whether it is or may be in the epoch. A coordinator may resume after more epochs than are remembered.
+  bool may_be_in(Epoch epoch) const;
+};
+
+/// A received proposal and what is known about its verdict.
+struct ProposalRecord {
+  std::uint64_t number = 0;
+  std::int64_t stamp_ns = 0;  ///< by the agent's clock; the verdict repeats it
+  Epoch epoch = 0;
+  std::size_t count = 0;
+  std::array<msg::Version, msg::MAX_CANDIDATES> candidates;
+  bool is_decided = false;  ///< a final verdict was received
+  VersionNumber granted = 0;
+
+  const msg::Version* find(VersionNumber version) const;
+};
+
+/// A final verdict that arrived before its proposal.
+struct EarlyVerdict {
+  std::uint64_t proposal = 0;
+  std::int64_t request_stamp_ns = 0;
+  Epoch epoch = 0;
+  VersionNumber granted = 0;
+};
+
+/// What the auditor knows about one robot on the roster. Bounded in size.
+class AuditedRobot {
+ public:
+  static constexpr std::size_t kMaxVersions = 64;
+  static constexpr std::size_t kMaxProposals = 16;
+
+  RobotId id = 0;
+  std::deque<KnownVersion>
+      versions;  ///< sorted by number; mostly appended at the end and removed at the front
+  std::array<ProposalRecord, kMaxProposals> proposals;
+  std::uint64_t proposal_count = 0;
+  std::array<EarlyVerdict, 8> early_verdicts;
+  std::size_t early_verdict_count = 0;
+  std::uint64_t max_evicted_proposal = 0;  ///< proposals up to this number may have been evicted
+  /// Up to this epoch, ledgers may contain versions that reset() forgot.
+  Epoch forgotten_in = 0;
+  VersionNumber max_evicted_version = 0;  ///< versions up to this number may have been evicted
+  /// Versions that start later than this were granted during the audit.
+  std::int64_t traceable_from_ns = kNever;
+  std::size_t first_recent = 0;  ///< versions before this index were excluded long ago
+
+  /// The latest fact.
+  struct Fact {
+    std::uint64_t life = 0;  ///< incarnation of the robot
+    std::int64_t at_ns = 0;
+    std::int64_t earliest_ns = kAlways, latest_ns = kAlways;  ///< bounds of its sending time
+    VersionNumber executing = 0;
+    Incarnation obeyed_incarnation = 0;
+    Epoch obeyed_epoch = 0;
+    std::int64_t epoch_since_ns = kNever;  ///< upper bound of the time of the first fact with this epoch
+    /// If off the floor: the last version that it executed on the floor.
+    VersionNumber last_executed = 0;
+    bool is_off_reference = false;
+    bool is_lifted = false;
+  };
+  std::optional<Fact> fact;
+  Time heard_at{};  ///< when it arrived
+  /// Since these times, all facts have reported an error beyond the drift bound, or beyond the tracking
+  /// bound.
+  std::int64_t drifted_since_ns = kNever, beyond_bound_since_ns = kNever;
+
+  /// The latest registration.
+  struct Registered {
+    Epoch epoch = 0;
+    Incarnation incarnation = 0;
+    std::int64_t earliest_ns = 0, latest_ns = 0;  ///< bounds of its sending time
+    std::int64_t stamp_ns = 0;                    ///< its sending time by the agent's clock
+    std::vector<VersionNumber> versions;
+    bool is_absent = false;
+    bool is_reported = false;  ///< ensures that a violation is reported only once
+  };
+  std::optional<Registered> registered;
+  EpochMemory registered_in;
+  /// The latest page of the ledger that listed versions of the robot, by the coordinator's clock.
+  struct Listing {
+    Epoch epoch = 0;
+    std::int64_t at_ns = kAlways;
+  };
+  Listing listed;
+  /// Offset of the robot's clock according to its last fact. Exact only if the auditor receives everything
+  /// immediately.
+  std::int64_t clock_ahead_ns = 0;
+  /// An operator has attested its absence: epochs up to this one may have begun without its registration.
+  Epoch attested_until = 0;
+  Epoch attested_in = 0;  ///< the newest epoch that had begun when its absence was last attested
+
+  /// Number of executed versions, and of those that are traced. Counts only versions that an agent made and
+  /// that were granted during the audit.
+  struct ExecutedVersions {
+    std::uint64_t all = 0, traced = 0;
+    void add(const KnownVersion& version, std::int64_t from_ns);
+  };
+  Epoch newest_granted_in = 0;
+  VersionNumber newest_granted = 0;
+
+  KnownVersion* find(VersionNumber number);
+  const KnownVersion* find(VersionNumber number) const;
+  /// Like find(), for a version that was recently at this index.
+  const KnownVersion* find_near(std::size_t index, VersionNumber number) const;
+  /// Whether the version is unknown and may have been evicted.
+  bool was_evicted(VersionNumber number) const { return number <= max_evicted_version && !find(number); }
+  /// Whether all versions that the robot executed from one version to another, possibly equal one are known.
+  bool continues(VersionNumber from, VersionNumber to) const;
+  /// The counts over the robot's whole life.
+  ExecutedVersions executed_versions() const;
+  /// The version's record, inserted if it is new. If there is no room, evicts the least relevant record.
+  KnownVersion& find_or_insert(VersionNumber number);
+  /// The newest proposal with this number. Several agents of a robot may use the same number, because a
+  /// restarted agent does not know its predecessor's last numbers.
+  ProposalRecord* find_proposal(std::uint64_t number);
+  /// The proposal that was sent at this time by the agent's clock.
+  ProposalRecord* find_proposal(std::uint64_t number, std::int64_t stamp_ns);
+  /// The newest proposal with this candidate of the same agent.
+  const ProposalRecord* find_proposal_of(const msg::Version& candidate) const;
+  /// Removes versions that were excluded before `before_ns`.
+  void forget(std::int64_t before_ns);
+  /// Advances first_recent past versions excluded before `since_ns`: they are no longer compared with other
+  /// robots' versions.
+  void advance_recent(std::int64_t since_ns);
+  /// Moves first_recent back to this version, so that it is compared again using what is now known about it.
+  void make_recent(VersionNumber number);
+  /// A slot for one more proposal. Evicts the oldest proposal if there is no room.
+  ProposalRecord& add_proposal();
+  /// Forgets everything except the id and the counters, because a new simulator starts with a new floor.
+  void reset();
+  /// Forgets the times of facts, because the robot's clock was set back.
+  void forget_times();
+
+ private:
+  ExecutedVersions forgotten_;
+};
+
+/// Whether and why the fact proves that the version is not executed from then on.
+[[nodiscard]] Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version);
+
+/// The part of a version that decides whether it must be compared with another robot's version; compact in
+/// memory.
+struct LiveVersion {
+  double x = 0, y = 0, reach_m = 0;
+  std::int64_t start_ns = 0, executed_until_ns = kAlways,
+               granted_by_ns = kAlways;  ///< kAlways: not granted
+  std::uint32_t index = 0;               ///< index in AuditedRobot::versions at the time of collection
+  VersionNumber number = 0;
+};
+
+/// A disc that contains the paths of some versions of a robot.
+struct BoundingDisc {
+  double x = 0, y = 0, reach_m = -1;  ///< negative reach: empty
+
+  void add(const LiveVersion& version);
+};
+
+/// Fills `live` with a robot's recent versions and returns their bounding disc.
+BoundingDisc collect_live_versions(const AuditedRobot& robot, std::vector<LiveVersion>& live);
+
+}  // namespace sidestep

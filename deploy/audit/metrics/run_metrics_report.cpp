@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// Summaries of the collected metrics: progress rows and the report.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "common/messaging/blockage_text.hpp"
+#include "common/messaging/histogram_codec.hpp"
+#include "common/messaging/process_names.hpp"
+#include "deploy/audit/metrics/run_metrics.hpp"
+
+namespace sidestep {
+namespace {
+
+DurationHistogram sum(const std::vector<msg::AgentStatus>& lives,
+                      const msg::DurationCounts& (msg::AgentStatus::*counts)() const) {
+  DurationHistogram total;
+  for (const auto& life : lives) total.merge(decode((life.*counts)()));
+  return total;
+}
+
+std::uint64_t sum(const std::vector<msg::AgentStatus>& lives,
+                  std::uint64_t (msg::AgentStatus::*count)() const) {
+  std::uint64_t total = 0;
+  for (const auto& life : lives) total += (life.*count)();
+  return total;
+}
+
+}  // namespace
+
+std::vector<RobotProgress> RunMetrics::progress() const {
+  std::vector<RobotProgress> rows;
+  for (const RobotRecord& robot : robots_) {
+    RobotProgress row;
+    row.robot = robot.spec->id;
+    row.team = robot.spec->team;
+    if (robot.status()) row.agent_state = robot.status()->agent_state();
+    row.arrived = has_arrived(robot);
+    row.distance_to_go_m = distance_to_go_m(robot);
+    row.speed_mps = robot.speed_mps;
+    row.grants = sum(robot.lives, &msg::AgentStatus::grants);
+    row.denials = sum(robot.lives, &msg::AgentStatus::denials);
+    const DurationHistogram negotiation = sum(robot.lives, &msg::AgentStatus::negotiation);
+    row.negotiation_p50 = negotiation.quantile(0.5);
+    row.negotiation_p99 = negotiation.quantile(0.99);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void RunMetrics::add_ground_truth(Report& report) const {
+  for (const auto& life : simulators_) {
+    report.contacts += life.contacts();
+    report.penetration_m_s += life.penetration_m_s();
+    report.firmware_violations += life.firmware_violations();
+    report.crashes += life.crashes();
+    report.crashes_while_moving += life.crashes_while_moving();
+    report.max_crash_speed_mps = std::max(report.max_crash_speed_mps, life.max_crash_speed_mps());
+    report.max_robot_crash_speed_mps =
+        std::max(report.max_robot_crash_speed_mps, life.max_robot_crash_speed_mps());
+    if (std::isfinite(life.min_clearance_m())) {
+      report.min_clearance_m =
+          std::min(report.min_clearance_m.value_or(life.min_clearance_m()), life.min_clearance_m());
+    }
+  }
+  report.max_reference_error_m = max_reference_error_m_;
+  if (granting_since_ && seen_at())
+    report.robot_time_s = std::max(0.0, to_seconds(*seen_at() - *granting_since_));
+}
+
+std::string RunMetrics::hindrance(const RobotRecord& robot) const {
+  if (!robot.status()) return "its agent was not heard";
+  switch (robot.status()->agent_state()) {
+    case msg::AgentState::AGENT_FENCING:
+      return "it does not answer its agent";
+    case msg::AgentState::AGENT_REGISTERING:
+      return "no coordinator has registered it";
+    case msg::AgentState::AGENT_WAITING:
+      return "its agent waits for other robots, vision or a coordinator";
+    case msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND:
+      return "clocks differ by more than the safety budget allows";
+    case msg::AgentState::AGENT_ABSENT:
+      return "it is off the floor";
+    case msg::AgentState::AGENT_HELD:
+      return "an order holds it";
+    case msg::AgentState::AGENT_WITHOUT_ORDER:
+      return "its order was cancelled";
+    case msg::AgentState::AGENT_ARRIVED:
+      return fmt::format("it is {:.2f} m from its last goal, although its agent takes it for arrived",
+                         distance_to_go_m(robot));
+    case msg::AgentState::AGENT_DRIVING:
+      break;
+  }
+  if (robot.blockage) return to_text(*robot.blockage);
+  return fmt::format("it was under way, {:.2f} m from its last goal", distance_to_go_m(robot));
+}
+
+void RunMetrics::add_arrivals(Report& report) const {
+  report.arrived = arrived();
+  double latest_s = 0, total_s = 0, ratio_sum = 0;
+  int ratios = 0;
+  for (const RobotRecord& robot : robots_) {
+    auto& arrival_s = report.arrival_s[robot.spec->id];
+    if (!has_arrived(robot) && !robot.spec->goals.empty())
+      report.not_arrived[robot.spec->id] = hindrance(robot);
+    if (!has_arrived(robot) || !granting_since_) continue;
+    arrival_s = std::max(0.0, to_seconds(*robot.settled_since - *granting_since_));
+    latest_s = std::max(latest_s, *arrival_s);
+    total_s += *arrival_s;
+    if (const double shortest_s = straight_line_time_s(*robot.spec, scenario_.limits); shortest_s > 0) {
+      ratio_sum += *arrival_s / shortest_s;
+      ++ratios;
+    }
+  }
+  if (report.arrived > 0 && granting_since_) report.mean_arrival_s = total_s / report.arrived;
+  if (report.arrived == report.robots && granting_since_) report.makespan_s = latest_s;
+  if (ratios > 0) report.straight_line_time_ratio = ratio_sum / ratios;
+}
+
+void RunMetrics::add_agents(Report& report) const {
+  for (const RobotRecord& robot : robots_) {
+    report.proposals += sum(robot.lives, &msg::AgentStatus::proposals);
+    report.grants += sum(robot.lives, &msg::AgentStatus::grants);
+    report.denials += sum(robot.lives, &msg::AgentStatus::denials);
+    report.cycles += sum(robot.lives, &msg::AgentStatus::cycles);
+    report.missed_cycles += sum(robot.lives, &msg::AgentStatus::missed_cycles);
+    report.route_changes += sum(robot.lives, &msg::AgentStatus::route_changes);
+    report.negotiation.merge(sum(robot.lives, &msg::AgentStatus::negotiation));
+    report.plan.merge(sum(robot.lives, &msg::AgentStatus::plan));
+    report.search.merge(sum(robot.lives, &msg::AgentStatus::search));
+  }
+  const double planned_s = static_cast<double>(report.cycles) * to_seconds(scenario_.cycle);
+  if (planned_s > 0) report.route_changes_per_s = static_cast<double>(report.route_changes) / planned_s;
+}
+
+void RunMetrics::add_clocks(Report& report) const {
+  for (const RobotRecord& robot : robots_) {
+    const msg::AgentStatus* status = robot.status();
+    if (!status) continue;
+    const double offset_s = std::abs(status->clock_offset_s());
+    // A NaN fails both comparisons.
+    if (!(status->clock_uncertainty_s() >= 0) || !(offset_s >= report.max_clock_offset_s.value_or(0)))
+      continue;
+    report.max_clock_offset_s = offset_s;
+    report.clock_uncertainty_s = status->clock_uncertainty_s();
+  }
+}
+
+void RunMetrics::add_counters(Report& report) const {
+  const auto add = [&](const std::string& process, std::size_t reason, std::uint64_t count) {
+    if (count > 0) report.counters[process][static_cast<DropReason>(reason)] += count;
+  };
+  const auto add_life = [&](const std::string& process, const CounterLife& life) {
+    for (std::size_t i = 0; i < kDropReasonCount; ++i) add(process, i, life.counts[i]);
+  };
+  for (const auto& [process, counters] : counters_) {
+    add_life(process_name(process), counters.earlier);
+    for (const CounterLife& life : counters.lives) add_life(process_name(process), life);
+  }
+  DropCounters own;
+  own.count(DropReason::kUnusedByMonitor, std::nullopt, dropped_messages_);
+  if (bus_) bus_->count_drops(own);
+  for (const DropCount& one : own.counts()) add("monitor", static_cast<std::size_t>(one.reason), one.count);
+}
+
+Report RunMetrics::report() const {
+  Report report;
+  report.scenario = scenario_.name;
+  report.robots = static_cast<int>(robots_.size());
+  add_ground_truth(report);
+  add_arrivals(report);
+  add_agents(report);
+  add_clocks(report);
+  add_counters(report);
+  report.deaths = deaths_;
+  report.epochs = epochs_;
+  for (EpochRecord& epoch : report.epochs) {
+    if (granting_since_) epoch.at_s = to_seconds(epoch.begun_at - *granting_since_);
+  }
+  report.mismatches = mismatches_;
+  report.conflicts = conflicts_;
+  report.quarantined = quarantined_;
+  report.displaced = displaced_;
+  if (auditor_) report.audit = auditor_->totals();
+  return report;
+}
+
+}  // namespace sidestep

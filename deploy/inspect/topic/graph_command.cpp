@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/inspect/topic/graph_command.hpp"
+
+#include <fmt/core.h>
+#include <memory>
+#include <string>
+
+#include "common/file/write_file.hpp"
+#include "common/messaging/dds/listener.hpp"
+#include "common/process/process.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/inspect/topic/graph.hpp"
+
+namespace sidestep {
+namespace {
+
+struct GraphOptions {
+  DdsSettings dds;
+  double discovery_s = 1.5;  ///< participants announce themselves once per second
+  std::string picture_file;
+};
+
+int show_graph(const GraphOptions& options) {
+  DdsListener listener(options.dds);
+  const StopSignals stop_signals([&listener] { listener.stop(); });
+  listener.run_until(listener.now() + from_seconds(options.discovery_s));
+  const ProcessGraph graph = graph_of(listener.endpoints());
+  fmt::print("{}", to_text(graph));
+  if (!options.picture_file.empty()) write_file(options.picture_file, to_svg(graph));
+  return graph.processes.empty() ? kExitFailure : 0;
+}
+
+}  // namespace
+
+void add_graph_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<GraphOptions>();
+  options->dds.participant = "sidestep-graph";
+  const CliCommand command = root.add_subcommand(
+      "graph", "Shows the processes of a DDS domain, and which topics they write and read");
+  command.add_option("--svg", options->picture_file, "also draw it to this file");
+  command.add_option("--seconds", options->discovery_s, "duration of discovery")
+      .check(positive())
+      .show_default();
+  add_dds_options(command, options->dds);
+  command.on_parsed([options, &action] { action = [options] { return show_graph(*options); }; });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/messaging/dds/listener.hpp"
+#include "common/messaging/dds/raw_publisher.hpp"
+#include "common/messaging/message_schema.hpp"
+#include "common/process/process.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/inspect/topic/idl/idl_encoder.hpp"
+#include "deploy/inspect/topic/idl/idl_parser.hpp"
+#include "deploy/inspect/topic/topic_channel.hpp"
+#include "deploy/inspect/topic/topic_tools.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
+constexpr Duration kStep = std::chrono::milliseconds(10);
+
+struct EncodedMessage {
+  IdlTypePtr type;
+  std::vector<std::uint8_t> bytes;
+  CdrKey key;
+};
+
+/// Throws std::invalid_argument if there is no such type, or the message does not fit it.
+EncodedMessage encode_message(const TopicOptions& options, const IdlTypes& types, const std::string& name,
+                              const nlohmann::ordered_json& json) {
+  const auto type = types.find(name);
+  if (type == types.end())
+    throw std::invalid_argument(
+        fmt::format("there is no type {} in {}", name,
+                    options.idl_file.empty() ? "Sidestep's IDL; see --idl" : options.idl_file));
+  return {type->second, encode_by_idl(*type->second, json), key_by_idl(*type->second, json)};
+}
+
+/// The name of a topic's type: as given, or of one of ours; nullopt: only others can say it.
+std::optional<std::string> known_type_name(const TopicOptions& options) {
+  if (!options.type.empty()) return options.type;
+  for (const TopicInfo& topic : all_topics())
+    if (channel_robot(topic, options.topic)) return topic.type.name;
+  return std::nullopt;
+}
+
+/// The name of a topic's type, as somebody in the domain announces it.
+std::string announced_type_name(const TopicOptions& options, const DdsListener& listener) {
+  for (const DiscoveredEndpoint& endpoint : listener.endpoints())
+    if (endpoint.topic == options.topic) return endpoint.type;
+  throw std::invalid_argument(
+      fmt::format("topic '{}' is neither ours nor in this domain; name its type by --type", options.topic));
+}
+
+}  // namespace
+
+int publish_topic(const TopicOptions& options) {
+  const auto json = nlohmann::ordered_json::parse(options.message, nullptr, false);
+  if (json.is_discarded()) throw std::invalid_argument("MESSAGE: is no valid JSON");
+  const IdlTypes types = options.idl_file.empty() ? parse_idl(kIdlText, "idl") : load_idl(options.idl_file);
+  std::optional<std::string> name = known_type_name(options);
+  std::optional<EncodedMessage> message;
+  // What is wrong with the message is said before the network is touched, where that is possible.
+  if (name) message = encode_message(options, types, *name, json);
+  DdsListener listener(options.dds);
+  const StopSignals stop_signals([&listener] { listener.stop(); });
+  listener.run_until(listener.now() + from_seconds(options.discovery_s));
+  if (!message) {
+    name = announced_type_name(options, listener);
+    message = encode_message(options, types, *name, json);
+  }
+  DdsRawPublisher publisher(options.dds, options.topic, *name, is_keyed(*message->type));
+  const Time deadline = listener.now() + kAnswerTimeout;
+  while (publisher.readers() == 0 && listener.now() < deadline && !listener.stopped())
+    listener.run_until(listener.now() + kStep);
+  if (publisher.readers() == 0) {
+    fmt::print(stderr, "topic '{}' has no reader that matches\n", options.topic);
+    return kExitFailure;
+  }
+  const std::uint64_t count = std::max<std::uint64_t>(options.printer.count, 1);
+  for (std::uint64_t i = 0; i < count && !listener.stopped(); ++i) {
+    if (i > 0) listener.run_until(listener.now() + from_seconds(1 / options.rate_hz));
+    publisher.write(message->bytes, message->key);
+  }
+  if (!publisher.wait_until_acknowledged(kAnswerTimeout)) {
+    fmt::print(stderr, "not all readers have acknowledged\n");
+    return kExitFailure;
+  }
+  fmt::print("sent to {} reader(s)\n", publisher.readers());
+  return 0;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/log/log_level.hpp"
+#include "common/messaging/dds/bus.hpp"
+#include "common/messaging/rules_exchange.hpp"
+#include "deploy/audit/auditor.hpp"
+#include "deploy/audit/metrics/progress.hpp"
+#include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/inspect/record/recording.hpp"
+#include "deploy/run/launch/hosts/namespaces.hpp"
+#include "deploy/run/launch/hosts/placement.hpp"
+#include "deploy/run/launch/process_command.hpp"
+#include "deploy/run/launch/processes.hpp"
+#include "deploy/run/launch/revoked_keys.hpp"
+#include "deploy/run/launch/run.hpp"
+
+namespace sidestep {
+
+/// Controls a run: acts on its processes and decides when the run is over.
+struct RunDirector {
+  /// Returns the latest time at which to call `act`.
+  std::function<Time()> next;
+  /// Called at least every 20 ms once the coordinator grants. Returns whether the run is over.
+  std::function<bool()> act;
+};
+
+/// Earlier launchers of a run; see keep_processes().
+struct Predecessors {
+  std::vector<std::string> deaths;  ///< why they died
+  Duration age{0};                  ///< time since the first one began
+};
+
+/// Starts the processes of one run, monitors them until the run is over, and stops them.
+class Launcher {
+ public:
+  /// All arguments must outlive the launcher. `network` is null unless the hosts' namespaces were created for
+  /// this run.
+  Launcher(const RunOptions& options, const Scenario& scenario, const Placement& placement,
+           const NamespaceNetwork* network, Processes& processes, Predecessors before = {});
+
+  /// From now on the director decides when the run is over, instead of arrivals, deaths and the time limit.
+  void follow(RunDirector director) { director_ = std::move(director); }
+
+  Report run();
+
+  // For directors. Processes have the same names as in the report.
+  DdsBus& bus() { return bus_; }
+  const RunMetrics& metrics() const { return metrics_; }
+  /// Sends a signal to a process. False if it is not running.
+  [[nodiscard]] bool send_signal(const std::string& process, int signal) {
+    return children_.send_signal(process, signal);
+  }
+  /// Kills a process if it is running, and starts it again with a scenario file.
+  void restart(const std::string& process, const std::string& scenario_file);
+  /// Starts a second agent for a robot, as the process `name`.
+  void start_twin(RobotId robot, const std::string& name);
+
+ private:
+  /// Prints a line, and writes it to the log if its level is high enough.
+  void print(const std::string& line, LogLevel level = LogLevel::kInfo);
+  void print_new_epochs();
+  void start(const std::string& name, const std::string& program, bool is_restarted,
+             const std::vector<std::string>& arguments = {}, Duration rest_time = Duration::zero());
+  void start(const ProcessSpec& process, const HostSpec& host);
+  ChildSpec child(const ProcessSpec& process, const HostSpec& host) const;
+  void start_core();
+  void start_due_agents();
+  /// Sends the list of revoked keys to processes on other hosts if it has changed.
+  void send_revoked_keys();
+  Time next_poll();
+  void handle(const ChildEvent& event);
+  /// Starts the process that shows the run in the browser.
+  void start_monitor();
+  /// Runs until the run is over.
+  void work();
+  /// With the report. A failure becomes recording_failure_.
+  void finish_recording(const Report& report);
+  void print_last_lines(const std::string& process);
+  /// Whether the run is over. If it was aborted, abort_reason_ then says why.
+  bool is_over();
+  bool is_startup_over();
+  bool is_drive_over();
+  std::string startup_failure() const;
+  /// When the coordinator first granted; if other launchers preceded this one, when the first of them began.
+  Time drive_began() const;
+  /// Whether nothing moves any more, and dead processes keep the remaining robots from arriving.
+  bool is_stuck(Time now) const;
+  bool are_all_coordinators_dead() const;
+
+  const RunOptions& options_;
+  const Scenario& scenario_;
+  const Placement& placement_;
+  const NamespaceNetwork* network_;
+  Processes& children_;
+  const Predecessors before_;
+  std::map<std::string, ProcessSpec> processes_;  ///< indexed by name
+  RevokedKeys revoked_keys_;
+  RunDirector director_;
+  DdsBus bus_;
+  RulesExchange rules_;
+  RunMetrics metrics_;
+  Auditor auditor_;
+  std::uint64_t printed_violations_ = 0;
+  std::size_t printed_epochs_ = 0;
+  std::optional<RecordingWriter> recording_;
+  std::string recording_failure_;
+  ProgressDisplay display_;
+  std::atomic<bool> is_interrupted_{false};
+  bool is_ready_ = false;
+  std::optional<Time> ready_at_;
+  Time began_{};
+  std::size_t agents_started_ = 0;
+  Time last_start_{};
+  Time last_death_{};
+  std::optional<Time> arrived_since_;
+  std::set<std::string> dead_;  ///< processes that died and will not be restarted
+  std::string abort_reason_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/run/launch/run.hpp"
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fmt/format.h>
+#include <stdexcept>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
+#include "common/file/temporary_folder.hpp"
+#include "common/messaging/dds/free_domain.hpp"
+#include "common/process/output_paths.hpp"
+#include "common/process/process.hpp"
+#include "deploy/run/launch/hosts/run_hosts.hpp"
+#include "deploy/run/launch/launcher.hpp"
+#include "deploy/run/launch/process_keeper.hpp"
+#include "deploy/run/launch/process_keys.hpp"
+
+namespace sidestep {
+
+namespace {
+
+/// FOLDER/NAME-NUMBER.EXTENSION
+std::string numbered(const std::filesystem::path& file, std::size_t number) {
+  return (file.parent_path() /
+          fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()))
+      .string();
+}
+
+/// When the file was written; nullopt if there is none.
+std::optional<std::filesystem::file_time_type> written_at(const std::string& file) {
+  std::error_code error;
+  const auto time = std::filesystem::last_write_time(file, error);
+  return error ? std::nullopt : std::optional(time);
+}
+
+}  // namespace
+
+int run(const RunOptions& given) {
+  // Whoever reads the output may leave; the run goes on to its end and its report.
+  std::signal(SIGPIPE, SIG_IGN);
+  RunOptions options = given;
+  std::optional<FreeDomain> free_domain;
+  options.dds.domain = given.domain == "auto" ? free_domain.emplace().number() : std::stoi(given.domain);
+  const Scenario scenario = load_scenario(options.scenario_file);
+  print_to(stderr, "{}\n", budget_line(budget_of(scenario), scenario.margin_m));
+  if (scenario.map && !scenario.map->notice().empty()) print_to(stderr, "{}\n", scenario.map->notice());
+  if (scenario.has_test_keys)
+    print_to(stderr, "faults and expectations in {} apply to `sidestep test` only\n", options.scenario_file);
+  const RunHosts hosts(
+      options.hosts_file.empty() ? local_hosts(options.dds.interface) : load_hosts(options.hosts_file),
+      scenario, !options.floor.driver.empty());
+  options.dds.interface = hosts.hosts().interface;
+  if (!hosts.hosts().peers.empty()) options.dds.peers = hosts.hosts().peers;
+  if (options.monitor_port && hosts.network())
+    throw std::invalid_argument(
+        "--monitor: a browser cannot reach the monitor in a network namespace; start `sidestep monitor` "
+        "there");
+  const std::string report_path =
+      options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
+  const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
+  require_separate_outputs(
+      {{"SCENARIO", options.scenario_file}, {"--hosts", options.hosts_file}},
+      {{"the log", log_path}, {"--report", report_path}, {"--record", options.recording_file}});
+  require_keys(options, scenario);
+  const TemporaryFolder robot_memory;  // starts empty with each run
+  options.floor.memory_folder = robot_memory.path();
+  ProcessGroup group(log_path);
+  const auto finish = [&](const Report& report) {
+    const std::string problem = try_write_report(report, report_path);
+    print_to(stdout, "\n{}: {}{}log: {}\n", scenario.name, summary(report),
+             problem.empty() ? "report: " + report_path + "\n" : "", log_path);
+    if (!problem.empty()) throw std::runtime_error(problem);
+    return exit_code(report.verdict());
+  };
+  const auto began = std::chrono::steady_clock::now();
+  const auto former_report = written_at(report_path);
+  DirectorWork work;
+  work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
+    return run_guarded("sidestep run", [&] {
+      if (!deaths.empty() && !options.recording_file.empty())
+        options.recording_file = numbered(options.recording_file, deaths.size() + 1);
+      const Predecessors before{deaths, std::chrono::steady_clock::now() - began};
+      return finish(Launcher(options, scenario, hosts.placement(), hosts.network(), processes, before).run());
+    });
+  };
+  work.on_lost = [&](const std::string& reason) {
+    if (const auto report = written_at(report_path); report && report != former_report) {
+      print_to(stdout,
+               "\n{}: the process that directed the run died after its report: {}\nreport: {}\nlog: {}\n",
+               scenario.name, reason, report_path, log_path);
+      return;
+    }
+    Report report;
+    report.program = "run";
+    report.scenario = scenario.name;
+    report.robots = static_cast<int>(scenario.robots.size());
+    report.abort_reason = "the process that directs the run died: " + reason;
+    (void)finish(report);
+  };
+  return keep_processes(group, work);
+}
+
+}  // namespace sidestep

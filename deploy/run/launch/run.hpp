@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/log/log_level.hpp"
+#include "common/messaging/dds/bus.hpp"
+#include "deploy/run/launch/floor_processes.hpp"
+
+namespace sidestep {
+
+/// The Report::abort_reason of a run that was interrupted by the user.
+inline constexpr const char* kInterrupted = "interrupted";
+
+struct RunOptions {
+  std::string scenario_file;
+  std::string hosts_file;      ///< empty: all processes run on this machine, on the interface of `dds`
+  std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
+  std::string recording_file;  ///< records all messages except images; empty: none
+  std::optional<std::string> monitor_port;  ///< address of a page that shows the run; nullopt: none
+  std::string domain = "0";                 ///< for run(): replaces that of `dds`; "auto": a free domain
+  /// With keys: a folder with the keys of all identities, of which each process gets its own.
+  DdsSettings dds;
+  FloorOptions floor;
+  std::optional<double> seconds;         ///< overrides the scenario's time limit
+  bool until_idle = false;               ///< see run()
+  bool faults = false;                   ///< processes accept `sidestep fault network`
+  std::string planner;                   ///< planner of all robots' paths; empty: the scenario's
+  LogLevel log_level = LogLevel::kInfo;  ///< log level of all processes
+  bool is_quiet = false;                 ///< prints nothing to the terminal; the log contains everything
+};
+
+/// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed
+/// or the user interrupts, stops them, and writes the report. If the scenario gives no robot a goal, clients
+/// give the orders. The run then lasts until the user interrupts, RunOptions::seconds have passed or, with
+/// `until_idle`, all robots have finished their orders; no robot has to arrive. Returns the exit code: 0 only
+/// if all robots arrived without contact and the auditor found no violation; kExitNotJudged if nothing went
+/// wrong but the audit covered too little. Throws ConfigError, and std::runtime_error if a process cannot be
+/// started or a file cannot be written.
+int run(const RunOptions& options);
+
+}  // namespace sidestep

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/run/order/order_command.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+#include <memory>
+#include <string>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+#include "common/client/order_client.hpp"
+#include "common/config/yaml_document.hpp"
+#include "common/messaging/dds/bus.hpp"
+#include "common/messaging/order_codec.hpp"
+#include "common/messaging/version_codec.hpp"
+#include "common/process/process.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/run/order/goal_text.hpp"
+#include "deploy/run/order/order_text.hpp"
+#include "deploy/run/order/zone_text.hpp"
+
+namespace sidestep {
+namespace {
+
+// Discovery takes up to half a second, and a takeover as long.
+constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
+constexpr Duration kTablePeriod = std::chrono::milliseconds(200);
+constexpr Duration kOnceDuration = std::chrono::milliseconds(1500);
+
+struct OrderOptions {
+  DdsSettings dds;
+  std::string client;  ///< empty: acts as the operator
+  RobotId robot = 0;
+  std::vector<std::string> goals;
+  std::string file;
+  double speed_limit_mps = 0, tolerance_m = 0;
+  std::uint32_t zone = 0;
+  std::vector<std::string> corners;
+  double radius_m = 0;
+  bool removes = false;
+  bool waits = false;
+  bool once = false;
+};
+
+ClientId client_of(const OrderOptions& options) {
+  return options.client.empty() ? static_cast<ClientId>(Sender::kOperator) : client_id(options.client);
+}
+
+/// A client sends with its own keys.
+DdsSettings dds_of(const OrderOptions& options) {
+  DdsSettings dds = options.dds;
+  if (!options.client.empty()) dds.identity = {Role::kClient, 0, 0, options.client};
+  return dds;
+}
+
+/// Sends orders by `send`, and prints what happens to them until they are accepted or, with `waits`, over.
+int give_orders(const OrderOptions& options,
+                const std::function<std::vector<OrderHandle>(OrderClient&)>& send) {
+  DdsBus bus(dds_of(options));
+  const StopSignals stop_signals([&bus] { bus.stop(); });
+  OrderClient client(bus, client_of(options));
+  std::vector<OrderHandle> handles;
+  const auto all = [&](auto condition) {
+    return std::ranges::all_of(handles, [&](OrderHandle handle) { return condition(*client.find(handle)); });
+  };
+  const auto is_answered = [](const SentOrder& sent) { return sent.phase != OrderPhase::kSent; };
+  const auto is_over = [](const SentOrder& sent) { return is_final(sent.phase); };
+  client.on_change([&](const SentOrder& sent) {
+    fmt::print("{}\n", to_line(sent));
+    if (options.waits ? all(is_over) : all(is_answered)) bus.stop();
+  });
+  bool is_coordinator_heard = false;
+  bus.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
+    is_coordinator_heard |= state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING;
+  });
+  handles = send(client);
+  bus.run_until(bus.now() + kAnswerTimeout);
+  if (!all(is_answered)) {
+    fmt::print(
+        stderr, "sidestep: {}\n",
+        is_coordinator_heard
+            ? "the coordinator has not confirmed the order, which may count nevertheless: it does so "
+              "when an agent remembers the order, of a hold that of a held robot, and none may be running"
+            : "no active coordinator answers on this domain and interface");
+    return kExitFailure;
+  }
+  if (options.waits && !all(is_over)) bus.run();
+  const auto is_good = [&](const SentOrder& sent) {
+    return options.waits ? sent.phase == OrderPhase::kArrived : sent.phase != OrderPhase::kRefused;
+  };
+  return all(is_good) ? 0 : kExitFailure;
+}
+
+GoalLists goals_of(const OrderOptions& options) {
+  if (!options.file.empty())
+    return parse_goal_lists(read_yaml_file(options.file, "goals of robots"), options.file);
+  GoalLists lists;
+  for (const std::string& text : options.goals) lists[options.robot].push_back(parse_goal(text));
+  return lists;
+}
+
+Zone zone_of(const OrderOptions& options) {
+  const double limit_mps = options.speed_limit_mps;
+  return parse_zone(options.corners, options.radius_m,
+                    limit_mps > 0 ? std::optional(limit_mps) : std::nullopt);
+}
+
+int go(const OrderOptions& options) {
+  GoalLists lists = goals_of(options);
+  for (auto& [robot, goals] : lists) {
+    for (Goal& goal : goals) {
+      if (options.speed_limit_mps > 0) goal.speed_limit_mps = options.speed_limit_mps;
+      if (options.tolerance_m > 0) goal.tolerance_m = options.tolerance_m;
+    }
+  }
+  return give_orders(options, [&](OrderClient& client) {
+    std::vector<OrderHandle> handles;
+    for (const auto& [robot, goals] : lists) handles.push_back(client.go(robot, goals));
+    return handles;
+  });
+}
+
+int show_status(const OrderOptions& options) {
+  DdsBus bus(dds_of(options));
+  const StopSignals stop_signals([&bus] { bus.stop(); });
+  const OrderClient client(bus, client_of(options));
+  if (options.once || isatty(STDOUT_FILENO) == 0) {
+    bus.run_until(bus.now() + kOnceDuration);
+    fmt::print("{}", to_table(client.reports()));
+  } else {
+    const auto refresh = [&] {
+      fmt::print("\x1b[H\x1b[J{}", to_table(client.reports()));
+      std::fflush(stdout);
+    };
+    refresh();
+    call_periodically(bus, kTablePeriod, refresh);
+    bus.run();
+  }
+  if (!client.reports().empty()) return 0;
+  fmt::print(stderr, "sidestep: no agent is heard on this domain and interface\n");
+  return kExitFailure;
+}
+
+using Options = std::shared_ptr<OrderOptions>;
+
+Options add_command(const CliCommand& command) {
+  const auto options = std::make_shared<OrderOptions>();
+  options->dds.participant = "sidestep-order";
+  options->dds.identity = {Role::kOperator};
+  options->dds.is_operator = true;
+  add_dds_options(command, options->dds);
+  return options;
+}
+
+void add_client_option(const CliCommand& command, const Options& options) {
+  command.add_option("--client", options->client,
+                     "send as this client instead of the operator, whose orders come first");
+}
+
+void add_go(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand command = root.add_subcommand("go", "Sends robots to goals, one after another");
+  const Options options = add_command(command);
+  add_client_option(command, options);
+  const auto robot = command.add_option(
+      "ROBOT", [options](const std::string& text) { options->robot = parse_robots(text); }, "robot id");
+  const auto goals = command.add_option("GOAL", options->goals, "X,Y[,HEADING] in metres and radians");
+  const auto file = command.add_option("--file", options->file,
+                                       "YAML file with lines such as \"3: [[1.2, -0.4], [0, 0, 1.57]]\"");
+  command.add_option("--speed", options->speed_limit_mps, "speed limit on the way, m/s")
+      .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));
+  command.add_option("--tolerance", options->tolerance_m, "distance from a goal that counts as arrival, m")
+      .check(in_range(kMinTolerance_m, kMaxTolerance_m));
+  command.add_flag("--wait", options->waits, "wait until all have arrived");
+  command.on_parsed([=, &action] {
+    if (file.is_given() == robot.is_given()) throw UsageError("expected either ROBOT and GOAL, or --file");
+    if (robot.is_given() && !goals.is_given()) throw UsageError("GOAL is missing: expected X,Y[,HEADING]");
+    if (options->robot == kAllRobots) throw UsageError("expected one robot, or --file");
+    if (options->goals.size() > msg::MAX_ORDER_POSES)
+      throw UsageError(fmt::format("expected at most {} goals", msg::MAX_ORDER_POSES));
+    for (const std::string& goal : options->goals) (void)parse_goal(goal);
+    action = [options] { return go(*options); };
+  });
+}
+
+void add_simple(const CliCommand& root, std::function<int()>& action, const char* name,
+                const char* description, bool allows_all, OrderHandle (OrderClient::*send)(RobotId)) {
+  const CliCommand command = root.add_subcommand(name, description);
+  const Options options = add_command(command);
+  add_client_option(command, options);
+  command
+      .add_option(
+          "ROBOT", [options](const std::string& text) { options->robot = parse_robots(text); },
+          allows_all ? "robot id, or all" : "robot id")
+      .required();
+  command.on_parsed([=, &action] {
+    if (!allows_all && options->robot == kAllRobots) throw UsageError("expected one robot");
+    action = [=] {
+      return give_orders(*options,
+                         [=](OrderClient& client) { return std::vector{(client.*send)(options->robot)}; });
+    };
+  });
+}
+
+int zone(const OrderOptions& options) {
+  return give_orders(options, [&](OrderClient& client) {
+    if (options.removes) return std::vector{client.remove_zone(options.zone)};
+    return std::vector{client.zone(options.zone, zone_of(options))};
+  });
+}
+
+void add_zone(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand command = root.add_subcommand(
+      "zone", "Sets a zone for all robots: to keep out of or, with --speed, to drive slowly in");
+  const Options options = add_command(command);
+  add_client_option(command, options);
+  command.add_option("NUMBER", options->zone, "the client's number of the zone; a later zone replaces it")
+      .required();
+  const auto corners = command.add_option(
+      "CORNER", options->corners, "X,Y in metres; the zone is the convex hull of all corners, plus --radius");
+  const auto radius = command.add_option("--radius", options->radius_m, "distance that the zone extends, m")
+                          .check(in_range(0, kMaxCoordinate_m));
+  const auto speed = command.add_option("--speed", options->speed_limit_mps, "speed limit in the zone, m/s")
+                         .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));
+  command.add_flag("--remove", options->removes, "remove the zone of this number")
+      .excludes(corners)
+      .excludes(radius)
+      .excludes(speed);
+  command.on_parsed([=, &action] {
+    if (!options->removes) (void)zone_of(*options);
+    action = [options] { return zone(*options); };
+  });
+}
+
+}  // namespace
+
+void add_order_commands(const CliCommand& root, std::function<int()>& action) {
+  add_go(root, action);
+  add_simple(root, action, "cancel",
+             "Ends the operator's order to go; the robot goes on with what others have ordered", false,
+             &OrderClient::cancel);
+  add_simple(root, action, "hold",
+             "Stops robots until they are resumed. Not a certified emergency stop: it needs a coordinator",
+             true, &OrderClient::hold);
+  add_simple(root, action, "resume", "Ends holds: those of this client; the operator ends all", true,
+             &OrderClient::resume);
+  add_zone(root, action);
+  const CliCommand status = root.add_subcommand("status", "Shows what robots do with their orders");
+  const Options options = add_command(status);
+  status.add_flag("--once", options->once, "print the table once, and end");
+  status.on_parsed([options, &action] { action = [options] { return show_status(*options); }; });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/run/order/order_text.hpp"
+
+#include <fmt/format.h>
+
+#include "common/messaging/blockage_text.hpp"
+
+namespace sidestep {
+namespace {
+
+const char* phase_text(OrderPhase phase) {
+  switch (phase) {
+    case OrderPhase::kSent:
+      return "sent, not answered";
+    case OrderPhase::kAccepted:
+      return "accepted";
+    case OrderPhase::kDriving:
+      return "driving";
+    case OrderPhase::kBlocked:
+      return "blocked";
+    case OrderPhase::kArrived:
+      return "arrived";
+    case OrderPhase::kReplaced:
+      return "replaced by a later order";
+    case OrderPhase::kRefused:
+      break;
+  }
+  return "refused";
+}
+
+const char* refusal_text(msg::OrderResult result) {
+  switch (result) {
+    case msg::OrderResult::RESULT_UNKNOWN_ROBOT:
+      return "the scenario has no such robot";
+    case msg::OrderResult::RESULT_OUTSIDE_FIELD:
+      return "a goal is outside the field";
+    case msg::OrderResult::RESULT_TOO_MANY:
+      return "the coordinator cannot remember more holds or zones";
+    case msg::OrderResult::RESULT_REMEMBERED:
+    case msg::OrderResult::RESULT_REPLACED:
+    case msg::OrderResult::RESULT_MALFORMED:
+      break;
+  }
+  return "the coordinator takes it for malformed";
+}
+
+std::string order_name(const Order& order) {
+  static constexpr const char* kNames[] = {"go", "cancel", "hold", "resume", "zone", "remove zone"};
+  const char* const name = kNames[static_cast<std::size_t>(order.kind)];
+  if (order.kind == msg::OrderKind::ORDER_ZONE || order.kind == msg::OrderKind::ORDER_REMOVE_ZONE)
+    return fmt::format("{} {}", name, order.zone_number);
+  return order.robot == kAllRobots ? fmt::format("{} all", name) : fmt::format("{} {}", name, order.robot);
+}
+
+std::string client_name(ClientId client) {
+  switch (rank_of(client)) {
+    case Rank::kOperator:
+      return "operator";
+    case Rank::kReferee:
+      return "referee";
+    case Rank::kScenario:
+      return "scenario";
+    case Rank::kClient:
+      break;
+  }
+  return std::to_string(client);
+}
+
+std::string state_text(const OrderReport& report) {
+  static constexpr const char* kStates[] = {"accepted", "driving", "driving", "arrived", "left"};
+  if (report.is_held) return "held";
+  if (report.number == 0) return "no order";
+  if (report.blockage && !report.progress.is_finished()) return "blocked";
+  return kStates[static_cast<std::size_t>(report.progress.state)];
+}
+
+std::string remaining_text(const OrderReport& report) {
+  return report.remaining_s && !report.is_held ? fmt::format("{:.1f}", *report.remaining_s) : "-";
+}
+
+}  // namespace
+
+std::string to_line(const SentOrder& sent) {
+  std::string line = fmt::format("{}: {}", order_name(sent.order), phase_text(sent.phase));
+  if (sent.phase == OrderPhase::kRefused) line += fmt::format(", {}", refusal_text(sent.refusal));
+  if (sent.phase == OrderPhase::kDriving)
+    line += fmt::format(" to goal {} of {}", sent.goal_index + 1, sent.order.goals.size());
+  if (sent.phase == OrderPhase::kBlocked && sent.blockage) line += ": " + to_text(*sent.blockage);
+  return line;
+}
+
+std::string to_table(const std::map<RobotId, OrderReport>& reports) {
+  std::string table = fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", "robot", "state", "ordered by",
+                                  "goal", "left s", "why");
+  for (const auto& [robot, report] : reports) {
+    const bool has_order = report.number != 0;
+    table += fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", robot, state_text(report),
+                         has_order ? client_name(report.client) : "-",
+                         has_order ? std::to_string(report.progress.goal_index + 1) : "-",
+                         remaining_text(report), report.blockage ? to_text(*report.blockage) : "");
+  }
+  return table;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/messaging/bus.hpp"
+#include "deploy/trial/conformance/conformance_step.hpp"
+
+namespace sidestep {
+
+/// Tests one robot alone on a floor. It plays the robot's agent, without a coordinator, and compares vision's
+/// observations and the robot's reports with what a robot must do (coordinator/PROTOCOL.md). The bus must
+/// make no callback after this object's destruction.
+class Conformance {
+ public:
+  /// Precondition: the scenario contains the robot.
+  Conformance(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
+  Conformance(const Conformance&) = delete;
+  Conformance& operator=(const Conformance&) = delete;
+
+  bool is_finished() const { return step_ == steps_.size(); }
+  const ConformanceReport& report() const { return report_; }
+  /// The current step of the examination, in words.
+  std::string activity() const { return is_finished() ? "" : steps_[step_]->name(); }
+
+ private:
+  void cycle();
+
+  Bus& bus_;
+  const Scenario scenario_;
+  RobotProbe probe_;
+  VersionStream stream_;
+  ConformanceReport report_;
+  ConformanceContext context_;
+  std::vector<std::unique_ptr<ConformanceStep>> steps_;
+  std::size_t step_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/conformance/conformance_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <unistd.h>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/file/temporary_folder.hpp"
+#include "common/messaging/rules_exchange.hpp"
+#include "common/process/process.hpp"
+#include "common/process/process_identity.hpp"
+#include "common/process/stop_signals.hpp"
+#include "deploy/audit/audit_totals.hpp"
+#include "deploy/run/launch/floor_processes.hpp"
+#include "deploy/run/launch/process_group.hpp"
+#include "deploy/trial/conformance/conformance.hpp"
+
+namespace sidestep {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kRunning = "running";
+constexpr const char* kSimulator = "simulator";
+
+struct ConformanceOptions {
+  std::string scenario_file;
+  std::string driver = kRunning;
+  FloorOptions floor;
+  DdsSettings dds;
+};
+
+const RobotSpec& only_robot(const Scenario& scenario) {
+  if (scenario.robots.size() != 1 || !scenario.obstacles.empty() || scenario.map ||
+      !scenario.opponents.empty())
+    throw std::invalid_argument(
+        fmt::format("{}: expected a scenario with one robot and nothing else on the floor, found {} robots, "
+                    "{} obstacles, "
+                    "{} opponents{}",
+                    scenario.name, scenario.robots.size(), scenario.obstacles.size(),
+                    scenario.opponents.size(), scenario.map ? " and a map" : ""));
+  return scenario.robots.front();
+}
+
+/// Starts the processes that move the robot, and vision, unless they run already.
+class Floor {
+ public:
+  explicit Floor(const ConformanceOptions& options) : group_(folder_.file("log")) {
+    if (options.driver == kRunning) return;
+    FloorOptions floor = options.floor;
+    floor.driver = options.driver == kSimulator ? "" : options.driver;
+    floor.memory_folder = folder_.file("memory");
+    for (const FloorProcess& process : {robots_process(floor), vision_process(floor)}) {
+      std::vector<std::string> argv{
+          sibling_program_path(process.program), "--scenario",  options.scenario_file, "--domain",
+          std::to_string(options.dds.domain),    "--interface", options.dds.interface};
+      if (!options.dds.peers.empty())
+        argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options.dds.peers, ","))});
+      // Each process takes its own keys from a folder with the keys of all.
+      if (!options.dds.keys.empty()) argv.insert(argv.end(), {"--keys", options.dds.keys});
+      if (options.dds.insecure) argv.emplace_back("--insecure");
+      argv.insert(argv.end(), process.arguments.begin(), process.arguments.end());
+      group_.start({process.name, argv, false});
+    }
+  }
+  ~Floor() { (void)group_.terminate(3000ms); }
+  Floor(const Floor&) = delete;
+  Floor& operator=(const Floor&) = delete;
+
+  /// Throws std::runtime_error if a process has ended, with its last lines.
+  void check() {
+    for (const ChildEvent& event : group_.poll(0ms)) {
+      std::string text = fmt::format("{} ended: {}", event.name, event.reason);
+      for (const std::string& line : group_.last_lines(event.name)) text += "\n  " + line;
+      throw std::runtime_error(text);
+    }
+  }
+
+ private:
+  TemporaryFolder folder_;
+  ProcessGroup group_;
+};
+
+int examine(const ConformanceOptions& options) {
+  const Scenario scenario = load_scenario(options.scenario_file);
+  const RobotSpec& robot = only_robot(scenario);
+  DdsSettings dds = options.dds;
+  dds.identity = identity_of_process(robot.id, scenario);
+  DdsBus bus(dds);
+  bool is_interrupted = false;
+  const StopSignals stop_signals([&] {
+    is_interrupted = true;
+    bus.stop();
+  });
+  const RulesExchange rules(bus, robot.id, SharedRules(scenario), [](const RulesMismatch& mismatch) {
+    fmt::print(stderr, "{}\n", describe(mismatch));
+  });
+  Floor floor(options);
+  const Conformance conformance(bus, scenario, robot.id, next_incarnation(0, bus.now()));
+  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  std::size_t printed = 0;
+  std::string activity;
+  while (!conformance.is_finished() && !is_interrupted) {
+    bus.run_until(bus.now() + 100ms);
+    floor.check();
+    const auto& rows = conformance.report().rows;
+    for (; printed < rows.size(); ++printed)
+      fmt::print("{}{}\n", is_terminal ? "\r\x1b[K" : "", to_line(rows[printed]));
+    std::fflush(stdout);
+    if (is_terminal && conformance.activity() != activity) {
+      activity = conformance.activity();
+      fmt::print(stderr, "\r\x1b[K... {}", activity);
+    }
+  }
+  if (is_interrupted) return kExitNotJudged;
+  fmt::print("{}", scenario_lines(conformance.report().figures));
+  if (conformance.report().is_conformant()) return 0;
+  return conformance.report().has_failed() ? kExitFailure : kExitNotJudged;
+}
+
+}  // namespace
+
+void add_conformance_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<ConformanceOptions>();
+  options->dds.participant = "sidestep-conformance";
+  const CliCommand command = root.add_subcommand(
+      "conformance",
+      "Examines whether a robot, alone on a floor, does what others rely on, and measures its figures");
+  command
+      .add_option("SCENARIO", options->scenario_file, "scenario with this robot only, and without obstacles")
+      .required();
+  std::vector<std::string> drivers = driver_names();
+  drivers.insert(drivers.begin(), {kRunning, kSimulator});
+  command
+      .add_option(
+          "--driver", options->driver,
+          "running: the robot and sidestep-vision run already, and no agent; simulator: start Sidestep's "
+          "simulator; others: start sidestep-robot with this driver")
+      .check(one_of(drivers))
+      .show_default();
+  command.add_option("--robots", options->floor.robots,
+                     "extra options for sidestep-robot, e.g. --robots=\"--latency-ms 120\"");
+  command.add_option("--vision", options->floor.vision, "extra options for sidestep-vision");
+  command.add_option("--simulator", options->floor.simulator, "extra options for sidestep-simulator");
+  add_dds_options(command, options->dds);
+  command.on_parsed([options, &action] { action = [options] { return examine(*options); }; });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules about facts, clocks, fences and versions, examined at rest.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <functional>
+#include <limits>
+
+#include "common/messaging/robot_codec.hpp"
+#include "common/messaging/version_codec.hpp"
+#include "deploy/trial/conformance/conformance_step.hpp"
+
+namespace sidestep {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kReadyTimeout = 15s, kAnswerTimeout = 1s;
+// A process that misses one and a half cycles because of its scheduling is still on time.
+constexpr double kMaxGapCycles = 2.5;
+// After a version's start, a fact about it arrives within this time.
+constexpr Duration kFactTime = 100ms;
+// Between the robot's refusal and the next attempt.
+constexpr Duration kPause = 50ms;
+
+Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
+
+double ms(Duration duration) { return to_seconds(duration) * 1e3; }
+
+/// A version that accelerates gently from rest, and stops within a centimetre.
+Trajectory nudge(const State& from, Time start) {
+  Trajectory trajectory(start, from);
+  trajectory.append(100ms, Vec2(0.5, 0));
+  append_stop(trajectory, 1);
+  return trajectory;
+}
+
+class ReportsStep final : public ConformanceStep {
+ public:
+  std::string name() const override { return "facts"; }
+  bool is_required() const override { return true; }
+
+  bool update(ConformanceContext& context) override {
+    RobotProbe& probe = context.probe;
+    const Time now = probe.now();
+    if (!since_) since_ = now;
+    const auto& fact = probe.fact();
+    const bool is_fenced =
+        fact && fact->obeyed_incarnation == probe.incarnation && fact->obeyed_epoch == probe.epoch;
+    if (!heard_since_ && is_fenced) {
+      heard_since_ = now;
+      first_fact_ = probe.facts();
+      probe.reset_gap();
+    }
+    if (!heard_since_) {
+      if (now - *since_ < kReadyTimeout) return false;
+      context.report.rows.push_back({"reports", Conformity::kFailed, silence(probe)});
+      return true;
+    }
+    if (now - *heard_since_ < 2s) return false;
+    const double rate_hz = static_cast<double>(probe.facts() - first_fact_) / to_seconds(now - *heard_since_);
+    const bool is_on_time = to_seconds(probe.longest_gap()) <= kMaxGapCycles * to_seconds(probe.cycle());
+    const bool is_passed = is_on_time && probe.malformed_facts() == 0 && !fact->is_lifted;
+    context.report.rows.push_back(
+        {"reports", passed_if(is_passed),
+         fmt::format("{:.0f} facts a second, at most {:.1f} ms apart; {} malformed; lead {:.0f} ms", rate_hz,
+                     ms(probe.longest_gap()), probe.malformed_facts(), ms(fact->lead))});
+    return true;
+  }
+
+ private:
+  static std::string silence(const RobotProbe& probe) {
+    if (!probe.seen()) return fmt::format("vision does not see robot {}", probe.robot());
+    if (probe.malformed_facts() > 0)
+      return fmt::format("{} malformed facts, no other", probe.malformed_facts());
+    if (!probe.fact()) return fmt::format("no fact of robot {}", probe.robot());
+    return "the robot does not acknowledge a new agent and epoch; does another agent drive it?";
+  }
+  std::optional<Time> since_, heard_since_;
+  std::uint64_t first_fact_ = 0;
+};
+
+class ClockStep final : public ConformanceStep {
+ public:
+  std::string name() const override { return "clock"; }
+
+  bool update(ConformanceContext& context) override {
+    const Time now = context.probe.now();
+    if (!since_) since_ = now;
+    if (now - *since_ < 2s) return false;
+    const Duration bound = from_seconds(context.scenario.clock_bound_s);
+    const auto offset = context.probe.clock_offset();
+    if (!offset) {
+      context.report.rows.push_back({"clock", Conformity::kFailed, "facts echo no command"});
+      return true;
+    }
+    const bool is_known = offset->uncertainty() <= bound;
+    const Conformity conformity = offset->is_beyond(bound) ? Conformity::kFailed
+                                  : is_known               ? Conformity::kPassed
+                                                           : Conformity::kNotJudged;
+    context.report.rows.push_back({"clock", conformity,
+                                   fmt::format("{:+.2f} ms ahead, within {:.2f} ms; bound {:g} ms",
+                                               ms(offset->middle()), ms(offset->uncertainty()), ms(bound))});
+    const double largest_s = std::max(std::abs(to_seconds(offset->low)), std::abs(to_seconds(offset->high)));
+    context.report.figures.clock_bound_s =
+        std::max(context.scenario.clock_bound_s, std::ceil(1.5e4 * largest_s) * 1e-4);
+    return true;
+  }
+
+ private:
+  std::optional<Time> since_;
+};
+
+/// Sends commands that the robot must refuse, one after another, and waits until it would have obeyed.
+class RefusalStep : public ConformanceStep {
+ public:
+  struct Attempt {
+    std::string rule;
+    std::string what;
+    /// Spoils a command with a version that the robot would execute.
+    std::function<void(msg::Command&, const ConformanceContext&)> spoil;
+  };
+  RefusalStep(std::string name, std::vector<Attempt> attempts)
+      : name_(std::move(name)), attempts_(std::move(attempts)) {}
+
+  std::string name() const override { return name_; }
+
+  bool update(ConformanceContext& context) override {
+    RobotProbe& probe = context.probe;
+    const Feedback& fact = *probe.fact();
+    if (!sent_) {
+      sent_ = next_version(context);
+      before_ = fact;
+    }
+    if (probe.robot_now() < sent_->trajectory.start()) {
+      // Each command is sent in at least two cycles, as an agent repeats its commands.
+      msg::Command message = command(context);
+      attempts_[index_].spoil(message, context);
+      probe.send(message);
+      return false;
+    }
+    if (fact.valid_at < sent_->trajectory.start() + kFactTime) return false;
+    const bool is_refused = fact.executing.number == before_.executing.number &&
+                            fact.obeyed_incarnation == before_.obeyed_incarnation &&
+                            fact.obeyed_epoch == before_.obeyed_epoch;
+    if (!is_refused) obeyed_.push_back(attempts_[index_].what);
+    if (fact.executing.number != before_.executing.number) context.stream.forget();
+    sent_.reset();
+    const std::string& rule = attempts_[index_].rule;
+    ++tried_;
+    const bool is_last_of_rule = index_ + 1 == attempts_.size() || attempts_[index_ + 1].rule != rule;
+    if (is_last_of_rule) add_row(context, rule);
+    return ++index_ == attempts_.size();
+  }
+
+ private:
+  Version next_version(const ConformanceContext& context) const {
+    const Version& base = context.probe.fact()->executing;
+    const Time start = context.probe.robot_now() + context.stream.notice() + kPause;
+    return context.stream.next(nudge(base.trajectory.state_at(start), start));
+  }
+  msg::Command command(const ConformanceContext& context) const {
+    Command command;
+    command.robot = context.probe.robot();
+    command.incarnation = context.probe.incarnation;
+    command.epoch = context.probe.epoch;
+    command.version = sent_;
+    return encode(command);
+  }
+  void add_row(ConformanceContext& context, const std::string& rule) {
+    std::string figures = fmt::format("{} of {} refused", tried_ - obeyed_.size(), tried_);
+    for (const std::string& what : obeyed_) figures += "; obeyed: " + what;
+    context.report.rows.push_back({rule, passed_if(obeyed_.empty()), figures});
+    tried_ = 0;
+    obeyed_.clear();
+  }
+
+  std::string name_;
+  std::vector<Attempt> attempts_;
+  std::size_t index_ = 0, tried_ = 0;
+  std::optional<Version> sent_;
+  Feedback before_;
+  std::vector<std::string> obeyed_;
+};
+
+/// Sends commands of a new agent and in a new epoch, before the step that checks the refusal of the old ones.
+class FenceStep final : public ConformanceStep {
+ public:
+  std::string name() const override { return "fences"; }
+
+  bool update(ConformanceContext& context) override {
+    RobotProbe& probe = context.probe;
+    if (!since_) {
+      since_ = probe.now();
+      probe.incarnation += 1000;
+      probe.epoch += 1000;
+    }
+    const Feedback& fact = *probe.fact();
+    const bool is_fenced = fact.obeyed_incarnation == probe.incarnation && fact.obeyed_epoch == probe.epoch;
+    if (!is_fenced && probe.now() - *since_ < kAnswerTimeout) return false;
+    context.report.rows.push_back(
+        {"new agent and epoch", passed_if(is_fenced),
+         is_fenced ? fmt::format("acknowledged after {:.0f} ms", ms(probe.now() - *since_))
+                   : "not acknowledged"});
+    return true;
+  }
+
+ private:
+  std::optional<Time> since_;
+};
+
+class SwitchStep final : public ConformanceStep {
+ public:
+  std::string name() const override { return "switch"; }
+
+  bool update(ConformanceContext& context) override {
+    RobotProbe& probe = context.probe;
+    const Feedback& fact = *probe.fact();
+    if (!sent_) {
+      const Time start = probe.robot_now() + context.stream.notice() + kPause;
+      sent_ = context.stream.next(nudge(fact.executing.trajectory.state_at(start), start));
+      probe.version = sent_;
+      return false;
+    }
+    if (fact.executing.number == sent_->number && !seen_) seen_ = probe.fact();
+    const bool is_early = seen_ && seen_->valid_at < sent_->trajectory.start();
+    if (!seen_ && fact.valid_at < sent_->trajectory.start() + kAnswerTimeout) return false;
+    if (seen_ && fact.valid_at < sent_->trajectory.end()) return false;
+    probe.version.reset();
+    if (!seen_) {
+      context.report.rows.push_back(
+          {"switches", Conformity::kFailed, "the robot did not execute a version that arrived in time"});
+      return true;
+    }
+    context.stream.forget();
+    const bool is_same = encode(seen_->executing) == encode(*sent_);
+    const Duration late = seen_->valid_at - sent_->trajectory.start();
+    context.report.rows.push_back({"switches", passed_if(is_same && !is_early && late <= kFactTime),
+                                   fmt::format("reported {:.1f} ms after the start, contents {}", ms(late),
+                                               is_same ? "bit for bit" : "altered")});
+    return true;
+  }
+
+ private:
+  std::optional<Version> sent_;
+  std::optional<Feedback> seen_;
+};
+
+/// Starts a new agent while a version of the previous one is pending. Motors that respond late have already
+/// received the beginning of a version that starts within the lead.
+class TakeoverStep final : public ConformanceStep {
+ public:
+  std::string name() const override { return "takeover"; }
+
+  bool update(ConformanceContext& context) override {
+    RobotProbe& probe = context.probe;
+    const Feedback& fact = *probe.fact();
+    if (!sent_) {
+      const Time start = probe.robot_now() + context.stream.notice() + kPause;
+      sent_ = context.stream.next(nudge(fact.executing.trajectory.state_at(start), start));
+      probe.version = sent_;
+      earlier_ = probe.incarnation;
+      return false;
+    }
+    const Time start = sent_->trajectory.start();
+    // Half a lead before the start, or early enough that the lead has not begun.
+    const Duration before = is_committed_ ? fact.lead / 2 : fact.lead + kPause / 2;
+    if (probe.incarnation == earlier_ && probe.robot_now() >= start - before) {
+      probe.version.reset();
+      probe.incarnation += 1000;
+    }
+    const bool has_come = probe.incarnation != earlier_;
+    if (has_come && fact.obeyed_incarnation == probe.incarnation && !acknowledged_)
+      acknowledged_ = probe.fact();
+    if (fact.valid_at < start + kAnswerTimeout) return false;
+    const bool is_executed = fact.executing.number == sent_->number;
+    const bool is_stated = acknowledged_ && acknowledged_->executing.number == fact.executing.number;
+    if (is_executed != is_committed_)
+      faults_ += is_committed_ ? "; a version that starts within the lead was discarded"
+                               : "; a version that starts later was executed";
+    if (!acknowledged_)
+      faults_ += "; the new agent was not acknowledged";
+    else if (!is_stated)
+      faults_ += "; the fact that acknowledges the new agent states another version than is executed then";
+    context.stream.forget();
+    sent_.reset();
+    acknowledged_.reset();
+    // A robot whose motors respond at once has no lead.
+    if (!is_committed_ && fact.lead > 2 * probe.cycle()) {
+      is_committed_ = true;
+      return false;
+    }
+    const std::string figures =
+        is_committed_ ? "later ones discarded, one within the lead executed" : "discarded";
+    context.report.rows.push_back(
+        {"pending versions", passed_if(faults_.empty()), faults_.empty() ? figures : faults_.substr(2)});
+    return true;
+  }
+
+ private:
+  bool is_committed_ = false;  ///< the version starts within the lead when the new agent comes
+  std::optional<Version> sent_;
+  Incarnation earlier_ = 0;
+  std::optional<Feedback> acknowledged_;  ///< the first fact that acknowledges the new agent
+  std::string faults_;
+};
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using Message = msg::Command;
+using Context = ConformanceContext;
+
+/// Also the version's incarnation, which may not be above the command's.
+void lower_incarnation(Message& m, std::uint64_t by) {
+  m.header().incarnation(m.header().incarnation() - by);
+  m.version().incarnation(m.header().incarnation());
+}
+
+}  // namespace
+
+std::unique_ptr<ConformanceStep> make_reports_step() { return std::make_unique<ReportsStep>(); }
+std::unique_ptr<ConformanceStep> make_clock_step() { return std::make_unique<ClockStep>(); }
+std::unique_ptr<ConformanceStep> make_new_agent_step() { return std::make_unique<FenceStep>(); }
+std::unique_ptr<ConformanceStep> make_takeover_step() { return std::make_unique<TakeoverStep>(); }
+std::unique_ptr<ConformanceStep> make_switch_step() { return std::make_unique<SwitchStep>(); }
+
+std::unique_ptr<ConformanceStep> make_fence_step() {
+  return std::make_unique<RefusalStep>(
+      "fences",
+      std::vector<RefusalStep::Attempt>{
+          {"fences", "a version of an earlier agent",
+           [](Message& m, const Context&) { lower_incarnation(m, 1); }},
+          {"fences", "a version of an agent long ago",
+           [](Message& m, const Context&) { lower_incarnation(m, 1'000'000'000); }},
+          {"fences", "a version of an earlier epoch",
+           [](Message& m, const Context&) { m.epoch(m.epoch() - 1); }},
+          {"fences", "a version without an epoch", [](Message& m, const Context&) { m.epoch(0); }}});
+}
+
+std::unique_ptr<ConformanceStep> make_versions_step() {
+  const auto delayed = [](Message& m, const Context& context) {
+    // When the version arrives, half of the robot's lead is left, or nothing if it has no lead.
+    const Time now = context.probe.robot_now();
+    m.version().start_ns(to_ns(now + context.probe.fact()->lead / 2 - 1ms));
+  };
+  return std::make_unique<RefusalStep>(
+      "versions",
+      std::vector<RefusalStep::Attempt>{
+          {"late versions", "a version that arrives too late", delayed},
+          {"wrong base", "a version on a base that it does not execute",
+           [](Message& m, const Context&) { m.version().base(m.version().base() + 1'000'000); }},
+          {"wrong base", "a version on base 0",
+           [](Message& m, const Context&) { m.version().base(m.version().base() == 0 ? 1 : 0); }},
+          {"malformed commands", "a position that is no number",
+           [](Message& m, const Context&) { m.version().x_m(kNan); }},
+          {"malformed commands", "a heading that is no number",
+           [](Message& m, const Context&) { m.desired_heading_rad(kNan); }},
+          {"malformed commands", "an acceleration of 10^9 m/s²",
+           [](Message& m, const Context&) { m.version().phases()[0].ax_mps2(1e9); }},
+          {"malformed commands", "more phases than there are",
+           [](Message& m, const Context&) { m.version().phase_count(99); }},
+          {"malformed commands", "a version of another robot",
+           [](Message& m, const Context&) { m.version().robot(m.version().robot() + 1); }},
+          {"malformed commands", "a command of another sender",
+           [](Message& m, const Context&) { m.header().sender(m.header().sender() + 1); }},
+          {"malformed commands", "an agent of tomorrow",
+           [](Message& m,
+              const Context&) { m.header().incarnation(m.header().incarnation() + 86'400'000'000'000); }},
+          {"malformed commands", "an epoch of tomorrow",
+           [](Message& m, const Context&) { m.epoch(m.epoch() + 86'400'000'000'000); }}});
+}
+
+}  // namespace sidestep

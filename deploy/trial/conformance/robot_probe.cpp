@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/conformance/robot_probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/messaging/observation_codec.hpp"
+#include "common/messaging/robot_codec.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr std::size_t kMaxExecuted = 256, kMaxUnjudged = 256;
+
+}  // namespace
+
+RobotProbe::RobotProbe(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation first)
+    : incarnation(first),
+      epoch(first),
+      bus_(bus),
+      robot_(robot),
+      cycle_(scenario.cycle),
+      writer_(bus.advertise(topics::kCommand, robot)) {
+  bus.subscribe<msg::Feedback>(topics::kFeedback, robot,
+                               [this](const msg::Feedback& message) { on_feedback(message); });
+  bus.subscribe<msg::WorldState>(topics::kWorld,
+                                 [this](const msg::WorldState& message) { on_world(message); });
+}
+
+Duration RobotProbe::robot_ahead() const {
+  const auto offset = clock_offset();
+  return offset ? offset->middle() : Duration{0};
+}
+
+Time RobotProbe::robot_now() const { return bus_.now() + robot_ahead(); }
+
+void RobotProbe::send_command() {
+  if (!sends_commands) return;
+  Command command;
+  command.robot = robot_;
+  command.incarnation = incarnation;
+  command.epoch = epoch;
+  command.version = version;
+  // Uses the robot's clock, so that a wrong clock shows only in its own row.
+  if (fix_)
+    command.fix =
+        PoseFix{fix_->captured_at + robot_ahead(), fix_->position_m + fix_error_m, fix_->heading_rad};
+  fix_.reset();
+  if (fact_) command.desired_heading_rad = fact_->heading_rad;
+  send(encode(command));
+}
+
+void RobotProbe::send(msg::Command message) { writer_.publish(message, bus_.now()); }
+
+void RobotProbe::on_feedback(const msg::Feedback& message) {
+  const Time now = bus_.now();
+  const auto fact = decode(message, robot_, now + std::chrono::hours(1));
+  if (!fact) {
+    ++malformed_facts_;
+    return;
+  }
+  if (facts_++ > 0) longest_gap_ = std::max(longest_gap_, now - fact_at_);
+  if (fact->command)
+    (void)clock_.add({fact->command->sent_at, fact->command->received_at, fact->valid_at, now});
+  fact_ = *fact;
+  fact_at_ = now;
+  const bool is_new = executed_.empty() || executed_.back().version.number != fact->executing.number;
+  if (is_new) executed_.push_back({fact->executing, fact->is_off_reference});
+  if (executed_.size() > kMaxExecuted) executed_.pop_front();
+  take_samples();
+}
+
+void RobotProbe::on_world(const msg::WorldState& message) {
+  for (const msg::TrackedRobot& robot : message.robots()) {
+    if (robot.robot() != robot_) continue;
+    const auto seen = decode(robot, bus_.now());
+    if (!seen || (seen_ && seen->observed_at <= seen_->observed_at)) continue;
+    seen_ = seen;
+    if (std::isfinite(robot.observed_heading_rad()))
+      fix_ = PoseFix{seen->observed_at, seen->position_m, robot.observed_heading_rad()};
+    unjudged_.push_back(*seen);
+    if (unjudged_.size() > kMaxUnjudged) unjudged_.pop_front();
+  }
+}
+
+const Version* RobotProbe::executed_at(Time robot_time) const {
+  for (auto executed = executed_.rbegin(); executed != executed_.rend(); ++executed) {
+    if (executed->version.trajectory.start() <= robot_time) return &executed->version;
+  }
+  return nullptr;
+}
+
+// A fact shows what was executed up to its time.
+void RobotProbe::take_samples() {
+  while (!unjudged_.empty() && unjudged_.front().observed_at + robot_ahead() < fact_->valid_at) {
+    const RobotObservation seen = unjudged_.front();
+    unjudged_.pop_front();
+    const Time at = seen.observed_at + robot_ahead();
+    const auto executed = std::find_if(executed_.rbegin(), executed_.rend(), [&](const Executed& one) {
+      return one.version.trajectory.start() <= at;
+    });
+    if (executed == executed_.rend() || !on_sample_) continue;
+    on_sample_({seen.observed_at, at, seen.position_m, executed->version.trajectory.motion_at(at),
+                executed->is_off_reference});
+  }
+}
+
+}  // namespace sidestep

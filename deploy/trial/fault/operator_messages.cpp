@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/fault/operator_messages.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <stdexcept>
+#include <thread>
+
+#include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/dds/presence.hpp"
+#include "common/messaging/senders.hpp"
+
+namespace sidestep {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration kDiscoveryTimeout = 5s;  ///< longer than the period of participant announcements
+/// If no new subscribers appear for this time, all are known.
+constexpr Duration kDiscoverySettling = 1500ms;
+constexpr Duration kSilenceSlack = 2s;  ///< a dead participant is forgotten this much later than the limit
+constexpr auto kPollPeriod = 10ms;
+
+template <typename Condition>
+bool wait_until(Condition condition) {
+  const Time deadline = EventLoop::now() + kDiscoveryTimeout;
+  while (!condition()) {
+    if (EventLoop::now() > deadline) return false;
+    std::this_thread::sleep_for(kPollPeriod);
+  }
+  return true;
+}
+
+}  // namespace
+
+void wait_for_subscriber(OperatorChannel& channel, const std::string& participant) {
+  std::vector<std::string> subscribers;
+  Time changed_at = EventLoop::now();
+  const bool is_found = wait_until([&] {
+    if (const auto now = channel.subscribers(); now != subscribers) {
+      subscribers = now;
+      changed_at = EventLoop::now();
+    }
+    if (participant.empty())
+      return !subscribers.empty() && EventLoop::now() - changed_at > kDiscoverySettling;
+    return std::find(subscribers.begin(), subscribers.end(), participant) != subscribers.end();
+  });
+  if (is_found || (participant.empty() && !subscribers.empty())) return;
+  throw std::runtime_error(
+      fmt::format("{} on this domain and interface accepts such faults{}",
+                  participant.empty() ? "no process" : "no " + participant,
+                  subscribers.empty() ? "" : fmt::format(", only {}", fmt::join(subscribers, ", "))));
+}
+
+void wait_for_writer(OperatorChannel& channel, const std::string& topic, const std::string& error) {
+  if (!wait_until([&] { return channel.has_writer(topic); })) throw std::runtime_error(error);
+}
+
+void wait_until_acknowledged(OperatorChannel& channel) {
+  if (!channel.wait_until_acknowledged(kSilenceLimit + kSilenceSlack)) {
+    throw std::runtime_error(fmt::format("the fault was sent, but not acknowledged by all of {}",
+                                         fmt::join(channel.subscribers(), ", ")));
+  }
+}
+
+msg::Header operator_header() {
+  msg::Header header;
+  const Time now = EventLoop::now();
+  header.sender(static_cast<std::uint32_t>(Sender::kOperator));
+  header.incarnation(static_cast<std::uint64_t>(to_ns(now)));
+  header.message_number(1);
+  header.stamp_ns(to_ns(now));
+  return header;
+}
+
+}  // namespace sidestep

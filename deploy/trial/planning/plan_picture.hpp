@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "agents/planning/named_planner.hpp"
+#include "deploy/trial/planning/worlds.hpp"
+
+namespace sidestep {
+
+/// The world, the explored part of it, and the path before and after smoothing, as SVG.
+[[nodiscard]] std::string plan_picture(const PlanWorld& world, const PlanQuery& query,
+                                       const PlanDrawing& drawing, const std::vector<Vec2>& path_m,
+                                       const std::vector<Vec2>& smoothed_m);
+
+}  // namespace sidestep

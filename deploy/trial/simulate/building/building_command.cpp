@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/simulate/building/building_command.hpp"
+
+#include <fmt/core.h>
+#include <memory>
+
+#include "common/process/command_line.hpp"
+#include "deploy/trial/simulate/building/building.hpp"
+
+namespace sidestep {
+
+void add_building_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<BuildingOptions>();
+  const CliCommand command =
+      root.add_subcommand("building", "Writes a random building: a map, and a scenario with robots in it");
+  command.add_option("FOLDER", options->folder, "receives map.yaml, map.pgm and scenario.yaml").required();
+  command.add_option("--kind", options->kind, "rooms and corridors, or halls full of shelves")
+      .check(one_of(kBuildingKinds))
+      .show_default();
+  command.add_option("--seed", options->seed, "the same seed gives the same building")
+      .check(non_negative())
+      .show_default();
+  command.add_option("--cells", options->cells, "cells along each side of the map")
+      .check(in_range(100, 4000))
+      .show_default();
+  command.add_option("--resolution", options->resolution_m, "side of a cell in metres")
+      .check(in_range(0.01, 0.2))
+      .show_default();
+  command.add_option("--robots", options->robots, "number of robots").check(in_range(1, 100)).show_default();
+  command.add_option("--goals", options->goals, "goals of each robot").check(in_range(1, 100)).show_default();
+  command.on_parsed([&action, options] {
+    action = [options] {
+      write_building(*options);
+      fmt::print("{0}/map.yaml, {0}/map.pgm, {0}/scenario.yaml\n", options->folder);
+      return 0;
+    };
+  });
+}
+
+}  // namespace sidestep

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/simulate/campaign/order_clients.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "common/messaging/process_names.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
+
+bool drives(const Order& order) {
+  return order.kind == msg::OrderKind::ORDER_GO || order.kind == msg::OrderKind::ORDER_CANCEL;
+}
+
+}  // namespace
+
+OrderClients::OrderClients(SimSystem& system, double radius_m)
+    : touching_distance_m_(2 * radius_m + kContactTolerance_m), system_(system), bus_(system.network()) {
+  bus_.become_observer();
+  bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) { on_truth(truth); });
+  bus_.subscribe<msg::OrderMemory>(topics::kOrderMemory, [this](const auto& page) { on_memory(page); });
+}
+
+OrderClients::Client& OrderClients::client_of(ClientId id) {
+  std::unique_ptr<Client>& client = clients_[id];
+  if (!client) {
+    client = std::make_unique<Client>(system_.network(), id);
+    client->orders.on_change([this, id](const SentOrder& sent) { on_change(id, sent); });
+  }
+  return *client;
+}
+
+void OrderClients::give(const Order& order) {
+  Client& client = client_of(order.client);
+  switch (order.kind) {
+    case msg::OrderKind::ORDER_GO:
+      client.given.push_back(client.orders.go(order.robot, order.goals));
+      break;
+    case msg::OrderKind::ORDER_CANCEL:
+      client.given.push_back(client.orders.cancel(order.robot));
+      break;
+    case msg::OrderKind::ORDER_HOLD:
+      client.given.push_back(client.orders.hold(order.robot));
+      holds_.push_back({order.client, order.robot, client.given.back()});
+      break;
+    case msg::OrderKind::ORDER_RESUME:
+      client.given.push_back(client.orders.resume(order.robot));
+      lift(order);
+      break;
+    case msg::OrderKind::ORDER_ZONE:
+      client.orders.zone(order.zone_number, order.zone);
+      break;
+    case msg::OrderKind::ORDER_REMOVE_ZONE:
+      client.orders.remove_zone(order.zone_number);
+      break;
+  }
+}
+
+void OrderClients::expect_nothing_of(const std::string& coordinator) {
+  if (const auto process = process_id(coordinator)) excused_.insert(*process);
+}
+
+void OrderClients::lift(const Order& resume) {
+  std::erase_if(holds_, [&](Hold& hold) {
+    if (resume.client != kOperator && resume.client != hold.client) return false;
+    if (resume.robot == kAllRobots || resume.robot == hold.robot) return true;
+    if (hold.robot == kAllRobots) hold.released.insert(resume.robot);
+    return false;
+  });
+}
+
+void OrderClients::on_change(ClientId client, const SentOrder& sent) {
+  if (sent.phase != OrderPhase::kAccepted) return;
+  for (Hold& hold : holds_) {
+    const bool is_new = hold.client == client && hold.handle == sent.handle && !hold.confirmed_at;
+    if (is_new) hold.confirmed_at = system_.now();
+  }
+}
+
+const OrderClients::Hold* OrderClients::hold_of(RobotId robot) const {
+  const Hold* longest = nullptr;
+  for (const Hold& hold : holds_) {
+    const bool holds = hold.confirmed_at && (hold.robot == robot || hold.robot == kAllRobots) &&
+                       !hold.released.contains(robot);
+    if (holds && (!longest || *hold.confirmed_at < *longest->confirmed_at)) longest = &hold;
+  }
+  return longest;
+}
+
+bool OrderClients::touches_another(const msg::TrueRobotState& body, const msg::GroundTruth& truth) const {
+  return std::ranges::any_of(truth.robots(), [&](const msg::TrueRobotState& other) {
+    return other.robot() != body.robot() &&
+           std::hypot(other.x_m() - body.x_m(), other.y_m() - body.y_m()) < touching_distance_m_;
+  });
+}
+
+void OrderClients::on_truth(const msg::GroundTruth& truth) {
+  const Time now = time_from_ns(truth.valid_at_ns());
+  std::map<RobotId, Vec2> rest_m;
+  for (const msg::TrueRobotState& body : truth.robots()) {
+    const Hold* const hold = hold_of(body.robot());
+    Time& disturbed_until = disturbed_until_[body.robot()];
+    if (body.disturbance_end_ns() >= 0)
+      disturbed_until = std::max(disturbed_until, time_from_ns(body.disturbance_end_ns()));
+    // Somebody may carry another robot against this one.
+    if (touches_another(body, truth)) disturbed_until = std::max(disturbed_until, now);
+    const bool is_disturbed = disturbed_until != Time{} && now <= disturbed_until + kTimeToRest;
+    if (!hold || now < *hold->confirmed_at + kTimeToRest || is_disturbed) continue;
+    const Vec2 position_m(body.x_m(), body.y_m());
+    const auto known = rest_m_.find(body.robot());
+    rest_m[body.robot()] = known == rest_m_.end() ? position_m : known->second;
+    const double moved_m = (position_m - rest_m[body.robot()]).norm();
+    if (moved_m <= kMaxMovement_m) continue;
+    rest_m[body.robot()] = position_m;
+    failures_.push_back(
+        fmt::format("held robot {} moved {:.3f} m, {:.3f} s after a hold of client {} was confirmed",
+                    body.robot(), moved_m, to_seconds(now - *hold->confirmed_at), hold->client));
+  }
+  rest_m_ = std::move(rest_m);
+}
+
+void OrderClients::on_memory(const msg::OrderMemory& message) {
+  if (message.page_count() == 0) return;
+  const auto page = decode(message, bus_.now());
+  if (!page) return;  // for example from a coordinator with other rules
+  if (!page->is_complete) {
+    // The process was restarted, and may know no order yet.
+    memories_.erase(page->process);
+    return;
+  }
+  Memory& memory = arriving_[page->process];
+  if (page->index == 0) memory = {};
+  if (page->index != memory.pages) return;
+  for (const RememberedOrder& order : page->orders) {
+    if (drives(order.order))
+      memory.drives[{order.order.robot, rank_of(order.order.client)}] = {order.order.number,
+                                                                         order.order.client};
+  }
+  if (++memory.pages == page->count) memories_[page->process] = memory;
+}
+
+void OrderClients::check_drives(const Client& client, std::vector<std::string>& failures) const {
+  for (const OrderHandle handle : client.given) {
+    const SentOrder* const sent = client.orders.find(handle);
+    if (!sent || sent->phase == OrderPhase::kRefused) continue;
+    const Order& order = sent->order;
+    if (sent->phase == OrderPhase::kSent) {
+      failures.push_back(fmt::format("client {} got no answer to an order", order.client));
+      continue;
+    }
+    if (!drives(order)) continue;
+    for (const auto& [process, memory] : memories_) {
+      if (excused_.contains(process)) continue;
+      const auto known = memory.drives.find({order.robot, rank_of(order.client)});
+      if (known == memory.drives.end() || known->second < std::pair(order.number, order.client))
+        failures.push_back(fmt::format("process {} has forgotten order {} of client {} to robot {}", process,
+                                       order.number, order.client, order.robot));
+    }
+  }
+}
+
+std::vector<std::string> OrderClients::failures() const {
+  std::vector<std::string> failures = failures_;
+  for (const auto& [id, client] : clients_) check_drives(*client, failures);
+  return failures;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/client/order_client.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
+
+namespace sidestep {
+
+/// The clients of a trial, each a separate process, and the judge of their orders. The judge knows when each
+/// hold was confirmed, when it was lifted by anybody, and where robots really are. It checks that no robot
+/// moves while it is held, and that no confirmed order is forgotten.
+class OrderClients {
+ public:
+  /// After a hold is confirmed, a robot may complete what was granted before. It may move at most for the
+  /// time to brake plus twice the number of cycles that its agent proposes ahead, which depends on the
+  /// network.
+  static constexpr Duration kTimeToRest = std::chrono::milliseconds(2500);
+  /// A resting robot may correct its position by this much.
+  static constexpr double kMaxMovement_m = 0.05;
+
+  /// Ground truth is sampled, so robots that touch may appear this far apart.
+  static constexpr double kContactTolerance_m = 0.01;
+
+  /// `radius_m` is the robots' radius. The system must outlive the clients.
+  OrderClients(SimSystem& system, double radius_m);
+
+  void give(const Order& order);
+  /// Expects nothing of a coordinator that can no longer hear some process.
+  void expect_nothing_of(const std::string& coordinator);
+  /// What was wrong, in words.
+  std::vector<std::string> failures() const;
+
+ private:
+  struct Client {
+    Client(SimNetwork& network, ClientId id) : bus(network), orders(bus, id) {}
+    SimBus bus;
+    OrderClient orders;
+    std::vector<OrderHandle> given;
+  };
+  struct Hold {
+    ClientId client = 0;
+    RobotId robot = 0;  // a robot or kAllRobots
+    OrderHandle handle = 0;
+    std::optional<Time> confirmed_at{};
+    std::set<RobotId> released{};  // robots released from a hold of all
+  };
+  struct Memory {
+    std::uint32_t pages = 0;  // number of pages so far
+    std::map<std::pair<RobotId, Rank>, std::pair<OrderNumber, ClientId>> drives;
+  };
+  Client& client_of(ClientId id);
+  void lift(const Order& resume);
+  void on_change(ClientId client, const SentOrder& sent);
+  void on_truth(const msg::GroundTruth& truth);
+  bool touches_another(const msg::TrueRobotState& body, const msg::GroundTruth& truth) const;
+  void on_memory(const msg::OrderMemory& memory);
+  /// The confirmed hold of the robot that has lasted longest; null if there is none.
+  const Hold* hold_of(RobotId robot) const;
+  void check_drives(const Client& client, std::vector<std::string>& failures) const;
+
+  const double touching_distance_m_;
+  SimSystem& system_;
+  SimBus bus_;  // a bus that observes
+  std::map<ClientId, std::unique_ptr<Client>> clients_;
+  std::vector<Hold> holds_;  // holds that nobody with permission has tried to lift
+  std::map<RobotId, Time> disturbed_until_;
+  std::map<RobotId, Vec2> rest_m_;  // positions of robots that must rest
+  // Indexed by coordinator: pages of memories that are still arriving, and the last complete memory.
+  std::map<std::uint32_t, Memory> arriving_, memories_;
+  std::set<std::uint32_t> excused_;  // coordinators of which nothing is expected
+  std::vector<std::string> failures_;
+};
+
+}  // namespace sidestep

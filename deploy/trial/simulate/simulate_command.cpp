@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/simulate/simulate_command.hpp"
+
+#include <csignal>
+#include <memory>
+#include <string>
+
+#include "common/config/planner_names.hpp"
+#include "common/process/command_line.hpp"
+#include "common/process/log_option.hpp"
+#include "common/process/output_paths.hpp"
+#include "deploy/trial/simulate/campaign/campaign.hpp"
+#include "deploy/trial/simulate/seed_range.hpp"
+#include "deploy/trial/simulate/simulate.hpp"
+
+namespace sidestep {
+namespace {
+
+struct Options {
+  std::string faults;
+  SimulateOptions run;
+  CampaignOptions campaign;
+};
+
+/// Throws UsageError if the text is invalid.
+void read_seeds(const std::string& text, CampaignOptions& campaign) {
+  const SeedRange seeds = parse_seed_range(text);
+  campaign.first_seed = seeds.first;
+  campaign.last_seed = seeds.last;
+}
+
+int run_seeds(Options& options) {
+  require_separate_outputs(
+      {{"SCENARIO", options.run.scenario_file}},
+      {{"--report", options.run.report_file}, {"--results", options.campaign.results_file}});
+  options.campaign.scenario_file = options.run.scenario_file;
+  options.campaign.report_file = options.run.report_file;
+  options.campaign.has_faults = options.faults != "none";
+  if (options.run.seconds) options.campaign.duration = from_seconds(*options.run.seconds);
+  return run_campaign(options.campaign);
+}
+
+}  // namespace
+
+void add_simulate_command(const CliCommand& root, std::function<int()>& action) {
+  const auto options = std::make_shared<Options>();
+  SimulateOptions& run = options->run;
+  CampaignOptions& campaign = options->campaign;
+  const CliCommand command = root.add_subcommand(
+      "simulate", "Runs a scenario in one process and virtual time; the same seed gives the same run");
+  const Option scenario =
+      command.add_option("SCENARIO", run.scenario_file,
+                         "scenario file, see deploy/scenarios/README.md [with --faults: a random scene]");
+  command.add_option("--report", run.report_file,
+                     "report file [reports/<scenario>-<seed>.json; with --seeds: none]");
+  const Option svg = command.add_option("--svg", run.picture_file, "draw the robots' paths to this SVG file");
+  command.add_option("--sight", run.sight_of, "draw instead what the laser of this robot shows at the end")
+      .check(non_negative())
+      .needs(scenario)
+      .needs(svg);
+  const Option recording =
+      command.add_option("--record", run.recording_file, "record all messages to this file");
+  const Option seed =
+      command.add_option("--seed", run.seed, "random seed").check(non_negative()).show_default();
+  command
+      .add_option("--seconds", run.seconds,
+                  "time limit [the scenario's]; with --faults: duration of a run [60]")
+      .check(positive());
+  command.add_option("--planner", run.planner, "planner of all robots' paths [the scenario's]")
+      .check(one_of(driving_planners()))
+      .needs(scenario);
+  const Option faults =
+      command
+          .add_option("--faults", options->faults,
+                      "random: the seed determines random faults: network loss, delays, duplicates and "
+                      "partitions, pauses and kills of processes, wrong clocks, and disturbances of robots; "
+                      "none: a run of the same kind without faults")
+          .check(one_of({"random", "none"}));
+  const Option seeds =
+      command
+          .add_option(
+              "--seeds", [&campaign](const std::string& text) { read_seeds(text, campaign); },
+              "FIRST..LAST: a campaign of one run for each seed, on all cores")
+          .needs(faults)
+          .excludes(seed)
+          .excludes(recording)
+          .excludes(svg);
+  command.add_option("--jobs", campaign.jobs, "parallel processes for --seeds [number of cores]")
+      .check(in_range(1, 256))
+      .needs(seeds);
+  command
+      .add_option("--results", campaign.results_file,
+                  "file with one result per seed; an interrupted campaign resumes from it")
+      .needs(seeds);
+  const Option log_level = add_log_option(command, run.log_level);
+  seeds.excludes(log_level);
+  command.on_parsed([=, &action] {
+    const bool has_faults = faults.is_given(), has_seeds = seeds.is_given();
+    if (!has_faults && !scenario.is_given()) throw UsageError("SCENARIO is required");
+    action = [=] {
+      // Whoever reads the output may leave; the report is written nevertheless.
+      std::signal(SIGPIPE, SIG_IGN);
+      if (has_seeds) return run_seeds(*options);
+      return has_faults ? simulate_trial(options->run, options->faults != "none") : simulate(options->run);
+    };
+  });
+}
+
+}  // namespace sidestep

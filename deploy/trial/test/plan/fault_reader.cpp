@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/test/plan/fault_reader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <functional>
+#include <iterator>
+#include <optional>
+
+#include "common/config/scenario_loader.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/test/plan/disturbance_reader.hpp"
+#include "deploy/trial/test/plan/plan_names.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr std::size_t kMaxFaults = 1000;
+constexpr Range kFaultSeconds{0.001, 3600};
+
+using Names = std::vector<std::string>;
+
+/// Reads one fault.
+class FaultReader {
+ public:
+  FaultReader(YamlMap& map, const Scenario& scenario, const std::string& folder)
+      : map_(map), scenario_(scenario), folder_(folder), processes_(SimSystem::process_names(scenario)) {}
+
+  PlannedFault read() {
+    PlannedFault fault;
+    fault.at_s = moment_from(map_, "at_s", scenario_);
+    Names keys{"kill", "restart", "pause", "partition", "network", "twin", "attest_absence"};
+    std::ranges::copy(disturbance_keys(), std::back_inserter(keys));
+    key_ = only_key_of(map_, keys, "a fault");
+    fault.action = read_action();
+    fault.seconds = seconds_;
+    fault.text = fmt::format("{} {}", key_, subject_);
+    if (fault.end_s() > scenario_.time_limit_s)
+      map_.location_of("seconds").fail(fmt::format("the fault ends at {:g} s, after the time limit of {:g} s",
+                                                   fault.end_s(), scenario_.time_limit_s));
+    return fault;
+  }
+
+ private:
+  FaultAction read_action() {
+    if (key_ == "kill") return KillFault{read_running_process()};
+    if (key_ == "restart") return read_restart();
+    if (key_ == "pause") {
+      (void)map_.require("seconds");
+      read_seconds();
+      return PauseFault{read_running_process()};
+    }
+    if (key_ == "partition") return read_partition();
+    if (key_ == "network") return read_impairment();
+    if (key_ == "twin") return TwinFault{read_robot()};
+    if (key_ == "attest_absence") return AbsenceFault{read_robot()};
+    const RobotDisturbance disturbance = read_disturbance(map_, key_, scenario_);
+    subject_ = fmt::format("robot {}", disturbance.robot);
+    if (has_duration(disturbance)) seconds_ = to_seconds(disturbance.duration);
+    return disturbance;
+  }
+
+  RobotId read_robot() {
+    const RobotId robot = robot_from(map_, key_, scenario_);
+    subject_ = fmt::format("robot {}", robot);
+    return robot;
+  }
+
+  /// Reads the name of a process, which may be a second agent or the active coordinator.
+  std::string read_running_process() {
+    Names names = processes_;
+    names.emplace_back(kActiveCoordinator);
+    for (const RobotSpec& robot : scenario_.robots) names.push_back(twin_process(robot.id));
+    return subject_ = process_from(map_, key_, names);
+  }
+
+  void read_seconds() {
+    if (!map_.find("seconds").IsDefined()) return;
+    map_.read("seconds", kFaultSeconds, seconds_.emplace());
+  }
+
+  RestartFault read_restart() {
+    Names names = processes_;
+    std::erase(names, "simulator");  // the simulator holds the ground truth
+    RestartFault fault{subject_ = process_from(map_, key_, names), {}};
+    const YAML::Node file = map_.find("scenario");
+    if (!file.IsDefined()) return fault;
+    const YamlLocation location = map_.location_of("scenario");
+    fault.scenario_file = (std::filesystem::path(folder_) / text_from(file, location)).string();
+    const Names others = SimSystem::process_names(load_scenario(fault.scenario_file));
+    const bool is_agent = fault.process.starts_with("agent ");
+    if (is_agent && std::ranges::find(others, fault.process) == others.end())
+      location.fail(fmt::format("that scenario has no {}", fault.process));
+    return fault;
+  }
+
+  PartitionFault read_partition() {
+    PartitionFault fault;
+    fault.group = processes_from(map_, key_, processes_);
+    subject_ = fmt::format("{}{}", fault.group.front(), fault.group.size() > 1 ? " and others" : "");
+    const auto is_in_group = [&](const std::string& process) {
+      return std::ranges::find(fault.group, process) != fault.group.end();
+    };
+    if (map_.find("from").IsDefined())
+      fault.others = processes_from(map_, "from", processes_);
+    else
+      std::ranges::copy_if(processes_, std::back_inserter(fault.others), std::not_fn(is_in_group));
+    const auto both = std::ranges::find_if(fault.others, is_in_group);
+    if (both != fault.others.end()) map_.location_of("from").fail(*both + " is on both sides");
+    if (fault.others.empty()) map_.location_of(key_).fail("no process is on the other side");
+    if (map_.find("one_way").IsDefined()) {
+      const std::string direction = process_from(map_, "one_way", {"in", "out"});
+      fault.cuts_in = direction == "in";
+      fault.cuts_out = direction == "out";
+    }
+    read_seconds();
+    return fault;
+  }
+
+  ImpairmentFault read_impairment() {
+    Names names = processes_;
+    names.emplace_back("all");
+    ImpairmentFault fault{subject_ = process_from(map_, key_, names), kUnimpairedLink};
+    map_.read("loss", {0, 1}, fault.quality.loss);
+    map_.read("burst", {1, 1e6}, fault.quality.mean_burst);
+    map_.read("duplicate", {0, 1}, fault.quality.duplicate);
+    map_.read("cut", fault.quality.is_cut);
+    read_delays(fault.quality);
+    read_seconds();
+    bool is_clear = false;
+    map_.read("clear", is_clear);
+    if (is_clear != (fault.quality == kUnimpairedLink))
+      map_.location_of(key_).fail(is_clear
+                                      ? "clear cannot be combined with a fault"
+                                      : "expected one of the keys loss, delay_ms, duplicate, cut, clear");
+    if (fault.quality.mean_burst > 1 && fault.quality.loss <= 0)
+      map_.location_of("burst").fail("requires loss");
+    if (is_clear && seconds_) map_.location_of("seconds").fail("cannot be combined with clear");
+    return fault;
+  }
+
+  void read_delays(LinkQuality& quality) {
+    const YAML::Node node = map_.find("delay_ms");
+    if (!node.IsDefined()) return;
+    const YamlLocation location = map_.location_of("delay_ms");
+    const auto delays_ms = numbers_from(node, location, 3, 3, {0, 10000});
+    quality.delay_min = from_seconds(delays_ms[0] * 1e-3);
+    quality.delay_mean = from_seconds(delays_ms[1] * 1e-3);
+    quality.delay_max = from_seconds(delays_ms[2] * 1e-3);
+    if (!std::ranges::is_sorted(delays_ms)) location.fail("expected MIN, MEAN, MAX in increasing order");
+  }
+
+  YamlMap& map_;
+  const Scenario& scenario_;
+  const std::string& folder_;
+  Names processes_;
+  std::string key_, subject_;
+  std::optional<double> seconds_;
+};
+
+}  // namespace
+
+std::vector<PlannedFault> read_faults(YamlMap& map, const Scenario& scenario, const std::string& folder) {
+  std::vector<PlannedFault> faults;
+  if (!map.find("faults").IsDefined()) return faults;
+  read_list(map, "faults", kMaxFaults,
+            [&](YamlMap& inner) { faults.push_back(FaultReader(inner, scenario, folder).read()); });
+  return faults;
+}
+
+}  // namespace sidestep

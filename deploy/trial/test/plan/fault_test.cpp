@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/test/plan/fault_test.hpp"
+
+#include <filesystem>
+
+#include "common/config/scenario_loader.hpp"
+#include "common/config/yaml_document.hpp"
+#include "deploy/trial/test/plan/expectation_reader.hpp"
+#include "deploy/trial/test/plan/fault_reader.hpp"
+
+namespace sidestep {
+namespace {
+
+constexpr const char* kExpectedTest = "a scenario with the key expect";
+
+}  // namespace
+
+FaultTest parse_fault_test(const std::string& text, const std::string& file) {
+  FaultTest test{file, parse_scenario(text, file), {}, {}};
+  YamlMap map = document_map(text, file, kExpectedTest);
+  const std::string folder = std::filesystem::path(file).parent_path().string();
+  test.faults = read_faults(map, test.scenario, folder);
+  test.expectations = read_expectations(map, test.scenario, test.faults);
+  return test;
+}
+
+FaultTest load_fault_test(const std::string& path) {
+  return parse_fault_test(read_yaml_file(path, kExpectedTest), path);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/scenario.hpp"
+#include "common/config/yaml_map.hpp"
+#include "deploy/trial/test/plan/expectation.hpp"
+
+namespace sidestep {
+
+// Readers for names and times that faults and expectations share. They throw ConfigError.
+
+/// The only one of these keys in the mapping. `what`, for example "a fault", appears in error messages.
+[[nodiscard]] std::string only_key_of(YamlMap& map, const std::vector<std::string>& keys, const char* what);
+
+/// Reads a robot of the scenario.
+[[nodiscard]] RobotId robot_from(YamlMap& map, const std::string& key, const Scenario& scenario);
+/// Reads "all", a robot, or a list of robots.
+[[nodiscard]] RobotSet robots_from(YamlMap& map, const std::string& key, const Scenario& scenario);
+
+/// Reads one of these names.
+[[nodiscard]] std::string process_from(YamlMap& map, const std::string& key,
+                                       const std::vector<std::string>& names);
+/// Reads one or several of these names.
+[[nodiscard]] std::vector<std::string> processes_from(YamlMap& map, const std::string& key,
+                                                      const std::vector<std::string>& names);
+
+/// Reads a required number of seconds since the first grant, which must be within the scenario's time limit.
+[[nodiscard]] double moment_from(YamlMap& map, const std::string& key, const Scenario& scenario);
+
+}  // namespace sidestep

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/test/runs/launched_faults.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <fmt/format.h>
+#include <stdexcept>
+
+#include "common/messaging/process_names.hpp"
+#include "deploy/trial/fault/fault_target.hpp"
+#include "deploy/trial/fault/network_message.hpp"
+#include "deploy/trial/fault/operator_messages.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/test/runs/active_coordinator.hpp"
+#include "simulator/world/disturbance_codec.hpp"
+
+namespace sidestep {
+namespace {
+
+void require_subscriber(const OperatorChannel& channel, const std::string& participant) {
+  const auto subscribers = channel.subscribers();
+  if (subscribers.empty() ||
+      (!participant.empty() && std::ranges::find(subscribers, participant) == subscribers.end()))
+    throw std::runtime_error((participant.empty() ? "no process" : participant) + " does not listen");
+}
+
+}  // namespace
+
+LaunchedFaults::LaunchedFaults(const FaultTest& test, const RunHosts& hosts, const DdsSettings& dds,
+                               Launcher& launcher, const RunObserver& observer)
+    : test_(test),
+      hosts_(hosts),
+      launcher_(launcher),
+      observer_(observer),
+      attestations_(observer, [this](msg::AbsenceAttestation& attestation) {
+        attestation.header(operator_header());
+        absences_->writer().write(&attestation);
+      }) {
+  for (const PlannedFault& fault : test.faults) require_possible(fault);
+  DdsSettings settings = dds;
+  settings.participant = "sidestep-fault";
+  if (has_fault<RobotDisturbance>(test)) disturbances_.emplace(settings, topics::kDisturbance);
+  if (has_fault<ImpairmentFault>(test)) network_faults_.emplace(settings, topics::kNetworkFault);
+  if (has_fault<AbsenceFault>(test)) absences_.emplace(settings, topics::kAttestation);
+  if (has_fault<PartitionFault>(test)) partitions_.emplace(test, hosts);
+}
+
+void LaunchedFaults::require_possible(const PlannedFault& fault) const {
+  if (const auto* kill = std::get_if<KillFault>(&fault.action)) require_local(kill->process, fault.text);
+  if (const auto* pause = std::get_if<PauseFault>(&fault.action)) require_local(pause->process, fault.text);
+  if (const auto* restart = std::get_if<RestartFault>(&fault.action))
+    require_local(restart->process, fault.text);
+}
+
+void LaunchedFaults::require_local(const std::string& process, const std::string& text) const {
+  const auto require = [&](const std::string& name) {
+    if (hosts_.placement().host_of(name).transport == HostTransport::kSsh)
+      throw std::runtime_error(text + " is impossible over ssh");
+  };
+  if (process == kActiveCoordinator) {
+    for (int number = 0; number < test_.scenario.coordinators; ++number) require(coordinator_process(number));
+    return;
+  }
+  for (const RobotSpec& robot : test_.scenario.robots) {
+    if (process == twin_process(robot.id)) return require(agent_process(robot.id));
+  }
+  require(process);
+}
+
+void LaunchedFaults::begin(std::size_t fault) {
+  std::visit([&](const auto& action) { apply(action, fault); }, test_.faults[fault].action);
+}
+
+void LaunchedFaults::end(std::size_t fault) {
+  const FaultAction& action = test_.faults[fault].action;
+  if (const auto* partition = std::get_if<PartitionFault>(&action)) partitions_->end(*partition);
+  if (const auto* impairment = std::get_if<ImpairmentFault>(&action))
+    impair(impairment->target, kUnimpairedLink, 0);
+  // A process that was killed meanwhile is not stopped.
+  if (const auto paused = paused_.find(fault); paused != paused_.end())
+    (void)launcher_.send_signal(paused->second, SIGCONT);
+}
+
+void LaunchedFaults::send_signal(const std::string& process, int signal) {
+  if (!launcher_.send_signal(process, signal)) throw std::runtime_error(process + " does not run");
+}
+
+void LaunchedFaults::impair(const std::string& target, const LinkQuality& quality, std::uint64_t seed) {
+  msg::NetworkFault fault = encode(quality, parse_fault_target(target)->number, seed);
+  fault.header(operator_header());
+  network_faults_->writer().write(&fault);
+}
+
+void LaunchedFaults::apply(const KillFault& fault, std::size_t) {
+  send_signal(resolved(fault.process, observer_.history()), SIGKILL);
+}
+
+void LaunchedFaults::apply(const RestartFault& fault, std::size_t) {
+  launcher_.restart(fault.process, fault.scenario_file.empty() ? test_.file : fault.scenario_file);
+}
+
+void LaunchedFaults::apply(const PauseFault& fault, std::size_t index) {
+  const std::string process = resolved(fault.process, observer_.history());
+  send_signal(process, SIGSTOP);
+  paused_[index] = process;
+}
+
+void LaunchedFaults::apply(const PartitionFault& fault, std::size_t) { partitions_->begin(fault); }
+
+void LaunchedFaults::apply(const ImpairmentFault& fault, std::size_t index) {
+  require_subscriber(*network_faults_, parse_fault_target(fault.target)->participant);
+  impair(fault.target, fault.quality, index + 1);
+}
+
+void LaunchedFaults::apply(const RobotDisturbance& fault, std::size_t) {
+  require_subscriber(*disturbances_, "sidestep-simulator");
+  // The robot's agent has to request the rest version at this position.
+  if (fault.kind == msg::DisturbanceKind::DISTURBANCE_PLACE)
+    require_subscriber(*disturbances_, fmt::format("agent-{}", fault.robot));
+  msg::Disturbance message = encode(fault);
+  message.header(operator_header());
+  disturbances_->writer().write(&message);
+}
+
+void LaunchedFaults::apply(const TwinFault& fault, std::size_t) {
+  launcher_.start_twin(fault.robot, twin_process(fault.robot));
+}
+
+void LaunchedFaults::apply(const AbsenceFault& fault, std::size_t) {
+  attestations_.begin(fault.robot, launcher_.bus().now());
+}
+
+}  // namespace sidestep

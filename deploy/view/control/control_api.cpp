@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/view/control/control_api.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "common/config/heading.hpp"
+#include "common/messaging/order_codec.hpp"
+#include "common/messaging/version_codec.hpp"
+#include "common/protocol/disturbance_text.hpp"
+#include "deploy/view/server/viewer_json.hpp"
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::json;
+using Kind = msg::DisturbanceKind;
+
+/// The request's body is wrong; the message says what.
+class BodyError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+WebResponse json_response(unsigned status, const Json& json) {
+  return {status, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"};
+}
+WebResponse error_response(unsigned status, const std::string& error) {
+  return json_response(status, {{"error", error}});
+}
+
+/// "/api/robots/3/order" without "/api", as ["robots", "3", "order"].
+std::vector<std::string> parts_of(const std::string& path) {
+  constexpr std::string_view kPrefix = "/api/";
+  std::vector<std::string> parts;
+  if (!path.starts_with(kPrefix)) return parts;
+  std::string_view rest = std::string_view(path).substr(kPrefix.size());
+  while (true) {
+    const std::size_t slash = rest.find('/');
+    parts.emplace_back(rest.substr(0, slash));
+    if (slash == std::string_view::npos) return parts;
+    rest.remove_prefix(slash + 1);
+  }
+}
+
+template <typename Number>
+std::optional<Number> parse_number(const std::string& text) {
+  Number number = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+Json parse_body(const std::string& body) {
+  Json json = parse_viewer_json(body);
+  if (!json.is_object())
+    throw BodyError(
+        fmt::format("the body: expected a JSON object, nested no deeper than {} times", kMaxViewerJsonDepth));
+  return json;
+}
+
+double number_from(const Json& json, const std::string& name, double min, double max) {
+  const double value = json.is_number() ? json.get<double>() : std::nan("");
+  if (!(value >= min && value <= max))
+    throw BodyError(
+        fmt::format("{}: expected a number from {:g} to {:g}, got {}", name, min, max, json.dump()));
+  return value;
+}
+
+double heading_from(const Json& json, const std::string& name) {
+  if (!json.is_number()) throw BodyError(fmt::format("{}: expected radians, got {}", name, json.dump()));
+  const auto heading_rad = json.get<double>();
+  if (const std::string problem = heading_problem(heading_rad); !problem.empty())
+    throw BodyError(fmt::format("{}: {}", name, problem));
+  return heading_rad;
+}
+
+double number_in(const Json& body, const char* key, double min, double max, std::optional<double> otherwise) {
+  if (body.contains(key)) return number_from(body[key], key, min, max);
+  if (!otherwise) throw BodyError(fmt::format("{}: is missing", key));
+  return *otherwise;
+}
+
+void require_known_keys(const Json& body, std::initializer_list<std::string_view> known) {
+  for (const auto& [key, value] : body.items())
+    if (std::ranges::find(known, key) == known.end()) throw BodyError(fmt::format("{}: is unknown", key));
+}
+
+/// A list of points: two coordinates each, and a heading if `max_numbers` is 3.
+std::vector<std::vector<double>> points_in(const Json& body, const char* key, std::size_t max_points,
+                                           std::size_t max_numbers) {
+  const Json list = body.value(key, Json());
+  if (!list.is_array() || list.empty() || list.size() > max_points)
+    throw BodyError(fmt::format("{}: expected a list of 1 to {} points", key, max_points));
+  std::vector<std::vector<double>> points;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string name = fmt::format("{}[{}]", key, i);
+    if (!list[i].is_array() || list[i].size() < 2 || list[i].size() > max_numbers)
+      throw BodyError(
+          fmt::format("{}: expected a list of 2{} numbers", name, max_numbers > 2 ? " or 3" : ""));
+    std::vector<double>& point = points.emplace_back();
+    for (std::size_t k = 0; k < list[i].size(); ++k) {
+      const std::string of_number = fmt::format("{}[{}]", name, k);
+      point.push_back(k == 2 ? heading_from(list[i][k], of_number)
+                             : number_from(list[i][k], of_number, -kMaxCoordinate_m, kMaxCoordinate_m));
+    }
+  }
+  return points;
+}
+
+msg::Disturbance disturbance_from(RobotId robot, const Json& body) {
+  require_known_keys(body, {"kind", "vx_mps", "vy_mps", "grip", "x_m", "y_m", "heading_rad", "seconds"});
+  constexpr std::array kKinds{Kind::DISTURBANCE_PUSH,       Kind::DISTURBANCE_SLIP,
+                              Kind::DISTURBANCE_BLOCK,      Kind::DISTURBANCE_LIFT,
+                              Kind::DISTURBANCE_PLACE,      Kind::DISTURBANCE_REBOOT,
+                              Kind::DISTURBANCE_SWITCH_OFF, Kind::DISTURBANCE_SWITCH_ON};
+  const Json name = body.value("kind", Json());
+  const auto kind = std::ranges::find_if(
+      kKinds, [&](Kind known) { return name.is_string() && name.get<std::string>() == to_text(known); });
+  if (kind == kKinds.end()) {
+    std::string known;
+    for (const Kind k : kKinds) known += std::string(known.empty() ? "" : ", ") + to_text(k);
+    throw BodyError("kind: expected one of: " + known);
+  }
+  const bool is_push = *kind == Kind::DISTURBANCE_PUSH, is_place = *kind == Kind::DISTURBANCE_PLACE;
+  const auto required = [](bool is_required) { return is_required ? std::nullopt : std::optional(0.0); };
+  msg::Disturbance disturbance;
+  disturbance.robot(robot);
+  disturbance.disturbance_kind(*kind);
+  disturbance.vx_mps(number_in(body, "vx_mps", -20, 20, required(is_push)));
+  disturbance.vy_mps(number_in(body, "vy_mps", -20, 20, required(is_push)));
+  disturbance.grip(number_in(body, "grip", 0, 1, required(*kind == Kind::DISTURBANCE_SLIP)));
+  disturbance.x_m(number_in(body, "x_m", -1000, 1000, required(is_place)));
+  disturbance.y_m(number_in(body, "y_m", -1000, 1000, required(is_place)));
+  if (body.contains("heading_rad")) disturbance.heading_rad(heading_from(body["heading_rad"], "heading_rad"));
+  disturbance.duration_ns(std::llround(number_in(body, "seconds", 0.001, 3600, 1.0) * 1e9));
+  return disturbance;
+}
+
+const char* to_text(OrderPhase phase) {
+  constexpr std::array kTexts{"sent", "accepted", "driving", "blocked", "arrived", "replaced", "refused"};
+  return kTexts[static_cast<std::size_t>(phase)];
+}
+
+WebResponse accepted(OrderHandle handle) { return json_response(200, {{"order", handle}}); }
+
+}  // namespace
+
+ControlApi::ControlApi(Bus& bus, ControlHooks hooks)
+    : bus_(bus),
+      hooks_(std::move(hooks)),
+      client_(bus, static_cast<ClientId>(Sender::kOperator)),
+      disturbances_(bus.advertise(topics::kDisturbance)) {}
+
+std::optional<WebResponse> ControlApi::respond(const WebRequest& request) {
+  const std::vector<std::string> path = parts_of(request.path);
+  if (path.empty()) return std::nullopt;
+  if (request.method == "GET") {
+    if (path.size() != 2 || path[0] != "orders") return std::nullopt;
+    const auto handle = parse_number<OrderHandle>(path[1]);
+    return handle ? order_state(*handle) : error_response(404, "orders are numbered");
+  }
+  if (!request.command_refusal.empty()) return error_response(401, request.command_refusal);
+  try {
+    return command(request, path);
+  } catch (const BodyError& error) {
+    return error_response(400, error.what());
+  }
+}
+
+WebResponse ControlApi::command(const WebRequest& request, std::span<const std::string> path) {
+  if (path.size() == 2 && path[0] == "zones")
+    if (const auto number = parse_number<std::uint32_t>(path[1])) return command_zone(*number, request);
+  if (request.method != "POST") return error_response(405, "expected POST");
+  if (path.size() == 1 && path[0] == "hold") return accepted(client_.hold(kAllRobots));
+  if (path.size() == 1 && path[0] == "resume") return accepted(client_.resume(kAllRobots));
+  if (path.size() == 1 && path[0] == "bookmark") {
+    const Json text = parse_body(request.body).value("text", Json(""));
+    if (!text.is_string()) throw BodyError("text: expected a text");
+    hooks_.bookmark(text.get<std::string>());
+    return json_response(200, Json::object());
+  }
+  if (path.size() == 2 && path[0] == "recording" && (path[1] == "start" || path[1] == "stop"))
+    return record(path[1] == "start");
+  if (path.size() == 3 && path[0] == "robots") {
+    const auto robot = parse_number<RobotId>(path[1]);
+    if (!robot || *robot >= kMaxRobots) return error_response(404, "there is no robot " + path[1]);
+    return command_robot(*robot, path[2], request.body);
+  }
+  return error_response(404, "there is no " + request.path);
+}
+
+WebResponse ControlApi::record(bool begins) {
+  if (!hooks_.record) return error_response(409, "without a scenario file, nothing can be recorded");
+  try {
+    return json_response(200, {{"file", hooks_.record(begins)}});
+  } catch (const std::runtime_error& error) {
+    return error_response(500, error.what());
+  }
+}
+
+WebResponse ControlApi::command_robot(RobotId robot, const std::string& what, const std::string& body) {
+  if (what == "cancel") return accepted(client_.cancel(robot));
+  if (what == "hold") return accepted(client_.hold(robot));
+  if (what == "resume") return accepted(client_.resume(robot));
+  if (what == "fault") return disturb(robot, body);
+  if (what != "order") return error_response(404, "robots have no " + what);
+  const Json json = parse_body(body);
+  require_known_keys(json, {"goals"});
+  std::vector<Goal> goals;
+  for (const std::vector<double>& point : points_in(json, "goals", msg::MAX_ORDER_POSES, 3)) {
+    Goal& goal = goals.emplace_back(Goal{{point[0], point[1]}});
+    if (point.size() > 2) goal.heading_rad = point[2];
+  }
+  return accepted(client_.go(robot, std::move(goals)));
+}
+
+WebResponse ControlApi::command_zone(std::uint32_t number, const WebRequest& request) {
+  if (request.method == "DELETE") return accepted(client_.remove_zone(number));
+  if (request.method != "POST") return error_response(405, "expected POST or DELETE");
+  const Json json = parse_body(request.body);
+  require_known_keys(json, {"corners", "radius_m", "speed_limit_mps"});
+  Zone zone;
+  for (const std::vector<double>& point : points_in(json, "corners", kMaxZoneCorners, 2))
+    zone.corners_m.emplace_back(point[0], point[1]);
+  zone.radius_m = number_in(json, "radius_m", 0, 1000, 0.0);
+  if (json.contains("speed_limit_mps"))
+    zone.speed_limit_mps =
+        number_in(json, "speed_limit_mps", kMinSpeedLimit_mps, kMaxSpeed_mps, std::nullopt);
+  return accepted(client_.zone(number, std::move(zone)));
+}
+
+WebResponse ControlApi::disturb(RobotId robot, const std::string& body) {
+  msg::Disturbance disturbance = disturbance_from(robot, parse_body(body));
+  disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
+  disturbance.header().incarnation(static_cast<std::uint64_t>(to_ns(bus_.now())));
+  disturbances_.publish(disturbance, bus_.now());
+  return json_response(200, Json::object());
+}
+
+WebResponse ControlApi::order_state(OrderHandle handle) const {
+  const SentOrder* sent = client_.find(handle);
+  if (!sent) return error_response(404, fmt::format("there is no order {}", handle));
+  return json_response(200, {{"order", handle},
+                             {"robot", sent->order.robot},
+                             {"phase", to_text(sent->phase)},
+                             {"goal_index", sent->goal_index}});
+}
+
+}  // namespace sidestep

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "common/client/order_client.hpp"
+#include "common/messaging/bus.hpp"
+#include "deploy/view/server/web_server.hpp"
+
+namespace sidestep {
+
+/// Actions that ControlApi delegates.
+struct ControlHooks {
+  std::function<void(const std::string& text)> bookmark;
+  /// Starts or stops a recording. Returns the file that it starts, or "" if there is nothing to do. Throws
+  /// std::runtime_error if the file cannot be written. Empty: nothing can be recorded.
+  std::function<std::string(bool begins)> record;
+};
+
+/// Orders and faults by HTTP, in JSON:
+///
+/// | request | body |
+/// |---|---|
+/// | POST /api/robots/3/order | {"goals": [[1.2, -0.4], [0, 0, 1.57]]}: x, y in metres, heading in radians |
+/// | POST /api/robots/3/cancel, hold, resume | none |
+/// | POST /api/hold, /api/resume | none; all robots |
+/// | POST /api/zones/1 | {"corners": [[0, 0], [1, 0], [1, 1]], "radius_m": 0.1, "speed_limit_mps": 0.5} |
+/// | DELETE /api/zones/1 | none |
+/// | POST /api/robots/3/fault | {"kind": "push", "vx_mps": 1, "vy_mps": 0} and others, see below |
+/// | POST /api/recording/start, stop | none; answer {"file": …} |
+/// | POST /api/bookmark | {"text": "here"} |
+/// | GET /api/orders/17 | none; what has become of an order |
+///
+/// Orders are an operator's, and answered by {"order": 17}. Kinds of faults: push (vx_mps, vy_mps), slip
+/// (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m), reboot, switch off, switch on.
+class ControlApi {
+ public:
+  ControlApi(Bus& bus, ControlHooks hooks);
+
+  /// nullopt: there is no such path. Requests that may not give commands are refused with status 401.
+  std::optional<WebResponse> respond(const WebRequest& request);
+
+ private:
+  WebResponse command(const WebRequest& request, std::span<const std::string> path);
+  WebResponse command_robot(RobotId robot, const std::string& what, const std::string& body);
+  WebResponse command_zone(std::uint32_t number, const WebRequest& request);
+  WebResponse record(bool begins);
+  WebResponse disturb(RobotId robot, const std::string& body);
+  WebResponse order_state(OrderHandle handle) const;
+
+  Bus& bus_;
+  ControlHooks hooks_;
+  OrderClient client_;
+  Writer<msg::Disturbance> disturbances_;
+};
+
+}  // namespace sidestep

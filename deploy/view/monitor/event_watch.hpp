@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "common/time/rate_limit.hpp"
+#include "deploy/audit/audit_rules.hpp"
+#include "deploy/inspect/floor/floor_state.hpp"
+#include "deploy/view/monitor/event_log.hpp"
+#include "idl/disturbance.hpp"
+
+namespace sidestep {
+
+/// Finds events of interest to a person in the messages of a run, and adds them to a log.
+class EventWatch {
+ public:
+  /// The log must outlive this object.
+  explicit EventWatch(EventLog& log) : log_(log) {}
+
+  void on(const msg::GroundTruth& truth, Time now);
+  void on(const msg::Feedback& feedback, Time now);
+  void on(const msg::AgentStatus& status, Time now);
+  void on(const msg::OrderStatus& status, Time now);
+  void on(const msg::CoordinatorState& state, Time now);
+  void on(const msg::Order& order, Time now);
+  void on(const msg::OrderAnswer& answer, Time now);
+  void on(const msg::Disturbance& disturbance, Time now);
+  void on(const msg::NetworkFault& fault, Time now);
+  void on(const msg::AbsenceAttestation& attestation, Time now);
+  void on_violation(const Violation& violation);
+  /// A process has different rules, so its messages are refused.
+  void on_refused(std::uint32_t sender, Time now);
+  /// Detects robots and coordinators that have fallen silent.
+  void tick(const FloorState& floor, Time now);
+
+  /// Silence of an agent, a robot or an active coordinator that counts as an event.
+  static constexpr Duration kSilence = std::chrono::milliseconds(1000);
+
+ private:
+  /// Properties of robots and coordinators whose last values are kept to detect changes.
+  enum class Watched : std::uint8_t {
+    kOffReference,
+    kLifted,
+    kAgent,
+    kAgentState,
+    kHeld,
+    kOrder,
+    kCoordinator,
+    kNotice,
+    kSilent
+  };
+
+  void add(Severity severity, std::string kind, std::string text, Time at, std::vector<RobotId> robots = {});
+  /// Whether the value differs from the last one with this key. The first value counts as a change if it is
+  /// not `normal`.
+  bool has_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
+  void watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot, Time now);
+
+  /// Whether this is not a repetition of the sender's last order.
+  bool is_new_order(std::uint32_t sender, std::uint64_t number);
+
+  EventLog& log_;
+  /// Limits these events, because anybody on the network can cause them.
+  RateLimit outside_{1000, std::chrono::milliseconds(10)};
+  std::map<std::uint32_t, std::uint64_t> sent_orders_;  ///< the last order number, by sender
+  std::set<std::uint32_t> refused_;                     ///< senders whose messages were refused
+  std::map<std::pair<Watched, std::uint32_t>, std::uint64_t> last_;
+  struct TruthTotals {
+    std::uint64_t incarnation = 0, contacts = 0, crashes = 0, violations = 0;
+  };
+  std::optional<TruthTotals> totals_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "common/time/time.hpp"
+#include "deploy/inspect/floor/floor_state.hpp"
+
+namespace sidestep {
+
+/// A picture of the floor at one time, in a form that a browser reads without decoding: a header, and then
+/// rows of 32-bit floats, all little-endian.
+///
+/// | bytes | |
+/// |---|---|
+/// | 8 | time, seconds since 1970, double |
+/// | 4 × (1 + sections) | number of sections, number of rows in each, unsigned |
+/// | 4 × … | the rows of each section |
+///
+/// frame_layout() names the sections and the columns of their rows. What is not known is NaN.
+[[nodiscard]] std::string encode_frame(const FloorState& floor, Time now);
+
+/// {"sections": [{"name": "robots", "columns": ["id", …]}, …], "flags": ["off_reference", …]}. The flags are
+/// the bits of the column "flags", starting with the lowest.
+[[nodiscard]] nlohmann::ordered_json frame_layout();
+
+}  // namespace sidestep

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/view/monitor/recorded_messages.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "deploy/inspect/time_range.hpp"
+#include "deploy/inspect/topic/describe.hpp"
+#include "deploy/inspect/topic/topic_channel.hpp"
+#include "deploy/view/monitor/unix_time.hpp"
+
+namespace sidestep {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Describes the bytes of a message; null if they are not a message of its topic.
+using Describe = std::function<Json(std::span<const std::uint8_t> cdr)>;
+
+Describe describe_by(const std::string& channel) {
+  Describe found;
+  for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
+    if (!channel_robot(topic, channel)) return;
+    found = [topic](std::span<const std::uint8_t> cdr) {
+      Json json;
+      const bool is_valid = read_cdr(topic, cdr, [&json](const void* message) {
+        json = describe(*static_cast<const Message*>(message));
+      });
+      return is_valid ? json : Json();
+    };
+  });
+  return found;
+}
+
+}  // namespace
+
+std::vector<std::string> RecordedMessages::between(const std::string& channel, Time from, Time to) {
+  constexpr std::size_t kEncapsulation = 4;
+  // The time by which messages may be out of order in the file.
+  constexpr auto kDisorder = std::chrono::seconds(1);
+  const Describe describe_message = describe_by(channel);
+  const auto& chunks = playback_.chunks();
+  if (!describe_message || chunks.empty()) return {};
+  const auto after =
+      std::ranges::upper_bound(chunks, from - kDisorder, {}, &PlaybackBus::ChunkPosition::first_at);
+  reader_.seek(playback_.reader(), (after == chunks.begin() ? after : std::prev(after))->offset);
+  std::deque<std::string> messages;
+  std::size_t bytes = 0;
+  for (McapRecord record = reader_.next(); !std::holds_alternative<std::monostate>(record);
+       record = reader_.next()) {
+    const auto* message = std::get_if<McapMessage>(&record);
+    if (message == nullptr) continue;
+    const Time at =
+        time_from_ns(static_cast<std::int64_t>(std::min<std::uint64_t>(message->logged_ns, kMaxTime_ns)));
+    if (at > to + kDisorder) break;
+    if (at <= from || at > to || message->payload.size() < kEncapsulation) continue;
+    if (reader_.channel(*message).topic != channel) continue;
+    const Json json = describe_message(message->payload.subspan(kEncapsulation));
+    if (json.is_null()) continue;
+    const Json entry{{"at_s", unix_seconds(at)}, {"message", json}};
+    messages.push_back(entry.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    bytes += messages.back().size();
+    for (; bytes > kMaxBytes && messages.size() > 1; messages.pop_front()) bytes -= messages.front().size();
+  }
+  return {messages.begin(), messages.end()};
+}
+
+}  // namespace sidestep

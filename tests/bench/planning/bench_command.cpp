@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/planning/bench_command.hpp"
+
+#include <memory>
+
+#include "common/process/command_line.hpp"
+#include "common/process/process.hpp"
+#include "tests/bench/planning/planning_bench.hpp"
+
+namespace sidestep {
+
+void add_bench_command(const CliCommand& root, std::function<int()>& action) {
+  const CliCommand bench = root.add_subcommand("bench", "Benchmarks parts of the system against their peers");
+  bench.require_subcommand();
+  const CliCommand command = bench.add_subcommand(
+      "planning",
+      "All planners in all worlds: time, length, validity. Exits with 1 when a path is not valid, or when a "
+      "namesake of an OMPL planner solves significantly fewer queries than it (p < 0.01)");
+  const auto options = std::make_shared<PlanningBenchOptions>();
+  std::vector<std::string> planners;
+  for (const BenchPlanner& planner : bench_planners()) planners.push_back(planner.name);
+  command.add_option("--world", options->worlds, "these worlds only").check(one_of(world_names()));
+  command.add_option("--planner", options->planners, "these planners only, and the peers of namesakes")
+      .check(one_of(planners));
+  command.add_option("--queries", options->queries, "queries in each world; a p99 needs 1000")
+      .check(in_range(1, 1'000'000))
+      .show_default();
+  command.add_option("--seeds", options->seeds, "number of seeds that the queries are divided among")
+      .check(in_range(1, 1000))
+      .show_default();
+  command.add_option("--seed", options->seed, "first seed; the others follow it")
+      .check(non_negative())
+      .show_default();
+  command.add_option("--ms", options->max_ms, "time limit of a planner for a query, milliseconds")
+      .check(in_range(0.001, 3.6e6))
+      .show_default();
+  command
+      .add_option("--plant", options->planted,
+                  "tests the benchmark itself: adds a planner that must make it fail")
+      .check(one_of({"invalid-path", "weak-namesake"}));
+  command.on_parsed(
+      [&action, options] { action = [options] { return bench_planning(*options) ? 0 : kExitFailure; }; });
+}
+
+}  // namespace sidestep

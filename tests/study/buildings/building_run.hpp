@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "deploy/audit/metrics/report.hpp"
+#include "tests/study/buildings/random_trips.hpp"
+
+namespace sidestep {
+
+struct BuildingResult {
+  TripCounts trips;
+  std::uint64_t contacts = 0, crashes = 0, crashes_in_motion = 0;
+  double distance_m = 0;  ///< total over all robots
+  std::uint64_t route_changes = 0;
+  double plan_p99_us = 0, plan_max_us = 0;  ///< processor time of one decision
+  double missed_percent = 0;                ///< of the agents' cycles
+  bool audit_passed = false;                ///< the audit passed and no process died
+
+  /// Whether nothing went wrong: all goals were reached or reported as blocked, and nothing was touched.
+  bool is_good() const { return trips.stuck == 0 && contacts == 0 && crashes_in_motion == 0 && audit_passed; }
+};
+
+/// The results that all runs have in common, from the report of a run.
+[[nodiscard]] BuildingResult building_result(const Report& report, const TripCounts& trips,
+                                             double distance_m);
+
+/// Sends the robots of a scenario to random places for some virtual time, and then lets them finish. The
+/// scenario's goals are used only as places.
+[[nodiscard]] BuildingResult run_building(const Scenario& scenario, Duration duration, std::uint64_t seed);
+
+}  // namespace sidestep

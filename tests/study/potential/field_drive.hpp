@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "common/collision/obstacle_world.hpp"
+#include "common/motion/limits.hpp"
+#include "deploy/trial/planning/worlds.hpp"
+
+namespace sidestep {
+
+struct FieldDriveSettings {
+  MotionLimits limits{.speed_mps = 0.5};
+  double cycle_s = 1.0 / 60;
+  double arrival_m = 0.05;  ///< distance from the goal that counts as arrived
+  double time_limit_s = 60;
+  double stuck_m = 0.1;       ///< a robot that moves less than this ...
+  double stuck_s = 4;         ///< ... in this time is in a local minimum
+  double reversal_rad = 0.2;  ///< see ReversalCounter
+};
+
+enum class DriveEnd { kArrived, kLocalMinimum, kContact, kTimeLimit };
+
+struct FieldDrive {
+  DriveEnd end = DriveEnd::kTimeLimit;
+  double seconds = 0;
+  double length_m = 0;
+  int reversals = 0;
+  std::vector<Vec2> path_m;  ///< one position per cycle, beginning at the start
+};
+
+/// Returns the unit vector in which to drive from a position; zero: nowhere.
+using DriveDirection = std::function<Vec2(const Vec2&)>;
+
+/// Drives a disc with limited acceleration to the goal of the world's query. In each cycle it accelerates
+/// towards its speed in the method's direction, and slows down before the goal. `obstacles` are the world's
+/// obstacles.
+[[nodiscard]] FieldDrive drive_by(const DriveDirection& direction, const PlanWorld& world,
+                                  const ObstacleWorld& obstacles, const FieldDriveSettings& settings = {});
+
+}  // namespace sidestep

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/planning/replan_bench.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::replan_bench_test {
+
+TEST_CASE("replans of planners are valid among circles that move") {
+  CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache", "estar", "nf1"}, 60, 1).empty());
+}
+
+TEST_CASE("planners that keep a world are not asked in one that moves") {
+  CHECK(bench_replanning({"visibility", "prm"}, 10, 1).empty());
+}
+
+}  // namespace sidestep::replan_bench_test

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/audit/audited_robot.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::audited_robot_test {
+
+/// Versions 1 to `count`, of which the first `excluded` were excluded at 10 ns.
+AuditedRobot robot_with(VersionNumber count, VersionNumber excluded) {
+  AuditedRobot robot;
+  for (VersionNumber number = 1; number <= count; ++number) {
+    KnownVersion& known = robot.find_or_insert(number);
+    if (number > excluded) continue;
+    known.exclusion = Exclusion::kOlder;
+    known.excluded_ns = 10;
+  }
+  return robot;
+}
+
+VersionNumber first_recent(const AuditedRobot& robot) { return robot.versions.at(robot.first_recent).number; }
+
+TEST_CASE("versions excluded long ago are skipped until new evidence arrives") {
+  AuditedRobot robot = robot_with(5, 3);
+  robot.advance_recent(10);
+  CHECK(first_recent(robot) == 1);
+  robot.advance_recent(11);
+  CHECK(first_recent(robot) == 4);
+  robot.make_recent(5);
+  CHECK(first_recent(robot) == 4);
+  robot.make_recent(2);
+  CHECK(first_recent(robot) == 2);
+}
+
+TEST_CASE("a robot's recent versions stay recent when older ones are evicted or arrive late") {
+  AuditedRobot robot = robot_with(AuditedRobot::kMaxVersions, 40);
+  robot.advance_recent(11);
+  REQUIRE(first_recent(robot) == 41);
+  robot.find_or_insert(AuditedRobot::kMaxVersions + 1);
+  CHECK(first_recent(robot) == 41);
+  CHECK(robot.find(1) == nullptr);
+  CHECK(robot.max_evicted_version == 1);
+  robot.forget(11);
+  robot.advance_recent(11);
+  CHECK(first_recent(robot) == 41);
+  CHECK(robot.versions.size() == AuditedRobot::kMaxVersions + 1 - 40);
+  robot.find_or_insert(7);
+  CHECK(first_recent(robot) == 7);
+}
+
+TEST_CASE("a version that arrives late is recent, even if later ones were excluded long ago") {
+  AuditedRobot robot;
+  for (const VersionNumber number : {2u, 4u, 6u}) {
+    KnownVersion& known = robot.find_or_insert(number);
+    if (number == 6) continue;
+    known.exclusion = Exclusion::kOlder;
+    known.excluded_ns = 10;
+  }
+  robot.advance_recent(11);
+  REQUIRE(first_recent(robot) == 6);
+  robot.find_or_insert(3);
+  CHECK(first_recent(robot) == 3);
+}
+
+TEST_CASE("a version that was neither granted nor registered is in no epoch") {
+  KnownVersion known;
+  CHECK_FALSE(known.is_in(0));
+  CHECK_FALSE(known.is_in(1));
+  known.granted_in = 1;
+  CHECK(known.is_in(1));
+  CHECK_FALSE(known.is_in(0));
+}
+
+/// Gives a version content: it continues `base` and starts at `start_ns`.
+void add_content(AuditedRobot& robot, VersionNumber number, VersionNumber base, std::int64_t start_ns) {
+  KnownVersion& known = robot.find_or_insert(number);
+  known.has_content = true;
+  known.version.version_number(number);
+  known.version.base(base);
+  known.version.start_ns(start_ns);
+  known.path = AuditPath(known.version);
+}
+
+TEST_CASE("after a robot is lifted, only versions that were granted to it for later remain possible") {
+  AuditedRobot robot;
+  AuditedRobot::Fact lifted;
+  lifted.at_ns = 100;
+  lifted.is_lifted = true;
+  lifted.last_executed = 7;
+  add_content(robot, 0, 0, 101);  // the rest in which it was switched on
+  add_content(robot, 8, 0, 101);
+  add_content(robot, 9, 8, 101);
+  add_content(robot, 10, 0, 100);
+  add_content(robot, 11, 7, 101);
+  CHECK(exclusion_by(lifted, *robot.find(0)) == Exclusion::kLifted);
+  CHECK(exclusion_by(lifted, *robot.find(8)) == Exclusion::kNone);
+  CHECK(exclusion_by(lifted, *robot.find(9)) == Exclusion::kNone);
+  CHECK(exclusion_by(lifted, *robot.find(10)) == Exclusion::kLifted);
+  CHECK(exclusion_by(lifted, *robot.find(11)) == Exclusion::kLifted);
+}
+
+TEST_CASE("a version that was too late by a clock that has been set back is possible again") {
+  AuditedRobot robot = robot_with(5, 3);
+  robot.fact.emplace().at_ns = 1000;
+  robot.find(4)->exclusion = Exclusion::kLate;
+  robot.find(4)->excluded_ns = 10;
+  robot.advance_recent(11);
+  REQUIRE(first_recent(robot) == 5);
+  robot.forget_times();
+  CHECK(robot.find(4)->exclusion == Exclusion::kNone);
+  CHECK(robot.find(4)->excluded_ns == kNever);
+  CHECK(robot.find(3)->exclusion == Exclusion::kOlder);
+  CHECK(first_recent(robot) <= 4);
+}
+
+TEST_CASE("the versions that a robot executed between two others are known if every base is known") {
+  AuditedRobot robot;
+  for (const VersionNumber number : {3u, 5u, 6u, 9u})
+    add_content(robot, number, number == 9 ? 6 : number - 1, 0);
+  robot.find_or_insert(4);
+  CHECK(robot.continues(9, 9));
+  CHECK(robot.continues(6, 9));
+  CHECK(robot.continues(5, 9));
+  CHECK(robot.continues(4, 5));
+  CHECK_FALSE(robot.continues(3, 9));  // the content of version 4 is unknown
+  CHECK_FALSE(robot.continues(7, 9));  // 9 does not continue 7
+  CHECK_FALSE(robot.continues(9, 6));
+  CHECK_FALSE(robot.continues(3, 8));
+}
+
+TEST_CASE("executed versions are counted by what was received of them, even after they are forgotten") {
+  AuditedRobot robot;
+  robot.traceable_from_ns = 100;
+  for (VersionNumber number = 1; number <= 10; ++number) {
+    add_content(robot, number, number - 1, number == 1 ? 100 : 101);
+    KnownVersion& known = robot.find_or_insert(number);
+    known.was_executed = number != 2;
+    known.is_own_stop = number == 3;
+    known.is_proposed = number != 4;
+    known.granted_in = number == 5 ? 0 : 7;
+    known.sent_ns = number == 6 ? kNever : 50;
+    known.is_content_checked = number != 9;
+    known.is_pair_checked = number != 10;
+    known.excluded_ns = 10;
+  }
+  const auto check = [&] {
+    CHECK(robot.executed_versions().all == 7);     // 4 to 10
+    CHECK(robot.executed_versions().traced == 2);  // 7 and 8
+  };
+  check();
+  robot.forget(11);
+  CHECK(robot.versions.empty());
+  check();
+  robot.registered.emplace().epoch = 7;
+  robot.reset();
+  check();
+  CHECK(robot.forgotten_in == 7);
+  robot.reset();
+  CHECK(robot.forgotten_in == 7);
+}
+
+TEST_CASE("the rest in which a robot was switched on is no version of an agent, version 1 is") {
+  for (const VersionNumber number : {0u, 1u}) {
+    AuditedRobot robot;
+    robot.traceable_from_ns = 100;
+    add_content(robot, number, 0, 101);
+    robot.find(number)->was_executed = true;
+    CHECK(robot.executed_versions().all == number);
+  }
+}
+
+TEST_CASE("a version is found near its former index") {
+  AuditedRobot robot = robot_with(10, 0);
+  const std::size_t size = robot.versions.size();
+  for (VersionNumber number = 1; number <= 11; ++number) {
+    const KnownVersion* const expected = robot.find(number);
+    for (std::size_t index = 0; index <= size; ++index) CHECK(robot.find_near(index, number) == expected);
+  }
+}
+
+}  // namespace sidestep::audited_robot_test

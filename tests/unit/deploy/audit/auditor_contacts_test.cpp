@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts, crashes and counters in single messages of ground truth.
+#include <algorithm>
+
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/shown.hpp"
+
+namespace sidestep::auditor_contacts_test {
+
+using namespace std::chrono_literals;
+
+constexpr AuditInput kIncomplete{};
+
+TEST_CASE("contacts are reported one by one, in the order in which ground truth lists them") {
+  Shown shown;
+  shown.run(50ms);
+  shown.touch(0, 1);
+  shown.run(20ms);
+  CHECK(shown.count(AuditRule::kContact) == 1);
+  shown.touch(1, msg::NO_ROBOT);
+  shown.touch(1, 0);
+  shown.run(20ms);
+  REQUIRE(shown.count(AuditRule::kContact) == 3);
+  CHECK(shown.violations[0].robot == 0);
+  CHECK(shown.violations[1].robot == 1);
+  CHECK(shown.violations[1].epoch == 0);
+  CHECK_THAT(shown.violations[1].detail, ContainsSubstring("touches an obstacle"));
+  CHECK_THAT(shown.violations[2].detail, ContainsSubstring("touches robot 0"));
+  CHECK(shown.auditor.totals().unidentified_contacts == 0);
+}
+
+TEST_CASE("the last eight of many simultaneous contacts are known") {
+  const auto [added, unidentified] = GENERATE(table<int, std::uint64_t>({{8, 0}, {9, 1}, {20, 12}}));
+  Shown shown;
+  shown.run(50ms);
+  for (int i = 0; i < added; ++i) shown.touch(0, 1);
+  shown.run(20ms);
+  CHECK(shown.count(AuditRule::kContact) == static_cast<std::uint64_t>(added) - unidentified);
+  CHECK(shown.auditor.totals().unidentified_contacts == unidentified);
+}
+
+TEST_CASE("crashes of moving robots are reported, those that are not listed together") {
+  Shown shown;
+  shown.run(50ms);
+  SECTION("one") {
+    shown.crash(1);
+    shown.run(20ms);
+    REQUIRE(shown.count(AuditRule::kCrash) == 1);
+    CHECK(shown.violations.front().robot == 1);
+  }
+  SECTION("eight") {
+    for (int i = 0; i < 8; ++i) shown.crash(1);
+    shown.run(20ms);
+    CHECK(shown.count(AuditRule::kCrash) == 8);
+  }
+  SECTION("nine and more") {
+    const int more = GENERATE(1, 5);
+    for (int i = 0; i < 8 + more; ++i) shown.crash(1);
+    shown.run(20ms);
+    CHECK(shown.count(AuditRule::kCrash) == 9);
+    CHECK(shown.violations.front().robot == 0);
+  }
+  SECTION("one of a robot that was pushed") {
+    shown.push(1);
+    shown.run(20ms);
+    shown.crash(1);
+    shown.crash(0);
+    shown.run(20ms);
+    CHECK(shown.auditor.totals().excused_crashes == 1);
+    REQUIRE(shown.count(AuditRule::kCrash) == 1);
+    CHECK(shown.violations.front().robot == 0);
+  }
+  SECTION("one of a robot that is not on the roster") {
+    shown.crash(77);
+    shown.run(20ms);
+    CHECK(shown.count(AuditRule::kCrash) == 1);
+  }
+}
+
+TEST_CASE("an auditor that joins a run judges only what happens from then on") {
+  Shown shown(kIncomplete);
+  for (int i = 0; i < 100; ++i) (void)shown.header("truth", 30'000, shown.life);
+  shown.touch(0, 1);
+  shown.crash(0);
+  shown.truth.firmware_violations(0);
+  shown.run(50ms);
+  CHECK(shown.violations.empty());
+  CHECK(shown.auditor.totals().undecided_contacts == 1);
+  CHECK(shown.auditor.totals().undecided_crashes == 1);
+  shown.touch(0, 1);
+  shown.crash(1);
+  shown.run(50ms);
+  CHECK(shown.count(AuditRule::kContact) == 1);
+  CHECK(shown.count(AuditRule::kCrash) == 1);
+  CHECK(shown.violations.size() == 2);
+}
+
+TEST_CASE("a contact is undecided if the disturbance that excuses it may have been missed") {
+  Shown shown(kIncomplete);
+  shown.run(50ms);
+  shown.push(0);
+  shown.run(30ms);
+  std::uint64_t undecided = 1;
+  SECTION("a robot is not shown any more") { shown.truth.robots().resize(1); }
+  SECTION("messages were missed while a robot was disturbed") {
+    (void)shown.header("truth", 30'000, shown.life);
+  }
+  SECTION("nothing was missed") { undecided = 0; }
+  SECTION("a message of an agent was missed, which tells of no disturbance") {
+    (void)shown.header("registration", 0, Stage::kAgent);
+    shown.register_versions(0, {shown.rest(0)});
+    REQUIRE(shown.auditor.totals().missed == 1);
+    undecided = 0;
+  }
+  shown.run(3s);
+  shown.touch(0, 1);
+  shown.run(50ms);
+  CHECK(shown.auditor.totals().undecided_contacts == undecided);
+  CHECK(shown.count(AuditRule::kContact) == 1 - undecided);
+}
+
+TEST_CASE("robots in contact may appear a millimetre apart, and then push each other no more") {
+  const double apart_m = GENERATE(0.1805, 0.1815);
+  Shown shown;
+  shown.run(50ms);
+  shown.push(0);
+  shown.truth.robots()[0].x_m(1 - apart_m);
+  shown.truth.robots()[0].reference_error_m(2 - apart_m);
+  shown.run(20ms);
+  shown.touch(0, 1);
+  shown.run(3s);
+  shown.touch(1, msg::NO_ROBOT);
+  shown.run(20ms);
+  CHECK(shown.count(AuditRule::kContact) == (apart_m < 0.181 ? 0 : 1));
+}
+
+TEST_CASE("the counters of every simulator start again from zero") {
+  Shown shown;
+  shown.run(20ms);
+  shown.touch(0, 1);
+  shown.crash(1);
+  shown.truth.firmware_violations(1);
+  shown.run(50ms);
+  REQUIRE(shown.violations.size() == 3);
+  CHECK(shown.count(AuditRule::kFirmwareMonitor) == 1);
+  SECTION("the same counters of the next simulator are of new events") {
+    ++shown.life;
+    shown.run(50ms);
+    CHECK(shown.violations.size() == 6);
+  }
+  SECTION("higher counters of the same simulator are") {
+    shown.truth.firmware_violations(3);
+    shown.run(50ms);
+    CHECK(shown.count(AuditRule::kFirmwareMonitor) == 2);
+  }
+  SECTION("lower counters are not") {
+    shown.truth.contacts(0);
+    shown.truth.crashes_while_moving(0);
+    shown.truth.firmware_violations(0);
+    shown.run(50ms);
+    CHECK(shown.violations.size() == 3);
+  }
+  SECTION("of more than sixteen simulators the first is forgotten") {
+    for (int i = 1; i < 16; ++i) {
+      ++shown.life;
+      shown.truth.contacts(0), shown.truth.crashes_while_moving(0), shown.truth.firmware_violations(0);
+      shown.show();
+    }
+    shown.life -= 15;
+    shown.truth.contacts(1);
+    shown.show();
+    CHECK(shown.violations.size() == 3);
+    shown.life += 16;
+    shown.truth.contacts(0);
+    shown.show();
+    shown.life -= 16;
+    shown.truth.contacts(1);
+    shown.show();
+    CHECK(shown.violations.size() == 4);
+  }
+}
+
+}  // namespace sidestep::auditor_contacts_test

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much of a run an audit covered, and what follows for its verdict.
+#include "common/config/shared_rules.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/tampering.hpp"
+
+namespace sidestep::auditor_coverage_test {
+
+using namespace std::chrono_literals;
+
+void require_covered(const AuditTotals& totals) {
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.verdict() == AuditVerdict::kPassed);
+  CHECK(totals.coverage.messages >= 0.999);
+  CHECK(totals.coverage.versions >= 0.99);
+  CHECK(totals.coverage.pairs >= 0.99);
+  CHECK(totals.coverage.time >= 0.99);
+  CHECK(totals.coverage.reference >= 0.99);
+}
+
+TEST_CASE("an audit that hears everything covers everything") {
+  const AuditTotals totals = audit_of(crossing(), kComplete);
+  require_covered(totals);
+  CHECK(totals.coverage.share() == 1);
+  CHECK(totals.reference == AuditReference::kGroundTruth);
+  CHECK(totals.run_s > 3);
+  CHECK(totals.excused_time_share() == 0);
+}
+
+TEST_CASE("an audit that loses nothing judges a run, even if it joins late") {
+  const Duration joined_after = GENERATE(Duration{0}, Duration{1'700'000'000});
+  CAPTURE(to_seconds(joined_after));
+  require_covered(audit_of(degraded(crossing(), 1, 0, joined_after), {}));
+}
+
+TEST_CASE("an audit that hears 60 % does not pass") {
+  const std::uint64_t seed = GENERATE(1u, 2u, 3u);
+  const AuditTotals totals = audit_of(degraded(crossing(), seed, 0.4, Duration{0}), {});
+  INFO(verdict_line(totals));
+  CHECK(totals.violations == 0);
+  CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+  CHECK(totals.coverage.messages == Approx(0.6).margin(0.1));
+  CHECK_THAT(verdict_line(totals), ContainsSubstring("% of the messages were missed"));
+}
+
+TEST_CASE("an audit that finds a violation fails the run, however little it hears") {
+  History history = degraded(crossing(), 5, 0.2, Duration{0});
+  history.scenario.margin_m += 0.005;
+  const AuditTotals totals = audit_of(history, {});
+  CHECK(totals.coverage.share() < Coverage::kMinimum);
+  CHECK(totals.verdict() == AuditVerdict::kFailed);
+}
+
+/// The crossing without the messages of one type in the second half of it.
+template <typename Message>
+AuditTotals audit_without(const AuditInput& input) {
+  History history = crossing();
+  const Time from = history.messages.front().at + 1500ms;
+  std::erase_if(history.messages, [&](const ReceivedMessage& received) {
+    return received.at >= from && std::holds_alternative<Message>(received.message);
+  });
+  return audit_of(history, input);
+}
+
+TEST_CASE("an audit that no longer hears one kind of message does not pass, although there is no gap") {
+  const AuditInput input;
+  AuditTotals totals;
+  SECTION("facts") {
+    totals = audit_without<msg::Feedback>(input);
+    CHECK(totals.coverage.time < 0.7);
+  }
+  SECTION("proposals") {
+    totals = audit_without<msg::Proposal>(input);
+    CHECK(totals.coverage.versions < 0.7);
+  }
+  SECTION("commands") {
+    totals = audit_without<msg::Command>(input);
+    CHECK(totals.coverage.versions < 0.7);
+  }
+  SECTION("ground truth") {
+    totals = audit_without<msg::GroundTruth>(input);
+    CHECK(totals.coverage.reference < 0.7);
+  }
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.violations == 0);
+  CHECK(totals.coverage.messages == 1);
+  CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+}
+
+TEST_CASE("pairs whose possible excuse is not known lower the coverage") {
+  History history = crossing();
+  // As if all versions had been granted with 5 cm too little margin, on bases that nobody has heard of.
+  history.scenario.margin_m += 0.05;
+  history.each_version([](msg::Version& version) {
+    if (version.version_number() != 0) version.base(version.version_number() - 1);
+  });
+  std::erase_if(history.messages, [](const ReceivedMessage& received) {
+    return std::holds_alternative<msg::Proposal>(received.message);
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals));
+  REQUIRE(totals.undecided_pairs > 20);
+  CHECK(totals.coverage.pairs ==
+        Approx(1 - static_cast<double>(totals.undecided_pairs) / static_cast<double>(totals.compared_pairs)));
+}
+
+TEST_CASE("an audit that hears no coordinator does not pass") {
+  History history = crossing();
+  std::erase_if(history.messages, [](const ReceivedMessage& received) {
+    return std::holds_alternative<msg::Verdict>(received.message) ||
+           std::holds_alternative<msg::LedgerPage>(received.message) ||
+           std::holds_alternative<msg::CoordinatorState>(received.message);
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.violations == 0);
+  CHECK(totals.coverage.versions < 0.1);
+  CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+}
+
+TEST_CASE("agents' messages without any effect need not be heard, as those of a host that is cut off") {
+  History history = crossing();
+  history.remove_if<msg::Command>([](const msg::Command& command) { return !command.has_version(); });
+  const AuditTotals totals = audit_of(history, {});
+  CHECK(totals.missed > 0);
+  require_covered(totals);
+}
+
+TEST_CASE("a robot that sends nothing is covered, but a robot whose facts are missed is not") {
+  History history = crossing();
+  const Time begin = history.messages.front().at, from = begin + 1500ms, until = begin + 2500ms;
+  const bool were_sent = GENERATE(false, true);
+  CAPTURE(were_sent);
+  std::uint64_t removed = 0;
+  std::vector<ReceivedMessage> kept;
+  for (ReceivedMessage received : history.messages) {
+    auto* feedback = std::get_if<msg::Feedback>(&received.message);
+    const bool is_of_robot = feedback && feedback->robot() == 2;
+    if (is_of_robot && received.at >= from && received.at < until) {
+      ++removed;
+      continue;
+    }
+    // Closes the gap in the message numbers, as if the robot had not sent the removed messages.
+    if (is_of_robot && !were_sent)
+      feedback->header().message_number(feedback->header().message_number() - removed);
+    // What it executed meanwhile remains unknown.
+    const auto* command = std::get_if<msg::Command>(&received.message);
+    if (command && command->robot() == 2 && received.at >= from - 100ms && received.at < until) continue;
+    const auto* proposal = std::get_if<msg::Proposal>(&received.message);
+    if (proposal && proposal->robot() == 2 && received.at >= from - 100ms && received.at < until) continue;
+    if (std::holds_alternative<msg::LedgerPage>(received.message) && received.at >= from - 100ms &&
+        received.at < until)
+      continue;
+    kept.push_back(received);
+  }
+  history.messages = std::move(kept);
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(removed > 30);
+  CHECK(totals.coverage.time == (were_sent ? Approx(1 - 1 / totals.run_s).margin(0.03) : Approx(1)));
+}
+
+TEST_CASE("missed facts leave no doubt if all versions that the robot executed meanwhile are known") {
+  History history = crossing();
+  const Time from = history.messages.front().at + 1500ms;
+  history.remove_if<msg::Feedback>([&](const msg::Feedback& f) {
+    return f.robot() == 2 && time_from_ns(f.header().stamp_ns()) >= from &&
+           time_from_ns(f.header().stamp_ns()) < from + 700ms;
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.violations == 0);
+  CHECK(totals.coverage.time == 1);
+  CHECK(totals.coverage.messages < 1);
+}
+
+TEST_CASE("messages of processes with other rules are refused and counted") {
+  const Scenario& scenario = crossing().scenario;
+  SimSystem system(scenario, 4);
+  Scenario changed = scenario;
+  changed.margin_m = 0.05;
+  system.use_scenario("vision", changed);
+  system.kill("vision");
+  system.restart("vision");
+  system.use_scenario(twin_process(3), changed);
+  system.restart(twin_process(3));
+  SimBus bus(system.network());
+  bus.become_observer();
+  const bool refuses = GENERATE(false, true);
+  CAPTURE(refuses);
+  Auditor auditor(scenario, kComplete);
+  if (refuses) refuse_other_rules(bus, scenario, auditor);
+  listen(bus, scenario, auditor);
+  std::uint64_t received = 0;
+  bus.observe<msg::Command>(topics::kCommand, 3, [&](const msg::Command& command) {
+    received += command.header().rules() != SharedRules(scenario).fingerprint();
+  });
+  system.run_for(500ms);
+  REQUIRE(received > 10);
+  const AuditTotals totals = auditor.totals();
+  INFO(lines(totals));
+  CHECK((totals.refused >= received) == refuses);
+  CHECK((totals.refused > 0) == refuses);
+  if (refuses) CHECK(totals.violations == 0);
+}
+
+}  // namespace sidestep::auditor_coverage_test

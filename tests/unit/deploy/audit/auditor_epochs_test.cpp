@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// What single facts prove about epochs, registrations, and a robot's lives.
+#include "common/motion/safety_budget.hpp"
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/stage.hpp"
+
+namespace sidestep::auditor_epochs_test {
+
+using namespace std::chrono_literals;
+
+constexpr AuditInput kIncomplete{};
+
+TEST_CASE("a robot executes no version that was sent under an epoch older than the one it obeyed before") {
+  Stage stage;
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 1, 50ms);
+  stage.grant(first);
+  bool is_stale = false;
+  const auto obey = [&] {
+    stage.advance(1ms);
+    stage.facts[0].obeyed_epoch(stage.epoch + 1);
+    stage.report(0);
+    stage.advance(1ms);
+  };
+  SECTION("sent before it obeyed") {
+    stage.command(first);
+    obey();
+  }
+  SECTION("sent at the time of its first fact with the epoch") {
+    stage.advance(1ms);
+    stage.facts[0].obeyed_epoch(stage.epoch + 1);
+    stage.report(0);
+    stage.command(first);
+  }
+  SECTION("sent afterwards") {
+    obey();
+    stage.report(0);
+    stage.command(first);
+    is_stale = true;
+  }
+  SECTION("sent afterwards, under the new epoch") {
+    obey();
+    ++stage.epoch;
+    stage.command(first);
+    --stage.epoch;
+  }
+  stage.now = time_from_ns(first.start_ns());
+  stage.facts[0].executing(first);
+  stage.report(0);
+  check_only(stage, AuditRule::kStaleEpoch, is_stale ? 1 : 0);
+  if (is_stale) CHECK(stage.violations.front().epoch == stage.epoch);
+}
+
+TEST_CASE("a robot that still obeys an older epoch than that of a grant is reported once") {
+  const bool is_complete = GENERATE(true, false);
+  Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
+  stage.facts[1].obeyed_epoch(stage.epoch - 1);
+  stage.register_versions(0, {stage.rest(0)}), stage.register_versions(1, {stage.rest(1)});
+  stage.report(0);
+  bool is_excused = false;
+  SECTION("without an excuse") { stage.report(1); }
+  SECTION("although it is attested to be absent") {
+    msg::AbsenceAttestation attestation;
+    attestation.robot(1);
+    stage.auditor.on_attestation(attestation, stage.now);
+    is_excused = true;
+  }
+  SECTION("although another one is attested to be absent") {
+    msg::AbsenceAttestation attestation;
+    attestation.robot(0);
+    stage.auditor.on_attestation(attestation, stage.now);
+  }
+  SECTION("while it is lifted") {
+    stage.facts[1].is_lifted(true);
+    is_excused = true;
+  }
+  const msg::Version first = stage.next(stage.rest(0), 1);
+  stage.grant(first);
+  stage.report(1);
+  CHECK(stage.violations.empty());  // it may have been sent before the grant
+  stage.advance(1ms);
+  for (int i = 0; i < 3; ++i) stage.report(1);
+  CHECK(stage.count(AuditRule::kAllRegistered) == (is_complete && !is_excused ? 1 : 0));
+}
+
+TEST_CASE("a robot that executes a version of an epoch obeys that epoch, even if messages may be missed") {
+  Stage stage(stage_scenario(), kIncomplete);
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 1);
+  const bool is_proposed = GENERATE(true, false);
+  if (is_proposed)
+    stage.grant(first);
+  else
+    stage.decide(0, 1, 1);
+  const bool is_obeyed = GENERATE(true, false);
+  if (!is_obeyed) stage.facts[0].obeyed_epoch(stage.epoch - 1);
+  CAPTURE(is_proposed, is_obeyed);
+  stage.now = time_from_ns(first.start_ns());
+  stage.facts[0].executing(first);
+  for (int i = 0; i < 3; ++i) stage.report(0);
+  CHECK(stage.count(AuditRule::kAllRegistered) == (is_proposed && !is_obeyed ? 1 : 0));
+}
+
+/// Robot 0 executes version 1 of the last epoch when its agent registers in the next one.
+struct Registering : Stage {
+  explicit Registering(const AuditInput& input) : Stage(stage_scenario(), input) {
+    begin();
+    first = next(rest(0), 1);
+    drive(first);
+    ++epoch;
+    facts[0].obeyed_epoch(epoch);
+    report(0);
+    advance(1ms);
+  }
+  /// The robot repeats the time of a command that was sent after the registration.
+  void report_later() {
+    advance(1ms);
+    facts[0].command_stamp_ns(to_ns(now));
+    report(0);
+    report(0);
+  }
+
+  msg::Version first;
+};
+
+TEST_CASE("an agent registers what its robot executes, after the robot has acknowledged it and the epoch") {
+  const bool is_complete = GENERATE(true, false);
+  Registering stage(is_complete ? kComplete : kIncomplete);
+  std::uint64_t missing = 0, early = 0;
+  SECTION("it registers the version") { stage.register_versions(0, {stage.rest(0), stage.first}); }
+  SECTION("it does not") {
+    stage.register_versions(0, {stage.rest(0)});
+    missing = 1;
+  }
+  SECTION("it does not, but the robot executes a version of the new epoch since") {
+    stage.register_versions(0, {stage.rest(0)});
+    stage.register_versions(1, {stage.rest(1)});
+    stage.facts[1].obeyed_epoch(stage.epoch);
+    const msg::Version second = stage.next(stage.first, 2);
+    stage.grant(second);
+    stage.command(second);
+    stage.now = time_from_ns(second.start_ns());
+    stage.facts[0].executing(second);
+    stage.violations.clear();  // its base is not in the ledger
+  }
+  SECTION("the robot does not obey the epoch yet") {
+    ++stage.epoch;
+    stage.register_versions(0, {stage.rest(0), stage.first});
+    early = 1;
+  }
+  SECTION("the robot is off its reference") {
+    stage.register_versions(0, {stage.rest(0)});
+    msg::Version stop = stage.next(stage.first, 9, 0ms);
+    stage.facts[0].executing(stop);
+    stage.facts[0].is_off_reference(true);
+  }
+  SECTION("the robot is lifted") {
+    stage.register_versions(0, {stage.rest(0)});
+    stage.facts[0].is_lifted(true);
+  }
+  stage.report_later();
+  INFO(stage.lines());
+  CHECK(stage.count(AuditRule::kRegistration) == missing);
+  CHECK(stage.count(AuditRule::kAcknowledged) == early);
+  if (missing + early > 0) CHECK(stage.violations.front().epoch == stage.epoch);
+  CHECK(stage.violations.size() == missing + early);
+}
+
+TEST_CASE("a robot that obeys an older agent has not acknowledged the one that registers") {
+  Registering stage(kComplete);
+  stage.facts[0].obeyed_incarnation(Stage::kAgent);
+  msg::Registration registration;
+  registration.header(stage.header("registration", 0, Stage::kAgent + 1));
+  registration.epoch(stage.epoch);
+  registration.version_count(1);
+  registration.versions()[0] = stage.first;
+  stage.auditor.on_registration(registration, stage.now);
+  stage.report(0);
+  CHECK(stage.violations.empty());  // it may have been sent before the registration
+  stage.report_later();
+  CHECK(stage.count(AuditRule::kAcknowledged) == 1);
+}
+
+TEST_CASE(
+    "if messages may be missed, a fact is later than a registration only by a command that was sent later") {
+  Registering stage(kIncomplete);
+  stage.register_versions(0, {stage.rest(0)});
+  const std::int64_t registered_ns = to_ns(stage.now);
+  std::uint64_t expected = 0;
+  SECTION("of a command before") { stage.facts[0].command_stamp_ns(registered_ns - 1); }
+  SECTION("of a command at that time") { stage.facts[0].command_stamp_ns(registered_ns); }
+  SECTION("of a later command") {
+    stage.facts[0].command_stamp_ns(registered_ns + 1);
+    expected = 1;
+  }
+  SECTION("of a later command of another agent") {
+    stage.facts[0].command_stamp_ns(registered_ns + 1);
+    stage.facts[0].obeyed_incarnation(Stage::kAgent + 1);
+  }
+  SECTION("of a clock that was set back") {
+    stage.now -= 5ms;
+    stage.register_versions(0, {stage.rest(0)});
+    stage.facts[0].command_stamp_ns(registered_ns + 1);
+    stage.now += 5ms;
+  }
+  stage.advance(1ms);
+  stage.report(0);
+  check_only(stage, AuditRule::kRegistration, expected);
+}
+
+TEST_CASE("facts of a robot's earlier life are ignored, until it has been silent for a second") {
+  const bool is_near = GENERATE(true, false);
+  const bool was_silent = GENERATE(true, false);
+  CAPTURE(is_near, was_silent);
+  Stage stage;
+  const Incarnation before = Stage::kLife + 1'000'000 - (is_near ? 100'000 : 100'001);
+  const auto report = [&](Incarnation life, double x_m) {
+    msg::Feedback fact = stage.facts[0];
+    fact.header(stage.header("feedback", 0, life));
+    fact.valid_at_ns(to_ns(stage.now));
+    fact.executing().x_m(x_m);
+    stage.auditor.on_feedback(fact, stage.now);
+  };
+  report(Stage::kLife + 1'000'000, -1);
+  stage.advance(was_silent ? 1s : 999ms);
+  // A robot that rests elsewhere is on another floor, if the fact counts.
+  report(before, -2);
+  CHECK(stage.violations.empty());
+  report(before, -2.5);
+  const bool counts = !is_near && was_silent;
+  CHECK(stage.count(AuditRule::kUniqueVersion) == (counts ? 1 : 0));
+}
+
+TEST_CASE("a robot of a later simulator is on a new floor, one whose firmware has restarted is not") {
+  const auto [later, is_new_floor] =
+      GENERATE(table<Incarnation, bool>({{1, false}, {100'000, false}, {100'001, true}}));
+  CAPTURE(later);
+  Stage stage;
+  stage.begin();
+  msg::Feedback fact = stage.facts[0];
+  fact.header(stage.header("feedback", 0, Stage::kLife + later));
+  fact.valid_at_ns(to_ns(stage.now));
+  fact.executing().x_m(-2);
+  stage.auditor.on_feedback(fact, stage.now);
+  CHECK(stage.count(AuditRule::kUniqueVersion) == (is_new_floor ? 0 : 1));
+  // The ledger may still tell of the former floor.
+  if (!is_new_floor) return;
+  msg::Version former = stage.next(stage.rest(0), 7);
+  stage.show_page({former, stage.rest(1)});
+  CHECK(stage.count(AuditRule::kLedgerPage) == 0);
+  ++stage.epoch;
+  stage.show_page({former, stage.rest(1)});
+  CHECK(stage.count(AuditRule::kLedgerPage) == 2);
+}
+
+TEST_CASE("a version that was executed without a command is reported once") {
+  Stage stage;
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 1);
+  stage.grant(first);
+  stage.now = time_from_ns(first.start_ns());
+  stage.facts[0].executing(first);
+  stage.report(0);
+  stage.report(0);
+  check_only(stage, AuditRule::kSent, 1);
+}
+
+}  // namespace sidestep::auditor_epochs_test

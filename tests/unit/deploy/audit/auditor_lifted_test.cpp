@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the ledger must keep of a robot that is off the floor.
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/stage.hpp"
+
+namespace sidestep::auditor_lifted_test {
+
+using namespace std::chrono_literals;
+
+/// Robot 0 executes version 1 and is lifted. It has also been granted version 2, which continues version 1,
+/// the place 3 at which it is to be put down, and version 4, which continues from there.
+struct Lifted : Stage {
+  Lifted() {
+    begin();
+    const msg::Version first = next(rest(0), 1);
+    second = next(first, 2, 200ms);
+    place = next(rest(0), 3, 300ms);
+    later = next(place, 4, 400ms);
+    for (const auto& version : {first, second, place, later}) grant(version);
+    command(first);
+    advance(50ms);
+    facts[0].executing(first);
+    report(0);
+    advance(1ms);
+    msg::Version nothing;
+    nothing.robot(0);
+    nothing.base(1);
+    facts[0].executing(nothing);
+    facts[0].is_lifted(true);
+    report(0);
+    violations.clear();
+    advance(1ms);
+  }
+
+  msg::Version second, place, later;
+};
+
+TEST_CASE("the ledger may forget what a lifted robot was to do, but not what it may do once it is put down") {
+  Lifted lifted;
+  const msg::Version other = lifted.rest(1);
+  SECTION("all of it is kept") {
+    lifted.show_page({lifted.second, lifted.place, lifted.later, other});
+    CHECK(lifted.violations.empty());
+  }
+  SECTION("what continues the version that it executed last is forgotten") {
+    lifted.show_page({lifted.place, lifted.later, other});
+    CHECK(lifted.violations.empty());
+  }
+  SECTION("its place is forgotten") {
+    lifted.show_page({lifted.later, other});
+    check_only(lifted, AuditRule::kLedgerPage, 1);
+    CHECK(lifted.violations.front().version == 3);
+  }
+  SECTION("what continues its place is forgotten") {
+    lifted.show_page({lifted.place, other});
+    check_only(lifted, AuditRule::kLedgerPage, 1);
+    CHECK(lifted.violations.front().version == 4);
+  }
+}
+
+}  // namespace sidestep::auditor_lifted_test

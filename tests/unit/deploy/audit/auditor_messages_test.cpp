@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages of agents and coordinators, one by one: which are invalid, and what they prove.
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/stage.hpp"
+
+namespace sidestep::auditor_messages_test {
+
+using namespace std::chrono_literals;
+
+constexpr AuditInput kIncomplete{};
+
+TEST_CASE("invalid messages are counted one by one, and change nothing") {
+  Stage stage;
+  stage.begin();
+  const msg::Version version = stage.next(stage.rest(0), 1);
+  msg::Version of_other = version;
+  of_other.robot(1);
+  SECTION("a proposal without candidates, or with too many") {
+    msg::Proposal proposal;
+    proposal.candidate_count(GENERATE(std::uint8_t{0}, std::uint8_t{msg::MAX_CANDIDATES + 1}));
+    proposal.header(stage.header("proposal", 0));
+    stage.auditor.on_proposal(proposal, stage.now);
+  }
+  SECTION("a proposal of another robot's agent") {
+    msg::Proposal proposal;
+    proposal.candidate_count(1);
+    proposal.header(stage.header("proposal", 1));
+    stage.auditor.on_proposal(proposal, stage.now);
+  }
+  SECTION("a proposal of a robot that is not on the roster") {
+    const std::uint32_t robot = GENERATE(2u, 1023u, 1024u, 4'000'000'000u);
+    msg::Proposal proposal;
+    proposal.robot(robot);
+    proposal.candidate_count(1);
+    proposal.header(stage.header("proposal", robot));
+    stage.auditor.on_proposal(proposal, stage.now);
+  }
+  SECTION("a registration without an epoch, or with too many versions") {
+    msg::Registration registration;
+    const bool has_epoch = GENERATE(false, true);
+    registration.epoch(has_epoch ? 5 : 0);
+    registration.version_count(has_epoch ? msg::MAX_REGISTERED_VERSIONS + 1 : 1);
+    registration.header(stage.header("registration", 0));
+    stage.auditor.on_registration(registration, stage.now);
+  }
+  SECTION("a registration of another robot's version") { stage.register_versions(0, {of_other}); }
+  SECTION("a registration of another robot's agent") {
+    msg::Registration registration;
+    registration.epoch(5);
+    registration.header(stage.header("registration", 1));
+    stage.auditor.on_registration(registration, stage.now);
+  }
+  SECTION("a command of another robot's agent") {
+    msg::Command command;
+    command.header(stage.header("command", 1));
+    stage.auditor.on_command(command, stage.now);
+  }
+  SECTION("a command with another robot's version") {
+    msg::Command command;
+    command.header(stage.header("command", 0));
+    command.has_version(true);
+    command.version(of_other);
+    stage.auditor.on_command(command, stage.now);
+  }
+  SECTION("a verdict for no robot") { stage.decide(GENERATE(2u, 4'000'000'000u), 1, 1); }
+  SECTION("an attestation of no robot") {
+    msg::AbsenceAttestation attestation;
+    attestation.robot(GENERATE(2u, 4'000'000'000u));
+    stage.auditor.on_attestation(attestation, stage.now);
+  }
+  SECTION("a disturbance of no robot, or of no kind") {
+    msg::Disturbance disturbance;
+    const bool is_known = GENERATE(true, false);
+    disturbance.robot(is_known ? 0 : 2);
+    disturbance.disturbance_kind(is_known ? static_cast<msg::DisturbanceKind>(99)
+                                          : msg::DisturbanceKind::DISTURBANCE_PUSH);
+    stage.auditor.on_disturbance(disturbance, stage.now);
+  }
+  SECTION("facts that are no numbers") {
+    msg::Feedback fact = stage.facts[0];
+    SECTION("x") { fact.x_m(INFINITY); }
+    SECTION("y") { fact.y_m(NAN); }
+    SECTION("speed along x") { fact.vx_mps(NAN); }
+    SECTION("speed along y") { fact.vy_mps(-INFINITY); }
+    SECTION("tracking error") { fact.tracking_error_m(NAN); }
+    SECTION("time") {
+      fact.valid_at_ns(GENERATE(std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()));
+    }
+    stage.report(fact);
+  }
+  SECTION("facts with another robot's version") {
+    msg::Feedback fact = stage.facts[0];
+    fact.executing(of_other);
+    stage.report(fact);
+  }
+  SECTION("facts of another robot") {
+    msg::Feedback fact = stage.facts[0];
+    fact.header(stage.header("feedback", 1));
+    stage.auditor.on_feedback(fact, stage.now);
+  }
+  SECTION("world states and ground truth of no time, or with too many robots") {
+    const bool has_time = GENERATE(true, false);
+    msg::WorldState world;
+    world.valid_at_ns(has_time ? 1 : -1);
+    world.robots().resize(has_time ? kMaxRobots + 1 : 0);
+    world.header(stage.header("world", 20'000));
+    stage.auditor.on_world(world, stage.now);
+    CHECK(stage.auditor.totals().invalid == 1);
+    msg::GroundTruth truth;
+    truth.valid_at_ns(has_time ? 1 : -1);
+    truth.robots().resize(has_time ? kMaxRobots + 1 : 0);
+    truth.header(stage.header("truth", 30'000));
+    stage.auditor.on_truth(truth, stage.now);
+    CHECK(stage.auditor.totals().invalid == 2);
+    return;
+  }
+  CHECK(stage.auditor.totals().invalid == 1);
+  CHECK(stage.violations.empty());
+  stage.grant(version);
+  CHECK(stage.violations.empty());
+}
+
+TEST_CASE("robots may have every number up to 1023") {
+  const RobotId robot = GENERATE(2u, 820u, 1023u);
+  Scenario scenario = stage_scenario();
+  scenario.robots[1].id = robot;
+  Auditor auditor(scenario, kComplete);
+  msg::Feedback fact;
+  fact.robot(robot);
+  fact.header().sender(robot);
+  fact.header().message_number(1);
+  fact.executing().robot(robot);
+  auditor.on_feedback(fact, Time{1s});
+  msg::Disturbance disturbance;
+  disturbance.robot(robot);
+  auditor.on_disturbance(disturbance, Time{1s});
+  msg::Verdict verdict;
+  verdict.robot(robot);
+  auditor.on_verdict(verdict, Time{1s});
+  CHECK(auditor.totals().received == 2);
+  CHECK(auditor.totals().invalid == 0);
+}
+
+TEST_CASE("a version number stands for one version of one agent") {
+  const bool is_complete = GENERATE(true, false);
+  Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
+  stage.begin();
+  const msg::Version version = stage.next(stage.rest(0), 1);
+  stage.grant(version);
+  msg::Version other = version;
+  SECTION("the same again") {
+    stage.command(other);
+    CHECK(stage.violations.empty());
+  }
+  SECTION("another one of the agent") {
+    other.y_m(0.1);
+    stage.command(other);
+    CHECK(stage.count(AuditRule::kUniqueVersion) == 1);
+    CHECK(stage.violations.front().robot == 0);
+    CHECK(stage.violations.front().version == 1);
+    CHECK(stage.violations.front().epoch == 0);
+  }
+  SECTION("one of another agent, whose predecessor may not have been heard granted") {
+    other.incarnation(other.incarnation() + 1);
+    stage.command(other);
+    CHECK(stage.count(AuditRule::kUniqueVersion) == (is_complete ? 1 : 0));
+  }
+  SECTION("the rest of the robot on another floor") {
+    msg::Version rest = stage.rest(1);
+    rest.x_m(1.5);
+    stage.register_versions(1, {rest});
+    CHECK(stage.count(AuditRule::kUniqueVersion) == (is_complete ? 1 : 0));
+  }
+}
+
+/// A heartbeat, with these robots missing.
+msg::CoordinatorState state(Stage& stage, msg::CoordinatorMode mode,
+                            const std::vector<RobotId>& missing = {}) {
+  msg::CoordinatorState state;
+  state.header(stage.header("coordinator", Stage::kCoordinator, stage.coordinator_life));
+  state.epoch(stage.epoch);
+  state.coordinator_mode(mode);
+  for (const RobotId robot : missing) {
+    state.notices().emplace_back().robot(robot);
+    state.notices().back().is_missing(true);
+  }
+  return state;
+}
+
+TEST_CASE("a coordinator that still misses registrations after it has granted is reported once") {
+  constexpr auto kMode = msg::CoordinatorMode::COORDINATOR_REGISTERING;
+  const bool is_complete = GENERATE(true, false);
+  Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
+  stage.begin();
+  std::uint64_t expected = 0;
+  SECTION("before the grant") {
+    stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
+    stage.advance(1ms);
+    stage.grant(stage.next(stage.rest(0), 1));
+  }
+  SECTION("at the time of the grant") {
+    stage.grant(stage.next(stage.rest(0), 1));
+    stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
+  }
+  SECTION("after the grant") {
+    stage.grant(stage.next(stage.rest(0), 1));
+    stage.advance(1ns);
+    SECTION("none is missing") { stage.auditor.on_coordinator(state(stage, kMode), stage.now); }
+    SECTION("one is missing") {
+      stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
+      stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
+      expected = 1;
+      CHECK(stage.violations.front().robot == 1);
+      CHECK(stage.violations.front().epoch == stage.epoch);
+    }
+    SECTION("in another epoch") {
+      ++stage.epoch;
+      stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
+    }
+    SECTION("of another run of the coordinator") {
+      ++stage.coordinator_life;
+      stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
+    }
+    SECTION("by a clock that was set back") {
+      stage.advance(1ns);
+      stage.auditor.on_coordinator(state(stage, kMode), stage.now);
+      msg::CoordinatorState late = state(stage, kMode, {1});
+      late.header().stamp_ns(to_ns(stage.now) - 1);
+      stage.auditor.on_coordinator(late, stage.now);
+      // The auditor's own clock tells it if it receives every message at once.
+      expected = is_complete ? 1 : 0;
+    }
+  }
+  INFO(stage.lines());
+  CHECK(stage.count(AuditRule::kAllRegistered) == expected);
+  CHECK(stage.violations.size() == expected);
+}
+
+/// A command without a version.
+void command(Stage& stage, Epoch epoch, Incarnation agent = Stage::kAgent) {
+  msg::Command command;
+  command.header(stage.header("command", 0, agent));
+  command.epoch(epoch);
+  stage.auditor.on_command(command, stage.now);
+}
+
+TEST_CASE("an agent never returns to a lower epoch") {
+  const bool is_complete = GENERATE(true, false);
+  Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
+  command(stage, 5);
+  command(stage, 6);
+  std::uint64_t expected = 0;
+  SECTION("the same epoch, and higher ones") {
+    for (const Epoch epoch : {6u, 7u, 7u, 9u}) command(stage, epoch);
+  }
+  SECTION("a lower one") {
+    command(stage, 5);
+    command(stage, 6);
+    command(stage, 5);
+    expected = 2;
+    CHECK(stage.violations.front().epoch == 5);
+  }
+  SECTION("another agent begins with a lower one") {
+    command(stage, 4, Stage::kAgent + 1);
+    command(stage, 5, Stage::kAgent + 1);
+    command(stage, 6);
+    command(stage, 4, Stage::kAgent + 1);
+    expected = 1;
+  }
+  SECTION("an earlier command arrives late") {
+    msg::Command late;
+    late.header(stage.header("command", 0, Stage::kAgent));
+    late.epoch(5);
+    command(stage, 6);
+    stage.auditor.on_command(late, stage.now);
+    command(stage, 6);
+  }
+  SECTION("of many agents only the latest are remembered") {
+    for (Incarnation other = 1; other <= 7; ++other) command(stage, 5, Stage::kAgent + other);
+    command(stage, 5);
+    CHECK(stage.count(AuditRule::kEpochRegression) == 1);
+    command(stage, 6);
+    command(stage, 5, Stage::kAgent + 8);
+    command(stage, 5);
+    expected = 1;
+  }
+  CHECK(stage.count(AuditRule::kEpochRegression) == expected);
+  CHECK(stage.violations.size() == expected);
+}
+
+TEST_CASE("the run begins when all robots are heard and something is granted, at the latest a second later") {
+  Stage stage(stage_scenario(), kIncomplete);
+  const auto run_s = [&] {
+    stage.auditor.advance(stage.now);
+    return stage.auditor.totals().run_s;
+  };
+  const auto granting = [&] {
+    stage.auditor.on_coordinator(state(stage, msg::CoordinatorMode::COORDINATOR_GRANTING), stage.now);
+  };
+  stage.report(0);
+  stage.advance(5s);
+  SECTION("no robot may move yet") {
+    stage.auditor.on_coordinator(state(stage, msg::CoordinatorMode::COORDINATOR_REGISTERING), stage.now);
+    stage.advance(2s);
+    CHECK(run_s() == 0);
+  }
+  SECTION("all robots were heard") {
+    stage.report(1);
+    granting();
+    stage.advance(2s);
+    granting();
+    CHECK(run_s() == Approx(2));
+  }
+  SECTION("the last robot is heard later") {
+    granting();
+    stage.advance(300ms);
+    stage.report(1);
+    granting();
+    stage.advance(2s);
+    CHECK(run_s() == Approx(2));
+  }
+  SECTION("a robot is not heard") {
+    granting();
+    stage.advance(999ms);
+    granting();
+    CHECK(run_s() == 0);
+    stage.advance(1ms);
+    granting();
+    stage.advance(2s);
+    CHECK(run_s() == Approx(2));
+  }
+}
+
+}  // namespace sidestep::auditor_messages_test

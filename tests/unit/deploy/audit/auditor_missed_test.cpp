@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Messages that an auditor misses, or hears late, explain what it hears. Each of these is no violation.
+#include <algorithm>
+
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/tampering.hpp"
+
+namespace sidestep::auditor_missed_test {
+
+using namespace std::chrono_literals;
+
+/// The audit of a history of which all messages of one type arrive later.
+template <typename Late>
+AuditTotals audit_delayed(const History& history, Duration delay) {
+  std::vector<Delivery> deliveries;
+  for (const ReceivedMessage& received : history.messages) {
+    const bool is_late = std::holds_alternative<Late>(received.message);
+    deliveries.push_back({received.at + (is_late ? delay : Duration{0}), &received.message});
+  }
+  std::ranges::stable_sort(deliveries, {}, &Delivery::at);
+  return audit_of(history.scenario, deliveries, {});
+}
+
+void require_no_violation(const AuditTotals& totals) {
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  REQUIRE(totals.violations == 0);
+}
+
+TEST_CASE("an auditor that is so overloaded that all facts reach it late raises no false alarm") {
+  const Duration delay = GENERATE(Duration{8ms}, Duration{40ms}, Duration{150ms});
+  CAPTURE(to_seconds(delay));
+  require_no_violation(audit_delayed<msg::Feedback>(crossing(), delay));
+}
+
+TEST_CASE("nor does one that all messages of another kind reach late") {
+  SECTION("verdicts") { require_no_violation(audit_delayed<msg::Verdict>(crossing(), 150ms)); }
+  SECTION("pages of the ledger") { require_no_violation(audit_delayed<msg::LedgerPage>(crossing(), 150ms)); }
+  SECTION("proposals") { require_no_violation(audit_delayed<msg::Proposal>(crossing(), 150ms)); }
+  SECTION("commands") { require_no_violation(audit_delayed<msg::Command>(crossing(), 150ms)); }
+  SECTION("registrations") { require_no_violation(audit_delayed<msg::Registration>(crossing(), 150ms)); }
+  SECTION("ground truth") { require_no_violation(audit_delayed<msg::GroundTruth>(crossing(), 150ms)); }
+}
+
+TEST_CASE(
+    "a robot that comes back after an attested absence has not registered, which an auditor that missed the "
+    "attestation cannot tell") {
+  History history = crossing();
+  const Time back = history.messages.front().at + 2s;
+  const auto is_of_absent = [](const auto& message) { return message.robot() == 3; };
+  history.remove_if<msg::Registration>(is_of_absent);
+  history.remove_if<msg::Command>(is_of_absent);
+  history.remove_if<msg::Proposal>(is_of_absent);
+  history.remove_if<msg::Verdict>(is_of_absent);
+  history.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
+    std::erase_if(page.versions(), [&](const msg::Version& version) { return version.robot() == 3; });
+  });
+  std::uint64_t sent = 0;
+  std::optional<msg::Version> rest;
+  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) {
+    if (fact.robot() != 3) return;
+    if (!rest) rest = fact.executing();
+    fact.executing(*rest);
+    fact.obeyed_epoch(0);
+    fact.obeyed_incarnation(0);
+    fact.header().message_number(++sent);
+  });
+  std::erase_if(history.messages, [&](const ReceivedMessage& received) {
+    const auto* fact = std::get_if<msg::Feedback>(&received.message);
+    return fact && fact->robot() == 3 && received.at < back;
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(lines(totals));
+  CHECK(count(totals, AuditRule::kAllRegistered) == 0);
+}
+
+TEST_CASE("two agents may give their proposals one number, and an auditor may hear one of them only") {
+  History history = crossing();
+  const Switch s = example_switch(history);
+  // As if a restarted agent had proposed the same number, and been granted its second candidate.
+  std::optional<ReceivedMessage> grant;
+  for (const ReceivedMessage& received : history.messages) {
+    const auto* verdict = std::get_if<msg::Verdict>(&received.message);
+    if (verdict && verdict->robot() == s.robot && verdict->granted_version() == s.number) grant = received;
+  }
+  REQUIRE(grant);
+  auto& verdict = std::get<msg::Verdict>(grant->message);
+  verdict.request_stamp_ns(verdict.request_stamp_ns() + 3'000'000);
+  verdict.granted_version(s.number + 700);
+  const auto place = std::ranges::find_if(
+      history.messages, [&](const ReceivedMessage& received) { return received.at > grant->at + 5ms; });
+  history.messages.insert(place, {grant->at + 5ms, verdict});
+  require_no_violation(audit_of(history, {}));
+}
+
+TEST_CASE(
+    "a robot that starts beside an obstacle may drive away, also if the versions before are not received") {
+  History history = crossing();
+  // Until the first of the others passes there.
+  const Time end = history.messages.front().at + 1500ms;
+  std::erase_if(history.messages, [&](const ReceivedMessage& received) { return received.at > end; });
+  std::optional<Vec2> start_m;
+  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) {
+    if (fact.robot() == 2 && !start_m) start_m = Vec2(fact.executing().x_m(), fact.executing().y_m());
+  });
+  REQUIRE(start_m);
+  history.scenario.obstacles.push_back(Circle{*start_m * 1.02, 0.001});
+  const AuditTotals whole = audit_of(history, kComplete);
+  INFO(lines(whole));
+  REQUIRE(whole.violations == 0);
+  const std::uint64_t seed = GENERATE(range(1u, 9u));
+  CAPTURE(seed);
+  require_no_violation(audit_of(degraded(history, seed, 0.6, Duration{0}), {}));
+}
+
+/// The crossing with a second coordinator that takes over while the robots drive.
+History takeover() {
+  Scenario scenario = crossing().scenario;
+  scenario.coordinators = 2;
+  History history{scenario, {}};
+  SimSystem system(scenario, 5);
+  const HistoryRecorder recorder(system, history);
+  system.run_for(2s);
+  system.kill("coordinator");
+  system.kill("coordinator 1");
+  system.restart("coordinator 1");
+  system.run_for(2s);
+  return history;
+}
+
+TEST_CASE(
+    "what was registered in an epoch may have been granted in an earlier one, whose grants were missed") {
+  History history = takeover();
+  require_no_violation(audit_of(history, kComplete));
+  Epoch last = 0;
+  history.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) { last = std::max(last, page.epoch()); });
+  history.remove_if<msg::Registration>([](const msg::Registration&) { return true; });
+  history.remove_if<msg::Verdict>([&](const msg::Verdict& verdict) { return verdict.epoch() < last; });
+  history.remove_if<msg::LedgerPage>([&](const msg::LedgerPage& page) { return page.epoch() < last; });
+  require_no_violation(audit_of(history, {}));
+}
+
+/// The crossing in which a robot is lifted, and put down again elsewhere.
+History lift_and_place() {
+  History history{crossing().scenario, {}};
+  SimSystem system(history.scenario, 6);
+  const HistoryRecorder recorder(system, history);
+  msg::Disturbance disturbance;
+  disturbance.robot(2);
+  const auto disturb = [&](msg::DisturbanceKind kind) {
+    disturbance.disturbance_kind(kind);
+    system.disturb(disturbance);
+  };
+  system.run_for(1s);
+  disturb(msg::DisturbanceKind::DISTURBANCE_LIFT);
+  system.run_for(300ms);
+  disturbance.x_m(history.scenario.field.length_m / 2 - 0.5);
+  disturbance.y_m(history.scenario.field.width_m / 2 - 0.5);
+  disturb(msg::DisturbanceKind::DISTURBANCE_PLACE);
+  system.run_for(3s);
+  return history;
+}
+
+TEST_CASE(
+    "a robot that is put down elsewhere does not continue what it executed, although nobody heard it "
+    "lifted") {
+  History history = lift_and_place();
+  require_no_violation(audit_of(history, kComplete));
+  std::uint64_t lifted = 0;
+  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) { lifted += fact.is_lifted(); });
+  REQUIRE(lifted > 10);
+  SECTION("all facts of the lifted robot are missed") {
+    history.remove_if<msg::Feedback>([](const msg::Feedback& fact) { return fact.is_lifted(); });
+    require_no_violation(audit_of(history, {}));
+  }
+  SECTION("all of its facts from then until it drives are missed") {
+    bool was_lifted = false;
+    std::erase_if(history.messages, [&](const ReceivedMessage& received) {
+      const auto* fact = std::get_if<msg::Feedback>(&received.message);
+      if (!fact || fact->robot() != 2) return false;
+      was_lifted |= fact->is_lifted();
+      // One fact of the lifted robot is heard.
+      return was_lifted && (fact->executing().version_number() == 0 || fact->executing().base() == 0) &&
+             lifted-- > 1;
+    });
+    require_no_violation(audit_of(history, {}));
+  }
+}
+
+TEST_CASE("a contact before an auditor joined is not judged") {
+  History history = crossing();
+  history.touch(2, 3, history.messages.front().at + 500ms);
+  const Time joined = history.messages.front().at + 1s;
+  std::erase_if(history.messages, [&](const ReceivedMessage& received) { return received.at < joined; });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.violations == 0);
+  CHECK(totals.undecided_contacts == 1);
+  CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+}
+
+TEST_CASE(
+    "a contact of a disturbed robot of which messages were missed since is not judged, another one is") {
+  const bool is_of_disturbed = GENERATE(true, false);
+  CAPTURE(is_of_disturbed);
+  History history = crossing();
+  const Time push = history.messages.front().at + 500ms;
+  history.push(2, push);
+  history.touch(is_of_disturbed ? 2 : 4, is_of_disturbed ? 3 : 5, push + 3s);
+  int facts = 0;
+  std::erase_if(history.messages, [&](const ReceivedMessage& received) {
+    const auto* fact = std::get_if<msg::Feedback>(&received.message);
+    return fact && fact->robot() == 2 && received.at > push && ++facts < 3;
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK((count(totals, AuditRule::kContact) > 0) == !is_of_disturbed);
+  CHECK(totals.undecided_contacts == (is_of_disturbed ? 1 : 0));
+}
+
+TEST_CASE("an auditor that hears no page of the ledger does not judge") {
+  History history = crossing();
+  history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
+  const AuditTotals totals = audit_of(history, {});
+  CHECK(totals.violations == 0);
+  CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+  CHECK(totals.coverage.versions < 0.1);
+}
+
+}  // namespace sidestep::auditor_missed_test

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// What single facts of robots prove.
+#include "common/motion/safety_budget.hpp"
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/stage.hpp"
+
+namespace sidestep::auditor_robots_test {
+
+using namespace std::chrono_literals;
+
+constexpr AuditInput kIncomplete{};
+
+TEST_CASE("facts that contradict the fact before are reported, one violation each") {
+  Stage stage;
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 1);
+  stage.drive(first);
+  REQUIRE(stage.violations.empty());
+  msg::Feedback& fact = stage.facts[0];
+  std::uint64_t expected = 0;
+  SECTION("at the same time") { fact.valid_at_ns(to_ns(stage.now)); }
+  SECTION("of an earlier time") {
+    fact.valid_at_ns(to_ns(stage.now) - 1);
+    // Its version starts later, too.
+    expected = 2;
+  }
+  SECTION("of an older agent") {
+    fact.obeyed_incarnation(Stage::kAgent - 1);
+    // It has not acknowledged the agent that registered, either.
+    stage.report(0);
+    CHECK(stage.count(AuditRule::kFacts) == 1);
+    return;
+  }
+  SECTION("of a newer agent") { fact.obeyed_incarnation(Stage::kAgent + 1); }
+  SECTION("of an older epoch") {
+    fact.obeyed_epoch(stage.epoch - 1);
+    // It cannot have registered in the epoch of the grant, either.
+    stage.report(0);
+    CHECK(stage.count(AuditRule::kFacts) == 1);
+    return;
+  }
+  SECTION("of a newer epoch") { fact.obeyed_epoch(stage.epoch + 1); }
+  SECTION("of the initial rest") {
+    stage.advance(1ms);
+    fact.executing(stage.rest(0));
+    // The rest was excluded by the version.
+    expected = 2;
+  }
+  stage.report(0);
+  check_only(stage, AuditRule::kFacts, expected);
+}
+
+TEST_CASE("a version is not executed before its start") {
+  const Duration early = GENERATE(0ns, 1ns);
+  Stage stage;
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 1);
+  stage.grant(first);
+  stage.command(first);
+  stage.now = time_from_ns(first.start_ns()) - early;
+  stage.facts[0].executing(first);
+  stage.report(0);
+  check_only(stage, AuditRule::kFacts, early == 0ns ? 0 : 1);
+}
+
+TEST_CASE("a fact of an earlier time is reported only if no clock was set back in between") {
+  const bool is_complete = GENERATE(true, false);
+  Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
+  stage.begin();
+  stage.advance(10ms);
+  stage.report(0);
+  const std::int64_t early_ns = to_ns(stage.now) - 100'000;
+  std::uint64_t expected = 0;
+  SECTION("the next fact") { expected = 1; }
+  SECTION("a fact was missed") {
+    (void)stage.header("feedback", 0);
+    expected = is_complete ? 1 : 0;
+  }
+  SECTION("the last fact was of a clock that is out of bound") {
+    stage.facts[0].valid_at_ns(to_ns(stage.now) + 100'000'000);
+    stage.report(0);
+  }
+  stage.facts[0].valid_at_ns(early_ns);
+  stage.report(0);
+  check_only(stage, AuditRule::kFacts, expected);
+}
+
+TEST_CASE("a robot switches only along bases") {
+  const bool is_complete = GENERATE(true, false);
+  Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 1, 50ms), second = stage.next(first, 2, 60ms),
+                     third = stage.next(second, 3, 70ms), other = stage.next(stage.rest(0), 4, 80ms);
+  const msg::Version moved = moving(stage.next(stage.rest(0), 5, 90ms), 0.1);
+  for (const auto& version : {first, second, third, other, moved}) {
+    stage.grant(version);
+    stage.command(version);
+  }
+  stage.advance(55ms);
+  stage.facts[0].executing(first);
+  stage.report(0);
+  stage.advance(55ms);
+  std::uint64_t expected = 0;
+  SECTION("to the next one") { stage.facts[0].executing(second); }
+  SECTION("over several, of which no fact told") { stage.facts[0].executing(third); }
+  SECTION("from another one") {
+    // At rest on base 0: the robot may have been lifted and put down, if facts may have been missed.
+    stage.facts[0].executing(other);
+    expected = is_complete ? 1 : 0;
+  }
+  SECTION("from another one into motion, which no robot does that is put down") {
+    stage.advance(10ms);
+    stage.facts[0].executing(moved);
+    expected = 1;
+  }
+  SECTION("from the base of the one that it executes, at rest") {
+    stage.facts[0].executing(second);
+    stage.report(0);
+    stage.advance(20ms);
+    msg::Version late = stage.next(first, 7, -5ms);
+    stage.command(late);
+    stage.facts[0].executing(late);
+    stage.report(0);
+    CHECK(stage.count(AuditRule::kSwitch) == 1);
+    return;
+  }
+  SECTION("along versions that are not known") {
+    msg::Version stranger = stage.next(first, 9, -10ms);
+    stranger.base(8);
+    stage.command(stranger);
+    stage.facts[0].executing(stranger);
+    stage.report(0);
+    CHECK(stage.count(AuditRule::kSwitch) == 0);
+    return;
+  }
+  stage.report(0);
+  check_only(stage, AuditRule::kSwitch, expected);
+}
+
+TEST_CASE("each reason that excludes a version has its rule") {
+  Stage stage;
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 1, 50ms);
+  const msg::Version second = stage.next(stage.rest(0), 2, 60ms);
+  for (const auto& version : {first, second}) {
+    stage.grant(version);
+    stage.command(version);
+  }
+  AuditRule rule = AuditRule::kFacts;
+  SECTION("late") {
+    stage.advance(50ms);
+    stage.report(0);
+    rule = AuditRule::kLateSwitch;
+  }
+  SECTION("fenced") {
+    stage.facts[0].obeyed_incarnation(Stage::kAgent + 1);
+    stage.report(0);
+    rule = AuditRule::kStaleIncarnation;
+    stage.advance(50ms);
+  }
+  SECTION("older") {
+    stage.advance(60ms);
+    stage.facts[0].executing(second);
+    stage.report(0);
+  }
+  SECTION("lifted") {
+    stage.advance(50ms);
+    msg::Version nothing;
+    nothing.base(1);
+    stage.facts[0].executing(nothing);
+    stage.facts[0].is_lifted(true);
+    stage.report(0);
+    stage.facts[0].is_lifted(false);
+  }
+  stage.facts[0].executing(first);
+  stage.report(0);
+  CHECK(stage.count(rule) == 1);
+  CHECK(stage.violations.front().version == 1);
+  CHECK(stage.violations.front().epoch == 0);
+}
+
+TEST_CASE("a robot that is off its reference stops by itself, and what it executed before is over") {
+  Stage stage;
+  stage.begin();
+  const msg::Version first = stage.next(stage.rest(0), 5);
+  stage.drive(first);
+  stage.facts[0].is_off_reference(true);
+  std::uint64_t expected = 0;
+  VersionNumber number = 6;
+  SECTION("numbered above the version") {}
+  SECTION("numbered below the version") { number = 4, expected = 1; }
+  msg::Version stop = stage.next(first, number, 0ms);
+  stop.start_ns(to_ns(stage.now));
+  stage.facts[0].executing(stop);
+  stage.report(0);
+  stage.report(0);
+  check_only(stage, AuditRule::kOffReference, expected);
+}
+
+TEST_CASE("a robot's own stop brakes at D after the motion that its motors have under way") {
+  const auto [lead, excess, is_reported] = GENERATE(table<Duration, double, bool>({{0ms, 1.0, false},
+                                                                                   {0ms, 1.02, true},
+                                                                                   {100ms, 1.0, false},
+                                                                                   {100ms, 1.05, true},
+                                                                                   {-50ms, 1.0, false},
+                                                                                   {300ms, 1.0, false},
+                                                                                   {400ms, 1.0, true}}));
+  CAPTURE(to_seconds(lead), excess);
+  Stage stage;
+  stage.begin();
+  stage.advance(1ms);
+  // The motion under way drives on at F for the time of the lead.
+  const double lead_s = std::max(0.0, to_seconds(lead)), speed_mps = 1 + 2 * lead_s;
+  const double braking_s = speed_mps / stage.scenario.limits.deceleration_mps2 * excess;
+  msg::Version stop = stage.next(stage.rest(0), 1, 0ms);
+  stop.vx_mps(1);
+  stop.phase_count(2);
+  stop.phases()[0].duration_ns(std::llround(lead_s * 1e9));
+  stop.phases()[0].ax_mps2(2);
+  stop.phases()[1].duration_ns(std::llround(braking_s * 1e9));
+  stop.phases()[1].ax_mps2(-speed_mps / (static_cast<double>(stop.phases()[1].duration_ns()) * 1e-9));
+  stage.facts[0].executing(stop);
+  stage.facts[0].is_off_reference(true);
+  stage.facts[0].lead_ns(lead.count());
+  stage.report(0);
+  check_only(stage, AuditRule::kOffReference, is_reported ? 1 : 0);
+}
+
+TEST_CASE("a robot's own stop ends at rest") {
+  const auto [left_mps, is_reported] = GENERATE(table<double, bool>({{9e-6, false}, {1.2e-5, true}}));
+  Stage stage;
+  stage.begin();
+  msg::Version stop = stage.next(stage.rest(0), 1, 0ms);
+  stop.vy_mps(left_mps);
+  stage.facts[0].executing(stop);
+  stage.facts[0].is_off_reference(true);
+  stage.report(0);
+  check_only(stage, AuditRule::kOffReference, is_reported ? 1 : 0);
+}
+
+TEST_CASE("a version that was sent is not an own stop, even if a robot off its reference executes it") {
+  Stage stage;
+  stage.begin();
+  msg::Version first = stage.next(stage.rest(0), 1);
+  stage.grant(first);
+  const bool was_sent = GENERATE(true, false);
+  CAPTURE(was_sent);
+  if (was_sent) stage.command(first);
+  stage.now = time_from_ns(first.start_ns());
+  stage.facts[0].executing(first);
+  stage.facts[0].is_off_reference(true);
+  stage.report(0);
+  CHECK(stage.violations.empty());
+}
+
+/// Reports these errors, a millisecond one after the other.
+void report_errors(Stage& stage, const std::vector<double>& errors_m) {
+  for (const double error_m : errors_m) {
+    stage.advance(1ms);
+    stage.facts[0].tracking_error_m(error_m);
+    stage.report(0);
+  }
+}
+std::vector<double> repeated(double error_m, int times) {
+  return std::vector<double>(static_cast<std::size_t>(times), error_m);
+}
+
+TEST_CASE(
+    "a robot beyond the drift bound recovers within 25 ms, and within a millisecond beyond the tracking "
+    "bound") {
+  const bool is_complete = GENERATE(true, false);
+  Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
+  const double drift_m = drift_bound_m(stage.scenario.tracking_bound_m) + 0.0005,
+               tracking_m = stage.scenario.tracking_bound_m + 0.0005;
+  stage.begin();
+  bool is_reported = false;
+  SECTION("drifting no further than allowed, for long") {
+    report_errors(stage, repeated(drift_m - 1e-6, 100));
+  }
+  SECTION("drifting for 26 ms") { report_errors(stage, repeated(drift_m + 1e-6, 27)); }
+  SECTION("drifting for 27 ms") {
+    report_errors(stage, repeated(drift_m + 1e-6, 28));
+    is_reported = true;
+  }
+  SECTION("drifting twice for 26 ms") {
+    report_errors(stage, repeated(drift_m + 1e-6, 27));
+    report_errors(stage, {0});
+    report_errors(stage, repeated(drift_m + 1e-6, 27));
+  }
+  SECTION("no further than the tracking bound, for 26 ms") {
+    report_errors(stage, repeated(tracking_m - 1e-6, 27));
+  }
+  SECTION("beyond the tracking bound for a millisecond") {
+    report_errors(stage, repeated(tracking_m + 1e-6, 2));
+  }
+  SECTION("beyond the tracking bound for longer") {
+    report_errors(stage, repeated(tracking_m + 1e-6, 3));
+    is_reported = true;
+  }
+  SECTION("beyond the tracking bound again and again") {
+    for (int i = 0; i < 10; ++i) report_errors(stage, {tracking_m + 1e-6, tracking_m + 1e-6, 0});
+  }
+  SECTION("beyond the tracking bound, but facts were missed in between") {
+    report_errors(stage, repeated(tracking_m + 1e-6, 2));
+    (void)stage.header("feedback", 0);
+    report_errors(stage, repeated(tracking_m + 1e-6, 2));
+  }
+  SECTION("beyond the tracking bound while it is off its reference, or lifted") {
+    const bool is_lifted = GENERATE(true, false);
+    stage.facts[0].is_off_reference(!is_lifted);
+    stage.facts[0].is_lifted(is_lifted);
+    report_errors(stage, repeated(1, 50));
+  }
+  SECTION("with inflation, farther") {
+    stage.facts[0].executing().inflation_m(0.02);
+    report_errors(stage, repeated(0.02 + drift_m - 1e-6, 100));
+    stage.violations.clear();  // the inflation came from nowhere
+  }
+  SECTION("with inflation, too far") {
+    Stage inflated(stage_scenario(), is_complete ? kComplete : kIncomplete);
+    inflated.facts[0].executing().inflation_m(0.02);
+    inflated.begin();
+    report_errors(inflated, repeated(0.02 + tracking_m - 1e-6, 2));
+    CHECK(inflated.violations.empty());
+    report_errors(inflated, repeated(0.02 + tracking_m + 1e-6, 3));
+    CHECK(inflated.count(AuditRule::kTracking) > 0);
+  }
+  SECTION("by a clock that is out of bound") {
+    for (int i = 0; i < 50; ++i) {
+      stage.advance(1ms);
+      stage.facts[0].tracking_error_m(1);
+      stage.facts[0].valid_at_ns(to_ns(stage.now) + 50'000'000);
+      stage.report(0);
+    }
+  }
+  INFO(stage.lines());
+  CHECK((stage.count(AuditRule::kTracking) > 0) == is_reported);
+  CHECK(stage.violations.size() == stage.count(AuditRule::kTracking));
+}
+
+TEST_CASE("a clock is sound up to its bound, ahead and behind") {
+  const auto [ahead, is_sound] = GENERATE(table<Duration, bool>(
+      {{1ms + 1us, true}, {1ms + 1001ns, false}, {-1ms - 1us, true}, {-1ms - 1001ns, false}}));
+  CAPTURE(ahead.count());
+  Scenario scenario = stage_scenario();
+  scenario.clock_bound_s = 0.001;
+  Stage stage(scenario);
+  stage.begin();
+  // Only facts of sound clocks show that a robot is beyond the tracking bound.
+  for (int i = 0; i < 5; ++i) {
+    stage.advance(1ms);
+    stage.facts[0].tracking_error_m(1);
+    stage.facts[0].valid_at_ns(to_ns(stage.now + ahead));
+    stage.report(0);
+  }
+  CHECK((stage.count(AuditRule::kTracking) > 0) == is_sound);
+}
+
+}  // namespace sidestep::auditor_robots_test

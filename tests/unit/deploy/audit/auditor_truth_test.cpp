@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// What single messages of ground truth prove.
+#include <algorithm>
+
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/shown.hpp"
+
+namespace sidestep::auditor_truth_test {
+
+using namespace std::chrono_literals;
+
+constexpr AuditInput kIncomplete{};
+
+TEST_CASE(
+    "a robot beyond the tracking bound and its inflation is reported, in ground truth and by its own facts") {
+  const bool is_complete = GENERATE(true, false);
+  const double inflation_m = GENERATE(0.0, 0.02);
+  const auto [excess_m, is_reported] =
+      GENERATE(table<double, bool>({{-0.004, false}, {0.9e-5, false}, {1.1e-5, true}, {0.01, true}}));
+  CAPTURE(is_complete, inflation_m, excess_m);
+  Shown shown(is_complete ? kComplete : kIncomplete, inflation_m);
+  shown.run(50ms);
+  const double error_m = shown.scenario.tracking_bound_m + inflation_m + excess_m;
+  shown.truth.robots()[0].reference_error_m(error_m);
+  const int direction = GENERATE(0, 1);
+  if (direction == 0) shown.truth.robots()[0].x_m(-1 + error_m);
+  if (direction == 1) shown.truth.robots()[0].y_m(-error_m);
+  shown.run(40ms);
+  INFO(shown.lines());
+  CHECK((shown.position() > 0) == is_reported);
+  CHECK(shown.violations.size() == shown.position());
+  CHECK(shown.auditor.totals().max_position_error_m == Approx(error_m));
+}
+
+TEST_CASE("a robot is not compared with its reference while it has none, or may have had none") {
+  const bool is_complete = GENERATE(true, false);
+  Shown shown(is_complete ? kComplete : kIncomplete);
+  shown.run(50ms);
+  REQUIRE(shown.violations.empty());
+  shown.truth.robots()[0].x_m(-1.5);
+  shown.truth.robots()[0].reference_error_m(0.5);
+  std::uint64_t expected = 0;
+  bool is_off_before = false, is_off_after = false;
+  SECTION("off its reference before") { is_off_before = true; }
+  SECTION("off its reference afterwards") { is_off_after = true; }
+  SECTION("lifted before") {
+    shown.facts[0].is_lifted(true);
+    shown.report(0);
+    shown.facts[0].is_lifted(false);
+    shown.advance(1ms);
+  }
+  SECTION("lifted afterwards") {
+    shown.show();
+    shown.facts[0].is_lifted(true);
+    shown.report(0);
+    CHECK(shown.violations.empty());
+    return;
+  }
+  SECTION("always on it") { expected = 1; }
+  SECTION("a fact was missed in between") {
+    (void)shown.header("feedback", 0);
+    expected = is_complete ? 1 : 0;
+  }
+  if (is_off_before) {
+    shown.facts[0].is_off_reference(true);
+    shown.report(0);
+    shown.facts[0].is_off_reference(false);
+    shown.advance(1ms);
+  }
+  shown.show();
+  shown.advance(1ms);
+  shown.facts[0].is_off_reference(is_off_after);
+  shown.report(0);
+  shown.report(0);
+  INFO(shown.lines());
+  CHECK(shown.position() == expected);
+  CHECK(shown.violations.size() == expected);
+}
+
+TEST_CASE("a fact is not compared with ground truth of a later time") {
+  Shown shown;
+  shown.run(50ms);
+  shown.truth.robots()[0].x_m(-1.5);
+  shown.show(shown.now + 20ms);
+  shown.advance(1ms);
+  shown.report(0);
+  CHECK(shown.position() == 0);
+  shown.advance(20ms);
+  shown.report(0);
+  CHECK(shown.position() == 1);
+}
+
+TEST_CASE("the position of a moving robot is compared with its version at that time, by its own clock") {
+  const Duration clock_ahead = GENERATE(0ms, 400ms, -400ms);
+  CAPTURE(to_seconds(clock_ahead));
+  Shown shown;
+  msg::Version version = shown.next(shown.rest(0), 1, 500ms);
+  version.phase_count(2);
+  version.phases()[0].duration_ns(1'000'000'000);
+  version.phases()[0].ay_mps2(1);
+  version.phases()[1].duration_ns(1'000'000'000);
+  version.phases()[1].ay_mps2(-1);
+  shown.grant(version);
+  shown.command(version);
+  const AuditPath path(version);
+  for (int i = 0; i < 250; ++i) {
+    shown.advance(10ms);
+    // The clock is ahead from the beginning, so the robot drives earlier.
+    const std::int64_t by_robot_ns = to_ns(shown.now + clock_ahead);
+    shown.truth.robots()[0].y_m(path.at_ns(by_robot_ns).y);
+    shown.show();
+    shown.advance(3ms);
+    shown.facts[0].valid_at_ns(to_ns(shown.now + clock_ahead));
+    if (shown.facts[0].valid_at_ns() >= version.start_ns()) shown.facts[0].executing(version);
+    shown.report(0);
+  }
+  INFO(shown.lines());
+  CHECK(shown.position() == 0);
+  CHECK(shown.auditor.totals().max_position_error_m < 1e-6);
+  shown.truth.robots()[0].y_m(1.1);
+  shown.facts[0].valid_at_ns(0);  // now
+  shown.run(50ms);
+  CHECK(shown.position() > 0);
+}
+
+TEST_CASE("a robot whose clock jumps is not compared at that moment") {
+  Shown shown;
+  shown.run(50ms);
+  shown.truth.robots()[0].x_m(-1.5);
+  shown.show();
+  shown.advance(1ms);
+  shown.facts[0].valid_at_ns(to_ns(shown.now + GENERATE(-300ms, 300ms)));
+  shown.report(0);
+  CHECK(shown.position() == 0);
+}
+
+TEST_CASE(
+    "a robot whose reference the simulator does not know may be out of place for 300 ms, as by vision") {
+  const double unknown = GENERATE(-1.0, -0.01);
+  Shown shown;
+  for (msg::TrueRobotState& robot : shown.truth.robots()) robot.reference_error_m(unknown);
+  shown.run(100ms);
+  CHECK(shown.violations.empty());
+  shown.truth.robots()[0].x_m(-1.05);
+  shown.run(250ms);
+  CHECK(shown.violations.empty());
+  shown.run(100ms);
+  check_only(shown, AuditRule::kPosition, 1);
+}
+
+TEST_CASE("a displaced robot is excused, one that nobody disturbed is not") {
+  const bool is_disturbed = GENERATE(true, false);
+  Shown shown;
+  shown.run(50ms);
+  if (is_disturbed) shown.push(0);
+  shown.truth.robots()[0].x_m(-1.2);
+  shown.truth.robots()[0].reference_error_m(0.2);
+  shown.run(100ms);
+  CHECK((shown.position() == 0) == is_disturbed);
+  CHECK((shown.auditor.totals().excused_displacements > 0) == is_disturbed);
+}
+
+TEST_CASE("a robot that a coordinator names as displaced is excused if it was ever disturbed") {
+  const auto [was_disturbed, named, is_excused] =
+      GENERATE(table<bool, RobotId, bool>({{true, 0, true}, {false, 0, false}, {true, 1, false}}));
+  CAPTURE(was_disturbed, named);
+  Shown shown;
+  shown.run(50ms);
+  if (was_disturbed) shown.push(0);
+  // It is back in place, and moved a second time without any disturbance.
+  shown.run(2s);
+  REQUIRE(shown.violations.empty());
+  msg::CoordinatorState state;
+  state.header(shown.header("coordinator", Stage::kCoordinator));
+  state.epoch(shown.epoch);
+  state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);
+  state.notices().emplace_back().robot(named);
+  state.notices().back().is_displaced(true);
+  shown.auditor.on_coordinator(state, shown.now);
+  shown.truth.robots()[0].x_m(-1.2);
+  shown.truth.robots()[0].vx_mps(1);
+  shown.truth.robots()[0].reference_error_m(0.2);
+  shown.run(50ms);
+  CHECK((shown.position() == 0) == is_excused);
+}
+
+TEST_CASE(
+    "a moving robot is excused until it can have braked, 0.2 s after it can have heard of a disturbance") {
+  const auto is_excused_after = [](Duration duration) {
+    Shown shown;
+    shown.truth.robots()[1].vx_mps(1);
+    shown.run(50ms);
+    shown.push(0);
+    shown.run(110ms);  // in place, and at rest
+    shown.run(duration);
+    shown.touch(0, 1);
+    shown.run(20ms);
+    return shown.count(AuditRule::kContact) == 0;
+  };
+  const MotionLimits limits = stage_scenario().limits;
+  const Duration braking = from_seconds(limits.speed_mps / limits.deceleration_mps2) + 200ms;
+  CHECK(is_excused_after(braking - 60ms));
+  CHECK_FALSE(is_excused_after(braking + 60ms));
+}
+
+TEST_CASE("positions that are not finite, or of unknown robots, are not used") {
+  Shown shown;
+  shown.run(50ms);
+  msg::TrueRobotState& robot = shown.truth.robots()[0];
+  robot.x_m(-1.5);
+  SECTION("x") { robot.x_m(NAN); }
+  SECTION("y") { robot.y_m(NAN); }
+  SECTION("error") { robot.reference_error_m(NAN); }
+  SECTION("no robot") { robot.robot(GENERATE(2u, 4'000'000'000u)); }
+  shown.run(50ms);
+  CHECK(shown.violations.empty());
+}
+
+TEST_CASE(
+    "a robot is in place up to the tracking bound and its inflation, if a ledger has held its version") {
+  // Robots that are back in place are no longer excused.
+  const auto [off_m, is_in_place] = GENERATE(table<double, bool>({{0.004, true}, {0.006, false}}));
+  CAPTURE(off_m);
+  Shown shown;
+  shown.run(50ms);
+  shown.push(0);
+  shown.truth.robots()[0].x_m(-1 + off_m);
+  shown.truth.robots()[0].reference_error_m(off_m);
+  bool expected = is_in_place;
+  SECTION("in its version") {}
+  SECTION("in a stop of its own") {
+    msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
+    shown.facts[0].executing(stop);
+    shown.facts[0].is_off_reference(true);
+    expected = false;
+  }
+  SECTION("in a stop of its own that the ledger has held") {
+    msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
+    shown.facts[0].executing(stop);
+    shown.facts[0].is_off_reference(true);
+    shown.run(10ms);
+    shown.show_page({stop, shown.rest(1)});
+  }
+  SECTION("off the floor") {
+    shown.facts[0].is_lifted(true);
+    expected = false;
+  }
+  shown.run(3s);
+  shown.violations.clear();
+  shown.touch(0, 1);
+  shown.run(50ms);
+  CHECK((shown.count(AuditRule::kContact) == 1) == expected);
+  CHECK((shown.auditor.totals().excused_contacts == 1) == !expected);
+}
+
+}  // namespace sidestep::auditor_truth_test

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// What memories of coordinators prove, message by message.
+#include "tests/catch.hpp"
+#include "tests/unit/deploy/audit/order_run.hpp"
+
+namespace sidestep::order_memory_test {
+
+TEST_CASE("a grant between two memories with one hold of its robot is reported once") {
+  Run run;
+  run.remember(kFirst, {hold(4, 100)});
+  run.grant(kFirst, 4, 31);
+  run.grant(kFirst, 5, 32);
+  run.remember(kFirst, {hold(4, 100)});
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.found == std::vector<Found>{{AuditRule::kHeld, 4, 31, 7}});
+  CHECK(run.details.front() ==
+        "was granted 0.001 s after the coordinator had told hold 100 of client 1000001, which still stands");
+  run.grant(kFirst, 4, 33, 8);
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.found.back() == Found{AuditRule::kHeld, 4, 33, 8});
+}
+
+TEST_CASE("a single message tells a hold, too, but only a whole memory shows that it still stands") {
+  Run run;
+  run.audit.on_memory(run.page(kFirst, {hold(4, 100)}, 0, 0));
+  run.grant(kFirst, 4, 31);
+  run.audit.on_memory(run.page(kFirst, {hold(4, 100)}, 0, 0));
+  CHECK(run.found.empty());
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.count(AuditRule::kHeld) == 1);
+}
+
+TEST_CASE("a version that was not granted while the hold was in force breaks no rule") {
+  Run run;
+  SECTION("a grant before the hold was told") {
+    run.grant(kFirst, 4, 31);
+    run.remember(kFirst, {hold(4, 100)});
+  }
+  SECTION("a grant at the time of the first memory") {
+    run.remember(kFirst, {hold(4, 100)});
+    run.now_ns -= 1'000'000;
+    run.grant(kFirst, 4, 31);
+  }
+  SECTION("a grant that may repeat one before the hold") {
+    const std::int64_t before_ns = run.now_ns;
+    run.remember(kFirst, {hold(4, 100)});
+    run.grant(kFirst, 4, 31, 7, before_ns);
+  }
+  SECTION("a grant of another coordinator") {
+    run.remember(kFirst, {hold(4, 100)});
+    run.grant(kSecond, 4, 31);
+  }
+  SECTION("a grant of an earlier run of the coordinator") {
+    run.remember(kFirst, {hold(4, 100)});
+    run.grant(kFirst, 4, 31);
+    ++run.lives[kFirst];
+  }
+  SECTION("a late grant of an earlier run of the coordinator") {
+    run.remember(kFirst, {hold(4, 100)});
+    --run.lives[kFirst];
+    run.grant(kFirst, 4, 31);
+    ++run.lives[kFirst];
+  }
+  SECTION("a grant while another memory shows the hold lifted") {
+    run.remember(kFirst, {hold(4, 100)});
+    run.remember(kFirst, {});
+    run.grant(kFirst, 4, 31);
+  }
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.found.empty());
+}
+
+TEST_CASE("a grant at the time of the second memory may follow it") {
+  Run run;
+  run.remember(kFirst, {hold(4, 100)});
+  run.grant(kFirst, 4, 31);
+  run.now_ns -= 1'000'000;
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.found.empty());
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.count(AuditRule::kHeld) == 1);
+}
+
+TEST_CASE("a hold that was told after a memory without it still stands, though the memory arrives last") {
+  Run run;
+  const msg::OrderMemory first = run.page(kFirst, {}, 0, 2), second = run.page(kFirst, {}, 1, 2),
+                         told = run.page(kFirst, {hold(4, 100)}, 0, 0);
+  run.audit.on_memory(first);
+  run.audit.on_memory(told);
+  run.audit.on_memory(second);
+  run.grant(kFirst, 4, 31);
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.count(AuditRule::kHeld) == 1);
+}
+
+TEST_CASE("a grant that may repeat an earlier one was not made before the given time") {
+  Run run;
+  run.remember(kFirst, {hold(4, 100)});
+  const std::int64_t after_ns = run.now_ns + 1;
+  run.grant(kFirst, 4, 31, 7, GENERATE_COPY(after_ns, kAlways));
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.count(AuditRule::kHeld) == 1);
+}
+
+TEST_CASE("the newest grant of a robot counts, however late an older verdict arrives") {
+  Run run;
+  run.remember(kFirst, {hold(4, 100)});
+  run.grant(kFirst, 4, 31);
+  const VersionNumber second = GENERATE(30u, 31u, 32u);
+  run.grant(kFirst, 4, second);
+  run.remember(kFirst, {hold(4, 100)});
+  CHECK(run.found == std::vector<Found>{{AuditRule::kHeld, 4, std::max<VersionNumber>(31, second), 7}});
+}
+
+TEST_CASE("a memory counts only if all of its pages were received in one sequence") {
+  Run run;
+  const std::vector<msg::RememberedOrder> holds{hold(4, 100)};
+  run.remember(kFirst, holds);
+  run.grant(kFirst, 4, 31);
+  bool is_whole = false;
+  SECTION("whole") {
+    run.audit.on_memory(run.page(kFirst, holds, 0, 3));
+    CHECK(run.found.empty());
+    run.audit.on_memory(run.page(kFirst, {}, 1, 3));
+    CHECK(run.found.empty());
+    run.audit.on_memory(run.page(kFirst, {}, 2, 3));
+    is_whole = true;
+  }
+  SECTION("begun anew") {
+    run.audit.on_memory(run.page(kFirst, {}, 0, 2));
+    run.audit.on_memory(run.page(kFirst, holds, 0, 2));
+    run.audit.on_memory(run.page(kFirst, {}, 1, 2));
+    is_whole = true;
+  }
+  SECTION("a page is missing") {
+    run.audit.on_memory(run.page(kFirst, holds, 0, 3));
+    run.audit.on_memory(run.page(kFirst, {}, 2, 3));
+  }
+  SECTION("a page is of a later memory") {
+    run.audit.on_memory(run.page(kFirst, holds, 0, 2));
+    (void)run.page(kFirst, {}, 1, 2);
+    (void)run.page(kFirst, {}, 0, 2);
+    run.audit.on_memory(run.page(kFirst, {}, 1, 2));
+  }
+  SECTION("the first page is missing") { run.audit.on_memory(run.page(kFirst, holds, 1, 2)); }
+  SECTION("the last page is missing") { run.audit.on_memory(run.page(kFirst, holds, 0, 2)); }
+  CHECK(run.count(AuditRule::kHeld) == (is_whole ? 1 : 0));
+}
+
+TEST_CASE("a coordinator that forgets what it has confirmed is reported once, with the robot of the order") {
+  const std::uint32_t robot = GENERATE(5u, std::uint32_t{msg::ALL_ROBOTS});
+  Run run;
+  run.grant(kFirst, 5, 1, 9);
+  run.confirm(kFirst, hold(robot, 100));
+  run.remember(kFirst, {});
+  run.remember(kFirst, {});
+  CHECK(run.found == std::vector<Found>{{AuditRule::kForgottenOrder, robot == 5 ? 5u : 3u, 0, 9}});
+}
+
+TEST_CASE("a coordinator may forget orders that it has not confirmed, or not yet") {
+  Run run;
+  SECTION("not answered") { run.send(hold(4, 100)); }
+  SECTION("answered otherwise") {
+    run.send(hold(4, 100));
+    run.answer(kFirst, hold(4, 100), msg::OrderResult::RESULT_REPLACED);
+  }
+  SECTION("nobody heard the order") { run.answer(kFirst, hold(4, 100)); }
+  SECTION("a resume") { run.confirm(kFirst, resume(4, 100)); }
+  SECTION("confirmed at the time of the memory") {
+    run.confirm(kFirst, hold(4, 100));
+    run.now_ns -= 1'000'000;
+  }
+  SECTION("confirmed by another coordinator") { run.confirm(kSecond, hold(4, 100)); }
+  SECTION("confirmed by an earlier run of it") {
+    run.confirm(kFirst, hold(4, 100));
+    ++run.lives[kFirst];
+  }
+  run.remember(kFirst, {});
+  CHECK(run.found.empty());
+}
+
+TEST_CASE(
+    "of two confirmed orders on the same subject, the later one must be remembered, whichever came first") {
+  const bool is_in_order = GENERATE(true, false);
+  const bool is_kept = GENERATE(true, false);
+  CAPTURE(is_in_order, is_kept);
+  Run run;
+  run.confirm(kFirst, hold(4, is_in_order ? 100 : 101));
+  run.confirm(kFirst, hold(4, is_in_order ? 101 : 100));
+  run.remember(kFirst, {hold(4, is_kept ? 101 : 100)});
+  CHECK(run.count(AuditRule::kForgottenOrder) == (is_kept ? 0 : 1));
+}
+
+TEST_CASE("orders to drive share one place, but operator, referee and scenario have their own") {
+  const auto go = [](std::uint32_t client, std::uint64_t number) {
+    return order(msg::OrderKind::ORDER_GO, 4, client, number);
+  };
+  const auto is_forgotten = [&](std::uint32_t confirmed, std::uint32_t remembered) {
+    Run run;
+    run.confirm(kFirst, go(confirmed, 100));
+    run.remember(kFirst, {go(remembered, 101)});
+    return run.count(AuditRule::kForgottenOrder) == 1;
+  };
+  const std::vector<std::uint32_t> clients{kClient, kOtherClient, kOperator, kReferee, kScenario};
+  for (const std::uint32_t a : clients) {
+    for (const std::uint32_t b : clients) {
+      CAPTURE(a, b);
+      const bool is_one_place = a == b || (a >= kClient && b >= kClient);
+      CHECK(is_forgotten(a, b) == !is_one_place);
+    }
+  }
+}
+
+TEST_CASE("of two orders with the same number, the one of the client with the higher id replaces the other") {
+  const auto go = [](std::uint32_t client) { return order(msg::OrderKind::ORDER_GO, 4, client, 100); };
+  Run run;
+  run.confirm(kFirst, go(kClient));
+  run.remember(kFirst, {go(kOtherClient)});
+  CHECK(run.found.empty());
+  run.confirm(kFirst, go(kOtherClient));
+  run.remember(kFirst, {go(kClient)});
+  CHECK(run.count(AuditRule::kForgottenOrder) == 1);
+}
+
+TEST_CASE("a coordinator with many resumes may lack holds, and one with many zone removals may lack zones") {
+  const bool are_many = GENERATE(true, false);
+  CAPTURE(are_many);
+  Run run;
+  std::vector<msg::RememberedOrder> memory;
+  const auto zone = order(msg::OrderKind::ORDER_ZONE, msg::ALL_ROBOTS, kClient, 100, 3);
+  const auto lost = GENERATE_COPY(hold(4, 100), zone);
+  const bool is_hold = lost.terms().order_kind() == msg::OrderKind::ORDER_HOLD;
+  CAPTURE(is_hold);
+  for (std::uint32_t i = 0; i < (is_hold ? 255u : 127u) + (are_many ? 1 : 0); ++i) {
+    memory.push_back(is_hold ? resume(i, 1, kOtherClient)
+                             : order(msg::OrderKind::ORDER_REMOVE_ZONE, msg::ALL_ROBOTS, kOtherClient, 1, i));
+  }
+  // These are not of the kind that is dropped.
+  for (std::uint32_t i = 0; i < 300; ++i) memory.push_back(is_hold ? resume(i, 1, kOperator) : resume(i, 1));
+  run.confirm(kFirst, lost);
+  run.remember(kFirst, memory);
+  CHECK(run.count(AuditRule::kForgottenOrder) == (are_many ? 0 : 1));
+  // It remains possible: the orders that were dropped are gone.
+  run.confirm(kFirst, lost);
+  run.remember(kFirst, {});
+  CHECK(run.count(AuditRule::kForgottenOrder) == (are_many ? 0 : 2));
+  // Other orders are judged.
+  const auto go = order(msg::OrderKind::ORDER_GO, 4, kClient, 100);
+  const auto other = is_hold ? zone : hold(5, 100);
+  run.found.clear();
+  run.confirm(kFirst, go);
+  if (is_hold) run.confirm(kFirst, other);
+  run.remember(kFirst, {});
+  CHECK(run.count(AuditRule::kForgottenOrder) == (is_hold ? 2 : 1));
+}
+
+TEST_CASE("a grant during a hold of all robots is not judged once resumes may have been dropped") {
+  const std::uint32_t robot = GENERATE(4u, std::uint32_t{msg::ALL_ROBOTS});
+  Run run;
+  std::vector<msg::RememberedOrder> resumes;
+  for (std::uint32_t i = 100; i < 356; ++i) resumes.push_back(resume(i, 1, kOtherClient));
+  run.remember(kFirst, resumes);
+  run.remember(kFirst, {hold(robot, 100)});
+  run.grant(kFirst, 4, 31);
+  run.remember(kFirst, {hold(robot, 100)});
+  CHECK(run.count(AuditRule::kHeld) == (robot == 4 ? 1 : 0));
+}
+
+TEST_CASE("the latest of very many orders are judged") {
+  Run run;
+  SECTION("confirmed ones") {
+    for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.confirm(kFirst, hold(i, 100 + i));
+    run.remember(kFirst, {});
+    CHECK(run.found.size() == kMaxKept);
+    CHECK(std::ranges::count(run.found, RobotId{9}, &Found::robot) == 0);
+    CHECK(std::ranges::count(run.found, RobotId{10}, &Found::robot) == 1);
+  }
+  SECTION("sent ones") {
+    for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.send(hold(i, 100 + i));
+    for (const std::uint32_t i : {9u, 10u}) run.answer(kFirst, hold(i, 100 + i));
+    run.remember(kFirst, {});
+    CHECK(run.found == std::vector<Found>{{AuditRule::kForgottenOrder, 10, 0, 0}});
+  }
+  SECTION("those that agents have heard of") {
+    for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.audit.on_memory(run.page(4, {hold(i, 100 + i)}));
+    run.confirm(kFirst, hold(9, 109));
+    run.confirm(kFirst, hold(10, 110));
+    run.register_agent(4, 8);
+    run.grant(kSecond, 4, 31, 8);
+    run.remember(kSecond, {});
+    CHECK(run.found == std::vector<Found>{{AuditRule::kForgottenOrder, 10, 0, 8}});
+  }
+}
+
+}  // namespace sidestep::order_memory_test

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "deploy/audit/auditor.hpp"
+#include "tests/unit/deploy/audit/tampering.hpp"
+
+namespace sidestep {
+
+/// Robots 0 and 1 at rest on an empty floor of 6 m by 4 m, 2 m apart.
+Scenario stage_scenario();
+
+/// A run that a test makes message by message, and its audit. Each call is one message, which the auditor
+/// receives at once. By default everything is as the protocol demands.
+class Stage {
+ public:
+  static constexpr std::uint32_t kCoordinator = 10'000;  ///< the sender's id
+  static constexpr Incarnation kLife = 500;              ///< of every process but the agents
+  static constexpr Incarnation kAgent = 700;
+
+  explicit Stage(Scenario staged = stage_scenario(), const AuditInput& input = kComplete);
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  /// Every robot reports its rest, and its agent registers that.
+  void begin();
+  /// The rest in which a robot is switched on, version 0.
+  msg::Version rest(RobotId robot) const;
+  /// A version at rest where `base` is, with this number, that starts after `in`.
+  msg::Version next(const msg::Version& base, VersionNumber number,
+                    Duration in = std::chrono::milliseconds(50)) const;
+
+  void advance(Duration duration);
+  void report(RobotId robot);
+  void report(const msg::Feedback& fact);
+  void register_versions(RobotId robot, const std::vector<msg::Version>& versions);
+  void propose(const std::vector<msg::Version>& candidates);
+  void decide(RobotId robot, std::uint64_t proposal, VersionNumber granted,
+              msg::Reason reason = msg::Reason::REASON_CONFLICT);
+  /// Proposes the version alone and grants it.
+  void grant(const msg::Version& version);
+  void command(const msg::Version& version);
+  /// Proposes, grants and commands the version, and executes it from its start on.
+  void drive(const msg::Version& version);
+  void show_page(const std::vector<msg::Version>& versions);
+
+  /// The next message of a sender on a topic, sent now.
+  msg::Header header(std::string_view topic, std::uint32_t sender, Incarnation incarnation = kLife);
+  std::uint64_t count(AuditRule rule) const;
+  /// The violations, one per line.
+  std::string lines() const;
+
+  Scenario scenario;
+  Time now{std::chrono::seconds(1000)};
+  Epoch epoch = 5;  ///< of all messages but facts
+  std::uint32_t coordinator = kCoordinator;
+  Incarnation coordinator_life = kLife;
+  std::array<msg::Feedback, 2> facts;  ///< what each robot reports next
+  std::vector<Violation> violations;
+  Auditor auditor;
+
+ private:
+  std::map<std::tuple<std::string_view, std::uint32_t, Incarnation>, std::uint64_t> sent_;
+};
+
+/// Checks that only this rule was broken, and how often.
+void check_only(const Stage& stage, AuditRule rule, std::uint64_t expected);
+
+/// The version, made to gain this speed along x within a second, and to brake in another second.
+msg::Version moving(msg::Version version, double speed_mps);
+
+}  // namespace sidestep

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "tests/unit/deploy/audit/history.hpp"
+
+namespace sidestep {
+
+/// An unmodified history of crossing.yaml, the same at each call.
+const History& crossing();
+
+inline constexpr AuditInput kComplete{true, {}};
+
+std::uint64_t count(const AuditTotals& totals, AuditRule rule);
+
+/// A version that a moving robot switches to, and the version executed before it.
+struct Switch {
+  RobotId robot;
+  VersionNumber number, before;
+  std::int64_t start_ns;
+  msg::Version version;
+};
+Switch example_switch(History& history);
+
+/// The audit of a copy of crossing() after `tamper` has modified it.
+AuditTotals audit_of_tampered(const std::function<void(History&)>& tamper);
+
+/// Fails the test unless the audit of the modified history reports the rule.
+void require_violation(AuditRule rule, const std::function<void(History&)>& tamper);
+
+}  // namespace sidestep

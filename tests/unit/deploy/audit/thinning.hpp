@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/unit/deploy/audit/history.hpp"
+
+namespace sidestep {
+
+/// What an auditor on a bad network hears of a history.
+struct Thinned {
+  std::vector<Delivery> deliveries;  ///< in order of arrival; they point into the history
+  std::string losses;                ///< what was lost, in words
+};
+
+/// Loses messages of a history by a random mixture of causes: each by itself, in bursts, by topic, by sender,
+/// by robot, whole seconds of everything, all before a late start; and delays them, so that topics overtake
+/// each other. Without ground truth, operators' announcements of disturbances are not lost.
+Thinned thinned(const History& history, std::uint64_t seed);
+
+}  // namespace sidestep

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/run/launch/process_keeper.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "common/file/temporary_folder.hpp"
+#include "common/file/write_file.hpp"
+#include "tests/catch.hpp"
+#include "tests/text_of.hpp"
+
+namespace sidestep::process_keeper_test {
+namespace {
+
+using namespace std::chrono_literals;
+using Deaths = std::vector<std::string>;
+
+/// Set in a director when it is asked to end.
+volatile std::sig_atomic_t is_asked_to_end = 0;
+
+void obey_sigterm() {
+  is_asked_to_end = 0;
+  std::signal(SIGTERM, [](int) { is_asked_to_end = 1; });
+}
+
+ChildSpec shell(const std::string& name, const std::string& script) {
+  return {name, {"/bin/sh", "-c", script}, false};
+}
+
+bool is_alive(pid_t pid) { return kill(pid, 0) == 0; }
+
+/// Waits for it in a director, which fails after ten seconds.
+template <typename Condition>
+void wait_for(Condition condition) {
+  for (int i = 0; !condition(); ++i) {
+    if (i == 10'000) std::_Exit(99);
+    std::this_thread::sleep_for(1ms);
+  }
+}
+
+struct Fixture {
+  std::string file(const std::string& name) const { return folder.file(name); }
+  std::string text(const std::string& name) const { return text_of(file(name)); }
+  int keep(std::function<int(Processes&, const Deaths&)> run) {
+    DirectorWork work{std::move(run), [this](const std::string& reason) { lost = reason; }};
+    if (max_ending) work.max_ending = *max_ending;
+    return keep_processes(group, work);
+  }
+
+  TemporaryFolder folder;
+  ProcessGroup group{folder.file("log")};
+  std::string lost;
+  std::optional<std::chrono::milliseconds> max_ending;  // of directors; nullopt: the default
+};
+
+}  // namespace
+
+TEST_CASE("processes continue when their director dies, and the next director takes over") {
+  Fixture f;
+  const int code = f.keep([&](Processes& processes, const Deaths& deaths) {
+    const pid_t pid = processes.start(shell("agent", "exec sleep 1000"));
+    if (deaths.size() < 2) {
+      write_file(f.file("pid" + std::to_string(deaths.size())), std::to_string(pid));
+      std::raise(deaths.empty() ? SIGABRT : SIGKILL);
+    }
+    write_file(f.file("pid2"), std::to_string(pid));
+    write_file(f.file("deaths"), deaths[0] + ", " + deaths[1]);
+    if (!is_alive(pid) || !processes.send_signal("agent", SIGSTOP)) return 98;
+    processes.log("from the third");
+    return processes.terminate(0ms) == std::vector<std::string>{"agent"} ? 7 : 97;
+  });
+  CHECK(code == 7);
+  CHECK(f.text("pid0") == f.text("pid1"));
+  CHECK(f.text("pid0") == f.text("pid2"));
+  CHECK(f.text("deaths") == "signal 6 (SIGABRT), signal 9 (SIGKILL)");
+  CHECK(f.lost.empty());
+  CHECK_FALSE(is_alive(std::stoi(f.text("pid0"))));
+  CHECK_THAT(f.text("log"), ContainsSubstring("signal 6 (SIGABRT)") && ContainsSubstring("from the third"));
+}
+
+TEST_CASE("each director hears of the processes that have died for good") {
+  Fixture f;
+  const int code = f.keep([&](Processes& processes, const Deaths& deaths) {
+    const pid_t pid = processes.start(shell("simulator", "echo last words; exit 5"));
+    (void)processes.start(shell("vision", "exec sleep 1000"));
+    std::vector<ChildEvent> events;
+    wait_for([&] {
+      events = processes.poll(100ms);
+      return !events.empty();
+    });
+    const bool is_right = events.size() == 1 && events[0].name == "simulator" && events[0].pid == pid &&
+                          events[0].reason == "exit code 5" && events[0].kind == ChildEvent::Kind::kDied &&
+                          !events[0].will_restart &&
+                          processes.last_lines("simulator") == std::vector<std::string>{"last words"} &&
+                          processes.resource_use().count("simulator") == 1;
+    if (!is_right) return 96;
+    if (deaths.empty()) std::raise(SIGSEGV);
+    return 0;
+  });
+  CHECK(code == 0);
+  CHECK(f.group.running() == 0);
+}
+
+TEST_CASE("a failed request of a director throws an exception in the director") {
+  Fixture f;
+  const int code = f.keep([](Processes& processes, const Deaths&) {
+    try {
+      (void)processes.start({"nobody", {"/no/such/program"}, false});
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what()).find("cannot start nobody") != std::string::npos ? 0 : 95;
+    }
+    return 94;
+  });
+  CHECK(code == 0);
+}
+
+TEST_CASE("a director that is asked to end may do its work, and one that dies then is lost") {
+  Fixture f;
+  const pid_t self = getpid();
+  const auto ends_well = [&](Processes& processes, const Deaths&) {
+    obey_sigterm();
+    (void)processes.start(shell("agent", "exec sleep 1000"));
+    kill(self, SIGINT);
+    wait_for([] { return is_asked_to_end != 0; });
+    return 3;
+  };
+  CHECK(f.keep(ends_well) == 3);
+  CHECK(f.lost.empty());
+  CHECK(f.group.running() == 0);
+
+  Fixture other;
+  const auto dies = [&](Processes& processes, const Deaths& deaths) -> int {
+    obey_sigterm();
+    (void)processes.start(shell("agent", "exec sleep 1000"));
+    kill(self, SIGTERM);
+    wait_for([] { return is_asked_to_end != 0; });
+    write_file(other.file("deaths"), std::to_string(deaths.size()));
+    std::abort();
+  };
+  CHECK(other.keep(dies) == 1);
+  CHECK(other.lost == "signal 6 (SIGABRT)");
+  CHECK(other.text("deaths") == "0");
+  CHECK(other.group.running() == 0);
+}
+
+TEST_CASE("a director that ends its processes is not asked to end again, and may write its report") {
+  Fixture f;
+  const pid_t self = getpid();
+  const auto ends_slowly = [&](Processes& processes, const Deaths&) {
+    obey_sigterm();
+    // Takes longer than the keeping process waits before it asks again.
+    (void)processes.start(
+        shell("agent", "trap 'sleep 1.5; exit 0' TERM; echo ready; while :; do sleep 0.01; done"));
+    wait_for([&] { return !processes.last_lines("agent").empty(); });
+    kill(self, SIGINT);
+    wait_for([] { return is_asked_to_end != 0; });
+    signal(SIGTERM, SIG_DFL);
+    const bool has_ended = processes.terminate(5s).empty();
+    (void)processes.poll(0ms);  // so that the keeping process has gone on meanwhile
+    return has_ended ? 3 : 4;
+  };
+  CHECK(f.keep(ends_slowly) == 3);
+  CHECK(f.lost.empty());
+}
+
+TEST_CASE("a director that hangs after it has ended its processes is killed", "[slow]") {
+  Fixture f;
+  const bool hangs_at_exit = GENERATE(false, true);
+  CAPTURE(hangs_at_exit);
+  const auto hang = [] {
+    for (;;) pause();
+  };
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    (void)processes.start(shell("agent", "exec sleep 1000"));
+    (void)processes.terminate(5s);
+    hangs_at_exit ? (void)std::atexit(hang) : hang();
+    return 0;
+  });
+  CHECK(code == 1);
+  CHECK(f.lost == "signal 9 (SIGKILL)");
+  CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
+}
+
+TEST_CASE(
+    "a director that was stopped and is asked to end is killed, the processes end, and it is reported") {
+  Fixture f;
+  f.max_ending = 500ms;
+  const pid_t self = getpid();
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    obey_sigterm();  // which may come before the next line but one
+    write_file(f.file("pid"), std::to_string(processes.start(shell("agent", "exec sleep 1000"))));
+    kill(self, SIGINT);
+    std::raise(SIGSTOP);
+    return 0;
+  });
+  CHECK(code == 1);
+  CHECK(f.lost == "signal 9 (SIGKILL)");
+  CHECK(f.group.running() == 0);
+  CHECK_FALSE(is_alive(std::stoi(f.text("pid"))));
+  CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
+  CHECK(DirectorWork{}.max_ending <= 30s);
+}
+
+TEST_CASE("a director that dies before it has started anything is not started again") {
+  Fixture f;
+  CHECK(f.keep([](Processes&, const Deaths&) -> int { std::abort(); }) == 1);
+  CHECK(f.lost == "signal 6 (SIGABRT)");
+}
+
+TEST_CASE("when the keeping process is killed, robots come to rest and the director writes its report") {
+  Fixture f;
+  const pid_t keeper = fork();
+  if (keeper == 0) {
+    ProcessGroup group(f.file("log"));
+    (void)keep_processes(
+        group, {[&](Processes& processes, const Deaths&) {
+                  obey_sigterm();
+                  ChildSpec robots = shell("robots", "trap 'echo rest >" + f.file("rest") +
+                                                         "; exit 0' TERM; echo ready; while :; do "
+                                                         "sleep 0.01; done");
+                  robots.rest_time = 5s;
+                  (void)processes.start(robots);
+                  const pid_t agent = processes.start(shell("agent", "exec sleep 1000"));
+                  wait_for([&] { return !processes.last_lines("robots").empty(); });
+                  kill(getppid(), SIGKILL);
+                  wait_for([] { return is_asked_to_end != 0; });
+                  wait_for([&] { return !is_alive(agent); });
+                  const bool is_over = processes.terminate(5s).empty() && processes.poll(0ms).empty();
+                  write_file(f.file("report"), is_over ? "written" : "wrong");
+                  return 0;
+                },
+                [](const std::string&) {}});
+    std::_Exit(0);
+  }
+  int status = 0;
+  REQUIRE(waitpid(keeper, &status, 0) == keeper);
+  CHECK(WIFSIGNALED(status));
+  const auto until = std::chrono::steady_clock::now() + 20s;
+  while (f.text("report").empty() || f.text("rest").empty()) {
+    REQUIRE(std::chrono::steady_clock::now() < until);
+    std::this_thread::sleep_for(1ms);
+  }
+  CHECK(f.text("report") == "written");
+  CHECK(f.text("rest") == "rest\n");
+}
+
+TEST_CASE("robots have come to rest before other processes are asked to end") {
+  Fixture f;
+  ChildSpec robots = shell("robots", "trap 'sleep 0.3; date +%s%N >" + f.file("rest") +
+                                         "; exit 0' TERM; echo ready; while :; do sleep 0.01; done");
+  robots.rest_time = 10s;
+  (void)f.group.start(shell("vision", "trap 'date +%s%N >" + f.file("end") +
+                                          "; exit 0' TERM; echo ready; while :; do sleep 0.01; done"));
+  (void)f.group.start(robots);
+  while (f.group.last_lines("vision").empty() || f.group.last_lines("robots").empty())
+    (void)f.group.poll(100ms);
+  CHECK(f.group.terminate(5s).empty());
+  CHECK(std::stoll(f.text("rest")) < std::stoll(f.text("end")));
+}
+
+}  // namespace sidestep::process_keeper_test

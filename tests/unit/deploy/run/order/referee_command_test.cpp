@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/run/order/referee_command.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::referee_command_test {
+
+/// Empty if the arguments are accepted.
+std::string usage_error(const std::vector<std::string>& arguments) {
+  CommandLine command_line("test", "sidestep");
+  std::function<int()> action;
+  add_referee_command(command_line.root(), action);
+  try {
+    command_line.parse(arguments);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return action ? "" : "no action";
+}
+
+TEST_CASE("commands of the referee are checked before anything is sent") {
+  CHECK(usage_error({"referee", "HALT"}).empty());
+  CHECK(usage_error({"referee", "BALL_PLACEMENT_BLUE", "--place", "-1,0.5"}).empty());
+  CHECK_THAT(usage_error({"referee"}), ContainsSubstring("COMMAND"));
+  CHECK_THAT(usage_error({"referee", "PAUSE"}), ContainsSubstring("\"PAUSE\" is no command of the referee") &&
+                                                    ContainsSubstring("HALT, STOP, "));
+  CHECK_THAT(usage_error({"referee", "STOP", "--place", "1"}),
+             ContainsSubstring("\"1\" is no place for the ball, expected X,Y in metres"));
+  CHECK_THAT(usage_error({"referee", "STOP", "--place", "101,0"}), ContainsSubstring("from -100 to 100 m"));
+}
+
+}  // namespace sidestep::referee_command_test

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/simulate/campaign/order_clients.hpp"
+
+#include "simulator/world/disturbance_codec.hpp"
+#include "tests/catch.hpp"
+#include "tests/sim/ordered_system.hpp"
+
+namespace sidestep::order_clients_test {
+
+using namespace std::chrono_literals;
+
+constexpr ClientId kOther = kOtherClient;
+
+struct Trial {
+  SimSystem system{waiting_robots(2), 1};
+  OrderClients clients{system, waiting_robots(2).radius_m};
+  Trial() { system.run_for(2s); }
+  void give(msg::OrderKind kind, RobotId robot, ClientId client, std::vector<Goal> goals = {}) {
+    Order order{kind, robot, client};
+    order.goals = std::move(goals);
+    clients.give(order);
+  }
+  /// An operator of whom the judge does not know.
+  void resume_secretly() {
+    system.send(
+        {msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator, static_cast<OrderNumber>(to_ns(system.now()))});
+  }
+};
+
+TEST_CASE("a held robot that moves fails a trial, one that was resumed does not") {
+  const bool is_resumed = GENERATE(false, true);
+  const RobotId scope = GENERATE(RobotId{0}, kAllRobots);
+  CAPTURE(is_resumed, scope);
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_HOLD, scope, kClient);
+  trial.system.run_for(4s);
+  CHECK(trial.clients.failures().empty());
+  if (is_resumed)
+    trial.give(msg::OrderKind::ORDER_RESUME, 0, kClient);
+  else
+    trial.resume_secretly();
+  trial.give(msg::OrderKind::ORDER_GO, 0, kOther, {{{1, 1}}});
+  trial.system.run_for(3s);
+  CHECK(trial.clients.failures().empty() == is_resumed);
+}
+
+TEST_CASE("a held robot that is pushed by another one, which somebody carries, fails no trial") {
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_HOLD, kAllRobots, kClient);
+  trial.system.run_for(4s);
+  RobotDisturbance carry;
+  carry.robot = 1;
+  carry.kind = msg::DisturbanceKind::DISTURBANCE_CARRY;
+  carry.place_m = Vec2(-2.1, -1.5);  // through robot 0
+  carry.duration = 5s;
+  msg::Disturbance message = encode(carry);
+  Vec2 place_m{-2, -1.5};
+  trial.system.on_truth([&](const msg::GroundTruth& truth) {
+    for (const msg::TrueRobotState& body : truth.robots()) {
+      if (body.robot() == 0) place_m = {body.x_m(), body.y_m()};
+    }
+  });
+  trial.system.disturb(message);
+  trial.system.run_for(8s);
+  CHECK((place_m - Vec2(-2, -1.5)).norm() > 0.05);
+  CHECK(trial.clients.failures().empty());
+}
+
+TEST_CASE("an order that a coordinator does not remember fails a trial, until its client has repeated it") {
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1}}});
+  trial.system.run_for(2s);
+  CHECK(trial.clients.failures().empty());
+  for (const std::string& process : {std::string("coordinator"), agent_process(0), agent_process(1)})
+    trial.system.kill(process);
+  for (const std::string& process : {std::string("coordinator"), agent_process(0), agent_process(1)})
+    trial.system.restart(process);
+  bool has_failed = false;
+  for (int i = 0; i < 200 && !has_failed; ++i) {
+    trial.system.run_for(50ms);
+    has_failed = !trial.clients.failures().empty();
+  }
+  CHECK(has_failed);
+  trial.system.run_for(10s);
+  CHECK(trial.clients.failures().empty());
+}
+
+TEST_CASE("a coordinator that was started again and hears nobody fails no trial by what it knew before") {
+  Scenario scenario = waiting_robots(2);
+  scenario.coordinators = 2;
+  SimSystem system{scenario, 1};
+  OrderClients clients{system, scenario.radius_m};
+  system.run_for(2s);
+  for (const std::string& process : SimSystem::process_names(scenario)) {
+    LinkQuality cut;
+    cut.is_cut = true;
+    if (process != "coordinator 1") system.set_link(process, "coordinator 1", cut);
+  }
+  system.kill("coordinator 1");
+  Order order{msg::OrderKind::ORDER_GO, 0, kClient};
+  order.goals = {{{1, 1}}};
+  clients.give(order);
+  system.run_for(1s);
+  CHECK(clients.failures().size() == 1);
+  system.restart("coordinator 1");
+  system.run_for(3s);
+  CHECK(clients.failures().empty());
+}
+
+TEST_CASE("a coordinator that hears nobody for good fails no trial by an order that it could not hear") {
+  Scenario scenario = waiting_robots(2);
+  scenario.coordinators = 2;
+  SimSystem system{scenario, 1};
+  OrderClients clients{system, scenario.radius_m};
+  system.run_for(2s);
+  LinkQuality cut;
+  cut.is_cut = true;
+  for (const std::string& process : SimSystem::process_names(scenario))
+    if (process != "coordinator 1") system.set_link(process, "coordinator 1", cut);
+  system.pause("coordinator 1", 1s, 0);
+  Order order{msg::OrderKind::ORDER_GO, 0, kClient};
+  order.goals = {{{-1.8, -1.5}}};
+  clients.give(order);
+  system.run_for(1500ms);
+  CHECK(clients.failures().size() == 1);
+  clients.expect_nothing_of("coordinator 1");
+  CHECK(clients.failures().empty());
+}
+
+TEST_CASE("an order without an answer fails a trial") {
+  Trial trial;
+  trial.system.kill("coordinator");
+  trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);
+  trial.system.run_for(2s);
+  CHECK(trial.clients.failures().size() == 1);
+}
+
+}  // namespace sidestep::order_clients_test

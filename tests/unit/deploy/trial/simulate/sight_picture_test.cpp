@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/simulate/sight_picture.hpp"
+
+#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::sight_picture_test {
+
+using namespace std::chrono_literals;
+
+/// A robot before a wall, and somebody who walks past it.
+Scenario scene() {
+  Scenario scenario;
+  scenario.field = {6, 4};
+  RobotSpec robot;
+  robot.id = 7;
+  robot.start_m = {-2, 0};
+  scenario.robots = {robot};
+  scenario.obstacles = {Box{{1, -1}, {1.2, 1}}};
+  scenario.opponents = {{0.25, 0.8, {{-1, -1.5}, {-1, 1.5}}}};
+  scenario.laser.emplace();
+  return scenario;
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST_CASE("a picture of a laser's view shows the scan, where people may step out, and what moves") {
+  const Scenario scenario = scene();
+  SimSystem system(scenario, 1);
+  SightPicture picture(scenario, 7);
+  SimBus listener(system.network());
+  listener.use_rules(SharedRules(scenario).fingerprint(), [](const auto&, const auto&) {});
+  listener.subscribe<msg::LaserScan>(topics::kScan, 7,
+                                     [&](const msg::LaserScan& scan) { picture.add(scan); });
+  system.on_truth([&](const msg::GroundTruth& truth) { picture.add(truth); });
+  const std::string before = picture.svg();
+  CHECK(count(before, "<polygon") == 1);  // the wall
+  CHECK(count(before, "<line") == 0);
+  system.run_for(2s);
+  const std::string svg = picture.svg();
+  CHECK(count(svg, "<polygon") == 2);
+  CHECK(count(svg, "stroke='#cf222e'") > 2);
+  CHECK(count(svg, "<circle") >= 2);           // the robot and the track
+  CHECK(count(svg, "stroke='#bf8700'") == 2);  // its outline and its velocity
+  CHECK(count(svg, ">7</text>") == 1);
+}
+
+TEST_CASE("there is no such picture of a robot without a laser") {
+  Scenario scenario = scene();
+  CHECK_THROWS_WITH(SightPicture(scenario, 8), "the scenario has no robot 8");
+  scenario.laser.reset();
+  CHECK_THROWS_WITH(SightPicture(scenario, 7), "the scenario's robots have no laser");
+}
+
+}  // namespace sidestep::sight_picture_test

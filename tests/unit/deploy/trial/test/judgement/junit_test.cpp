@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/trial/test/judgement/junit.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::junit_test {
+
+TestResult passed_result() {
+  TestResult result;
+  result.file = "a.yaml";
+  result.bus = "SimBus";
+  result.wall_s = 0.25;
+  result.expectations.push_back({"no contact of all robots", 7, {}});
+  return result;
+}
+
+TEST_CASE("results become one test case each, with counts and times") {
+  TestResult failed = passed_result(), broken = passed_result();
+  failed.file = "b \"quoted\" & <odd>.yaml";
+  failed.seed = 3;
+  failed.wall_s = 1;
+  failed.problems.push_back({1.5, "kill agent 1: agent 1 does not run"});
+  failed.expectations[0].judgement = Judgement::failed(2.25, "robot 1 touched robot 2");
+  failed.expectations.push_back({"robot 1 moving", 8, Judgement::not_judged(3, "the run ended")});
+  broken.error = "creating network namespaces needs root";
+  CHECK(junit_xml({passed_result(), failed, broken}) ==
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<testsuite name=\"sidestep test\" tests=\"3\" failures=\"1\" errors=\"1\" time=\"1.500\">\n"
+        "  <testcase classname=\"sidestep.SimBus\" name=\"a.yaml, seed 1\" time=\"0.250\"/>\n"
+        "  <testcase classname=\"sidestep.SimBus\" name=\"b &quot;quoted&quot; &amp; &lt;odd&gt;.yaml, seed "
+        "3\" "
+        "time=\"1.000\">\n"
+        "    <failure message=\"at 1.500 s: could not kill agent 1: agent 1 does not run\">"
+        "at 1.500 s: could not kill agent 1: agent 1 does not run&#10;"
+        "at 2.250 s: line 7 expects no contact of all robots, but robot 1 touched robot 2&#10;"
+        "at 3.000 s: not judged: line 8 expects robot 1 moving, but the run ended</failure>\n"
+        "  </testcase>\n"
+        "  <testcase classname=\"sidestep.SimBus\" name=\"a.yaml, seed 1\" time=\"0.250\">\n"
+        "    <error message=\"could not run: creating network namespaces needs root\">"
+        "could not run: creating network namespaces needs root</error>\n"
+        "  </testcase>\n"
+        "</testsuite>\n");
+}
+
+TEST_CASE("text is escaped, and what XML cannot contain is replaced") {
+  CHECK(xml_escaped("a<b>&\"c'") == "a&lt;b&gt;&amp;&quot;c'");
+  CHECK(xml_escaped("line\nnext\ttab") == "line&#10;next&#9;tab");
+  CHECK(xml_escaped(std::string("\0\x1b[K\x7f", 5)) == "??[K\x7f");
+  CHECK(xml_escaped("gr\xc3\xbc\xc3\x9f, \xe2\x82\xac, \xf0\x9f\xa4\x96") ==
+        "gr\xc3\xbc\xc3\x9f, \xe2\x82\xac, \xf0\x9f\xa4\x96");
+  CHECK(xml_escaped("\xff \xc3 \xe2\x82 \xc0\x80") == "? ? ?? ??");  // no UTF-8
+  CHECK(xml_escaped("\xed\xa0\x80 \xef\xbf\xbf") == "??? ???");      // surrogate, non-character
+  CHECK(xml_escaped("\xf4\x90\x80\x80") == "????");                  // beyond Unicode
+}
+
+}  // namespace sidestep::junit_test

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/view/control/control_api.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "common/config/scenario_loader.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::control_api_test {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+struct ControlledRun {
+  Scenario scenario =
+      parse_scenario("robots:\n  - {id: 3, start_m: [-2, 0]}\n  - {id: 4, start_m: [2, 1]}\n", "two.yaml");
+  SimSystem system{scenario, 1};
+  SimBus bus{system.network()};
+  std::string bookmarks;
+  std::string recordings;
+  ControlApi api{bus,
+                 {[this](const std::string& text) { bookmarks += text; },
+                  [this](bool begins) {
+                    if (recordings == "full") throw std::runtime_error("the disk is full");
+                    recordings += begins ? "begin " : "end ";
+                    return std::string(begins ? "a.mcap" : "");
+                  }}};
+  msg::GroundTruth truth;
+
+  ControlledRun() {
+    system.on_truth([this](const msg::GroundTruth& t) { truth = t; });
+    system.run_for(2s);
+  }
+  WebResponse request(const std::string& method, const std::string& path, const std::string& body = "",
+                      const std::string& refusal = "") {
+    return api.respond({method, path, {}, body, refusal}).value_or(WebResponse{404, "", ""});
+  }
+  std::string phase(const WebResponse& answer) {
+    const auto order = std::to_string(Json::parse(answer.body).at("order").get<int>());
+    return Json::parse(request("GET", "/api/orders/" + order).body).at("phase");
+  }
+  double x_m(std::size_t index) const { return truth.robots()[index].x_m(); }
+};
+
+TEST_CASE("a robot is sent somewhere by HTTP, and its order can be followed") {
+  ControlledRun run;
+  const WebResponse answer =
+      run.request("POST", "/api/robots/3/order", R"({"goals": [[0, -1], [1, -1, 1.57]]})");
+  REQUIRE(answer.status == 200);
+  CHECK(run.phase(answer) == "sent");
+  run.system.run_for(1s);
+  CHECK(run.phase(answer) == "driving");
+  run.system.run_for(10s);
+  CHECK(run.phase(answer) == "arrived");
+  CHECK(run.x_m(0) == Approx(1).margin(0.03));
+}
+
+TEST_CASE("robots are held, resumed and canceled by HTTP") {
+  ControlledRun run;
+  (void)run.request("POST", "/api/robots/3/order", R"({"goals": [[2, -1]]})");
+  run.system.run_for(500ms);
+  CHECK(run.request("POST", "/api/hold").status == 200);
+  run.system.run_for(1s);
+  const double held_m = run.x_m(0);
+  run.system.run_for(1s);
+  CHECK(run.x_m(0) == Approx(held_m).margin(0.005));
+  CHECK(run.request("POST", "/api/resume").status == 200);
+  run.system.run_for(1s);
+  CHECK(run.x_m(0) > held_m + 0.2);
+  CHECK(run.request("POST", "/api/robots/3/cancel").status == 200);
+  run.system.run_for(1s);
+  const double canceled_m = run.x_m(0);
+  run.system.run_for(1s);
+  CHECK(run.x_m(0) == Approx(canceled_m).margin(0.005));
+}
+
+TEST_CASE("zones are set and removed, and faults caused, by HTTP") {
+  ControlledRun run;
+  CHECK(run.phase(run.request("POST", "/api/zones/1",
+                              R"({"corners": [[0, 0], [1, 0], [1, 1]], "radius_m": 0.1})")) == "sent");
+  run.system.run_for(500ms);
+  CHECK(run.phase(run.request("DELETE", "/api/zones/1")) == "sent");
+  CHECK(run.request("POST", "/api/robots/4/fault", R"({"kind": "push", "vx_mps": 1, "vy_mps": 0})").status ==
+        200);
+  run.system.run_for(100ms);
+  CHECK(run.x_m(1) > 2.02);
+  CHECK(run.request("POST", "/api/bookmark", R"({"text": "here"})").status == 200);
+  CHECK(run.bookmarks == "here");
+  CHECK(Json::parse(run.request("POST", "/api/recording/start").body).at("file") == "a.mcap");
+  CHECK(run.request("POST", "/api/recording/stop").status == 200);
+  CHECK(run.recordings == "begin end ");
+  run.recordings = "full";
+  CHECK(Json::parse(run.request("POST", "/api/recording/start").body).at("error") == "the disk is full");
+}
+
+TEST_CASE("requests without the right to command have no effect") {
+  ControlledRun run;
+  for (const char* path :
+       {"/api/robots/3/order", "/api/hold", "/api/zones/1", "/api/robots/3/fault", "/api/bookmark"}) {
+    const WebResponse answer = run.request("POST", path, R"({"goals": [[0, 0]], "text": "x"})", "no token");
+    CHECK(answer.status == 401);
+    CHECK(Json::parse(answer.body).at("error") == "no token");
+  }
+  run.system.run_for(2s);
+  CHECK(run.x_m(0) == Approx(-2).margin(0.01));
+  CHECK(run.bookmarks.empty());
+}
+
+TEST_CASE("bodies and paths that are wrong are refused with what is wrong") {
+  ControlledRun run;
+  const auto error = [&](const std::string& path, const std::string& body) {
+    const WebResponse answer = run.request("POST", path, body);
+    CHECK(answer.status >= 400);
+    return Json::parse(answer.body).value("error", "");
+  };
+  CHECK(error("/api/robots/3/order", "") ==
+        "the body: expected a JSON object, nested no deeper than 16 times");
+  const std::string nested = std::string(32'000, '[') + std::string(32'000, ']');
+  CHECK(error("/api/robots/3/order", R"({"goals": [[1, )" + nested + "]]}") ==
+        "the body: expected a JSON object, nested no deeper than 16 times");
+  CHECK(error("/api/robots/3/order", "{}") == "goals: expected a list of 1 to 64 points");
+  CHECK(error("/api/robots/3/order", R"({"goals": [[1]]})") == "goals[0]: expected a list of 2 or 3 numbers");
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0], [1, "x"]]})") ==
+        "goals[1][1]: expected a number from -10000 to 10000, got \"x\"");
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 1e9]]})").starts_with("goals[0][1]"));
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0, 90]]})") ==
+        "goals[0][2]: expected a heading of -6.28 to 6.28 radians, got 90; 90 degrees are 1.571 radians");
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0, "x"]]})") ==
+        "goals[0][2]: expected radians, got \"x\"");
+  CHECK(error("/api/robots/3/order", R"({"goal": [[0, 0]]})") == "goal: is unknown");
+  CHECK(error("/api/robots/x/order", R"({"goals": [[0, 0]]})") == "there is no robot x");
+  CHECK(error("/api/robots/-1/order", R"({"goals": [[0, 0]]})") == "there is no robot -1");
+  CHECK(error("/api/robots/3/dance", "{}") == "robots have no dance");
+  CHECK(error("/api/robots/3/fault", R"({"kind": "melt"})").starts_with("kind: expected one of: push, slip"));
+  CHECK(error("/api/robots/3/fault", R"({"kind": "push"})") == "vx_mps: is missing");
+  CHECK(error("/api/zones/1", R"({"corners": [[0, 0]], "radius": 1})") == "radius: is unknown");
+  CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0]], "speed_limit": 1})") ==
+        "speed_limit: is unknown");
+  CHECK(error("/api/zones/1", R"({"corners": [], "radius_m": 1})") ==
+        "corners: expected a list of 1 to 16 points");
+  CHECK(error("/api/nothing", "") == "there is no /api/nothing");
+  CHECK(run.request("PUT", "/api/hold").status == 405);
+  CHECK(run.request("GET", "/api/orders/77").status == 404);
+  CHECK(run.request("GET", "/api/orders/x").status == 404);
+  CHECK_FALSE(run.api.respond({"GET", "/api/hold", {}, "", ""}));
+}
+
+}  // namespace sidestep::control_api_test

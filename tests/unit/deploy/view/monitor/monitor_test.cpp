@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/view/monitor/monitor.hpp"
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "common/config/scenario_loader.hpp"
+#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/view/monitor/floor_frame.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::monitor_test {
+
+using namespace std::chrono_literals;
+using Json = nlohmann::json;
+
+/// A viewer that remembers the last of each state, and all events.
+class FakeViewer : public WebSocket {
+ public:
+  void send_state(unsigned slot, WebMessage message) override {
+    if (message.is_binary) {
+      frame = *message.payload;
+      ++frames;
+      return;
+    }
+    const Json json = Json::parse(*message.payload);
+    (void)slot;
+    states[json.at("type")] = json;
+    if (json.at("type") == "messages") inspected += json.at("messages").size();
+  }
+  void send_event(WebMessage message) override {
+    const Json json = Json::parse(*message.payload);
+    if (json.at("type") == "event")
+      events.push_back(json);
+    else
+      states[json.at("type")] = json;
+  }
+
+  double time_s() const {
+    double value = 0;
+    std::memcpy(&value, frame.data(), sizeof value);
+    return value;
+  }
+  /// The value of a column in the row of a robot, decoded by the layout that the scene gives.
+  std::optional<double> value(RobotId robot, const std::string& column) const {
+    const Json& layout = states.at("scene").at("layout");
+    const std::vector<std::string> columns = layout.at("sections")[0].at("columns");
+    const auto index = [&](const std::string& name) {
+      return static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin());
+    };
+    const std::size_t head = 12 + 4 * layout.at("sections").size();
+    std::uint32_t rows = 0;
+    std::memcpy(&rows, frame.data() + 12, sizeof rows);
+    const auto cell = [&](std::size_t row, const std::string& name) {
+      float number = 0;
+      std::memcpy(&number, frame.data() + head + 4 * (row * columns.size() + index(name)), sizeof number);
+      return static_cast<double>(number);
+    };
+    for (std::size_t row = 0; row < rows; ++row)
+      if (cell(row, "id") == robot) return cell(row, column);
+    return std::nullopt;
+  }
+
+  std::string frame;
+  int frames = 0;
+  std::size_t inspected = 0;
+  std::map<std::string, Json> states;
+  std::vector<Json> events;
+};
+
+/// A simulated run with a monitor and one viewer.
+struct MonitoredRun {
+  Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml");
+  SimSystem system{scenario, 1};
+  SimBus bus{system.network()};
+  Monitor monitor;
+  FakeViewer viewer;
+  msg::GroundTruth truth;
+
+  explicit MonitoredRun(bool knows_scenario = true)
+      : monitor((bus.become_observer(), bus), settings(knows_scenario)) {
+    system.on_truth([this](const msg::GroundTruth& t) { truth = t; });
+    monitor.add_viewer(viewer);
+    call_periodically(bus, Monitor::kFramePeriod, [this] {
+      monitor.take_snapshot();
+      monitor.update_viewers(bus.now());
+    });
+  }
+  MonitorSettings settings(bool knows_scenario) const {
+    MonitorSettings result;
+    result.scenario = knows_scenario ? &scenario : nullptr;
+    result.audit.is_complete = true;
+    return result;
+  }
+  bool send(const std::string& message) { return monitor.on_message(viewer, message, bus.now()); }
+  const Json& promise() const { return viewer.states.at("panels").at("promise"); }
+};
+
+TEST_CASE("viewers see robots where they are, what they execute and what panels say of them") {
+  MonitoredRun run;
+  run.system.run_for(2s);
+  CHECK(run.viewer.frames >= 60);
+  for (const msg::TrueRobotState& robot : run.truth.robots()) {
+    CHECK(*run.viewer.value(robot.robot(), "true_x") == Approx(robot.x_m()).margin(0.05));
+    CHECK(*run.viewer.value(robot.robot(), "x") == Approx(robot.x_m()).margin(0.08));
+    CHECK(*run.viewer.value(robot.robot(), "seen_y") == Approx(robot.y_m()).margin(0.08));
+    CHECK(std::isfinite(*run.viewer.value(robot.robot(), "executing_start")));
+    CHECK(std::isfinite(*run.viewer.value(robot.robot(), "granted_x")));
+    CHECK(*run.viewer.value(robot.robot(), "proposed_phases") >= 0);
+  }
+  const Json& panels = run.viewer.states.at("panels");
+  CHECK(panels.at("robots").size() == run.scenario.robots.size());
+  CHECK(panels.at("robots")[0].at("proposals") > 20);
+  CHECK(panels.at("coordinators")[0].at("mode") == "granting");
+  std::set<std::string> topics;
+  for (const Json& topic : panels.at("topics")) {
+    topics.insert(topic.at("topic"));
+    for (const Json& sender : topic.at("senders")) {
+      CHECK(sender.at("lost") == 0);
+      CHECK(sender.at("repeated") == 0);
+    }
+  }
+  for (const char* topic : {"world", "truth", "feedback", "command", "verdict", "ledger"})
+    CHECK(topics.contains(topic));
+}
+
+TEST_CASE("a viewer whose JSON is nested deeply is disconnected") {
+  MonitoredRun run(false);
+  const std::string nested = std::string(32'000, '[') + std::string(32'000, ']');
+  CHECK_FALSE(run.send(R"({"op":"inspect","channel":)" + nested + "}"));
+  CHECK_FALSE(run.send(R"({"op":)" + nested + "}"));
+}
+
+TEST_CASE("the lamp says that the promise is kept, and names the smallest clearance") {
+  MonitoredRun run;
+  run.system.run_for(6s);
+  CHECK(run.promise().at("state") == "kept");
+  CHECK(run.promise().at("contacts") == 0);
+  CHECK(run.promise().at("smallest").at("clearance_m") > 0);
+  CHECK(run.promise().at("smallest").at("clearance_m") < 1);
+  CHECK(run.promise().at("coverage") > 0.95);
+}
+
+TEST_CASE("without the scenario nothing is judged, and robots are found by their messages") {
+  MonitoredRun run(false);
+  run.system.run_for(3s);
+  CHECK(run.promise().at("state") == "not judged");
+  CHECK(run.viewer.states.at("panels").at("robots").size() == run.scenario.robots.size());
+  CHECK(std::isfinite(*run.viewer.value(run.scenario.robots[0].id, "executing_start")));
+}
+
+TEST_CASE("a run that breaks the promise is an event and turns the lamp") {
+  MonitoredRun run;
+  run.system.run_for(1s);
+  // Somebody carries a robot into another one: reported by the simulator as a contact.
+  msg::GroundTruth touch = run.truth;
+  touch.header().message_number(touch.header().message_number() + 1'000'000);
+  touch.contacts(touch.contacts() + 1);
+  touch.recent_contacts()[0].first(0);
+  touch.recent_contacts()[0].second(1);
+  SimBus other(run.system.network());
+  auto writer = other.relay(topics::kTruth, "truth");
+  writer->write(&touch);
+  run.system.run_for(1s);
+  const auto contact =
+      std::ranges::find_if(run.viewer.events, [](const Json& e) { return e["kind"] == "contact"; });
+  REQUIRE(contact != run.viewer.events.end());
+  CHECK(contact->at("text") == "robots 0 and 1 touch");
+  CHECK(contact->at("severity") == "error");
+  CHECK(run.promise().at("state") == "broken");
+}
+
+TEST_CASE("a viewer seeks back while the run goes on") {
+  MonitoredRun run;
+  run.system.run_for(5s);
+  const double end_s = run.viewer.time_s();
+  CHECK(run.send(R"({"op":"seek","at_s":)" + std::to_string(end_s - 3) + "}"));
+  CHECK(run.viewer.time_s() == Approx(end_s - 3).margin(0.03));
+  CHECK(run.viewer.states.at("time").at("mode") == "paused");
+  const double x = *run.viewer.value(0, "true_x");
+  run.system.run_for(1s);
+  CHECK(*run.viewer.value(0, "true_x") == x);
+  const double shown_s = run.viewer.time_s();
+  CHECK(run.send(R"({"op":"step","frames":1})"));
+  CHECK(run.viewer.time_s() == Approx(shown_s + 0.025).margin(0.001));
+  CHECK(run.send(R"({"op":"play","speed":2})"));
+  run.system.run_for(1s);
+  CHECK(run.viewer.time_s() == Approx(shown_s + 2).margin(0.1));
+  CHECK(run.send(R"({"op":"pause"})"));
+  CHECK(run.send(R"({"op":"live"})"));
+  run.system.run_for(100ms);
+  CHECK(run.viewer.time_s() == Approx(end_s + 2.1).margin(0.1));
+}
+
+TEST_CASE("a viewer gets all messages of the channel that it inspects, and of no other") {
+  MonitoredRun run;
+  run.system.run_for(500ms);
+  CHECK(run.viewer.inspected == 0);
+  CHECK(run.send(R"({"op":"inspect","channel":"feedback/0"})"));
+  run.system.run_for(2s);
+  const Json& batch = run.viewer.states.at("messages");
+  CHECK(batch.at("channel") == "feedback/0");
+  CHECK(batch.at("messages")[0].at("message").at("robot") == 0);
+  CHECK(run.viewer.inspected == Approx(2 / to_seconds(run.scenario.cycle)).epsilon(0.05));
+  CHECK(run.send(R"({"op":"inspect","channel":null})"));
+  const std::size_t before = run.viewer.inspected;
+  run.system.run_for(500ms);
+  CHECK(run.viewer.inspected == before);
+}
+
+TEST_CASE("messages of viewers that make no sense are told apart") {
+  MonitoredRun run;
+  run.system.run_for(500ms);
+  for (const char* bad :
+       {"", "x", "[]", "{}", "3", R"({"op":3})", R"({"op":"fly"})", R"({"op":"seek"})",
+        R"({"op":"seek","at_s":"1"})", R"({"op":"seek","at_s":1e300})", R"({"op":"play"})",
+        R"({"op":"play","speed":0})", R"({"op":"play","speed":1e9})", R"({"op":"step","frames":1e9})",
+        R"({"op":"inspect","channel":"secret"})", R"({"op":"inspect","channel":[1]})", "\xff\xfe"})
+    CHECK_FALSE(run.send(bad));
+}
+
+TEST_CASE("the state, the events and the scene are answered over HTTP") {
+  MonitoredRun run;
+  run.system.run_for(6s);
+  const auto get = [&](const std::string& path, std::map<std::string, std::string> query = {}) {
+    return run.monitor.respond({"GET", path, std::move(query), "", ""});
+  };
+  CHECK(Json::parse(get("/api/state")->body).at("robots").size() == run.scenario.robots.size());
+  CHECK(Json::parse(get("/api/scene")->body).at("radius_m") == run.scenario.radius_m);
+  const Json events = Json::parse(get("/api/events")->body);
+  REQUIRE(events.size() >= 3);
+  CHECK(Json::parse(get("/api/events", {{"since", std::to_string(events.size() - 1)}})->body).size() == 1);
+  CHECK(get("/api/events", {{"since", "x"}})->status == 400);
+  CHECK_FALSE(get("/api/map"));
+  CHECK_FALSE(get("/api/nothing"));
+  CHECK_FALSE(run.monitor.respond({"POST", "/api/state", {}, "", ""}));
+}
+
+}  // namespace sidestep::monitor_test
