@@ -37,7 +37,7 @@ Duration sample_offset(Rng& rng) {
 History sample(std::uint64_t seed) {
   Rng rng(seed);
   History history{shuttles(4, 1 + static_cast<int>(rng.below(3)), rng.chance(0.5)), {}, Duration{0}};
-  std::vector<std::string> clocks = SimSystem::process_names(history.scenario);
+  std::vector<std::string> clocks = system_process_names(history.scenario);
   for (const RobotSpec& robot : history.scenario.robots)
     clocks.push_back("robot " + std::to_string(robot.id));
   history.agree_at = from_seconds(rng.uniform(2.5, 9));

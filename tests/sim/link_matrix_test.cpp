@@ -44,7 +44,7 @@ Link sample_link(const std::string& from, const std::string& to, double share, R
 }
 
 Matrix sample_matrix(const Scenario& scenario, Rng& rng) {
-  const auto names = SimSystem::process_names(scenario);
+  const auto names = system_process_names(scenario);
   const double share = rng.uniform(0.05, 0.6);
   Matrix matrix;
   for (const std::string& from : names)
@@ -189,7 +189,7 @@ void require_motion(int coordinators, const std::vector<std::pair<std::string, s
 
 std::vector<std::pair<std::string, std::string>> links_to(const std::string& process, int coordinators) {
   std::vector<std::pair<std::string, std::string>> links;
-  for (const std::string& other : SimSystem::process_names(shuttles(3, coordinators)))
+  for (const std::string& other : system_process_names(shuttles(3, coordinators)))
     if (other != process) links.emplace_back(other, process);
   return links;
 }

@@ -89,7 +89,7 @@ struct OrderedSystem {
   }
   /// Cuts a process off from all others and from the clients, or heals its links.
   void isolate(const std::string& process, bool is_cut = true) {
-    for (const std::string& other : SimSystem::process_names(scenario))
+    for (const std::string& other : system_process_names(scenario))
       if (other != process) cut(process, other, is_cut);
     LinkQuality quality;
     quality.is_cut = is_cut;
@@ -97,7 +97,7 @@ struct OrderedSystem {
   }
   /// Kills everything but the simulator and vision at once, and starts it again.
   void restart_everything() {
-    const auto names = SimSystem::process_names(scenario);
+    const auto names = system_process_names(scenario);
     for (const std::string& process : names)
       if (process != "simulator" && process != "vision") system.kill(process);
     for (const std::string& process : names) system.restart(process);

@@ -94,10 +94,10 @@ TEST_CASE("a hold outlives the coordinator, the agents and both, until its owner
   for (const RobotSpec& robot : scenario.robots) restart(agent_process(robot.id));
   CHECK(stays(seconds(4)));
   // All at once.
-  for (const std::string& process : SimSystem::process_names(scenario)) {
+  for (const std::string& process : system_process_names(scenario)) {
     if (process != "simulator" && process != "vision") run.system.kill(process);
   }
-  for (const std::string& process : SimSystem::process_names(scenario)) run.system.restart(process);
+  for (const std::string& process : system_process_names(scenario)) run.system.restart(process);
   CHECK(stays(seconds(5)));
   // Another client cannot lift it, and after a restart of everything the owner cannot either.
   run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kOtherClient);
@@ -187,7 +187,7 @@ TEST_CASE("a client learns the end of every order, whatever is killed meanwhile"
       // If every process that knows that there was no order before is killed, robots are held until an
       // operator resumes them.
       if (run.system.now() < run.system.begin() + seconds(3)) continue;
-      for (const std::string& process : SimSystem::process_names(scenario)) {
+      for (const std::string& process : system_process_names(scenario)) {
         if (process == "simulator" || process == "vision") continue;
         if (run.system.is_alive(process) && rng.below(100) == 0) {
           run.system.kill(process);
@@ -197,7 +197,7 @@ TEST_CASE("a client learns the end of every order, whatever is killed meanwhile"
         }
       }
     }
-    for (const std::string& process : SimSystem::process_names(scenario)) run.system.restart(process);
+    for (const std::string& process : system_process_names(scenario)) run.system.restart(process);
     const auto is_over = [&] {
       return random.count(OrderPhase::kArrived) + random.count(OrderPhase::kReplaced) == random.sent.size();
     };
@@ -281,7 +281,7 @@ TEST_CASE("a client that sends each order only once is told only of orders that 
     const OrderNumber zone = run.draw(7, {{{2.5, 2}}, 0.1});
     const OrderNumber go = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1.5}}});
     run.system.run_for(until_cut);
-    for (const std::string& other : SimSystem::process_names(run.scenario))
+    for (const std::string& other : system_process_names(run.scenario))
       if (other != victim) run.cut_one_way(victim, other);
     const OrderNumber cancel = run.send(msg::OrderKind::ORDER_CANCEL, 0, kClient);
     run.system.run_for(until_death);
@@ -291,7 +291,7 @@ TEST_CASE("a client that sends each order only once is told only of orders that 
     };
     const bool has_zone = is_accepted(zone), has_go = is_accepted(go), has_cancel = is_accepted(cancel);
     run.system.kill(victim);
-    for (const std::string& other : SimSystem::process_names(run.scenario))
+    for (const std::string& other : system_process_names(run.scenario))
       if (other != victim) run.cut_one_way(victim, other, false);
     run.system.restart(victim);
     std::set<OrderNumber> remembered;

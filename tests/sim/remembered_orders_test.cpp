@@ -115,7 +115,7 @@ TEST_CASE("a coordinator that no agent hears confirms no hold") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 2, seed);
-  for (const std::string& other : SimSystem::process_names(run.scenario))
+  for (const std::string& other : system_process_names(run.scenario))
     if (other != "coordinator") run.cut_one_way("coordinator", other);
   const auto hold = run.send(msg::OrderKind::ORDER_HOLD, 0, kClient);
   run.system.run_for(milliseconds(100));
@@ -215,7 +215,7 @@ TEST_CASE("no confirmed hold is lost in random partitions and crashes") {
     Rng rng(seed);
     const int coordinators = 1 + static_cast<int>(seed % 2);
     Fleet run(4, coordinators, seed);
-    std::vector<std::string> victims = SimSystem::process_names(run.scenario);
+    std::vector<std::string> victims = system_process_names(run.scenario);
     std::erase_if(victims, [](const std::string& name) { return name == "simulator" || name == "vision"; });
     const auto any = [&] { return victims[rng.below(static_cast<std::uint32_t>(victims.size()))]; };
     std::set<std::pair<std::string, std::string>> links;

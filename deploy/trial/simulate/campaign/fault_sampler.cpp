@@ -7,7 +7,7 @@
 
 #include "deploy/trial/simulate/campaign/forger.hpp"
 #include "deploy/trial/simulate/campaign/other_rules.hpp"
-#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/system_processes.hpp"
 
 namespace sidestep {
 namespace {

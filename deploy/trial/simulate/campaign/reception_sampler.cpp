@@ -16,7 +16,7 @@ class ReceptionSampler {
         times_(times),
         plan_(plan),
         rng_(rng),
-        processes_(SimSystem::process_names(scenario)) {}
+        processes_(system_process_names(scenario)) {}
 
   void sample() {
     if (rng_.chance(0.15)) {

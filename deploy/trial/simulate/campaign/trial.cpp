@@ -176,7 +176,7 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   FaultPlan& plan = trial.plan;
   plan.healed_at = times.healed_at();
   if (!has_faults) return trial;
-  plan = sample_faults(trial.scenario, SimSystem::process_names(trial.scenario), times, fault_rng);
+  plan = sample_faults(trial.scenario, system_process_names(trial.scenario), times, fault_rng);
   if (trial.base_latency) keep_driving(plan);
   sample_clocks(trial.scenario, plan, duration, !trial.base_latency, clock_rng);
   if (disturbance_rng.chance(0.08)) trial.scenario.vision.ghost_probability = disturbance_rng.uniform(0, 0.2);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
-#include <string_view>
 
 #include "agents/agent/agent_node.hpp"
 #include "common/messaging/order_codec.hpp"
@@ -20,7 +19,6 @@
 namespace sidestep {
 namespace {
 
-constexpr std::string_view kSecond = " (second)";
 constexpr Duration kStep = std::chrono::milliseconds(10);
 constexpr Duration kSettlingTime = std::chrono::milliseconds(500);
 
@@ -48,16 +46,11 @@ struct VisionProcess {
 
 }  // namespace
 
-/// The name of the process that a second one of its kind duplicates; for any other process, its own name.
-std::string first_of(const std::string& process) {
-  return process.ends_with(kSecond) ? process.substr(0, process.size() - kSecond.size()) : process;
-}
-
 /// The id of a process that is not an agent.
 std::uint32_t id_of(const std::string& process, const Scenario& scenario) {
-  const std::string name = first_of(process);
+  const std::string name = first_process(process);
   const auto id = process_id(name);
-  if (!id || std::ranges::count(SimSystem::process_names(scenario), name) == 0)
+  if (!id || std::ranges::count(system_process_names(scenario), name) == 0)
     throw std::invalid_argument("the system has no process \"" + name + "\"");
   return *id;
 }
@@ -90,9 +83,6 @@ struct SimSystem::Process {
   std::shared_ptr<void> node;
   std::function<void(LogLevel, OnLogEvent)> listen;  // sets the callback for the node's events
 };
-
-std::string twin_process(RobotId robot) { return agent_process(robot) + " (twin)"; }
-std::string second_process(const std::string& process) { return process + std::string(kSecond); }
 
 SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks,
                      Time begin, std::optional<Duration> base_latency)
@@ -133,17 +123,10 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
   metrics_.set_bus(observer_bus_);
   for (const RobotSpec& robot : scenario_.robots)
     robot_of_[agent_process(robot.id)] = robot_of_[twin_process(robot.id)] = robot.id;
-  for (const std::string& process : process_names(scenario_)) start(process);
+  for (const std::string& process : system_process_names(scenario_)) start(process);
 }
 
 SimSystem::~SimSystem() = default;
-
-std::vector<std::string> SimSystem::process_names(const Scenario& scenario) {
-  std::vector<std::string> names{"simulator", "vision"};
-  for (int number = 0; number < scenario.coordinators; ++number) names.push_back(coordinator_process(number));
-  for (const RobotSpec& robot : scenario.robots) names.push_back(agent_process(robot.id));
-  return names;
-}
 
 SimProcessSpec SimSystem::spec_of(const std::string& process) {
   const auto known = ids_.find(process);
@@ -173,11 +156,11 @@ void SimSystem::start(const std::string& name) {
   if (agent != robot_of_.end()) {
     const auto scratch = &scenario == &scenario_ ? scratch_ : std::make_shared<PlanningScratch>(scenario);
     process->run(std::make_shared<AgentNode>(bus, scenario, id, incarnation, scratch));
-  } else if (first_of(name) == "simulator" && base_latency_) {
+  } else if (first_process(name) == "simulator" && base_latency_) {
     process->run(std::make_shared<DrivenBases>(bus, scenario, *base_latency_, incarnation, seed_));
-  } else if (first_of(name) == "simulator") {
+  } else if (first_process(name) == "simulator") {
     process->run(std::make_shared<SimulatorProcess>(bus, scenario, incarnation, seed_));
-  } else if (first_of(name) == "vision") {
+  } else if (first_process(name) == "vision") {
     process->run(std::make_shared<VisionProcess>(bus, scenario, incarnation));
   } else {
     const CoordinatorIdentity self{id - static_cast<std::uint32_t>(Sender::kCoordinator), incarnation};

@@ -17,15 +17,11 @@
 #include "common/protocol/order.hpp"
 #include "deploy/audit/auditor.hpp"
 #include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/trial/simulate/system/system_processes.hpp"
 
 namespace sidestep {
 
 struct PlanningScratch;
-
-/// The process name of a robot's second agent.
-std::string twin_process(RobotId robot);
-/// The name of a second process of a kind that must run alone: "simulator" or "vision".
-std::string second_process(const std::string& process);
 
 /// The whole system on SimBus, in one thread and virtual time: one simulated process each for the simulator,
 /// vision, every coordinator and every agent, and an observer with metrics and auditor. The same scenario and
@@ -81,8 +77,6 @@ class SimSystem {
   void set_link(const std::string& from, const std::string& to, const LinkQuality& quality);
   /// Sets the quality of the link by which a process receives the orders of send().
   void set_client_link(const std::string& to, const LinkQuality& quality);
-  /// The names of the processes that a system starts.
-  static std::vector<std::string> process_names(const Scenario& scenario);
 
   Time now() const { return network_.now(); }
   Time begin() const { return begin_; }

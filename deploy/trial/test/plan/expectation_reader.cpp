@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/system_processes.hpp"
 #include "deploy/trial/test/plan/plan_names.hpp"
 
 namespace sidestep {
@@ -50,7 +50,7 @@ class ExpectationReader {
       return ExpectTakeover{span()};
     }
     if (key_ == "named") return ExpectNamed{robots(), read_notice_kind(), span()};
-    return ExpectMismatch{process_from(map_, key_, SimSystem::process_names(scenario_))};
+    return ExpectMismatch{process_from(map_, key_, system_process_names(scenario_))};
   }
 
   RobotSet robots() { return robots_from(map_, key_, scenario_); }

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "common/config/scenario_loader.hpp"
-#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/system_processes.hpp"
 #include "deploy/trial/test/plan/disturbance_reader.hpp"
 #include "deploy/trial/test/plan/plan_names.hpp"
 
@@ -25,7 +25,7 @@ using Names = std::vector<std::string>;
 class FaultReader {
  public:
   FaultReader(YamlMap& map, const Scenario& scenario, const std::string& folder)
-      : map_(map), scenario_(scenario), folder_(folder), processes_(SimSystem::process_names(scenario)) {}
+      : map_(map), scenario_(scenario), folder_(folder), processes_(system_process_names(scenario)) {}
 
   PlannedFault read() {
     PlannedFault fault;
@@ -88,7 +88,7 @@ class FaultReader {
     if (!file.IsDefined()) return fault;
     const YamlLocation location = map_.location_of("scenario");
     fault.scenario_file = (std::filesystem::path(folder_) / text_from(file, location)).string();
-    const Names others = SimSystem::process_names(load_scenario(fault.scenario_file));
+    const Names others = system_process_names(load_scenario(fault.scenario_file));
     const bool is_agent = fault.process.starts_with("agent ");
     if (is_agent && std::ranges::find(others, fault.process) == others.end())
       location.fail(fmt::format("that scenario has no {}", fault.process));

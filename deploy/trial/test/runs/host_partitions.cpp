@@ -8,7 +8,7 @@
 
 #include "common/messaging/process_names.hpp"
 #include "deploy/trial/fault/link_filter.hpp"
-#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/system_processes.hpp"
 
 namespace sidestep {
 namespace {
@@ -92,7 +92,7 @@ void HostPartitions::check(const PartitionFault& partition, const std::string& t
       if (host->transport != HostTransport::kNamespace)
         throw std::runtime_error(fmt::format("{} needs namespace hosts, and {} is none", text, host->name));
     }
-    for (const std::string& process : SimSystem::process_names(test_.scenario)) {
+    for (const std::string& process : system_process_names(test_.scenario)) {
       const HostSpec& host = hosts_.placement().host_of(process);
       if (!hosts.contains(&host) || contains(*side, process)) continue;
       throw std::runtime_error(

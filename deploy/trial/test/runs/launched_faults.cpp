@@ -10,7 +10,7 @@
 #include "deploy/trial/fault/fault_target.hpp"
 #include "deploy/trial/fault/network_message.hpp"
 #include "deploy/trial/fault/operator_messages.hpp"
-#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/system_processes.hpp"
 #include "deploy/trial/test/runs/active_coordinator.hpp"
 #include "simulator/world/disturbance_codec.hpp"
 

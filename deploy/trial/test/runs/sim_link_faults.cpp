@@ -20,7 +20,7 @@ LinkQuality impaired(const NetworkSpec& network, const LinkQuality& fault) {
 }  // namespace
 
 SimLinkFaults::SimLinkFaults(SimSystem& system, const Scenario& scenario)
-    : system_(system), network_(scenario.network), processes_(SimSystem::process_names(scenario)) {
+    : system_(system), network_(scenario.network), processes_(system_process_names(scenario)) {
   for (const RobotSpec& robot : scenario.robots) processes_.push_back(twin_process(robot.id));
 }
 

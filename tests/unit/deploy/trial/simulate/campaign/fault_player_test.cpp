@@ -17,7 +17,7 @@ Scenario pair_of_robots() {
 
 FaultPlan plan_of(const Scenario& scenario, std::vector<TimedFault> faults, Duration healed_at) {
   FaultPlan plan;
-  for (const std::string& process : SimSystem::process_names(scenario)) plan.hosts.push_back({process});
+  for (const std::string& process : system_process_names(scenario)) plan.hosts.push_back({process});
   plan.faults = std::move(faults);
   plan.healed_at = healed_at;
   return plan;
@@ -151,7 +151,7 @@ TEST_CASE("at the end of all faults link qualities recover and partitions end") 
   const Scenario scenario = pair_of_robots();
   LinkQuality terrible;
   terrible.loss = 1;
-  const auto processes = SimSystem::process_names(scenario);
+  const auto processes = system_process_names(scenario);
   const FaultPlan plan = plan_of(
       scenario,
       {{0s, LinkChange{processes, processes, terrible}}, {1s, Partition{processes, processes, 30s}}}, 3s);

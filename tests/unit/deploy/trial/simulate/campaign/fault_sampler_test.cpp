@@ -70,7 +70,7 @@ TEST_CASE("random faults stay within their bounds, include every kind, and end b
     CHECK(plan.healed_at == Duration{48s});
     CHECK(std::ranges::is_sorted(plan.faults, {}, &TimedFault::at));
     std::map<std::string, bool> is_alive;
-    for (const std::string& process : SimSystem::process_names(trial.scenario)) is_alive[process] = true;
+    for (const std::string& process : system_process_names(trial.scenario)) is_alive[process] = true;
     for (const TimedFault& timed : plan.faults) {
       CHECK(timed.at >= Duration{0});
       CHECK(timed.at < plan.healed_at);

@@ -91,7 +91,7 @@ TEST_CASE("a coordinator that was started again and hears nobody fails no trial 
   SimSystem system{scenario, 1};
   OrderClients clients{system, scenario.radius_m};
   system.run_for(2s);
-  for (const std::string& process : SimSystem::process_names(scenario)) {
+  for (const std::string& process : system_process_names(scenario)) {
     LinkQuality cut;
     cut.is_cut = true;
     if (process != "coordinator 1") system.set_link(process, "coordinator 1", cut);
@@ -115,7 +115,7 @@ TEST_CASE("a coordinator that hears nobody for good fails no trial by an order t
   system.run_for(2s);
   LinkQuality cut;
   cut.is_cut = true;
-  for (const std::string& process : SimSystem::process_names(scenario))
+  for (const std::string& process : system_process_names(scenario))
     if (process != "coordinator 1") system.set_link(process, "coordinator 1", cut);
   system.pause("coordinator 1", 1s, 0);
   Order order{msg::OrderKind::ORDER_GO, 0, kClient};

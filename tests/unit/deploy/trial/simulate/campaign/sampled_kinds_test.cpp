@@ -150,7 +150,7 @@ void add_pause(const Pause& pause, const FaultPlan& plan, Shares& pauses) {
 
 TEST_CASE("random faults of processes and links have every kind, target and property") {
   const Scenario scenario = eleven_robots();
-  const ProcessNames names = SimSystem::process_names(scenario);
+  const ProcessNames names = system_process_names(scenario);
   Shares plans, links, partitions, pauses, kills;
   std::set<std::size_t> rules, forged;
   for (std::uint64_t seed = 1; seed <= kPlans; ++seed) {
@@ -383,7 +383,7 @@ TEST_CASE("random disturbances of robots have every kind, size and property") {
 
 TEST_CASE("random clocks have every kind of error") {
   const Scenario scenario = eleven_robots();
-  const ProcessNames names = SimSystem::process_names(scenario);
+  const ProcessNames names = system_process_names(scenario);
   Shares plans, agents;
   for (std::uint64_t seed = 1; seed <= kPlans; ++seed) {
     Rng rng(seed);

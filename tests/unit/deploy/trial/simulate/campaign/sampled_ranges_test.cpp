@@ -70,7 +70,7 @@ Scenario eleven_robots() {
 
 TEST_CASE("random faults of links and processes fill their ranges") {
   const Scenario scenario = eleven_robots();
-  const ProcessNames names = SimSystem::process_names(scenario);
+  const ProcessNames names = system_process_names(scenario);
   Extremes sizes;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
     Rng rng(seed);
@@ -157,7 +157,7 @@ TEST_CASE("random disturbances of robots fill their ranges") {
 
 TEST_CASE("random clocks fill their ranges") {
   const Scenario scenario = eleven_robots();
-  const ProcessNames names = SimSystem::process_names(scenario);
+  const ProcessNames names = system_process_names(scenario);
   const double half_bound_s = 0.499 * scenario.clock_bound_s;
   Extremes sizes;
   int jumped = 0, jumped_coordinators = 0;
