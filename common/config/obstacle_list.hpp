@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/collision/shapes.hpp"
-#include "common/config/yaml_map.hpp"
 #include "common/map/floor_map.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 namespace sidestep {
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/config/config_error.hpp"
+#include "common/yaml/config_error.hpp"
 
 namespace sidestep {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/config/scenario.hpp"
-#include "common/config/yaml_map.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 namespace sidestep {
 

@@ -11,10 +11,10 @@
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_floor.hpp"
 #include "common/config/scenario_robots.hpp"
-#include "common/config/yaml_document.hpp"
-#include "common/config/yaml_map.hpp"
 #include "common/file/utf8.hpp"
 #include "common/messaging/senders.hpp"
+#include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_map.hpp"
 #include "idl/laser.hpp"
 #include "idl/vision.hpp"
 

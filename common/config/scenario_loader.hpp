@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "common/config/config_error.hpp"
 #include "common/config/scenario.hpp"
+#include "common/yaml/config_error.hpp"
 
 namespace sidestep {
 

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "common/config/yaml_document.hpp"
-#include "common/config/yaml_map.hpp"
 #include "common/file/home_folder.hpp"
 #include "common/file/write_file.hpp"
 #include "common/map/map_image.hpp"
+#include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 namespace sidestep {
 namespace {

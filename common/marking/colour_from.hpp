@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/config/yaml_map.hpp"
 #include "common/marking/colours.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 namespace sidestep {
 

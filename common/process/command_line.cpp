@@ -12,9 +12,9 @@
 #include <type_traits>
 #include <utility>
 
-#include "common/config/plus_sign.hpp"
 #include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
+#include "common/yaml/plus_sign.hpp"
 
 namespace sidestep {
 namespace {

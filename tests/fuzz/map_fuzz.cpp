@@ -7,10 +7,10 @@
 #include <png.h>
 #include <zlib.h>
 
-#include "common/config/config_error.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "common/map/floor_map.hpp"
 #include "common/map/map_file.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 namespace sidestep::fuzz {

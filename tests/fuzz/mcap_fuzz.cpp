@@ -3,8 +3,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "common/config/config_error.hpp"
 #include "common/file/temporary_folder.hpp"
+#include "common/yaml/config_error.hpp"
 #include "deploy/inspect/record/bag.hpp"
 #include "deploy/inspect/record/mcap/mcap_writer.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"

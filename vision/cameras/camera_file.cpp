@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "common/config/yaml_document.hpp"
-#include "common/config/yaml_map.hpp"
+#include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_map.hpp"
 #include "vision/cameras/camera_keys.hpp"
 
 namespace sidestep {

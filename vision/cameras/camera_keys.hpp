@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/camera/camera_model.hpp"
-#include "common/config/yaml_map.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 /// Keys and ranges shared by files of cameras and files of calibration points.
 namespace sidestep::camera_keys {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/cameras/point_file.hpp"
 
-#include "common/config/yaml_document.hpp"
+#include "common/yaml/yaml_document.hpp"
 #include "vision/cameras/camera_keys.hpp"
 
 namespace sidestep {

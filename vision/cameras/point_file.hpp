@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/yaml_map.hpp"
+#include "common/yaml/yaml_map.hpp"
 #include "vision/cameras/camera_calibration.hpp"
 
 namespace sidestep {

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "common/config/yaml_document.hpp"
-#include "common/config/yaml_map.hpp"
 #include "common/marking/colour_from.hpp"
+#include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_map.hpp"
 #include "vision/colours/colour_learner.hpp"
 
 namespace sidestep {

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/config/yaml_document.hpp"
 #include "common/file/read_permission.hpp"
 #include "common/keys/key_folder.hpp"
+#include "common/yaml/yaml_document.hpp"
 #include "deploy/run/launch/hosts/command.hpp"
 #include "deploy/run/launch/process_group.hpp"
 

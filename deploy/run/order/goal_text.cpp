@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <system_error>
 
-#include "common/config/heading.hpp"
-#include "common/config/plus_sign.hpp"
-#include "common/config/yaml_document.hpp"
-#include "common/config/yaml_map.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/process/command_line.hpp"
+#include "common/yaml/heading.hpp"
+#include "common/yaml/plus_sign.hpp"
+#include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 namespace sidestep {
 namespace {

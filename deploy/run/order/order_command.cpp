@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "common/client/order_client.hpp"
-#include "common/config/yaml_document.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/yaml/yaml_document.hpp"
 #include "deploy/run/order/goal_text.hpp"
 #include "deploy/run/order/order_text.hpp"
 #include "deploy/run/order/zone_text.hpp"

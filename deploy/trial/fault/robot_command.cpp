@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "common/config/heading.hpp"
 #include "common/motion/version.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/yaml/heading.hpp"
 #include "deploy/trial/fault/operator_messages.hpp"
 
 namespace sidestep {

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "common/config/obstacle_list.hpp"
-#include "common/config/yaml_document.hpp"
-#include "common/config/yaml_map.hpp"
+#include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 namespace sidestep {
 namespace {

@@ -8,11 +8,11 @@
 #include <iterator>
 #include <memory>
 
-#include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/free_domain.hpp"
 #include "common/process/exit_code.hpp"
 #include "common/process/log_option.hpp"
+#include "common/yaml/config_error.hpp"
 #include "deploy/run/launch/run.hpp"
 #include "deploy/trial/test/judgement/junit.hpp"
 #include "deploy/trial/test/plan/fault_test.hpp"

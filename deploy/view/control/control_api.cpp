@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "common/config/heading.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/protocol/disturbance_text.hpp"
+#include "common/yaml/heading.hpp"
 #include "deploy/view/server/viewer_json.hpp"
 
 namespace sidestep {

@@ -8,10 +8,10 @@
 
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_loader.hpp"
-#include "common/config/yaml_document.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/free_domain.hpp"
 #include "common/messaging/topics.hpp"
+#include "common/yaml/yaml_document.hpp"
 #include "deploy/run/launch/hosts/run_hosts.hpp"
 #include "deploy/run/launch/launcher.hpp"
 #include "deploy/run/launch/process_group.hpp"

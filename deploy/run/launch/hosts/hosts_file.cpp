@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <set>
 
-#include "common/config/yaml_document.hpp"
-#include "common/config/yaml_map.hpp"
 #include "common/motion/version.hpp"
+#include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_map.hpp"
 #include "deploy/run/launch/hosts/namespaces.hpp"
 
 namespace sidestep {

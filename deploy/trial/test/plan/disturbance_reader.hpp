@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
-#include "common/config/yaml_map.hpp"
 #include "common/protocol/robot_disturbance.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 namespace sidestep {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/config/scenario.hpp"
-#include "common/config/yaml_map.hpp"
+#include "common/yaml/yaml_map.hpp"
 #include "deploy/trial/test/plan/expectation.hpp"
 #include "deploy/trial/test/plan/planned_fault.hpp"
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "common/config/scenario_loader.hpp"
-#include "common/config/yaml_document.hpp"
+#include "common/yaml/yaml_document.hpp"
 #include "deploy/trial/test/plan/expectation_reader.hpp"
 #include "deploy/trial/test/plan/fault_reader.hpp"
 

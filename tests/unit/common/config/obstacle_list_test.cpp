@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "common/config/config_error.hpp"
 #include "common/random/rng.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::obstacle_list_test {

@@ -5,9 +5,9 @@
 #include <string>
 #include <unistd.h>
 
-#include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
 #include "common/map/map_file.hpp"
+#include "common/yaml/config_error.hpp"
 
 namespace sidestep::test {
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/process.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 #include "tests/unit/common/random/normal_vector.hpp"

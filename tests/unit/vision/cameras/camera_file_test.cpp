@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <unistd.h>
 
-#include "common/config/config_error.hpp"
 #include "common/file/write_file.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/camera/random_camera.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/cameras/point_file.hpp"
 
-#include "common/config/config_error.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::point_file_test {

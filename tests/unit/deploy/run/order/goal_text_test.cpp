@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/run/order/goal_text.hpp"
 
-#include "common/config/config_error.hpp"
 #include "common/process/command_line.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::goal_text_test {

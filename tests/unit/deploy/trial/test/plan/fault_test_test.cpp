@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <set>
 
-#include "common/config/config_error.hpp"
 #include "common/config/scenario_loader.hpp"
 #include "common/config/shared_rules.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::fault_test_test {

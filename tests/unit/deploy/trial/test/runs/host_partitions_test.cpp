@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/test/runs/host_partitions.hpp"
 
-#include "common/config/config_error.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::host_partitions_test {

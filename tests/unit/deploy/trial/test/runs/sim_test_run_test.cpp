@@ -6,7 +6,7 @@
 #include <iterator>
 #include <unistd.h>
 
-#include "common/config/config_error.hpp"
+#include "common/yaml/config_error.hpp"
 #include "deploy/trial/test/test_command.hpp"
 #include "tests/catch.hpp"
 #include "tests/text_of.hpp"

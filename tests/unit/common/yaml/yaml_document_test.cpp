@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/yaml_document.hpp"
+#include "common/yaml/yaml_document.hpp"
 
-#include "common/config/config_error.hpp"
+#include "common/yaml/config_error.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/config/scenario_errors.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/yaml_document.hpp"
+#include "common/yaml/yaml_document.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -11,10 +11,10 @@
 #include <vector>
 #include <yaml-cpp/eventhandler.h>
 
-#include "common/config/config_error.hpp"
-#include "common/config/yaml_merge.hpp"
-#include "common/config/yaml_structure.hpp"
 #include "common/file/read_file.hpp"
+#include "common/yaml/config_error.hpp"
+#include "common/yaml/yaml_merge.hpp"
+#include "common/yaml/yaml_structure.hpp"
 
 namespace sidestep {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/yaml_merge.hpp"
+#include "common/yaml/yaml_merge.hpp"
 
 #include <algorithm>
 #include <set>
 #include <vector>
 
-#include "common/config/config_error.hpp"
+#include "common/yaml/config_error.hpp"
 
 namespace sidestep {
 namespace {

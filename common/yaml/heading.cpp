@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/heading.hpp"
+#include "common/yaml/heading.hpp"
 
 #include <cmath>
 #include <fmt/format.h>

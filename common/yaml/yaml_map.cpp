@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/yaml_map.hpp"
+#include "common/yaml/yaml_map.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,10 +8,10 @@
 #include <set>
 #include <string_view>
 
-#include "common/config/config_error.hpp"
-#include "common/config/heading.hpp"
-#include "common/config/plus_sign.hpp"
-#include "common/config/yaml_document.hpp"
+#include "common/yaml/config_error.hpp"
+#include "common/yaml/heading.hpp"
+#include "common/yaml/plus_sign.hpp"
+#include "common/yaml/yaml_document.hpp"
 
 namespace sidestep {
 namespace {

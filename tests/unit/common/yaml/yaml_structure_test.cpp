@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/yaml_structure.hpp"
+#include "common/yaml/yaml_structure.hpp"
 
 #include <fmt/format.h>
 
-#include "common/config/config_error.hpp"
-#include "common/config/yaml_document.hpp"
+#include "common/yaml/config_error.hpp"
+#include "common/yaml/yaml_document.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::yaml_structure_test {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/config/yaml_structure.hpp"
+#include "common/yaml/yaml_structure.hpp"
 
 #include <fmt/format.h>
 #include <string_view>
 
-#include "common/config/config_error.hpp"
+#include "common/yaml/config_error.hpp"
 
 namespace sidestep {
 namespace {
