@@ -7,8 +7,8 @@
 #include "common/messaging/observation_codec.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/protocol/reason_text.hpp"
+#include "common/protocol/senders.hpp"
 #include "coordinator/ledger_pages.hpp"
 #include "coordinator/publish.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

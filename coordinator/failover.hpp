@@ -6,9 +6,9 @@
 #include <set>
 #include <vector>
 
-#include "common/messaging/senders.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/role_cause.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/time/rate_limit.hpp"
 #include "coordinator/fleet_reception.hpp"
 

@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "common/log/log.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/protocol/senders.hpp"
 #include "simulator/bases/base_options.hpp"
 #include "simulator/bases/league_server.hpp"
 #include "simulator/bases/velocity_server.hpp"

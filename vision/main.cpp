@@ -2,9 +2,9 @@
 #include <string>
 
 #include "common/log/log.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/protocol/senders.hpp"
 #include "vision/calibrate/calibrate_command.hpp"
 #include "vision/images/image_arguments.hpp"
 #include "vision/league/log_commands.hpp"

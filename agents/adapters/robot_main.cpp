@@ -9,10 +9,10 @@
 #include "agents/adapters/robots_node.hpp"
 #include "agents/adapters/velocity/velocity_driver.hpp"
 #include "common/log/log.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/process/bases_bus.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

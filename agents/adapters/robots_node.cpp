@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/robot_codec.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/robot/own_stop_text.hpp"
 
 namespace sidestep {

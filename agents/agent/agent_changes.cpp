@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/messaging/enumerator.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "common/protocol/reason_text.hpp"
 
 namespace sidestep {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/messaging/senders.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

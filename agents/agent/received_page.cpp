@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 

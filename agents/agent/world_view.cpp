@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "common/messaging/observation_codec.hpp"
 #include "common/messaging/order_codec.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep::client {
 namespace {

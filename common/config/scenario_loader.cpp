@@ -12,7 +12,7 @@
 #include "common/config/scenario_floor.hpp"
 #include "common/config/scenario_robots.hpp"
 #include "common/file/utf8.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/yaml/yaml_document.hpp"
 #include "common/yaml/yaml_map.hpp"
 #include "idl/laser.hpp"

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <fmt/format.h>
 
-#include "common/messaging/senders.hpp"
 #include "common/motion/version.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

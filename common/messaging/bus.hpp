@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "common/messaging/attachment.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sole_sender.hpp"
 #include "common/messaging/topics.hpp"
 #include "common/protocol/drop_counters.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {

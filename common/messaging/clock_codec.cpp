@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "common/file/utf8.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/observation_codec.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/messaging/version_codec.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

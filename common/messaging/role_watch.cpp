@@ -4,8 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "common/messaging/process_names.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/process_names.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/rules_exchange.hpp"
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 
 namespace sidestep {
 namespace {

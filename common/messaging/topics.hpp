@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/messaging/cdr.hpp"
-#include "common/messaging/roles.hpp"
+#include "common/protocol/roles.hpp"
 #include "idl/clock.hpp"
 #include "idl/disturbance.hpp"
 #include "idl/laser.hpp"

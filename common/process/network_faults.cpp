@@ -5,7 +5,7 @@
 
 #include "common/log/log.hpp"
 #include "common/messaging/impairment.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

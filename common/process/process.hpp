@@ -37,7 +37,7 @@ struct Program {
   /// Returns the name of the DDS participant, which also names the process in its log, for example agent-3.
   /// Called after the options are parsed. Empty: `name`.
   std::function<std::string()> participant;
-  /// Returns the process id (common/messaging/senders.hpp). Called after the options are parsed.
+  /// Returns the process id (common/protocol/senders.hpp). Called after the options are parsed.
   std::function<std::uint32_t()> process;
   /// Creates the nodes on the bus; run_process() keeps them until the bus has stopped. May throw; it throws
   /// std::invalid_argument if an option does not fit the scenario. Called again, with a higher incarnation on

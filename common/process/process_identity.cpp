@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 #include <stdexcept>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 

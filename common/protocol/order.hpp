@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "common/messaging/senders.hpp"
 #include "common/motion/goal.hpp"
 #include "common/motion/version.hpp"
+#include "common/protocol/senders.hpp"
 #include "idl/order.hpp"
 
 namespace sidestep {

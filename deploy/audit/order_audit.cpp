@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/audit/audited_robot.hpp"
 
 namespace sidestep {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/random/rng.hpp"
 
 namespace sidestep {

@@ -5,7 +5,7 @@
 
 #include "common/camera/camera_grid.hpp"
 #include "common/marking/butterfly.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

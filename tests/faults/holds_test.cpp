@@ -8,7 +8,7 @@
 
 #include "common/client/order_client.hpp"
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/needs_root.hpp"

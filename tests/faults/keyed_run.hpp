@@ -14,7 +14,7 @@
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/admission.hpp"
 #include "common/messaging/dds/event_loop.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/attacker.hpp"
 #include "tests/faults/launched_run.hpp"

@@ -16,7 +16,7 @@
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/admission.hpp"
 #include "common/messaging/order_codec.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/random/rng.hpp"
 #include "deploy/run/keys/permissions_text.hpp"
 #include "tests/catch.hpp"

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "common/file/temporary_folder.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/browser.hpp"
 #include "tests/faults/monitored_run.hpp"

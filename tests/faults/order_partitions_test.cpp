@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/client/order_client.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"

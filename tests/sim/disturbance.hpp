@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/config/scenario.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "idl/disturbance.hpp"
 
 namespace sidestep {

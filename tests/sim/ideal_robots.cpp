@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "common/messaging/robot_codec.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/sim/disturbance.hpp"
 
 namespace sidestep {

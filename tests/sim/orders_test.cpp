@@ -7,7 +7,7 @@
 
 #include "common/client/order_client.hpp"
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/disturbance.hpp"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "common/client/order_client.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/ordered_system.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/trial/simulate/campaign/other_rules.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"

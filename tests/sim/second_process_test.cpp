@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/audit/metrics/report.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"

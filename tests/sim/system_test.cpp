@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/audit/metrics/report.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 

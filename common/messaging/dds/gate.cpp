@@ -8,7 +8,7 @@
 #include "common/log/log.hpp"
 #include "common/messaging/dds/datagram.hpp"
 #include "common/messaging/dds/event_loop.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 
 namespace sidestep {
 namespace {

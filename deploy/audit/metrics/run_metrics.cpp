@@ -10,8 +10,8 @@
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/order_codec.hpp"
-#include "common/messaging/process_names.hpp"
 #include "common/messaging/robot_notices.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/inspect/time_range.hpp"
 
 namespace sidestep {

@@ -6,7 +6,7 @@
 
 #include "common/messaging/blockage_text.hpp"
 #include "common/messaging/histogram_codec.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/audit/metrics/run_metrics.hpp"
 
 namespace sidestep {

@@ -9,10 +9,10 @@
 #include <unistd.h>
 
 #include "common/messaging/dds/bus.hpp"
-#include "common/messaging/process_names.hpp"
 #include "common/process/host_name.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/run/clock/clock_survey.hpp"
 #include "deploy/run/clock/clock_text.hpp"
 

@@ -8,9 +8,9 @@
 
 #include "common/keys/key_folder.hpp"
 #include "common/log/log.hpp"
-#include "common/messaging/process_names.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/protocol/process_names.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_command.hpp"
 #include "deploy/run/launch/process_group.hpp"

@@ -8,8 +8,8 @@
 
 #include "common/keys/key_folder.hpp"
 #include "common/messaging/clock_codec.hpp"
-#include "common/messaging/process_names.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/process_names.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

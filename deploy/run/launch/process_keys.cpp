@@ -2,8 +2,8 @@
 #include "deploy/run/launch/process_keys.hpp"
 
 #include "common/keys/key_folder.hpp"
-#include "common/messaging/process_names.hpp"
 #include "common/process/process_identity.hpp"
+#include "common/protocol/process_names.hpp"
 
 namespace sidestep {
 

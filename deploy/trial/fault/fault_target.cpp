@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 
 namespace sidestep {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 

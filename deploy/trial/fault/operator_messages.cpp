@@ -9,7 +9,7 @@
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/presence.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

@@ -9,10 +9,10 @@
 #include "common/messaging/blockage_text.hpp"
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/order_codec.hpp"
-#include "common/messaging/process_names.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/protocol/disturbance_text.hpp"
+#include "common/protocol/process_names.hpp"
 #include "common/protocol/role_cause.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/histogram_codec.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "common/protocol/reason_text.hpp"
 #include "deploy/view/monitor/unix_time.hpp"
 

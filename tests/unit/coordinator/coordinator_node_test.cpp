@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"
 #include "tests/log_events.hpp"

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "common/messaging/negotiation_codec.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/messaging/order_codec.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/protocol/senders.hpp"
 #include "coordinator/coordinator_node.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/floor.hpp"

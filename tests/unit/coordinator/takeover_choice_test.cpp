@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which coordinator takes over, depending on what it hears.
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "coordinator/failover.hpp"
 #include "tests/catch.hpp"
 

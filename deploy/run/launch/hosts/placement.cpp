@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 
 namespace sidestep {
 

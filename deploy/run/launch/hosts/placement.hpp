@@ -17,7 +17,7 @@ class Placement {
   /// means that sidestep-robot runs instead of the simulator.
   Placement(const Hosts& hosts, const Scenario& scenario, bool has_driver = false);
 
-  /// `process` is for example "simulator" or "agent 3" (common/messaging/process_names.hpp).
+  /// `process` is for example "simulator" or "agent 3" (common/protocol/process_names.hpp).
   const HostSpec& host_of(const std::string& process) const { return *host_by_process_.at(process); }
 
  private:

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 
 namespace sidestep {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {

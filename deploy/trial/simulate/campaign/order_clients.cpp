@@ -5,7 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 
 namespace sidestep {
 namespace {

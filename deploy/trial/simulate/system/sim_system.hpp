@@ -11,10 +11,10 @@
 
 #include "common/config/scenario.hpp"
 #include "common/log/log_event.hpp"
-#include "common/messaging/process_names.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/protocol/order.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/audit/auditor.hpp"
 #include "deploy/audit/metrics/run_metrics.hpp"
 #include "deploy/trial/simulate/system/system_processes.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/trial/test/judgement/judge_each.hpp"
 #include "deploy/trial/test/judgement/unheard_time.hpp"
 

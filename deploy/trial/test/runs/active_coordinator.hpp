@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/trial/test/judgement/run_history.hpp"
 #include "deploy/trial/test/plan/planned_fault.hpp"
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/trial/fault/link_filter.hpp"
 #include "deploy/trial/simulate/system/system_processes.hpp"
 

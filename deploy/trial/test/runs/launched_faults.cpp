@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "deploy/trial/fault/fault_target.hpp"
 #include "deploy/trial/fault/network_message.hpp"
 #include "deploy/trial/fault/operator_messages.hpp"

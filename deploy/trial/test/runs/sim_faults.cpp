@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/trial/test/runs/active_coordinator.hpp"
 #include "simulator/world/disturbance_codec.hpp"
 

@@ -8,9 +8,9 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::agent_cycle_test {

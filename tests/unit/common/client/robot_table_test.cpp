@@ -4,7 +4,7 @@
 #include <chrono>
 #include <limits>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::client::robot_table_test {

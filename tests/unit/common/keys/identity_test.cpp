@@ -3,8 +3,8 @@
 
 #include <set>
 
-#include "common/messaging/senders.hpp"
 #include "common/motion/version.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::identity_test {

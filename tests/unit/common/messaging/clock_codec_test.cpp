@@ -5,7 +5,7 @@
 #include <functional>
 #include <limits>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::clock_codec_test {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::impairment_test {

@@ -4,7 +4,7 @@
 
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/unit/common/motion/random_trajectory.hpp"
 
 namespace sidestep::random_messages {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "common/messaging/process_names.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/protocol/process_names.hpp"
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"
 

@@ -2,8 +2,8 @@
 #include "common/messaging/sole_sender.hpp"
 
 #include "common/messaging/role_watch.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::host_clock_watch_test {

@@ -2,7 +2,7 @@
 #include "common/process/process_identity.hpp"
 
 #include "common/config/scenario_loader.hpp"
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::process_identity_test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/audit/audited_robot.hpp"
 #include "deploy/audit/order_audit.hpp"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "common/messaging/robot_codec.hpp"
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/messaging/version_codec.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"
 #include "tests/log_events.hpp"

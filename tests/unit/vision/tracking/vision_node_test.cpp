@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "common/messaging/senders.hpp"
 #include "common/messaging/sim/bus.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"

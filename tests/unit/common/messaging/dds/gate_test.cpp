@@ -9,7 +9,7 @@
 
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/datagram.hpp"
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/participant_datagram.hpp"
 #include "tests/test_keys.hpp"

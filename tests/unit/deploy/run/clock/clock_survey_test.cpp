@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/run/clock/clock_survey.hpp"
 
-#include "common/messaging/senders.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/run/clock/clock_text.hpp"
 #include "tests/catch.hpp"
 

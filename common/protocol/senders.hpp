@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "common/messaging/roles.hpp"
 #include "common/motion/version.hpp"
+#include "common/protocol/roles.hpp"
 
 namespace sidestep {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "common/messaging/senders.hpp"
 #include "common/motion/version.hpp"
+#include "common/protocol/senders.hpp"
 
 namespace sidestep {
 

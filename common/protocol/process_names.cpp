@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/messaging/process_names.hpp"
+#include "common/protocol/process_names.hpp"
 
 #include <charconv>
 
