@@ -61,16 +61,6 @@ bool is_client_name(std::string_view text) {
          std::ranges::all_of(text, is_plain);
 }
 
-bool covers(const Identity& identity, std::uint32_t robot) {
-  return robot >= identity.first && robot <= identity.last;
-}
-
-/// Whether the identity owns this robot's channel, if the topic has one per robot.
-bool has_channel(const Identity& identity, const TopicInfo& topic, std::uint32_t robot) {
-  const bool has_own = identity.role == Role::kAgent || identity.role == Role::kRobot;
-  return !topic.per_robot || !has_own || covers(identity, robot);
-}
-
 }  // namespace
 
 std::optional<Identity> parse_identity(const std::string& text) {
@@ -113,32 +103,11 @@ std::string folder_name(const Identity& identity) {
   return result;
 }
 
-bool may_write(const Identity& identity, const TopicInfo& topic, std::uint32_t robot) {
-  return topic.writers.has(identity.role) && has_channel(identity, topic, robot);
-}
-
-bool may_read(const Identity& identity, const TopicInfo& topic, std::uint32_t robot) {
-  return topic.readers.has(identity.role) && has_channel(identity, topic, robot);
-}
-
-bool exchange_messages(const Identity& a, const Identity& b) {
-  // For per-robot topics: an identity with channels of its own has those of the robots `first` .. `last`.
-  const std::uint32_t robots[] = {std::max(a.first, b.first), std::min(a.last, b.last), a.first, b.first};
-  bool result = false;
-  for_each_topic([&](const TopicInfo& topic) {
-    if (std::string_view(topic.name) == topics::kRules.name) return;
-    for (const std::uint32_t robot : robots)
-      result = result || (may_write(a, topic, robot) && may_read(b, topic, robot)) ||
-               (may_write(b, topic, robot) && may_read(a, topic, robot));
-  });
-  return result;
-}
-
 bool may_speak_as(const Identity& identity, std::uint32_t sender) {
   const auto is = [sender](Sender process) { return sender == static_cast<std::uint32_t>(process); };
   switch (identity.role) {
     case Role::kAgent:
-      return covers(identity, sender);
+      return identity.covers(sender);
     case Role::kCoordinator:
       return is_coordinator(sender) &&
              sender - static_cast<std::uint32_t>(Sender::kCoordinator) == identity.first;
@@ -148,7 +117,7 @@ bool may_speak_as(const Identity& identity, std::uint32_t sender) {
       // Robots send with their agents' numbers.
       return is(Sender::kSimulator) || sender < kMaxRobots;
     case Role::kRobot:
-      return is(Sender::kRobots) || covers(identity, sender);
+      return is(Sender::kRobots) || identity.covers(sender);
     case Role::kReferee:
       return is(Sender::kReferee);
     case Role::kClient:

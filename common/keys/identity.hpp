@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "common/messaging/topics.hpp"
+#include "common/protocol/roles.hpp"
 
 namespace sidestep {
 
@@ -16,6 +16,8 @@ struct Identity {
   std::uint32_t first = 0, last = 0;  ///< range of agent, coordinator or robot numbers
   std::string name{};                 ///< name of a client: letters, digits, '-' and '_'
 
+  /// Whether the number is in the range.
+  bool covers(std::uint32_t number) const { return number >= first && number <= last; }
   bool operator==(const Identity&) const = default;
 };
 
@@ -28,13 +30,6 @@ struct Identity {
 /// The name of the identity's key folder, for example "agent-3".
 [[nodiscard]] std::string folder_name(const Identity& identity);
 
-/// Whether the identity may write or read a robot's channel of a topic. The robot is ignored for topics with
-/// a single channel.
-[[nodiscard]] bool may_write(const Identity& identity, const TopicInfo& topic, std::uint32_t robot);
-[[nodiscard]] bool may_read(const Identity& identity, const TopicInfo& topic, std::uint32_t robot);
-/// Whether either identity may write a topic that the other may read. The topic `rules` does not count: it is
-/// exchanged only between processes that also exchange other messages.
-[[nodiscard]] bool exchange_messages(const Identity& a, const Identity& b);
 /// Whether messages from this identity may have this Header.sender.
 [[nodiscard]] bool may_speak_as(const Identity& identity, std::uint32_t sender);
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/messaging/topic_access.hpp"
+
 namespace sidestep {
 namespace {
 

@@ -11,6 +11,7 @@
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/images.hpp"
 #include "common/messaging/dds/type_mismatch_listener.hpp"
+#include "common/messaging/topic_access.hpp"
 
 namespace sidestep {
 

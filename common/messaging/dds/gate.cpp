@@ -8,6 +8,7 @@
 #include "common/log/log.hpp"
 #include "common/messaging/dds/datagram.hpp"
 #include "common/messaging/dds/event_loop.hpp"
+#include "common/messaging/topic_access.hpp"
 #include "common/protocol/process_names.hpp"
 
 namespace sidestep {

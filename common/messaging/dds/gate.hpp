@@ -12,6 +12,7 @@
 
 #include "common/keys/key_folder.hpp"
 #include "common/messaging/dds/admission.hpp"
+#include "common/messaging/topics.hpp"
 #include "common/time/rate_limit.hpp"
 
 namespace sidestep {

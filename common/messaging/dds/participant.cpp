@@ -22,6 +22,7 @@
 #include "common/messaging/dds/open_network.hpp"
 #include "common/messaging/dds/transport.hpp"
 #include "common/messaging/reliability.hpp"
+#include "common/messaging/topic_access.hpp"
 #include "fast_dds_version.hpp"
 
 namespace sidestep {

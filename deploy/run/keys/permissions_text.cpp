@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/keys/key_folder.hpp"
+#include "common/messaging/topic_access.hpp"
 
 namespace sidestep {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "common/keys/identity.hpp"
+#include "common/messaging/topic_access.hpp"
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"
 

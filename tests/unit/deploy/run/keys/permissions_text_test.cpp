@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "common/messaging/topic_access.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::permissions_text_test {
