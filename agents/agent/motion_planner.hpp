@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "agents/agent/assignment.hpp"
+#include "agents/agent/blockage_monitor.hpp"
+#include "agents/agent/desired_motion.hpp"
+#include "agents/agent/intent_planner.hpp"
+#include "agents/agent/observations.hpp"
+#include "agents/agent/occluded_corners.hpp"
+#include "agents/agent/passage_yielding.hpp"
+#include "agents/agent/planning_scratch.hpp"
+#include "agents/agent/route_surroundings.hpp"
+#include "agents/agent/route_to_target.hpp"
+#include "agents/safety/safety_search.hpp"
+
+namespace sidestep {
+
+/// A desired motion: the query for the safety search, and the base and intent that are proposed with its
+/// result.
+struct MotionPlan {
+  SearchQuery query;
+  VersionNumber base = 0;  ///< the version that the motion continues
+  Intent intent;           ///< what the robot intends after the motion
+};
+
+/// Plans a robot's motion from its target to the query for the safety search: whether to give way, the route,
+/// the intent, the speed and the acceleration. Safety does not depend on it.
+class MotionPlanner {
+ public:
+  struct Query {
+    Time now{};
+    Time start{};         ///< when the motion starts
+    const Version& base;  ///< the version that the motion continues
+    int lead = 1;         ///< number of cycles from now to the start
+    double max_speed_mps = std::numeric_limits<double>::infinity();  ///< the speed that the clocks allow
+    Duration max_lag{0};  ///< how much the robot may be late, beyond the clock bound
+    const Assignment& assignment;
+    Observations& observations;
+    Rng& rng;
+  };
+
+  /// `settings` and `scratch` must outlive this object.
+  MotionPlanner(const Scenario& scenario, const RobotSpec& robot, const PlanningSettings& settings,
+                PlanningScratch& scratch);
+
+  /// Plans the motion from `start` on. Returns nullopt if the base already ends where the robot wants to be,
+  /// if the search for a route takes longer than this cycle, or if the robot must come to rest first.
+  /// Precondition: nothing is missing that the agent waits for.
+  [[nodiscard]] std::optional<MotionPlan> plan(const Query& query);
+  /// Processes the result of the search for a plan.
+  void on_search(const MotionPlan& plan, bool desired_is_clear, Time now);
+
+  /// The robot has another goal.
+  void on_new_goal();
+  void set_zones(std::span<const Order> zones);
+
+  /// Whether a robot at this position has to leave a zone.
+  bool is_kept_out(const Vec2& position_m) const;
+  bool is_recovering() const { return intents_.is_recovering(); }
+  std::uint64_t route_changes() const { return intents_.changes(); }
+  /// What prevents the robot from reaching its goal, if it has lasted.
+  std::optional<Blockage> lasting_blockage() const { return blockage_.lasting(last_plan_); }
+  /// Estimated time to reach all remaining goals; nullopt: unknown.
+  std::optional<double> remaining_s(const Assignment& assignment, bool has_arrived) const;
+
+ private:
+  /// The robot's clock was set back, so it is unknown how long ago the recorded times were: restarts all
+  /// timers.
+  void restart_timers(Time now);
+  /// The robot's target: the place where it gives way, its goal, or the end of its base.
+  Vec2 target_m(const Query& query) const;
+  /// The route to the target; nullopt if the robot is there, or no route is known in this cycle.
+  std::optional<Route> find_route(const Query& query, const Vec2& target_m);
+  void update_blockage(const Route& route, Time now);
+  /// The plan that follows the intent; nullopt if the laser has not seen where the robot is.
+  std::optional<MotionPlan> follow_intent(const Query& query, const Intent& intent, const State& at_start,
+                                          const Route& route);
+  /// Lets routes avoid a corner at which the robot has come to a standstill.
+  void update_corners(const OccludedCorners::Approach& approach, const RobotLaser& laser, Time now);
+  /// The lowest of the speeds that the clocks, the goal and the zones allow.
+  double max_speed_mps(const Query& query, const State& at_start) const;
+  HoldBounds hold_bounds(int lead) const;
+
+  const FloorRules& rules_;
+  const PlanningSettings& settings_;
+  const Duration cycle_;
+  const RouteSurroundings surroundings_;
+  RouteToTarget route_;
+  BlockageMonitor blockage_;
+  PassageYielding passage_;
+  OccludedCorners corners_;
+  IntentPlanner intents_;
+  Time last_plan_{};
+};
+
+}  // namespace sidestep

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/observations.hpp"
+
+#include <algorithm>
+
+#include "agents/agent/planning_distances.hpp"
+#include "common/time/clock_bounds.hpp"
+
+namespace sidestep {
+namespace {
+
+/// Whether a time is recent. A time far in the future means that a clock has been set.
+bool is_recent(Time t, Time now, Duration max_age) { return std::chrono::abs(now - t) <= max_age; }
+
+}  // namespace
+
+Observations::Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules,
+                           const PlanningSettings& settings)
+    : settings_(settings),
+      max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
+      page_horizon_m_(page_horizon_m(rules, settings)),
+      own_({robot.start_m, Vec2::Zero()}, drift_bound_m(scenario.tracking_bound_m)),
+      neighbours_(robot.id),
+      obstacles_(scenario.max_opponent_speed_mps, max_clock_difference_),
+      displaced_(robot.id, scenario.radius_m, scenario.margin_m,
+                 std::max(scenario.max_opponent_speed_mps, scenario.limits.speed_mps),
+                 max_clock_difference_) {
+  neighbours_.set_horizon(robot.start_m, page_horizon_m_);
+  if (scenario.laser) laser_.emplace(scenario, rules, settings);
+}
+
+void Observations::on_feedback(const Feedback& feedback) {
+  own_.on_feedback(feedback);
+  neighbours_.set_horizon(own_.estimate().position_m, page_horizon_m_);
+}
+
+void Observations::on_world(const WorldObservations& world, Time now, bool is_robot_clock_known) {
+  // The robot's clock was ahead when the last fix was accepted.
+  if (is_robot_clock_known && last_fix_ > now + max_clock_difference_) last_fix_ = {};
+  if (!world.self) return;
+  const Time captured_at = world.self->captured_at;
+  const bool is_ahead =
+      is_robot_clock_known ? captured_at > now + max_clock_difference_ : !is_plausible(captured_at, now);
+  if (is_ahead) {
+    ++invalid_;
+    return;
+  }
+  obstacles_.on_world(world);
+  if (captured_at <= last_fix_) return;
+  fix_ = world.self;
+  if (!is_robot_clock_known) return;
+  last_fix_ = captured_at;
+  last_fix_m_ = fix_->position_m;
+}
+
+void Observations::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now) {
+  displaced_.on_heartbeat(heartbeat, now);
+  watched_until_ = heartbeat.watched_until;
+}
+
+WaitReason Observations::wait_reason(Time now) const {
+  if (!is_recent(last_fix_, now, settings_.max_fix_age)) return WaitReason::kNotSeen;
+  if (laser_ && !is_recent(laser_->sight().captured_at(), now, settings_.max_fix_age))
+    return WaitReason::kNoScan;
+  if (!laser_ && !is_recent(obstacles_.complete_at(), now, settings_.max_fix_age))
+    return WaitReason::kNoObstacleList;
+  if (!is_recent(watched_until_, now, settings_.max_watch_age)) return WaitReason::kNotWatched;
+  return WaitReason::kNone;
+}
+
+bool Observations::is_only_coordinator_blind(Time now) const {
+  const bool is_watched = is_recent(watched_until_, now, settings_.max_watch_age);
+  return is_recent(last_fix_, now, settings_.max_fix_age) && !is_watched;
+}
+
+bool Observations::may_end_inflation(const Version& base, Time start) const {
+  const bool is_at_rest = start >= base.trajectory.end();
+  const bool was_observed_at_rest = last_fix_ > base.trajectory.end();
+  const bool agrees = own_.agrees_with(last_fix_m_);
+  return is_at_rest && was_observed_at_rest && agrees;
+}
+
+void Observations::count_drops(DropCounters& drops) const {
+  const std::uint64_t future_scans = laser_ ? laser_->invalid() : 0;
+  drops.count(DropReason::kFutureObservation, std::nullopt, invalid_);
+  drops.count(DropReason::kFutureObstacles, std::nullopt, obstacles_.invalid() + future_scans);
+  neighbours_.count_drops(drops);
+}
+
+}  // namespace sidestep

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "agents/agent/displaced_obstacles.hpp"
+#include "agents/agent/neighbours.hpp"
+#include "agents/agent/observed_obstacles.hpp"
+#include "agents/agent/own_reports.hpp"
+#include "agents/agent/planning_settings.hpp"
+#include "agents/agent/robot_laser.hpp"
+#include "agents/agent/wait_reason.hpp"
+
+namespace sidestep {
+
+/// Everything that an agent knows about its robot and what is around it. Inputs: feedback from the robot,
+/// world states and lists of obstacles from vision, scans of the robot's laser, and ledger pages and
+/// heartbeats from the coordinator. Outputs: the latest state of each of these, and which of them is too old
+/// to drive by. All times are by the robot's clock; `now` is an upper bound of the time.
+class Observations {
+ public:
+  /// `rules` and `settings` must outlive this object.
+  Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules,
+               const PlanningSettings& settings);
+
+  void on_feedback(const Feedback& feedback);
+  /// Processes a world state. If the robot's clock has not been measured yet, the observation is only
+  /// forwarded, because a robot that has lost its pose reports nothing until it gets one.
+  void on_world(const WorldObservations& world, Time now, bool is_robot_clock_known);
+  void on_obstacles(const ObstacleObservations& list, Time now) {
+    obstacles_.on_list(list, own_.estimate().position_m, now);
+  }
+  /// Precondition: the robot has a laser.
+  void on_scan(const LaserScan& scan, Time now) { laser_->on_scan(scan, neighbours_, now); }
+  void on_page(const ReceivedPage& page) { neighbours_.on_page(page); }
+  /// Processes a heartbeat of the coordinator in charge.
+  void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
+
+  /// The reason among kNotSeen and those that follow it in WaitReason for which the robot must not be driven;
+  /// kNone if everything is recent.
+  WaitReason wait_reason(Time now) const;
+  /// Whether vision works, but the coordinator does not receive it.
+  bool is_only_coordinator_blind(Time now) const;
+  /// Whether the robot is at rest at the end of `base`, where vision agrees with its own position estimate. A
+  /// version from there has no inflation.
+  bool may_end_inflation(const Version& base, Time start) const;
+  /// Returns the latest observation of the robot, once.
+  std::optional<PoseFix> take_fix() { return std::exchange(fix_, std::nullopt); }
+
+  const OwnReports& own() const { return own_; }
+  Neighbours& neighbours() { return neighbours_; }
+  ObservedObstacles& obstacles() { return obstacles_; }
+  DisplacedObstacles& displaced() { return displaced_; }
+  /// nullptr if the robot has no laser.
+  const RobotLaser* laser() const { return laser_ ? &*laser_ : nullptr; }
+
+  void count_drops(DropCounters& drops) const;
+
+ private:
+  const PlanningSettings& settings_;
+  Duration max_clock_difference_;  // between two clocks that both stay within the clock bound
+  double page_horizon_m_;
+  OwnReports own_;
+  Neighbours neighbours_;
+  ObservedObstacles obstacles_;
+  DisplacedObstacles displaced_;
+  std::optional<RobotLaser> laser_;
+  std::optional<PoseFix> fix_;  // observed but not yet forwarded
+  Time last_fix_{};
+  Vec2 last_fix_m_{0, 0};
+  Time watched_until_{};       // the coordinator's last comparison of the robots' places with their versions
+  std::uint64_t invalid_ = 0;  // number of observations from the future
+};
+
+}  // namespace sidestep

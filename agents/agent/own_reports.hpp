@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "common/protocol/robot_messages.hpp"
+
+namespace sidestep {
+
+/// What a robot reports about itself: its estimate of its own state, how far it may rely on that estimate,
+/// and how often it has stopped because it was off its reference. Input: the robot's feedback.
+class OwnReports {
+ public:
+  /// `start` is the robot's state before its first report. `drift_bound_m` is the largest difference between
+  /// its estimate and its true position that is allowed (drift_bound_m() of the scenario).
+  OwnReports(const State& start, double drift_bound_m) : drift_bound_m_(drift_bound_m), estimate_(start) {}
+
+  void on_feedback(const Feedback& feedback);
+
+  /// The robot's own estimate of its state.
+  const State& estimate() const { return estimate_; }
+  /// How far the robot may drive on from a position ahead of it without being observed again. It must come to
+  /// rest before its drift exceeds the tracking bound.
+  double dead_reckoning_m(const Vec2& from_m) const;
+  /// Whether the estimate is as near to an observed position as it has to be. The robot may not have received
+  /// the observation yet.
+  bool agrees_with(const Vec2& observed_m) const;
+  /// Whether the robot has executed a granted version.
+  bool has_moved() const { return has_moved_; }
+  /// Number of times that the robot has stopped because it was off its reference.
+  std::uint64_t reference_losses() const { return reference_losses_; }
+
+ private:
+  double drift_bound_m_;
+  State estimate_;
+  double max_dead_reckoning_m_ = 0;  // how far the robot may drive from estimate_ without being observed
+  bool has_moved_ = false;
+  std::uint64_t reference_losses_ = 0;
+  VersionNumber last_own_stop_ = 0;  // newest of the stops that reference_losses_ counts
+};
+
+}  // namespace sidestep

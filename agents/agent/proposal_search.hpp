@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "agents/agent/neighbours.hpp"
+#include "agents/agent/planning_scratch.hpp"
+#include "agents/agent/planning_settings.hpp"
+#include "agents/safety/safety_search.hpp"
+
+namespace sidestep {
+
+/// Searches for the candidates of a proposal. Inputs: a desired motion, the version that it continues, and
+/// the versions of nearby robots. Output: motions that are clear of all of them, or, if the robot is already
+/// in a conflict, motions out of it.
+class ProposalSearch {
+ public:
+  /// `scratch` is working memory, and must outlive this object.
+  ProposalSearch(PlanningScratch& scratch, const PlanningSettings& settings);
+
+  /// Finds no candidate if every motion would come too near to something; the robot then brakes.
+  [[nodiscard]] SearchResult find(const SearchQuery& query, const Version& base, const Neighbours& neighbours,
+                                  Rng& rng);
+  /// Whether the last search has found only an escape from a conflict.
+  bool is_escaping() const { return is_escaping_; }
+
+ private:
+  PlanningScratch& scratch_;
+  double horizon_m_;
+  bool is_escaping_ = false;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "agents/agent/neighbours.hpp"
+#include "agents/agent/planning_settings.hpp"
+#include "agents/perception/laser_sight.hpp"
+#include "agents/safety/hidden_space.hpp"
+#include "common/config/scenario.hpp"
+
+namespace sidestep {
+
+/// What the agent knows from its robot's laser. Inputs: scans, and the versions of nearby robots, which
+/// explain part of what the laser sees. Output: the sight, and the floor that the laser did not see.
+class RobotLaser {
+ public:
+  /// `rules` and `settings` must outlive this object. Precondition: the robots of the scenario have lasers.
+  RobotLaser(const Scenario& scenario, const FloorRules& rules, const PlanningSettings& settings);
+
+  /// Processes a scan. Drops and counts it if its time is in the future. `now` is an upper bound of the time
+  /// by the robot's clock.
+  void on_scan(const LaserScan& scan, Neighbours& neighbours, Time now);
+
+  const LaserSight& sight() const { return sight_; }
+  /// The other robots at the time of the last scan.
+  std::span<const Circle> robots() const { return robots_; }
+  /// The floor that the laser did not see in its last scan.
+  HiddenSpace hidden_space() const;
+  /// How far a person walks until the robot reacts to the scan after the next one. `reaction` is the time
+  /// from a scan to the robot's motion.
+  double approach_m(Duration reaction) const {
+    return max_person_speed_mps_ * to_seconds(2 * scan_period_ + reaction);
+  }
+  /// Number of scans with times in the future.
+  std::uint64_t invalid() const { return invalid_; }
+
+ private:
+  const PlanningSettings& settings_;
+  const FloorRules& rules_;
+  Duration max_clock_difference_;
+  double max_person_speed_mps_;
+  Duration scan_period_;
+  LaserSight sight_;
+  std::vector<Circle> robots_;
+  std::uint64_t invalid_ = 0;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/route_surroundings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "agents/agent/planning_distances.hpp"
+
+namespace sidestep {
+
+std::vector<TemporaryObstacle> RouteSurroundings::find(const Vec2& target, Time now,
+                                                       Observations& observations,
+                                                       const Assignment& assignment,
+                                                       const OccludedCorners& corners,
+                                                       Duration reaction) const {
+  const Vec2& position = observations.own().estimate().position_m;
+  std::vector<TemporaryObstacle> found;
+  if (const RobotLaser* laser = observations.laser())
+    found = find_in_sight(target, *laser, corners, reaction);
+  for (const Circle& circle : find_moving(target, now, observations)) found.push_back({circle});
+  for (const Neighbours::Stationary& other : observations.neighbours().find_stationary(
+           now - settings_.stationary_after, position, settings_.max_stationary)) {
+    // A robot that stands on the target but is going to leave is no reason to go elsewhere.
+    const bool covers = (other.position_m - target).norm() <= rules_.radius_m + required_separation_m(rules_);
+    if (!covers || will_stay(other, assignment, position))
+      found.push_back({{other.position_m, rules_.radius_m}, other.robot});
+  }
+  return found;
+}
+
+std::vector<TemporaryObstacle> RouteSurroundings::find_in_sight(const Vec2& target, const RobotLaser& laser,
+                                                                const OccludedCorners& corners,
+                                                                Duration reaction) const {
+  std::vector<TemporaryObstacle> found;
+  const auto add = [&](const Circle& circle) {
+    if (signed_distance(target, Shape(circle)) > required_separation_m(rules_)) found.push_back({circle});
+  };
+  for (const Circle& square : laser.sight().unknown()) add(square);
+  // At this distance the robot can pass slowly.
+  const double radius_m = laser.approach_m(reaction);
+  corners.for_each_corner_m([&](const Vec2& corner) { add({corner, radius_m}); });
+  return found;
+}
+
+std::vector<Circle> RouteSurroundings::find_moving(const Vec2& target, Time now,
+                                                   Observations& observations) const {
+  const Vec2& position = observations.own().estimate().position_m;
+  const double grid_m = settings_.moving_grid_m;
+  std::vector<Circle> found;
+  const auto add = [&](const MovingObstacle& obstacle) {
+    if ((obstacle.position_m - position).norm() > settings_.moving_range_m) return;
+    const Vec2 centre = (obstacle.position_m / grid_m).array().round().matrix() * grid_m;
+    const double radius = std::round(obstacle.radius_m / grid_m) * grid_m;
+    // The inflated circle must not cover the target.
+    const double max_inflation =
+        (centre - target).norm() - radius - planning_separation_m(rules_, settings_) - settings_.at_goal_m;
+    const double inflation = grid_m + obstacle.speed_mps * to_seconds(settings_.moving_horizon);
+    found.push_back({centre, radius + std::clamp(max_inflation, 0.0, inflation)});
+  };
+  if (const RobotLaser* laser = observations.laser()) {
+    // Routes keep a large distance from walls in order to see around corners early, but this is not needed
+    // near people. If people are in the way, the robot waits rather than squeezing past along a wall.
+    const double less_m = settings_.clearances_in_sight_m.front() - settings_.extra_clearance_m;
+    for (const LaserTrack& track : laser->sight().tracks())
+      add({track.position_m, std::max(0.05, track.radius_m - less_m), track.seen_at, 0});
+  } else {
+    for (const MovingObstacle& obstacle : observations.obstacles().recent(now)) add(obstacle);
+  }
+  for (const UncontrolledBody& body : observations.displaced().recent(now)) add(body.reach);
+  std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - position).squaredNorm(); });
+  if (found.size() > settings_.max_moving) found.resize(settings_.max_moving);
+  std::ranges::sort(found, {}, [](const Circle& c) { return std::pair(c.centre_m.x(), c.centre_m.y()); });
+  return found;
+}
+
+bool RouteSurroundings::will_stay(const Neighbours::Stationary& other, const Assignment& assignment,
+                                  const Vec2& position) const {
+  const OtherAssignment orders = assignment.other(other.robot);
+  if (orders.is_held || !orders.has_to_go) return true;
+  // The other robot waits as near to its goal as it can get. But if this robot is what blocks it, one of the
+  // two must move.
+  const bool waits =
+      other.intent && (other.position_m - other.intent->goal_m).norm() < settings_.neighbour_at_goal_m;
+  return waits && orders.goal_m &&
+         (position - *orders.goal_m).norm() > rules_.radius_m + planning_separation_m(rules_, settings_);
+}
+
+}  // namespace sidestep

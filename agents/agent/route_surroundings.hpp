@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "agents/agent/assignment.hpp"
+#include "agents/agent/observations.hpp"
+#include "agents/agent/occluded_corners.hpp"
+#include "agents/agent/route_obstacles.hpp"
+
+namespace sidestep {
+
+/// Finds what a route has to lead around for the time being: people and other moving obstacles, displaced
+/// robots, robots at rest, and, where robots have lasers, standing obstacles that no rule mentions, and
+/// occluded corners. Inputs: what the agent has observed, and what other robots are ordered to do.
+class RouteSurroundings {
+ public:
+  /// `rules` and `settings` must outlive this object.
+  RouteSurroundings(const FloorRules& rules, const PlanningSettings& settings)
+      : rules_(rules), settings_(settings) {}
+
+  /// The obstacles on the way to the target. `reaction` is the time from a scan to the robot's motion.
+  std::vector<TemporaryObstacle> find(const Vec2& target_m, Time now, Observations& observations,
+                                      const Assignment& assignment, const OccludedCorners& corners,
+                                      Duration reaction) const;
+
+ private:
+  /// Obstacles that the laser sees but the rules do not contain, and corners that the robot could not pass.
+  std::vector<TemporaryObstacle> find_in_sight(const Vec2& target_m, const RobotLaser& laser,
+                                               const OccludedCorners& corners, Duration reaction) const;
+  /// The nearest moving obstacles, enlarged by their motion as far as they do not cover the target.
+  std::vector<Circle> find_moving(const Vec2& target_m, Time now, Observations& observations) const;
+  /// Whether a robot at rest will not move away by itself.
+  bool will_stay(const Neighbours::Stationary& other, const Assignment& assignment,
+                 const Vec2& position_m) const;
+
+  const FloorRules& rules_;
+  const PlanningSettings& settings_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/own_reports.hpp"
+
+#include "tests/catch.hpp"
+
+namespace sidestep::own_reports_test {
+
+constexpr double kDriftBound_m = 0.003;
+
+Feedback at(const Vec2& position) {
+  Feedback feedback;
+  feedback.estimate.position_m = position;
+  feedback.uncertainty = {0.0002, 0.01};
+  return feedback;
+}
+
+TEST_CASE("a robot that reports nothing is at its start, and may not drive") {
+  const OwnReports own({{1, 2}, {0, 0}}, kDriftBound_m);
+  CHECK(own.estimate().position_m == Vec2(1, 2));
+  CHECK(own.dead_reckoning_m({1, 2}) == 0);
+  CHECK_FALSE(own.has_moved());
+}
+
+TEST_CASE(
+    "what a robot plans to drive counts towards the distance that it may drive without being observed") {
+  OwnReports own({}, kDriftBound_m);
+  own.on_feedback(at({1, 0}));
+  const double whole_m = own.dead_reckoning_m({1, 0});
+  REQUIRE(whole_m > 0.01);
+  CHECK(own.dead_reckoning_m({1.01, 0}) == Approx(whole_m - 0.01));
+  CHECK(own.dead_reckoning_m({1 + 2 * whole_m, 0}) == 0);
+}
+
+TEST_CASE("an estimate agrees with an observation that is no farther away than the drift bound") {
+  OwnReports own({}, kDriftBound_m);
+  own.on_feedback(at({1, 0}));
+  CHECK(own.agrees_with({1.0029, 0}));
+  CHECK_FALSE(own.agrees_with({1.0031, 0}));
+  CHECK_FALSE(own.agrees_with({1, -0.0031}));
+}
+
+TEST_CASE("a robot that has moved once has moved, even if it restarts") {
+  OwnReports own({}, kDriftBound_m);
+  Feedback moved = at({0, 0});
+  moved.has_moved = true;
+  own.on_feedback(moved);
+  own.on_feedback(at({0, 0}));
+  CHECK(own.has_moved());
+}
+
+}  // namespace sidestep::own_reports_test
