@@ -266,7 +266,7 @@ void AgentNode::measure_coordinator_clock(Duration since_last) {
   publish(agent_.registration());
 }
 
-bool AgentNode::clocks_agree() {
+bool AgentNode::update_clocks() {
   clocks_.on_epoch(agent_.epoch());
   // The agent keeps asking as long as nobody answers.
   if (clocks_.is_measurement_due(bus_.now())) measure_coordinator_clock(kCyclesBetweenRegistrations * cycle_);
@@ -278,7 +278,7 @@ void AgentNode::negotiate_if_time() {
 }
 
 void AgentNode::negotiate(Time start) {
-  if (!agent_.may_propose(robot_now()) || !clocks_agree()) return;
+  if (!agent_.may_propose(robot_now()) || !update_clocks()) return;
   if (agent_.needs_rest_version(robot_now())) {
     publish_proposal(agent_.propose_rest_version(robot_now(), start));
     return;

@@ -61,8 +61,8 @@ class AgentNode {
   /// Registers again, because the coordinator's answer measures its clock. Does nothing if the last
   /// registration is more recent than this.
   void measure_coordinator_clock(Duration since_last);
-  /// Whether the clocks allow proposals. Requests a measurement if one is due.
-  bool clocks_agree();
+  /// Requests a measurement of the clocks if one is due. Returns whether the clocks allow proposals.
+  bool update_clocks();
   void measure_robot_clock(const Feedback& feedback);
   /// The speed that the clocks allow, but at most the robot's limit.
   double speed_limit_mps() const;
