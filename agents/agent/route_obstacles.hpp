@@ -36,7 +36,7 @@ class RouteObstacles {
  private:
   struct Temporary {
     TemporaryObstacle obstacle;
-    ObstacleId id;
+    ObstacleId id{};
   };
 
   ObstacleWorld world_;
