@@ -154,8 +154,9 @@ TEST_CASE(
     run.require_safe();
     arrived += run.system.metrics().arrived();
   }
-  // A system without motion would be safe, too.
-  CHECK(arrived > 150);
+  // A system without motion would be safe, too. Clocks are known within tens of milliseconds here, so robots
+  // are slow, and keep far from those that are silent.
+  CHECK(arrived > 120);
 }
 
 TEST_CASE(
