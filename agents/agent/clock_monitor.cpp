@@ -16,7 +16,7 @@ bool ClockMonitor::is_before_arrivals(Time now) const { return now < latest_ - k
 void ClockMonitor::arrived(Time received) {
   if (is_before_arrivals(received)) {
     robot_.reset();
-    coordinator_.reset();
+    for (CoordinatorClock& coordinator : coordinators_) coordinator.offset.reset();
     requests_ = {};
   }
   latest_ = received;
@@ -49,13 +49,22 @@ void ClockMonitor::on_verdict(const Verdict& verdict, Time received) {
   const Time asked = verdict.request_sent_at;
   if (verdict.epoch != epoch_ || asked == Time{}) return;
   if (std::ranges::find(requests_, asked) == requests_.end()) return;  // another agent's request, or too old
-  invalid_ += !coordinator_.add({asked, verdict.sent_at, verdict.sent_at, received});
+  // Coordinators have consecutive sender numbers, so each has a place of its own.
+  coordinator_ = verdict.sender % coordinators_.size();
+  CoordinatorClock& clock = coordinators_[*coordinator_];
+  if (clock.sender != verdict.sender || clock.incarnation != verdict.incarnation)
+    clock = {verdict.sender, verdict.incarnation, {}};
+  invalid_ += !clock.offset.add({asked, verdict.sent_at, verdict.sent_at, received});
+}
+
+std::optional<OffsetInterval> ClockMonitor::coordinator_offset(Time now, Duration freshness) const {
+  return coordinator_ ? coordinators_[*coordinator_].offset.at(now, freshness) : std::nullopt;
 }
 
 std::optional<OffsetInterval> ClockMonitor::robot_coordinator_offset(Time now) const {
   if (is_before_arrivals(now)) return std::nullopt;
   const auto robot = robot_.at(now, kMaxMeasurementAge),
-             coordinator = coordinator_.at(now, kMaxMeasurementAge);
+             coordinator = coordinator_offset(now, kMaxMeasurementAge);
   if (!robot || !coordinator) return std::nullopt;
   return difference(*robot, *coordinator);
 }
@@ -83,7 +92,7 @@ bool ClockMonitor::is_beyond_bound(Time now) const {
 }
 
 bool ClockMonitor::is_measurement_due(Time now) const {
-  return is_before_arrivals(now) || !coordinator_.at(now, kMaxMeasurementAge / 2);
+  return is_before_arrivals(now) || !coordinator_offset(now, kMaxMeasurementAge / 2);
 }
 
 Duration ClockMonitor::max_robot_offset(Time now) const {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 
 #include "common/motion/safety_budget.hpp"
 #include "common/protocol/drop_counters.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/robot_messages.hpp"
+#include "common/protocol/senders.hpp"
 #include "common/time/clock_offset.hpp"
 #include "idl/monitor.hpp"
 
@@ -29,8 +31,8 @@ class ClockMonitor {
   void on_feedback(const Feedback& feedback, Incarnation own, Time received);
   /// Records the send time of a request that the coordinator will answer.
   void on_request_sent(Time sent);
-  /// Discards measurements of the coordinator's clock, because a new epoch belongs to another coordinator
-  /// with another clock.
+  /// A new epoch may belong to another coordinator with another clock. The first verdict of the epoch shows
+  /// whose clock counts; until then there is no measurement.
   void on_epoch(Epoch epoch);
   /// Uses answers to recorded requests, if they belong to the current epoch.
   void on_verdict(const Verdict& verdict, Time received);
@@ -65,16 +67,25 @@ class ClockMonitor {
   void fill(msg::AgentStatus& status, Time now) const;
 
  private:
+  struct CoordinatorClock {
+    std::uint32_t sender = 0;
+    Incarnation incarnation = 0;
+    ClockOffset offset;  // relative to the agent's clock
+  };
   Duration bound() const { return from_seconds(budget_.clock_bound_s); }
   /// Records the time of an arrival. If this process's clock was set back, discards earlier exchanges.
   void arrived(Time received);
   /// Whether this process's clock has been set back since the last arrival.
   bool is_before_arrivals(Time now) const;
+  /// The offset of the current epoch's coordinator; nullopt without a recent measurement.
+  std::optional<OffsetInterval> coordinator_offset(Time now, Duration freshness) const;
 
   SafetyBudget budget_;
   double margin_m_;
-  ClockOffset robot_, coordinator_;  // offsets relative to the agent's clock
+  ClockOffset robot_;  // relative to the agent's clock
   Incarnation robot_incarnation_ = 0;
+  std::array<CoordinatorClock, kMaxCoordinators> coordinators_;
+  std::optional<std::size_t> coordinator_;  // the one of epoch_; nullopt: none has answered yet
   Epoch epoch_ = 0;
   bool knows_robot_ = false;
   Duration robot_offset_{0};

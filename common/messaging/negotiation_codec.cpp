@@ -75,6 +75,8 @@ std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot) {
                         std::ranges::all_of(message.reasons(), is_known);
   if (!is_valid) return std::nullopt;
   Verdict verdict;
+  verdict.sender = message.header().sender();
+  verdict.incarnation = message.header().incarnation();
   verdict.robot = robot;
   verdict.epoch = message.epoch();
   verdict.sent_at = time_from_ns(message.header().stamp_ns());

@@ -26,6 +26,8 @@ struct Proposal {
 
 /// Coordinator to one agent; see Verdict in idl/negotiation.idl.
 struct Verdict {
+  std::uint32_t sender = 0;
+  Incarnation incarnation = 0;  ///< the coordinator's incarnation
   RobotId robot = 0;
   Epoch epoch = 0;
   Time sent_at{};                     ///< by the coordinator's clock

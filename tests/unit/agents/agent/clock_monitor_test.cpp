@@ -182,6 +182,32 @@ TEST_CASE("a clock jump while the robot drives is detected within two cycles") {
   CHECK(f.clocks.is_beyond_bound(at_s(1 + 2 * kCycle_s)));
 }
 
+TEST_CASE("a coordinator that begins another epoch is still known by the clock that was measured") {
+  ClockFixture f;
+  f.measure_both(0, 10);
+  const auto measured = f.clocks.robot_coordinator_offset(at_s(0.2));
+  REQUIRE(measured);
+  f.min_delay_s = 0.05;
+  double t = 0.2;
+  const auto uncertainty_in_epoch = [&](Epoch epoch, std::uint32_t sender, Incarnation incarnation) {
+    f.clocks.on_epoch(epoch);
+    CHECK_FALSE(f.clocks.robot_coordinator_offset(at_s(t)));
+    CHECK(f.clocks.is_measurement_due(at_s(t)));
+    Verdict verdict = f.verdict(t);
+    verdict.epoch = epoch;
+    verdict.sender = sender;
+    verdict.incarnation = incarnation;
+    f.clocks.on_verdict(verdict, at_s(t += 0.11));
+    const auto offset = f.clocks.robot_coordinator_offset(at_s(t));
+    REQUIRE(offset);
+    return offset->uncertainty();
+  };
+  CHECK(uncertainty_in_epoch(kEpoch + 1, 0, 0) < measured->uncertainty() + from_seconds(0.0001));
+  CHECK(uncertainty_in_epoch(kEpoch + 2, 1, 0) > from_seconds(0.05));
+  CHECK(uncertainty_in_epoch(kEpoch + 3, 0, 0) < measured->uncertainty() + from_seconds(0.0003));
+  CHECK(uncertainty_in_epoch(kEpoch + 4, 0, 1) > from_seconds(0.05));
+}
+
 TEST_CASE("clock measurements start anew with a new epoch and with a restarted robot") {
   ClockFixture f;
   f.measure_both(0, 10);
