@@ -115,6 +115,12 @@ TEST_CASE("whatever size a message of a handshake states, none beyond its end pa
     CAPTURE(size);
     CHECK_FALSE(is_handshake_message(std::span(whole).first(size)));
   }
+  for (const std::size_t more : {1, 4, 64}) {
+    CAPTURE(more);
+    Bytes longer = whole;
+    longer.resize(whole.size() + more);
+    CHECK_FALSE(is_handshake_message(longer));
+  }
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Rng rng(seed);
