@@ -25,6 +25,7 @@ std::span<const UncontrolledBody> DisplacedObstacles::recent(Time now, Duration 
   std::erase_if(bodies_, [=, this](const UncontrolledBody& body) {
     return now - body.reach.observed_at > kMaxObservationAge + max_clock_difference_;
   });
+  if (max_lag == Duration{0}) return bodies_;
   recent_ = bodies_;
   for (UncontrolledBody& body : recent_) body.reach.observed_at -= max_lag;
   return recent_;

@@ -41,7 +41,7 @@ class DisplacedObstacles {
   double max_speed_mps_;
   Duration max_clock_difference_;
   std::vector<UncontrolledBody> bodies_;
-  std::vector<UncontrolledBody> recent_;  // result of recent()
+  std::vector<UncontrolledBody> recent_;  // result of recent() for a robot that may be late
 };
 
 }  // namespace sidestep

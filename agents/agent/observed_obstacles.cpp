@@ -105,6 +105,7 @@ void ObservedObstacles::drop_old(Time now) {
 
 std::span<const MovingObstacle> ObservedObstacles::recent(Time now, Duration max_lag) {
   drop_old(now);
+  if (max_lag == Duration{0}) return obstacles_;
   recent_ = obstacles_;
   for (MovingObstacle& obstacle : recent_) obstacle.observed_at -= max_lag;
   return recent_;

@@ -60,7 +60,7 @@ class ObservedObstacles {
   CompletenessMonitor completeness_;
   std::vector<Track> tracks_;              // sorted by track number
   std::vector<MovingObstacle> obstacles_;  // the obstacles in tracks_
-  std::vector<MovingObstacle> recent_;     // result of recent()
+  std::vector<MovingObstacle> recent_;     // result of recent() for a robot that may be late
   std::uint64_t invalid_ = 0;
   Time incomplete_until_{};  // set by forget()
 };
