@@ -14,6 +14,7 @@
 #include "deploy/trial/simulate/campaign/fault_sampler.hpp"
 #include "deploy/trial/simulate/campaign/order_sampler.hpp"
 #include "deploy/trial/simulate/campaign/reception_sampler.hpp"
+#include "deploy/trial/simulate/campaign/robot_ends.hpp"
 #include "deploy/trial/simulate/campaign/scene_sampler.hpp"
 
 namespace sidestep {
@@ -213,12 +214,15 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   const Report final_report = system.metrics().report();
   copy_metrics(final_report, meter, result);
   result.is_audited = !system.was_second_simulator_believed();
+  Trial judged = trial;
+  judged.plan.ends =
+      robot_ends(trial.plan, trial.scenario, system.started_at("simulator") - system.begin(), trial.duration);
   std::vector<RobotProgress> progress = system.metrics().progress();
   for (std::size_t i = 0; i < progress.size(); ++i) {
-    if (!trial.plan.ends.contains(progress[i].robot) && is_driving(earlier[i]))
+    if (!judged.plan.ends.contains(progress[i].robot) && is_driving(earlier[i]))
       progress[i].agent_state = earlier[i].agent_state;
   }
-  add_failures(trial, progress, system.metrics().all_arrived(), final_report, result);
+  add_failures(judged, progress, system.metrics().all_arrived(), final_report, result);
   std::ranges::copy(player.order_failures(), std::back_inserter(result.failures));
   if (report) {
     *report = final_report;

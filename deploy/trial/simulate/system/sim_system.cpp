@@ -167,6 +167,7 @@ void SimSystem::start(const std::string& name) {
     process->run(std::make_shared<CoordinatorNode>(bus, scenario, self, scenario.coordinators > 1));
   }
   processes_[name] = std::move(process);
+  started_at_[name] = now();
   observe(name);
 }
 

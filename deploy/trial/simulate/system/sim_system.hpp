@@ -56,6 +56,8 @@ class SimSystem {
   /// program might behave.
   void stay_with_others() { stays_with_others_ = true; }
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
+  /// When the process was last started.
+  Time started_at(const std::string& process) const { return started_at_.at(process); }
   /// Whether some process, or the observer, has believed a second simulator or one of its robots, because it
   /// had not heard the first one for SoleSender::kGoneAfter or had never heard it.
   bool was_second_simulator_believed() const { return was_second_simulator_believed_; }
@@ -119,6 +121,7 @@ class SimSystem {
   std::map<std::string, RobotId> robot_of_;  // indexed by agent process
   std::map<std::string, ProcessId> ids_;
   std::map<std::string, Incarnation> incarnations_;  // the latest incarnations
+  std::map<std::string, Time> started_at_;
   std::map<std::string, std::unique_ptr<Process>> processes_;
   std::optional<Time> arrived_since_;
   std::function<void(const msg::GroundTruth&)> on_truth_;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+
+#include "common/config/scenario.hpp"
+#include "deploy/trial/simulate/campaign/fault_plan.hpp"
+
+namespace sidestep {
+
+/// The states in which robots end a run of this duration, if the simulator that is alive at its end started
+/// then. A simulator that starts during the run puts the robots on the floor with the clocks of the scenario,
+/// whatever has happened to them before.
+[[nodiscard]] std::map<RobotId, RobotEnd> robot_ends(const FaultPlan& plan, const Scenario& scenario,
+                                                     Duration simulator_started, Duration duration);
+
+}  // namespace sidestep
