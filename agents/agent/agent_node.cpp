@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <tuple>
 #include <utility>
 
 #include "common/messaging/histogram_codec.hpp"
@@ -22,9 +21,6 @@ constexpr int kCyclesBetweenRegistrations = 3;
 constexpr Duration kBetweenMeasurements{500'000'000};
 // An agent may have to ask for another coordinator for a long time.
 constexpr int kCyclesBetweenRequests = 6;
-constexpr Duration kOrderStatusPeriod{1'000'000'000};
-// Announced orders are repeated to the coordinator at once, but at most at this interval.
-constexpr Duration kConfirmationPeriod{100'000'000};
 
 /// Offset of the robot's cycles from multiples of the cycle time.
 Duration cycle_offset(const Scenario& scenario, RobotId robot) {
@@ -58,8 +54,7 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
       status_writer_(bus.advertise(topics::kStatus)),
-      order_writer_(bus.advertise(topics::kAgentOrders)),
-      order_status_writer_(bus.advertise(topics::kOrderStatus)),
+      orders_(bus, robot),
       counters_(bus, robot, incarnation, [this](DropCounters& drops) { count_drops(drops); }) {
   if (scenario.laser) scans_.emplace(robot, scenario.laser->settings);
   subscribe();
@@ -91,7 +86,7 @@ void AgentNode::on_feedback(const msg::Feedback& message) {
   // Responds to the robot's first acknowledgement immediately by sending the epoch: nothing moves before the
   // robot obeys it.
   if (!was_fenced && agent_.is_fenced() && agent_.epoch() != 0) publish_command(agent_.command(robot_now()));
-  publish_order_status();
+  orders_.publish_status(agent_);
   changes_.on_feedback(*feedback);
   if (agent_.epoch() != last_epoch) changes_.on_epoch(agent_.epoch(), std::nullopt);
   register_if_due();
@@ -178,18 +173,7 @@ void AgentNode::on_orders(const msg::OrderMemory& message) {
   if (!page) return drops_.count(DropReason::kMalformedOrder);
   agent_.on_orders(page);
   if (agent_.is_superseded()) return;
-  if (const auto missing = agent_.take_missing_orders(); !missing.empty()) publish_orders(missing);
-  if (page->count == 0) {
-    for (const RememberedOrder& order : page->orders) announced_.merge(order);
-    confirm_orders();
-  }
-  const auto holds = [&](const RememberedOrder& order) {
-    const bool concerns = order.order.robot == robot_ || order.order.robot == kAllRobots;
-    return concerns && order.order.kind == msg::OrderKind::ORDER_HOLD;
-  };
-  // The coordinator confirms a hold only after an agent has reported that it remembers it.
-  if (page->count == 0 && std::ranges::any_of(page->orders, holds)) order_status_at_ = {};
-  publish_order_status();
+  orders_.on_page(*page, agent_);
   if (agent_.needs_registration() && agent_.is_told_all_orders()) registration_wait_ = 0;
   register_if_due();
 }
@@ -205,7 +189,7 @@ void AgentNode::begin_cycle() {
   if (agent_.must_ask_robot()) publish_command(agent_.command(now));
   if (agent_.is_superseded()) return;
   agent_.choose_order();
-  confirm_orders();
+  orders_.confirm_orders(agent_);
   if (!commanded_) publish_command(agent_.command(now));
   commanded_ = false;
   if (registration_wait_ > 0) --registration_wait_;
@@ -317,39 +301,6 @@ void AgentNode::count_drops(DropCounters& drops) const {
   agent_.count_drops(drops);
   clocks_.count_drops(drops);
   world_.count_drops(drops);
-}
-
-void AgentNode::publish_orders(std::span<const RememberedOrder> orders) {
-  for (msg::OrderMemory& page : encode(orders, agent_.assignment().is_known(), true)) {
-    page.process(robot_);
-    page.header().sender(robot_);
-    page.header().incarnation(agent_.incarnation());
-    order_writer_.publish(page, bus_.now());
-  }
-}
-
-void AgentNode::confirm_orders() {
-  if (announced_.empty() || !has_elapsed(kConfirmationPeriod, orders_confirmed_at_)) return;
-  orders_confirmed_at_ = bus_.now();
-  publish_orders(announced_.all());
-  announced_ = {};
-}
-
-void AgentNode::publish_order_status() {
-  if (agent_.is_superseded()) return;
-  OrderReport report = agent_.order_report();
-  const auto news = [](const OrderReport& r) {
-    const auto reason = r.blockage ? r.blockage->reason : msg::BlockReason::BLOCK_NONE;
-    return std::tuple(r.client, r.number, r.progress.state, r.progress.goal_index, r.is_held, reason);
-  };
-  if (news(report) == news(order_report_) && !has_elapsed(kOrderStatusPeriod, order_status_at_)) return;
-  order_status_at_ = bus_.now();
-  order_report_ = report;
-  report.remaining_s = agent_.remaining_s();
-  msg::OrderStatus status = encode(report);
-  status.header().sender(robot_);
-  status.header().incarnation(agent_.incarnation());
-  order_status_writer_.publish(status, bus_.now());
 }
 
 void AgentNode::publish_status() {

@@ -5,6 +5,7 @@
 #include "agents/agent/agent_changes.hpp"
 #include "agents/agent/clock_monitor.hpp"
 #include "agents/agent/obstacle_view.hpp"
+#include "agents/agent/order_publisher.hpp"
 #include "agents/agent/scan_view.hpp"
 #include "agents/agent/world_view.hpp"
 #include "common/log/log_event.hpp"
@@ -81,13 +82,6 @@ class AgentNode {
   void publish(const Registration& registration);
   void publish_proposal(const Proposal& proposal);
   void publish_status();
-  /// Announces orders that a coordinator lacks to the coordinators.
-  void publish_orders(std::span<const RememberedOrder> orders);
-  /// Repeats the orders that coordinators have announced: they answer a client once another process remembers
-  /// its order.
-  void confirm_orders();
-  /// Publishes the order's status if it has changed, and once a second.
-  void publish_order_status();
 
   Bus& bus_;
   RobotId robot_;
@@ -110,11 +104,7 @@ class AgentNode {
   Writer<msg::Registration> registration_writer_;
   Writer<msg::Proposal> proposal_writer_;
   Writer<msg::AgentStatus> status_writer_;
-  Writer<msg::OrderMemory> order_writer_;
-  Writer<msg::OrderStatus> order_status_writer_;
-  OrderReport order_report_;  // as last published
-  Time order_status_at_{}, orders_confirmed_at_{};
-  OrderBook announced_;  // announced by coordinators and not repeated yet
+  OrderPublisher orders_;
   CounterPublisher counters_;
 };
 

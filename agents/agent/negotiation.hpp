@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 
+#include "agents/agent/coordinator_contact.hpp"
+#include "agents/agent/fencing.hpp"
+#include "agents/agent/held_versions.hpp"
 #include "agents/agent/proposal_pacing.hpp"
+#include "agents/agent/sent_proposals.hpp"
 #include "agents/agent/wait_reason.hpp"
-#include "common/motion/version_set.hpp"
 #include "common/protocol/negotiation_messages.hpp"
 #include "common/protocol/robot_messages.hpp"
 
@@ -43,30 +45,29 @@ class Negotiation {
 
   /// The incarnation sent with commands, and the highest known epoch. The incarnation changes only before the
   /// robot has acknowledged this agent.
-  Incarnation incarnation() const { return incarnation_; }
+  Incarnation incarnation() const { return fencing_.incarnation(); }
   Epoch epoch() const { return epoch_; }
   /// The epoch sent with commands: 0 before the robot has acknowledged this agent, so that the
   /// acknowledgement shows which epoch the robot obeyed before.
-  Epoch command_epoch() const { return fenced_ ? epoch_ : 0; }
+  Epoch command_epoch() const { return is_fenced() ? epoch_ : 0; }
   /// The epoch that the robot obeyed when it acknowledged this agent. 0: none, or it has not acknowledged it
   /// yet.
-  Epoch former_epoch() const { return former_epoch_; }
+  Epoch former_epoch() const { return fencing_.former_epoch(); }
 
-  bool is_fenced() const { return fenced_; }
+  bool is_fenced() const { return fencing_.is_fenced(); }
   /// Whether the robot is off the floor and executes nothing. It may still accept a rest version.
-  bool is_absent() const { return fenced_ && !held_.find(executing_); }
+  bool is_absent() const { return is_fenced() && !held_.is_executing(); }
   /// Whether the robot obeys a later agent, so that this one stays silent.
-  bool is_superseded() const { return superseded_at_.has_value(); }
+  bool is_superseded() const { return fencing_.is_superseded(); }
   /// Whether the robot last said that it obeys a later agent, and has then been silent for half a second.
   /// Commands continue in this case: they carry the fixes without which a robot cannot say whom it obeys. If
   /// it does obey a later agent, it refuses them.
-  bool must_ask_robot() const { return is_superseded() && unheard_cycles_ * cycle_ > kMaxUnheard; }
+  bool must_ask_robot() const;
   /// Whether the agent must register. It registers only after the robot has acknowledged the epoch. So an
   /// agent that the robot does not obey cannot register for it, and no later agent of the robot can return to
   /// an older coordinator.
   bool needs_registration() const {
-    return fenced_ && !is_superseded() && epoch_ != 0 && robot_epoch_ == epoch_ &&
-           (registration_pending_ || missing_);
+    return !is_superseded() && is_epoch_obeyed() && (registration_pending_ || contact_.is_robot_missing());
   }
   /// Whether the coordinator may grant a proposal at this time.
   bool may_propose(Time now) const { return wait_reason(now) == WaitReason::kNone; }
@@ -74,8 +75,8 @@ class Negotiation {
   WaitReason wait_reason(Time now) const;
   /// Whether the coordinator has registered this agent in the epoch, as far as is known.
   bool is_registered() const {
-    return fenced_ && epoch_ != 0 && robot_epoch_ == epoch_ && !registration_pending_ && !missing_ &&
-           last_heartbeat_at_ != Time{};
+    return is_epoch_obeyed() && !registration_pending_ && !contact_.is_robot_missing() &&
+           contact_.has_been_heard();
   }
   /// Whether a version that starts after `now` has been granted or awaits its verdict.
   bool has_upcoming_version(Time now) const;
@@ -95,16 +96,16 @@ class Negotiation {
 
   Registration registration();
   /// Records that a request which the coordinator will answer has been sent.
-  void on_request(Time now);
+  void on_request(Time now) { contact_.on_request(now); }
   /// A registration without a robot. It asks the coordinator of the epoch to announce all orders, and informs
   /// others of the epoch.
-  Registration epoch_notice() const { return {robot_, incarnation_, epoch_, Time{}, std::nullopt}; }
+  Registration epoch_notice() const { return {robot_, incarnation(), epoch_, Time{}, std::nullopt}; }
   /// The version that the robot is expected to execute at a time. Precondition: is_fenced() and not
   /// is_absent().
-  const Version& base_at(Time start) const;
+  const Version& base_at(Time start) const { return held_.base_at(start); }
   /// The version that the robot executes according to its latest fact. Precondition: is_fenced() and not
   /// is_absent().
-  const Version& executing() const { return *held_.find(executing_); }
+  const Version& executing() const { return held_.executing(); }
   /// Creates a proposal. Precondition: 1 to MAX_CANDIDATES candidates with the same start, all of which
   /// continue `base`; for an absent robot, a rest version on base 0. Candidates have no inflation: if the
   /// base has one, they start at rest.
@@ -117,64 +118,23 @@ class Negotiation {
   const Counts& counts() const { return counts_; }
 
  private:
-  struct SentProposal {
-    std::array<Version, msg::MAX_CANDIDATES> candidates;
-    std::size_t count = 0;
-    Time proposed_at{};
-    int lead = 1;
-    bool answered = true;
-    bool open = false;  // a grant would still be forwarded
-
-    VersionNumber number() const { return candidates.front().number; }
-    Time start() const { return candidates.front().trajectory.start(); }
-  };
-  void number_above(const Version& executing);
-  /// Returns whether the fact belongs to the robot's current incarnation.
-  bool update_incarnation(const Feedback& feedback);
-  void finish_fencing(const Feedback& feedback);
-  void apply_fact(const Feedback& feedback, bool is_current);
-  /// Replaces all versions with one that the robot executes but this agent did not know.
-  void rebase(const Version& executing);
-  /// Learns from a verdict whether the coordinator knows what the robot executes.
-  void observe_knowledge(const Verdict& verdict, Time now);
-  bool has_base_of(const Version& version) const;
-  void adopt_epoch(Epoch epoch);
+  /// Whether the robot obeys this agent in the highest known epoch.
+  bool is_epoch_obeyed() const { return is_fenced() && epoch_ != 0 && fencing_.robot_epoch() == epoch_; }
+  void apply_report(const Feedback& feedback, bool is_current);
   void check_assumptions();
-  /// Start of the last version that the robot is expected to receive soon.
-  Time last_start(Time now) const;
-  /// Whether a heartbeat of the active coordinator has arrived recently.
-  bool hears_coordinator(Time now) const;
-  void close_proposals();
-  const SentProposal& newest_proposal() const {
-    return proposals_[(proposal_count_ - 1) % proposals_.size()];
-  }
+  void adopt_epoch(Epoch epoch);
+  /// Forwards the granted candidate if it is in time.
+  VerdictResult apply_grant(SentProposal& sent, const Verdict& verdict, Time now);
 
   RobotId robot_;
-  Incarnation incarnation_;
   Duration cycle_;
-  bool fenced_ = false, contradicted_ = false;
-  std::optional<Time> superseded_at_;        // time of the latest fact that acknowledges a later agent
-  Epoch epoch_ = 0;                          // highest epoch received
-  Epoch robot_epoch_ = 0;                    // highest epoch that the robot has acknowledged
-  Epoch former_epoch_ = 0;                   // epoch that it obeyed when it acknowledged this agent
-  bool registration_pending_ = true;         // not registered in this epoch, or the registration was lost
-  bool missing_ = false, granting_ = false;  // according to the coordinator's last heartbeat
-  Time last_heartbeat_at_{};                 // when that heartbeat arrived
-  std::optional<Time> fenced_at_;            // when the robot acknowledged this agent
-  std::optional<Time> unanswered_since_;     // time of the first request since the last answer
-  std::optional<Time> unknown_since_;        // since when the coordinator has not known the robot's versions
-  static constexpr Duration kMaxUnheard{500'000'000};
-  int unheard_cycles_ = 0;  // number of cycles since the robot's last fact
-  int silent_cycles_ = 0;   // number of cycles since the last fact that acknowledges this agent
-  VersionSet held_;         // versions that the robot may be executing, now or later
-  VersionNumber executing_ = 0;
-  Time latest_fact_{};                    // by the robot's clock
-  Incarnation robot_incarnation_ = 0;     // fact times of different incarnations are not compared
-  int facts_of_earlier_incarnation_ = 0;  // number of consecutive ones
-  VersionNumber next_number_;
-  std::array<SentProposal, 8> proposals_;
-  std::size_t proposal_count_ = 0;
-  int proposals_for_start_ = 0;
+  Fencing fencing_;
+  HeldVersions held_;
+  SentProposals proposals_;
+  CoordinatorContact contact_;
+  Epoch epoch_ = 0;                   // highest epoch received
+  bool registration_pending_ = true;  // not registered in this epoch, or the registration was lost
+  bool contradicted_ = false;
   ProposalPacing pacing_;
   Counts counts_;
 };

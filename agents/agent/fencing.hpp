@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "common/protocol/robot_messages.hpp"
+
+namespace sidestep {
+
+/// Which agent the robot obeys, according to its reports. An agent may register and propose only for a robot
+/// that obeys it (coordinator/PROTOCOL.md, "Joining").
+class Fencing {
+ public:
+  /// What a report of the robot means for the agent.
+  struct ReportUse {
+    bool is_acknowledged = false;     ///< the robot obeys this agent
+    bool is_first = false;            ///< the report ends the fencing
+    bool is_current = false;          ///< the report belongs to the robot's current incarnation
+    bool is_new_incarnation = false;  ///< the report is the first of that incarnation
+  };
+
+  explicit Fencing(Incarnation incarnation) : incarnation_(incarnation) {}
+
+  ReportUse on_feedback(const Feedback& feedback);
+  void close_cycle();
+
+  /// The incarnation sent with commands. It changes only before the robot has acknowledged this agent.
+  Incarnation incarnation() const { return incarnation_; }
+  /// The highest epoch that the robot has acknowledged.
+  Epoch robot_epoch() const { return robot_epoch_; }
+  /// The epoch that the robot obeyed when it acknowledged this agent. 0: none, or it has not acknowledged it
+  /// yet.
+  Epoch former_epoch() const { return former_epoch_; }
+  bool is_fenced() const { return fenced_at_.has_value(); }
+  /// When the robot acknowledged this agent, by the robot's clock.
+  std::optional<Time> fenced_at() const { return fenced_at_; }
+  /// Whether the robot obeys a later agent, so that this one stays silent.
+  bool is_superseded() const { return superseded_at_.has_value(); }
+  /// Number of cycles since the robot's last report, whomever it obeys.
+  int unheard_cycles() const { return unheard_cycles_; }
+  /// Number of cycles since the last report that acknowledges this agent.
+  int silent_cycles() const { return silent_cycles_; }
+
+ private:
+  void update_incarnation(const Feedback& feedback, ReportUse& use);
+  void on_later_agent(const Feedback& feedback, bool is_current);
+
+  Incarnation incarnation_;
+  std::optional<Time> fenced_at_;
+  std::optional<Time> superseded_at_;  // time of the latest report that acknowledges a later agent
+  Epoch robot_epoch_ = 0, former_epoch_ = 0;
+  Incarnation robot_incarnation_ = 0;       // report times of different incarnations are not compared
+  int reports_of_earlier_incarnation_ = 0;  // number of consecutive ones
+  int unheard_cycles_ = 0, silent_cycles_ = 0;
+};
+
+}  // namespace sidestep

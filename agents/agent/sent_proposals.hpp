@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "agents/agent/held_versions.hpp"
+#include "common/protocol/negotiation_messages.hpp"
+
+namespace sidestep {
+
+/// One proposal of the agent, with its candidates in order of preference.
+struct SentProposal {
+  std::array<Version, msg::MAX_CANDIDATES> candidates;
+  std::size_t count = 0;
+  Time proposed_at{};
+  int lead = 1;
+  bool is_answered = true;
+  bool is_open = false;  ///< a grant would still be forwarded
+
+  VersionNumber number() const { return candidates.front().number; }
+  Time start() const { return candidates.front().trajectory.start(); }
+  /// The candidate with this number; nullptr if there is none.
+  const Version* find(VersionNumber number) const;
+};
+
+/// The agent's latest proposals, as long as verdicts may arrive for them.
+class SentProposals {
+ public:
+  /// Makes room for a proposal that starts then, with no candidates yet.
+  SentProposal& add(Time start, Time now, int lead);
+
+  /// The proposal with this number that has not been answered yet; nullptr if there is none.
+  SentProposal* find_unanswered(VersionNumber number);
+  /// The latest proposal; nullptr before the first.
+  const SentProposal* newest() const;
+  /// The number of the latest consecutive proposals that have the same start.
+  int attempts() const { return attempts_; }
+  /// Whether a proposal for a start soon after `now` awaits its verdict.
+  bool has_upcoming(Time now) const;
+
+  /// Forwards no grant of them any more.
+  void close();
+  /// Closes the proposals that start from a version to which the robot cannot get. Returns whether there were
+  /// any.
+  bool close_unreachable(const HeldVersions& held);
+  /// Closes those that have started: their verdict would arrive too late. Returns the number of cycles that
+  /// the last of them was for, 0 if there were none.
+  int close_started(Time now);
+  /// Forgets them all: a verdict for them is unexpected.
+  void discard();
+
+ private:
+  std::array<SentProposal, 8> proposals_;
+  std::size_t count_ = 0;
+  int attempts_ = 0;
+};
+
+}  // namespace sidestep
