@@ -79,7 +79,7 @@ class RandomPublisher {
       Message message = random_message<Message>(rng_, has_sequence, has_sequence ? 3 : 0);
       adjust(message);
       writer->publish(message, bus_.now());
-      described_[channel][message.header().message_number()] = describe(message);
+      described_[channel][message.header().message_number()] = describe(topic, &message);
     });
   }
   void tick() {

@@ -12,7 +12,7 @@ namespace sidestep {
 namespace {
 
 bool measure(Bus& bus, const std::string& channel, SenderMeter& meter) {
-  return subscribe_to_channel(bus, channel, [&bus, &meter]<typename Message>(const Message& message) {
+  return subscribe_to_channel(bus, channel, [&bus, &meter](const TopicInfo&, const auto& message) {
     meter.add(message.header(), bus.now());
   });
 }

@@ -21,8 +21,8 @@ namespace {
 /// Prints the messages of a channel, and calls `stop` when enough are printed.
 bool print_channel(Bus& bus, const std::string& channel, MessagePrinter& printer,
                    const std::function<void()>& stop) {
-  return subscribe_to_channel(bus, channel, [&printer, stop]<typename Message>(const Message& message) {
-    printer.add(describe(message));
+  return subscribe_to_channel(bus, channel, [&printer, stop](const TopicInfo& topic, const auto& message) {
+    printer.add(describe(topic, &message));
     if (printer.is_done()) stop();
   });
 }

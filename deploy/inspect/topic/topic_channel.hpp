@@ -14,9 +14,9 @@ void print_unknown_topic(const std::string& channel);
 /// Reports on stderr why only the beginning of a recording was used, if that is the case.
 void print_damage(const std::string& recording_file, const std::string& damage);
 
-/// Calls `use` with each message of a channel, including those that processes refuse. If the channel belongs
-/// to no topic, calls print_unknown_topic() and returns false. Throws std::invalid_argument if this process's
-/// keys do not allow reading it.
+/// Calls `use` with the topic and each message of a channel, including those that processes refuse. If the
+/// channel belongs to no topic, calls print_unknown_topic() and returns false. Throws std::invalid_argument
+/// if this process's keys do not allow reading it.
 template <typename Use>
 [[nodiscard]] bool subscribe_to_channel(Bus& bus, const std::string& channel, Use use) {
   bool is_known = false;
@@ -27,7 +27,7 @@ template <typename Use>
     if (!bus.may_read(topic, *robot))
       throw std::invalid_argument("the keys of this process do not allow reading the topic '" + channel +
                                   "'");
-    bus.observe<Message>(topic, *robot, [use](const Message& message) { use(message); });
+    bus.observe<Message>(topic, *robot, [use, topic](const Message& message) { use(topic, message); });
   });
   if (!is_known) print_unknown_topic(channel);
   return is_known;

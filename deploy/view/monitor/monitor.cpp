@@ -125,7 +125,7 @@ void Monitor::receive(const Channel& channel, const Message& message) {
   const auto inspection = inspections_.find(channel.name);
   if (inspection == inspections_.end()) return;
   std::deque<std::string>& messages = inspection->second;
-  messages.push_back(text_of({{"at_s", unix_seconds(now)}, {"message", describe(message)}}));
+  messages.push_back(text_of({{"at_s", unix_seconds(now)}, {"message", describe(channel.topic, &message)}}));
   if (messages.size() > kMaxInspected) messages.pop_front();
 }
 

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <deque>
-#include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <variant>
 
+#include "common/messaging/topics.hpp"
 #include "deploy/inspect/time_range.hpp"
 #include "deploy/inspect/topic/describe.hpp"
-#include "deploy/inspect/topic/topic_channel.hpp"
 #include "deploy/view/monitor/unix_time.hpp"
 
 namespace sidestep {
@@ -17,22 +17,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Describes the bytes of a message; null if they are not a message of its topic.
-using Describe = std::function<Json(std::span<const std::uint8_t> cdr)>;
+std::optional<TopicInfo> topic_of(const std::string& channel) {
+  for (const TopicInfo& topic : all_topics())
+    if (channel_robot(topic, channel)) return topic;
+  return std::nullopt;
+}
 
-Describe describe_by(const std::string& channel) {
-  Describe found;
-  for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
-    if (!channel_robot(topic, channel)) return;
-    found = [topic](std::span<const std::uint8_t> cdr) {
-      Json json;
-      const bool is_valid = read_cdr(topic, cdr, [&json](const void* message) {
-        json = describe(*static_cast<const Message*>(message));
-      });
-      return is_valid ? json : Json();
-    };
-  });
-  return found;
+/// Describes the bytes of a message; null if they are not a message of the topic.
+Json describe_cdr(const TopicInfo& topic, std::span<const std::uint8_t> cdr) {
+  Json json;
+  const bool is_valid = read_cdr(topic, cdr, [&](const void* message) { json = describe(topic, message); });
+  return is_valid ? json : Json();
 }
 
 }  // namespace
@@ -41,9 +36,9 @@ std::vector<std::string> RecordedMessages::between(const std::string& channel, T
   constexpr std::size_t kEncapsulation = 4;
   // The time by which messages may be out of order in the file.
   constexpr auto kDisorder = std::chrono::seconds(1);
-  const Describe describe_message = describe_by(channel);
+  const std::optional<TopicInfo> topic = topic_of(channel);
   const auto& chunks = playback_.chunks();
-  if (!describe_message || chunks.empty()) return {};
+  if (!topic || chunks.empty()) return {};
   const auto after =
       std::ranges::upper_bound(chunks, from - kDisorder, {}, &PlaybackBus::ChunkPosition::first_at);
   reader_.seek(playback_.reader(), (after == chunks.begin() ? after : std::prev(after))->offset);
@@ -58,7 +53,7 @@ std::vector<std::string> RecordedMessages::between(const std::string& channel, T
     if (at > to + kDisorder) break;
     if (at <= from || at > to || message->payload.size() < kEncapsulation) continue;
     if (reader_.channel(*message).topic != channel) continue;
-    const Json json = describe_message(message->payload.subspan(kEncapsulation));
+    const Json json = describe_cdr(*topic, message->payload.subspan(kEncapsulation));
     if (json.is_null()) continue;
     const Json entry{{"at_s", unix_seconds(at)}, {"message", json}};
     messages.push_back(entry.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));

@@ -15,10 +15,11 @@ using Kind = IdlType::Kind;
 
 /// Arrays of arrays may claim far more elements than the bytes of a message.
 constexpr std::size_t kMaxElements = 10'000'000;
+constexpr std::uint32_t kMaxTextBound = 1 << 16;
 
 class Decoder {
  public:
-  explicit Decoder(std::span<const std::uint8_t> bytes) {
+  Decoder(std::span<const std::uint8_t> bytes, OctetSequences octets) : octets_(octets) {
     if (bytes.size() < 4) throw IdlDecodingError("the encapsulation header is missing");
     const unsigned encoding = bytes[0] * 256u + bytes[1];
     switch (encoding) {
@@ -125,7 +126,13 @@ class Decoder {
 
   Json sequence(const IdlType& type) {
     skip_delimiter(*type.element);
-    return elements(*type.element, count(type.bound, "sequence"));
+    const std::uint32_t size = count(type.bound, "sequence");
+    if (type.element->kind != Kind::kOctet || octets_ == OctetSequences::kNumbers)
+      return elements(*type.element, size);
+    const char* const first = reinterpret_cast<const char*>(bytes_.data()) + at_;
+    at_ += size;
+    const bool is_text = type.bound != 0 && type.bound <= kMaxTextBound;
+    return is_text ? std::string(first, size) : fmt::format("{} bytes", size);
   }
 
   /// The element of an array of several dimensions.
@@ -171,6 +178,7 @@ class Decoder {
     return result;
   }
 
+  OctetSequences octets_;
   std::span<const std::uint8_t> bytes_;
   std::size_t at_ = 0, elements_ = 0;
   bool is_swapped_ = false, is_version_2_ = false, is_delimited_ = false;
@@ -178,8 +186,8 @@ class Decoder {
 
 }  // namespace
 
-Json decode_by_idl(const IdlType& type, std::span<const std::uint8_t> bytes) {
-  return Decoder(bytes).decode(type);
+Json decode_by_idl(const IdlType& type, std::span<const std::uint8_t> bytes, OctetSequences octets) {
+  return Decoder(bytes, octets).decode(type);
 }
 
 }  // namespace sidestep

@@ -39,7 +39,8 @@ TEST_CASE("an independent reader of recordings agrees on every field of every to
         const auto message = random_message<Message>(rng, has_sequence, elements);
         writer.add(time_from_ns(++now_ns), topic, channels.at(topic.per_robot ? i % 3 : 0), message.header(),
                    &message);
-        lines << describe(message).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+        lines << describe(topic, &message)
+                     .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
               << '\n';
       }
     });

@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/messaging/histogram_codec.hpp"
+#include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/drop_reasons.hpp"
+#include "common/protocol/reason_text.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::describe_test {
@@ -40,13 +45,12 @@ std::string idl_body(const std::string& idl, const std::string& declaration) {
   return idl.substr(open + 1, idl.find('}', open) - open - 1);
 }
 
-/// The last word of each piece that ends with the separator, without square brackets and their content.
+/// The last word of each piece that ends with the separator.
 std::vector<std::string> last_words(const std::string& text, char separator) {
   const std::string blanks = " \n";
   std::istringstream pieces(text);
   std::vector<std::string> result;
   for (std::string piece; std::getline(pieces, piece, separator);) {
-    piece.resize(std::min(piece.size(), piece.find('[')));
     const std::size_t end = piece.find_last_not_of(blanks);
     if (end == std::string::npos) continue;
     const std::size_t before = piece.find_last_of(blanks, end);
@@ -55,19 +59,8 @@ std::vector<std::string> last_words(const std::string& text, char separator) {
   return result;
 }
 
-/// The members of a struct in the IDL, in order.
-std::vector<std::string> idl_members(const std::string& idl, const std::string& name) {
-  return last_words(idl_body(idl, "struct " + name), ';');
-}
-
 std::vector<std::string> idl_enumerators(const std::string& idl, const std::string& name) {
   return last_words(idl_body(idl, "enum " + name), ',');
-}
-
-std::vector<std::string> keys(const Json& object) {
-  std::vector<std::string> result;
-  for (const auto& item : object.items()) result.push_back(item.key());
-  return result;
 }
 
 /// "REASON_NOT_EVALUATED" with prefix "REASON_" as "not evaluated".
@@ -77,63 +70,165 @@ std::string to_lines(std::string enumerator, const std::string& prefix) {
   return enumerator;
 }
 
-TEST_CASE("a description contains the members of each message in IDL order") {
-  const std::string idl = without_comments(idl_text());
-  msg::DetectionFrame frame;
-  frame.ball_count(1);
-  frame.obstacle_count(1);
-  frame.robots().resize(1);
-  msg::WorldState world;
-  world.robots().resize(1);
-  msg::ObstacleList obstacles;
-  obstacles.obstacles().resize(1);
-  msg::Counters counters;
-  counters.counts().resize(1);
-  msg::GroundTruth truth;
-  truth.robots().resize(1);
-  msg::Feedback feedback;
-  feedback.executing().phase_count(1);
+/// A version whose members all differ.
+msg::Version some_version() {
+  msg::Version version;
+  version.robot(3);
+  version.incarnation(18'000'000'000'000'000'000u);
+  version.version_number(12);
+  version.base(11);
+  version.start_ns(-5);
+  version.x_m(1.5);
+  version.y_m(-2.25);
+  version.vx_mps(0.5);
+  version.vy_mps(0.125);
+  version.inflation_m(0.0625);
+  version.has_intent(true);
+  version.intent().vx_mps(0.25F);
+  version.intent().vy_mps(-0.25F);
+  version.intent().velocity_duration_s(2);
+  version.intent().via_x_m(3);
+  version.intent().via_y_m(4);
+  version.intent().goal_x_m(5);
+  version.intent().goal_y_m(6);
+  version.intent().target_x_m(7);
+  version.intent().target_y_m(8);
+  version.phase_count(1);
+  version.phases()[0].duration_ns(1'000'000'000);
+  version.phases()[0].ax_mps2(-0.5);
+  version.phases()[0].ay_mps2(9);
+  return version;
+}
 
-  CHECK(keys(describe(frame)) == idl_members(idl, "DetectionFrame"));
-  CHECK(keys(describe(frame)["header"]) == idl_members(idl, "Header"));
-  CHECK(keys(describe(frame)["balls"].at(0)) == idl_members(idl, "BallDetection"));
-  CHECK(keys(describe(frame)["robots"].at(0)) == idl_members(idl, "RobotDetection"));
-  CHECK(keys(describe(frame)["obstacles"].at(0)) == idl_members(idl, "ObstacleDetection"));
-  CHECK(keys(describe(obstacles)) == idl_members(idl, "ObstacleList"));
-  CHECK(keys(describe(obstacles)["obstacles"].at(0)) == idl_members(idl, "TrackedObstacle"));
-  CHECK(keys(describe(msg::Disturbance())) == idl_members(idl, "Disturbance"));
-  CHECK(keys(describe(msg::NetworkFault())) == idl_members(idl, "NetworkFault"));
-  CHECK(keys(describe(world)) == idl_members(idl, "WorldState"));
-  CHECK(keys(describe(world)["ball"]) == idl_members(idl, "TrackedBall"));
-  CHECK(keys(describe(world)["robots"].at(0)) == idl_members(idl, "TrackedRobot"));
-  CHECK(keys(describe(msg::Command())) == idl_members(idl, "Command"));
-  CHECK(keys(describe(msg::LaserScan())) == idl_members(idl, "LaserScan"));
-  CHECK(keys(describe(msg::Command())["fix"]) == idl_members(idl, "PoseFix"));
-  CHECK(keys(describe(feedback)) == idl_members(idl, "Feedback"));
-  CHECK(keys(describe(feedback)["executing"]) == idl_members(idl, "Version"));
-  CHECK(keys(describe(feedback)["executing"]["phases"].at(0)) == idl_members(idl, "MotionPhase"));
-  CHECK(keys(describe(msg::Registration())) == idl_members(idl, "Registration"));
-  CHECK(keys(describe(msg::Proposal())) == idl_members(idl, "Proposal"));
-  CHECK(keys(describe(msg::Verdict())) == idl_members(idl, "Verdict"));
-  CHECK(keys(describe(msg::LedgerPage())) == idl_members(idl, "LedgerPage"));
-  CHECK(keys(describe(msg::CoordinatorState())) == idl_members(idl, "CoordinatorState"));
-  msg::OrderMemory memory;
-  memory.order_count(1);
-  memory.poses().resize(1);
-  CHECK(keys(describe(msg::Order())) == idl_members(idl, "Order"));
-  CHECK(keys(describe(msg::Order())["terms"]) == idl_members(idl, "OrderTerms"));
-  CHECK(keys(describe(msg::OrderAnswer())) == idl_members(idl, "OrderAnswer"));
-  CHECK(keys(describe(memory)) == idl_members(idl, "OrderMemory"));
-  CHECK(keys(describe(memory)["orders"].at(0)) == idl_members(idl, "RememberedOrder"));
-  CHECK(keys(describe(memory)["poses"].at(0)) == idl_members(idl, "OrderPose"));
-  CHECK(keys(describe(msg::OrderStatus())) == idl_members(idl, "OrderStatus"));
-  CHECK(keys(describe(msg::ClockProbe())) == idl_members(idl, "ClockProbe"));
-  CHECK(keys(describe(msg::ClockReading())) == idl_members(idl, "ClockReading"));
-  CHECK(keys(describe(msg::AgentStatus())) == idl_members(idl, "AgentStatus"));
-  CHECK(keys(describe(counters)) == idl_members(idl, "Counters"));
-  CHECK(keys(describe(counters)["counts"].at(0)) == idl_members(idl, "Counter"));
-  CHECK(keys(describe(truth)) == idl_members(idl, "GroundTruth"));
-  CHECK(keys(describe(truth)["robots"].at(0)) == idl_members(idl, "TrueRobotState"));
+constexpr const char* kSomeVersion =
+    R"({"robot":3,"incarnation":18000000000000000000,"version_number":12,"base":11,"start_ns":-5,"x_m":1.5,)"
+    R"("y_m":-2.25,"vx_mps":0.5,"vy_mps":0.125,"inflation_m":0.0625,"has_intent":true,"intent":{"vx_mps":0.25,)"
+    R"("vy_mps":-0.25,"velocity_duration_s":2.0,"via_x_m":3.0,"via_y_m":4.0,"goal_x_m":5.0,"goal_y_m":6.0,)"
+    R"("target_x_m":7.0,"target_y_m":8.0},"phase_count":1,)"
+    R"("phases":[{"duration_ns":1000000000,"ax_mps2":-0.5,"ay_mps2":9.0}]})";
+
+template <typename Message>
+void fill_header(Message& message) {
+  message.header().sender(1003);
+  message.header().incarnation(77);
+  message.header().rules(0x00c0ffee);
+  message.header().message_number(4);
+  message.header().stamp_ns(1'700'000'000'123'456'789);
+}
+
+constexpr const char* kSomeHeader =
+    R"({"sender":1003,"incarnation":77,"rules":"0000000000c0ffee","message_number":4,)"
+    R"("stamp_ns":1700000000123456789})";
+
+TEST_CASE(
+    "a description has the members of the message in IDL order, with the values of the generated code") {
+  msg::Feedback feedback;
+  feedback.robot(3);
+  fill_header(feedback);
+  feedback.obeyed_incarnation(76);
+  feedback.obeyed_epoch(5);
+  feedback.valid_at_ns(8);
+  feedback.executing() = some_version();
+  feedback.is_lifted(true);
+  feedback.command_stamp_ns(9);
+  feedback.command_received_at_ns(10);
+  feedback.x_m(0.1);
+  feedback.y_m(0.2);
+  feedback.vx_mps(0.3);
+  feedback.vy_mps(0.4);
+  feedback.heading_rad(0.5);
+  feedback.tracking_error_m(0.6);
+  feedback.position_error_rms_m(0.7);
+  feedback.odometry_scale_stddev(0.8);
+  feedback.has_moved(true);
+  feedback.activated(13);
+  feedback.lead_ns(14);
+  CHECK(describe(topics::kFeedback, &feedback).dump() ==
+        std::string(R"({"robot":3,"header":)") + kSomeHeader +
+            R"(,"obeyed_incarnation":76,"obeyed_epoch":5,"valid_at_ns":8,"executing":)" + kSomeVersion +
+            R"(,"is_off_reference":false,"is_lifted":true,"command_stamp_ns":9,"command_received_at_ns":10,)"
+            R"("x_m":0.1,"y_m":0.2,"vx_mps":0.3,"vy_mps":0.4,"heading_rad":0.5,"tracking_error_m":0.6,)"
+            R"("position_error_rms_m":0.7,"odometry_scale_stddev":0.8,"has_moved":true,"activated":13,)"
+            R"("lead_ns":14})");
+}
+
+TEST_CASE("a description has the used elements of arrays and all elements of sequences") {
+  msg::DetectionFrame frame;
+  frame.camera(2);
+  fill_header(frame);
+  frame.captured_at_ns(6);
+  frame.ball_count(1);
+  frame.balls()[0].x_m(0.5);
+  frame.balls()[0].y_m(1);
+  frame.balls()[0].confidence(0.75);
+  frame.obstacles_complete_within_m(1e9);
+  frame.obstacle_count(2);
+  frame.obstacles()[0].x_m(2);
+  frame.obstacles()[1].y_m(3);
+  frame.obstacles()[1].radius_m(0.25);
+  frame.robots().resize(2);
+  frame.robots()[0].robot(7);
+  frame.robots()[1].heading_rad(-1.5);
+  CHECK(describe(topics::kDetections, &frame).dump() ==
+        std::string(R"({"camera":2,"header":)") + kSomeHeader +
+            R"(,"captured_at_ns":6,"ball_count":1,"balls":[{"x_m":0.5,"y_m":1.0,"confidence":0.75}],)"
+            R"("obstacles_complete_within_m":1000000000.0,"obstacle_count":2,)"
+            R"("obstacles":[{"x_m":2.0,"y_m":0.0,"radius_m":0.0},{"x_m":0.0,"y_m":3.0,"radius_m":0.25}],)"
+            R"("robots":[{"robot":7,"x_m":0.0,"y_m":0.0,"heading_rad":0.0,"confidence":0.0},)"
+            R"({"robot":0,"x_m":0.0,"y_m":0.0,"heading_rad":-1.5,"confidence":0.0}]})");
+}
+
+TEST_CASE("arrays without a count are described whole") {
+  msg::Verdict verdict;
+  verdict.robot(3);
+  fill_header(verdict);
+  verdict.epoch(5);
+  verdict.proposal_number(6);
+  verdict.request_stamp_ns(7);
+  verdict.reasons()[1] = msg::Reason::REASON_CONFLICT;
+  verdict.blockers()[1] = 9;
+  CHECK(describe(topics::kVerdict, &verdict).dump() ==
+        std::string(R"({"robot":3,"header":)") + kSomeHeader +
+            R"(,"epoch":5,"proposal_number":6,"request_stamp_ns":7,"granted_version":0,)"
+            R"("reasons":["granted","conflict","granted","granted","granted"],"blockers":[0,9,0,0,0]})");
+  CHECK(describe(topics::kTruth, std::make_unique<msg::GroundTruth>().get())["recent_contacts"].size() ==
+        msg::MAX_CONTACTS);
+}
+
+TEST_CASE("a histogram is described by its quantiles") {
+  DurationHistogram histogram;
+  for (int i = 0; i < 98; ++i) histogram.add(std::chrono::microseconds(10));
+  for (int i = 0; i < 2; ++i) histogram.add(std::chrono::milliseconds(5));
+  msg::AgentStatus status;
+  status.search() = encode(histogram);
+  const Json description = describe(topics::kStatus, &status);
+  const auto us = [&](double q) { return static_cast<double>(histogram.quantile(q).count()) * 1e-3; };
+  CHECK(description["search"] ==
+        Json{{"count", 100}, {"p50_us", us(0.5)}, {"p99_us", us(0.99)}, {"max_us", 5000.0}});
+  CHECK(description["plan"] == Json{{"count", 0}, {"p50_us", 0.0}, {"p99_us", 0.0}, {"max_us", 0.0}});
+}
+
+TEST_CASE("text is described as text, and an image by its size") {
+  const std::string text = "radius_m: 0.09\n";
+  msg::SharedRules rules;
+  rules.text().assign(text.begin(), text.end());
+  CHECK(describe(topics::kRules, &rules)["text"] == text);
+  msg::ClockReading reading;
+  reading.place().assign(text.begin(), text.end());
+  CHECK(describe(topics::kClockReading, &reading)["place"] == text);
+  // Larger than the number of elements that a message of numbers may have.
+  msg::CameraImage image;
+  image.pixels().assign(12'000'000, 'a');
+  image.image_format(msg::ImageFormat::IMAGE_RGB);
+  CHECK(describe(topics::kImages, &image)["pixels"] == "12000000 bytes");
+  CHECK(describe(topics::kImages, &image)["image_format"] == "rgb");
+}
+
+TEST_CASE("beams without a range are described in words") {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  msg::LaserScan scan;
+  scan.ranges_m() = {1.5F, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN()};
+  CHECK(describe(topics::kScan, &scan)["ranges_m"] == Json{1.5, "no hit", "too near", "lost"});
 }
 
 TEST_CASE("an enumerator is described by the words of its IDL name, an unknown one by its number") {
@@ -151,55 +246,71 @@ TEST_CASE("an enumerator is described by the words of its IDL name, an unknown o
   check("Reason", "REASON_", [](std::uint32_t value) -> std::string {
     msg::Verdict verdict;
     verdict.reasons()[0] = static_cast<msg::Reason>(value);
-    return describe(verdict)["reasons"][0];
+    return describe(topics::kVerdict, &verdict)["reasons"][0];
   });
   check("DisturbanceKind", "DISTURBANCE_", [](std::uint32_t value) -> std::string {
     msg::Disturbance disturbance;
     disturbance.disturbance_kind(static_cast<msg::DisturbanceKind>(value));
-    return describe(disturbance)["disturbance_kind"];
+    return describe(topics::kDisturbance, &disturbance)["disturbance_kind"];
   });
   check("AgentState", "AGENT_", [](std::uint32_t value) -> std::string {
     msg::AgentStatus status;
     status.agent_state(static_cast<msg::AgentState>(value));
-    return describe(status)["agent_state"];
+    return describe(topics::kStatus, &status)["agent_state"];
   });
   check("OrderKind", "ORDER_", [](std::uint32_t value) -> std::string {
     msg::Order order;
     order.terms().order_kind(static_cast<msg::OrderKind>(value));
-    return describe(order)["terms"]["order_kind"];
+    return describe(topics::kOrder, &order)["terms"]["order_kind"];
   });
   check("OrderResult", "RESULT_", [](std::uint32_t value) -> std::string {
     msg::OrderAnswer answer;
     answer.result(static_cast<msg::OrderResult>(value));
-    return describe(answer)["result"];
+    return describe(topics::kOrderAnswer, &answer)["result"];
   });
   check("OrderState", "ORDER_", [](std::uint32_t value) -> std::string {
     msg::OrderStatus status;
     status.order_state(static_cast<msg::OrderState>(value));
-    return describe(status)["order_state"];
+    return describe(topics::kOrderStatus, &status)["order_state"];
   });
   check("BlockReason", "BLOCK_", [](std::uint32_t value) -> std::string {
     msg::OrderStatus status;
     status.block_reason(static_cast<msg::BlockReason>(value));
-    return describe(status)["block_reason"];
+    return describe(topics::kOrderStatus, &status)["block_reason"];
   });
   check("RoleReason", "ROLE_", [](std::uint32_t value) -> std::string {
     msg::CoordinatorState state;
     state.role_reason(static_cast<msg::RoleReason>(value));
-    return describe(state)["role_reason"];
+    return describe(topics::kCoordinator, &state)["role_reason"];
   });
   check("CoordinatorMode", "COORDINATOR_", [](std::uint32_t value) -> std::string {
     msg::CoordinatorState state;
     state.coordinator_mode(static_cast<msg::CoordinatorMode>(value));
-    return describe(state)["coordinator_mode"];
+    return describe(topics::kCoordinator, &state)["coordinator_mode"];
   });
+  check("ImageFormat", "IMAGE_", [](std::uint32_t value) -> std::string {
+    msg::CameraImage image;
+    image.image_format(static_cast<msg::ImageFormat>(value));
+    return describe(topics::kImages, &image)["image_format"];
+  });
+}
+
+TEST_CASE("logs and pages have the same words for enumerators as descriptions") {
+  const std::string idl = without_comments(idl_text());
+  const auto check = [&](const char* name, const std::string& prefix, const auto& texts) {
+    const std::vector<std::string> enumerators = idl_enumerators(idl, name);
+    REQUIRE(enumerators.size() == std::size(texts));
+    for (std::size_t i = 0; i < enumerators.size(); ++i) CHECK(texts[i] == to_lines(enumerators[i], prefix));
+  };
+  check("Reason", "REASON_", kReasonTexts);
+  check("DisturbanceKind", "DISTURBANCE_", kDisturbanceTexts);
 }
 
 TEST_CASE("a counter is described by the name of its reason, an unknown reason by its number") {
   msg::Counters message;
   for (std::size_t i = 0; i <= kDropReasonCount; ++i)
     message.counts().emplace_back().reason(static_cast<std::uint16_t>(i));
-  const Json description = describe(message);
+  const Json description = describe(topics::kCounters, &message);
   for (std::size_t i = 0; i < kDropReasonCount; ++i)
     CHECK(description["counts"][i]["reason"] == kDropReasons[i].name);
   CHECK(description["counts"].back()["reason"] == "unknown " + std::to_string(kDropReasonCount));
@@ -220,7 +331,7 @@ TEST_CASE("a count beyond its array shows the whole array and the unmodified cou
   msg::Proposal proposal;
   proposal.candidate_count(255);
   proposal.candidates()[0].phase_count(200);
-  const Json description = describe(proposal);
+  const Json description = describe(topics::kProposal, &proposal);
   CHECK(description["candidate_count"] == 255);
   CHECK(description["candidates"].size() == proposal.candidates().size());
   CHECK(description["candidates"][0]["phases"].size() == proposal.candidates()[0].phases().size());

@@ -28,7 +28,7 @@ TEST_CASE("all our messages are decoded by their IDL as by the generated code") 
       Bytes bytes{0, 1, 0, 0};
       append_cdr(topic, &message, bytes);
       const Json decoded = decode_by_idl(*types.at(topic.type.name), bytes);
-      require_same_fields(describe(message), decoded);
+      require_same_fields(describe(topic, &message), decoded);
       CHECK(decoded["header"]["stamp_ns"] == message.header().stamp_ns());
       for (std::size_t size = 0; size + 4 < bytes.size(); size += 1 + size / 8)
         REQUIRE_THROWS_AS(decode_by_idl(*types.at(topic.type.name), std::span(bytes).first(size)),
@@ -60,6 +60,21 @@ TEST_CASE("texts, enumerators and nested arrays") {
       "enum E { ONE, TWO }; @final struct T { string s; E known, unknown; octet a[2][2]; char c; };";
   CHECK(decode(idl, {0, 1, 0, 0, 3, 0, 0, 0, 'h', 'i', 0, 0, 1, 0, 0, 0, 9, 0, 0, 0, 1, 2, 3, 4, 'c'}) ==
         Json{{"s", "hi"}, {"known", "TWO"}, {"unknown", 9}, {"a", {{1, 2}, {3, 4}}}, {"c", "c"}});
+}
+
+TEST_CASE("on request, sequences of octets are decoded to text, and long or unbounded ones to their size") {
+  const IdlTypes types = parse_idl(
+      "@final struct T { octet a[2]; sequence<octet, 65536> b, c; sequence<octet, 65537> d; sequence<octet> "
+      "e; "
+      "};",
+      "idl");
+  const Bytes bytes{0, 1, 0, 0, 1, 2, 0, 0, 3, 0, 0, 0, 'h', 'i', '\n', 0, 0,
+                    0, 0, 0, 2, 0, 0, 0, 8, 9, 0, 0, 1, 0,   0,   0,    7};
+  const Json decoded = decode_by_idl(*types.at("T"), bytes, OctetSequences::kText);
+  CHECK(decoded == Json{{"a", {1, 2}}, {"b", "hi\n"}, {"c", ""}, {"d", "2 bytes"}, {"e", "1 bytes"}});
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    CHECK_THROWS_AS(decode_by_idl(*types.at("T"), std::span(bytes).first(size), OctetSequences::kText),
+                    IdlDecodingError);
 }
 
 TEST_CASE("bytes that are not a message are refused, whatever they claim") {
