@@ -3,13 +3,14 @@
 
 #include <algorithm>
 
+#include "common/motion/rest.hpp"
+
 namespace sidestep {
 namespace {
 
-// A registered version must end at rest; speeds below this are rounding errors.
-constexpr double kAtRest_mps = 1e-6;
-
-bool ends_at_rest(const Version& version) { return version.trajectory.residual_speed_mps() <= kAtRest_mps; }
+bool ends_at_rest(const Version& version) {
+  return version.trajectory.residual_speed_mps() <= kPlannedRest_mps;
+}
 
 bool is_malformed(const Registration& registration) {
   return !registration.versions || !std::ranges::all_of(registration.versions->versions(), ends_at_rest);

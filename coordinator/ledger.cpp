@@ -6,13 +6,11 @@
 
 #include "common/motion/clearance.hpp"
 #include "common/motion/escape.hpp"
+#include "common/motion/rest.hpp"
 #include "common/motion/trajectory_bounds.hpp"
 
 namespace sidestep {
 namespace {
-
-// Speeds below this are rounding errors.
-constexpr double kAtRest_mps = 1e-6;
 
 bool is_rest_version(const Version& version) {
   return version.base == 0 && version.trajectory.phases().empty() &&
@@ -22,7 +20,8 @@ bool is_rest_version(const Version& version) {
 /// A version must have its base's inflation, or 0 if it begins at rest.
 bool is_inflation_allowed(const Version& candidate, const Version& base) {
   if (candidate.inflation_m == base.inflation_m) return true;
-  return candidate.inflation_m == 0 && candidate.trajectory.at_start().velocity_mps.norm() <= kAtRest_mps;
+  return candidate.inflation_m == 0 &&
+         candidate.trajectory.at_start().velocity_mps.norm() <= kPlannedRest_mps;
 }
 
 /// Whether two versions with equal numbers have equal contents.

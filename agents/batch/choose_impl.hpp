@@ -2,12 +2,12 @@
 // Choice kernels for one instruction set; see vectors.hpp. Their results are proposed, so products must not
 // be contracted: every machine has to compute the same bits.
 #include "agents/batch/vectors.hpp"
+#include "common/motion/rest.hpp"
 
 namespace sidestep::batch {
 namespace {
 
 void limit(const LimitSettings& s, AccelerationBlock* accelerations, std::size_t blocks) {
-  constexpr double kAtRest_mps = 1e-6;  // same value as in common/motion/robot_model.cpp
   const Vector one = broadcast(1), zero = broadcast(0);
   for (std::size_t block = 0; block < blocks; ++block) {
     AccelerationBlock& a = accelerations[block];
@@ -34,7 +34,8 @@ void limit(const LimitSettings& s, AccelerationBlock* accelerations, std::size_t
       const Vector braking_effort2 = end_ahead * end_ahead * per_end_speed2 * s.inverse_deceleration2 +
                                      end_across * end_across * per_end_speed2 * s.inverse_acceleration2;
       const Vector moving_effort2 = end_ahead < zero ? braking_effort2 : forward_effort2;
-      const Vector end_effort2 = end_speed2 < broadcast(kAtRest_mps * kAtRest_mps) ? zero : moving_effort2;
+      const Vector end_effort2 =
+          end_speed2 < broadcast(kPlannedRest_mps * kPlannedRest_mps) ? zero : moving_effort2;
       const Vector largest_effort2 = end_effort2 > effort2 ? end_effort2 : effort2;
       const Vector scale = largest_effort2 > one ? one / square_root(largest_effort2) : one;
       x = x * scale;

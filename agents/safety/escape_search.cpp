@@ -7,6 +7,7 @@
 
 #include "common/motion/clearance.hpp"
 #include "common/motion/escape.hpp"
+#include "common/motion/rest.hpp"
 #include "common/motion/robot_model.hpp"
 
 namespace sidestep {
@@ -67,7 +68,7 @@ SearchResult search_escape(const SearchQuery& query, const Version& base, const 
     const Trajectory trajectory = accelerate_then_stop(query.start, query.at_start, acceleration,
                                                        query.hold_time, rules.limits.deceleration_mps2);
     const Version candidate{base.robot, base.incarnation, base.number + 1, base.number, trajectory};
-    if (trajectory.residual_speed_mps() > 1e-6 ||
+    if (trajectory.residual_speed_mps() > kPlannedRest_mps ||
         trajectory.rest_position_m() == base.trajectory.rest_position_m())
       return;
     result.checks += static_cast<int>(surroundings.others.size());

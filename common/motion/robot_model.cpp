@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/motion/rest.hpp"
+
 namespace sidestep {
 namespace {
-
-// A velocity with a lower speed has no direction.
-constexpr double kAtRest_mps = 1e-6;
 
 double squared(double x) { return x * x; }
 
@@ -18,7 +17,7 @@ double effort2(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
   const double sideways_and_ahead2 =
       (a.x() * a.x() + a.y() * a.y()) * (1 / squared(limits.acceleration_mps2));
   const double speed = v.norm();
-  if (speed < kAtRest_mps) return sideways_and_ahead2;
+  if (speed < kPlannedRest_mps) return sideways_and_ahead2;
   const double along = (a.x() * v.x() + a.y() * v.y()) * (1 / speed);
   if (along >= 0) return sideways_and_ahead2;
   const double across = (v.x() * a.y() - v.y() * a.x()) * (1 / speed);
@@ -31,7 +30,7 @@ double effort2(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
 double effort2_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
   const double speed2 = v.x() * v.x() + v.y() * v.y();
   const double ahead = a.x() * v.x() + a.y() * v.y(), across = v.x() * a.y() - v.y() * a.x();
-  if (speed2 < squared(kAtRest_mps)) return 0;
+  if (speed2 < squared(kPlannedRest_mps)) return 0;
   if (ahead >= 0) return (a.x() * a.x() + a.y() * a.y()) * (1 / squared(limits.acceleration_mps2));
   const double per_speed2 = 1 / speed2;
   return ahead * ahead * per_speed2 * (1 / squared(limits.deceleration_mps2)) +
@@ -102,11 +101,11 @@ void sample_in_velocity_frame(bool is_at_rest, const MotionLimits& limits, Rng& 
   }
 }
 
-bool is_at_rest(const Vec2& velocity) { return velocity.norm() < kAtRest_mps; }
+bool is_at_rest(const Vec2& velocity) { return velocity.norm() < kPlannedRest_mps; }
 
 Vec2 forward_of(const Vec2& velocity) {
   const double speed = velocity.norm();
-  return speed < kAtRest_mps ? Vec2(1, 0) : Vec2(velocity * (1 / speed));
+  return speed < kPlannedRest_mps ? Vec2(1, 0) : Vec2(velocity * (1 / speed));
 }
 
 }  // namespace sidestep

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/motion/clearance.hpp"
+#include "common/motion/rest.hpp"
 #include "common/motion/robot_model.hpp"
 
 namespace sidestep {
@@ -43,7 +44,7 @@ Validity check_limits(const Trajectory& trajectory, const MotionLimits& limits) 
     // The speed is a convex function of time over a phase, so its maximum is at one of the ends.
     if (!(state.velocity_mps.norm() <= max_speed_mps)) return Validity::kBeyondLimits;
   }
-  return state.velocity_mps.norm() <= kSpeedTolerance_mps ? Validity::kValid : Validity::kNotAtRest;
+  return state.velocity_mps.norm() <= kPlannedRest_mps ? Validity::kValid : Validity::kNotAtRest;
 }
 
 Validity check_workspace(const Trajectory& trajectory, const FloorRules& rules) {

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "simulator/world/opponents.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -138,7 +140,7 @@ void BaseWorld::count_contacts(const std::vector<double>& speeds_mps) {
     ++crashes_;
     const bool was_pushed = time_ - kPushedTime < pushed_at_[robot];
     pushed_at_[robot] = time_;
-    if (was_pushed || speeds_mps[robot] <= kAtRest_mps) continue;
+    if (was_pushed || speeds_mps[robot] <= Opponents::kAtRest_mps) continue;
     max_crash_mps_ = std::max(max_crash_mps_, speeds_mps[robot]);
     recent_moving_crashes_[moving_crashes_++ % msg::MAX_CONTACTS] = floor_.robots[robot].id;
   }

@@ -47,8 +47,6 @@ class BaseWorld {
   /// with obstacles; crashes are those with opponents. Only for metrics and audit.
   void fill(msg::GroundTruth& truth) const;
 
-  static constexpr double kAtRest_mps = 0.05;
-
  private:
   void step();
   void measure_clearance();

@@ -17,7 +17,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kAtRest_mps = 0.02;
 /// Of positions and velocities that vision shows. Its velocities are too noisy to tell a slow robot from one
 /// at rest; agents know that.
 constexpr double kSeenTolerance_m = 0.01, kSeenAtRest_mps = 1;

@@ -41,6 +41,8 @@ struct RobotProgress {
 /// incarnations of a process.
 class RunMetrics {
  public:
+  static constexpr double kAtRest_mps = 0.02;  ///< ground truth shows slower robots at rest
+
   /// The scenario must outlive this object.
   explicit RunMetrics(const Scenario& scenario);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "deploy/audit/metrics/run_metrics.hpp"
 #include "deploy/trial/test/judgement/judge.hpp"
 #include "deploy/trial/test/judgement/judge_each.hpp"
 #include "deploy/trial/test/judgement/unheard_time.hpp"
@@ -10,7 +11,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kAtRest_mps = 0.02;
 constexpr double kMoving_mps = 0.05;
 // A robot that is not heard from for longer may have moved meanwhile.
 constexpr double kMaxUnheardRest_s = 0.25;
@@ -29,7 +29,7 @@ std::optional<double> rest_time(RobotId robot, const ExpectAtRest& check, const 
     if (heard_s && sample.at_s - *heard_s > kMaxUnheardRest_s) rest_since.reset();
     heard_s = sample.at_s;
     const auto speed_mps = sample.speed_of(robot);
-    if (!speed_mps || *speed_mps >= kAtRest_mps)
+    if (!speed_mps || *speed_mps >= RunMetrics::kAtRest_mps)
       rest_since.reset();
     else
       rest_since = rest_since.value_or(sample.at_s);
@@ -49,10 +49,10 @@ Judgement judge_rest(RobotId robot, const ExpectAtRest& check, const RunHistory&
   for (const TruthSample& sample : history.truths) {
     const auto speed = sample.at_s < check.span.from_s ? std::nullopt : sample.speed_of(robot);
     if (!speed) continue;
-    if (*speed >= kAtRest_mps && sample.at_s <= end_s) {
+    if (*speed >= RunMetrics::kAtRest_mps && sample.at_s <= end_s) {
       moved_s = sample.at_s;
       speed_mps = *speed;
-    } else if (*speed < kAtRest_mps && sample.at_s > end_s && !rested_s) {
+    } else if (*speed < RunMetrics::kAtRest_mps && sample.at_s > end_s && !rested_s) {
       rested_s = sample.at_s;
     }
   }
