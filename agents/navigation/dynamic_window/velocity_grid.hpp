@@ -67,7 +67,7 @@ void for_each_tile(const GridWindow& window, Visit visit) {
   for (int row = window.rows.first / kTileRows; row <= window.rows.last / kTileRows; ++row) {
     for (int column = window.columns.first / kTileColumns; column <= window.columns.last / kTileColumns;
          ++column)
-      visit(static_cast<std::size_t>(row * kTilesAcross + column));
+      visit(static_cast<std::size_t>(row) * kTilesAcross + static_cast<std::size_t>(column));
   }
 }
 
