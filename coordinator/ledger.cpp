@@ -89,7 +89,7 @@ void Ledger::Entry::quarantine(const Version& reported) {
   agreeing = 0;
 }
 
-bool Ledger::Entry::may_forget() {
+bool Ledger::Entry::count_agreement() {
   if (quarantined.empty()) return true;
   if (++agreeing < kFactsUntilReleased) return false;
   release();
@@ -157,7 +157,7 @@ FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_
     return outcome;
   }
   const bool is_own_stop = !entry.set.find(executing.number);
-  if (!entry.may_forget()) {
+  if (!entry.count_agreement()) {
     if (is_own_stop) {
       entry.quarantined.back() = executing;
       update_bounds(index_of(executing.robot));

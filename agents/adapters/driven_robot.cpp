@@ -106,7 +106,7 @@ void DrivenRobot::use_fix(const PoseFix& fix) {
 }
 
 void DrivenRobot::on_odometry(const OdometryReport& report, Time now) {
-  if (odometry_dates_.is_believed(report.measured_at, now))
+  if (odometry_dates_.admit(report.measured_at, now))
     measured_.add(report);
   else
     ++misdated_;

@@ -3,7 +3,7 @@
 
 namespace sidestep {
 
-bool OdometryDates::is_believed(Time measured_at, Time arrived_at) {
+bool OdometryDates::admit(Time measured_at, Time arrived_at) {
   const Duration age = arrived_at - measured_at;
   if (age < -max_error_) {
     proven_at_.reset();

@@ -19,8 +19,8 @@ class OdometryDates {
 
   explicit OdometryDates(Duration max_error) : max_error_(max_error) {}
 
-  /// Call it once for each report, in order of arrival.
-  [[nodiscard]] bool is_believed(Time measured_at, Time arrived_at);
+  /// Whether the report's date is believed. Call it once for each report, in order of arrival.
+  [[nodiscard]] bool admit(Time measured_at, Time arrived_at);
 
  private:
   Duration max_error_;

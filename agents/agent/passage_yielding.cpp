@@ -21,7 +21,7 @@ void PassageYielding::update(Time now, Observations& observations, const Assignm
   const double remaining_m =
       route.has_route() ? remaining_to_goal_m_ : std::numeric_limits<double>::infinity();
   const RouteObstacles* obstacles = route.obstacles();
-  if (!give_way_.is_due(now, remaining_m) || !obstacles) return;
+  if (!give_way_.track_progress(now, remaining_m) || !obstacles) return;
   if (give_way_.is_searching()) return give_way_.search(now, rng);
   give_way_.begin_search(now, observations.own().estimate().position_m,
                          others_in_passages(now, observations, assignment), obstacles->fixed_world());

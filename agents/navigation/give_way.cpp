@@ -23,7 +23,7 @@ void GiveWay::restart(Time now) {
   range_m_ = settings_.first_range_m;
 }
 
-bool GiveWay::is_due(Time now, double remaining_m) {
+bool GiveWay::track_progress(Time now, double remaining_m) {
   const bool is_new = now - called_at_ > settings_.max_pause || now < progress_at_;
   called_at_ = now;
   remaining_m_ = remaining_m;

@@ -47,11 +47,12 @@ class GiveWay {
  public:
   explicit GiveWay(const GiveWayFloor& floor, const GiveWaySettings& settings = {});
 
-  /// Whether to search: the robot has made no progress for a long time, or may be able to stop giving way.
-  /// Call it once per decision, with the length of the robot's route to its goal, or infinity if there is
-  /// none. Robots that block each other move to and fro, which is no progress.
-  [[nodiscard]] bool is_due(Time now, double remaining_m);
-  /// Whether a search has begun, so that search() must be called. Otherwise call begin_search() if is_due().
+  /// Returns whether to search: the robot has made no progress for a long time, or may be able to stop giving
+  /// way. Call it once per decision, with the length of the robot's route to its goal, or infinity if there
+  /// is none. Robots that block each other move to and fro, which is no progress.
+  [[nodiscard]] bool track_progress(Time now, double remaining_m);
+  /// Whether a search has begun, so that search() must be called. Otherwise call begin_search() if
+  /// track_progress() says so.
   bool is_searching() const { return search_.is_active(); }
   /// Starts a search. `others`: all robots nearby, and those of yields_to() that are still on their way.
   /// `fixed`: all obstacles except robots.

@@ -135,14 +135,14 @@ std::optional<Vec2> GiveWaySearch::next_place() {
     }
     const std::optional<Vec2> place = next_of_grid();
     if (!place) return std::nullopt;
-    if (!is_candidate(*place)) continue;
+    if (!take_candidate(*place)) continue;
     candidates_.emplace_back((*place - query_.position_m).norm(), *place);
     std::ranges::push_heap(candidates_, is_farther);
   }
   return std::nullopt;
 }
 
-bool GiveWaySearch::is_candidate(const Vec2& place) {
+bool GiveWaySearch::take_candidate(const Vec2& place) {
   // Of several places near each other, one is enough.
   const Vec2 cell = (place - query_.position_m) / (2 * floor_.radius_m);
   const std::pair key{std::lround(cell.x()), std::lround(cell.y())};

@@ -67,8 +67,9 @@ class GiveWaySearch {
   void check_passage(Rng& rng);
   void begin_places();
   void search_places(Rng& rng);
-  /// Whether a path to it is worth planning: it is free, off the routes, and not next to a known place.
-  bool is_candidate(const Vec2& place);
+  /// Takes a place if a path to it is worth planning: it is free, off the routes, and not next to one that
+  /// was taken. Returns whether it is.
+  bool take_candidate(const Vec2& place);
   /// Examines further places, up to the limit of a step. Returns the nearest remaining one; nullopt if it is
   /// not known yet or there are none left.
   std::optional<Vec2> next_place();

@@ -97,9 +97,9 @@ class OrderClient {
   void on_answer(const msg::OrderAnswer& answer);
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
-  /// Whether enough complete memories of this coordinator in a row lack the order, including this one. At
-  /// most once for each that many memories.
-  bool is_forgotten(const SentOrder& sent, std::uint32_t coordinator);
+  /// Counts a complete memory of this coordinator that lacks the order. Returns whether enough in a row do,
+  /// at most once for each that many memories.
+  bool count_missing(const SentOrder& sent, std::uint32_t coordinator);
   /// Whether the last complete memory of some coordinator lists the order.
   bool is_listed(const SentOrder& sent) const;
   void compare(std::uint32_t coordinator, const OrderBook& remembered);

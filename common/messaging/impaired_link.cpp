@@ -12,7 +12,7 @@ Duration sample_delay(const LinkQuality& quality, Rng& rng) {
   return std::min(quality.delay_min + above, std::max(quality.delay_min, quality.delay_max));
 }
 
-bool ImpairedLink::is_lost(const LinkQuality& quality, Rng& rng) {
+bool ImpairedLink::draw_loss(const LinkQuality& quality, Rng& rng) {
   if (quality.is_cut || quality.loss >= 1) return true;
   // Gilbert model: there are two states, and every message sent in the losing state is lost. The losing state
   // lasts mean_burst messages on average. Its probability of entry is chosen so that the fraction `loss` of
@@ -25,7 +25,7 @@ bool ImpairedLink::is_lost(const LinkQuality& quality, Rng& rng) {
 
 MessageCopies ImpairedLink::send(const LinkQuality& quality, Rng& rng) {
   MessageCopies copies;
-  if (is_lost(quality, rng)) return copies;
+  if (draw_loss(quality, rng)) return copies;
   copies.delays[copies.count++] = sample_delay(quality, rng);
   if (rng.chance(quality.duplicate)) copies.delays[copies.count++] = sample_delay(quality, rng);
   return copies;

@@ -34,7 +34,8 @@ class ImpairedLink {
   MessageCopies send(const LinkQuality& quality, Rng& rng);
 
  private:
-  bool is_lost(const LinkQuality& quality, Rng& rng);
+  /// Draws whether the next message is lost.
+  bool draw_loss(const LinkQuality& quality, Rng& rng);
 
   bool is_losing_ = false;  // currently in a burst of losses
 };

@@ -223,9 +223,9 @@ class Auditor {
                           std::int64_t apart_ns = kAlways);
   void record_positions(const msg::GroundTruth& truth);
   void record_sights(const msg::WorldState& world);
-  /// Whether vision is the reference, because it has shown robots for a while without any ground truth being
-  /// received.
-  bool is_vision_needed();
+  /// Makes vision the reference once it has shown robots for a while without any ground truth being received.
+  /// Returns whether it is.
+  bool fall_back_to_vision();
   void check_sights(const msg::WorldState& world);
   /// Distance of a position from the version that the robot executes, as far as is known; infinite if nothing
   /// is known.

@@ -60,7 +60,7 @@ void Auditor::on_world(const msg::WorldState& world, Time now) {
     seen_contacts_.on_missed();
   }
   record_sights(world);
-  if (!is_vision_needed()) return;
+  if (!fall_back_to_vision()) return;
   const Time at = time_from_ns(world.valid_at_ns());
   for (const SeenContact& contact : seen_contacts_.update(sights_)) {
     const RobotId first = robots_[contact.first].id;
@@ -94,7 +94,7 @@ void Auditor::record_sights(const msg::WorldState& world) {
   }
 }
 
-bool Auditor::is_vision_needed() {
+bool Auditor::fall_back_to_vision() {
   if (totals_.reference == AuditReference::kVision) return true;
   if (!first_sight_at_ && std::ranges::any_of(sights_, &Sight::is_new)) first_sight_at_ = now_;
   if (!first_sight_at_ || now_ - *first_sight_at_ < kGroundTruthWait) return false;

@@ -51,7 +51,7 @@ bool PotentialField::makes_progress() const {
   return advanced_m > kProgress * settings_.step_m * settings_.patience;
 }
 
-bool PotentialField::has_ended(const Vec2& goal_m, int max_steps) {
+bool PotentialField::check_end(const Vec2& goal_m, int max_steps) {
   const std::vector<Vec2>& path = descent_.path_m;
   if (is_touching_)
     descent_.end = DescentEnd::kTouching;

@@ -52,7 +52,7 @@ class PotentialField {
   template <typename FreeSpace>
   const Descent& descend(const Vec2& start_m, const Vec2& goal_m, const FreeSpace& free, int max_steps) {
     begin(start_m);
-    while (!has_ended(goal_m, max_steps)) {
+    while (!check_end(goal_m, max_steps)) {
       const Vec2 at = descent_.path_m.back();
       step(goal_m, free(at, 0));
     }
@@ -61,7 +61,8 @@ class PotentialField {
 
  private:
   void begin(const Vec2& start_m);
-  bool has_ended(const Vec2& goal_m, int max_steps);
+  /// Whether the descent has ended, and how.
+  bool check_end(const Vec2& goal_m, int max_steps);
   void step(const Vec2& goal_m, const FreeDistance& free);
   bool makes_progress() const;
   /// The distance between the robot's outline and the nearest obstacle.

@@ -118,7 +118,7 @@ void SimNetwork::send_event(Writer& writer, SimSubscription& reader, std::uint32
         from_seconds(reliable_rng_.uniform(kMinMatching_s, kMaxMatching_s)),
         from_seconds(reliable_rng_.uniform(kMinMatchingAnew_s, kMaxMatchingAnew_s))};
   });
-  if (!is_matched(writer, *stream)) return;
+  if (!update_match(writer, *stream)) return;
   const bool has_arrived = arrives(from, to);
   if (stream->waiting().empty() && has_arrived)
     deliver_event(reader, delay, sent);
@@ -150,7 +150,7 @@ void SimNetwork::schedule_heartbeat(Writer& writer, const std::shared_ptr<Reliab
 
 void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
   const ProcessId from = writer.instance().process, to = stream.reader().instance->process;
-  if (!is_matched(writer, stream) || !arrives(from, to)) return;
+  if (!update_match(writer, stream) || !arrives(from, to)) return;
   // The heartbeat tells the reader which messages are lost for good, so that the reader does not wait for
   // them.
   give_arrived(stream, event_delay(from, to, reliable_rng_));
@@ -176,7 +176,7 @@ void SimNetwork::give_arrived(ReliableStream& stream, Duration delay) {
   }
 }
 
-bool SimNetwork::is_matched(const Writer& writer, ReliableStream& stream) {
+bool SimNetwork::update_match(const Writer& writer, ReliableStream& stream) {
   SimProcessInstance &from = writer.instance(), &to = *stream.reader().instance;
   const Reachability reachability = both(both(reachability_of(from, now_), reachability_of(to, now_)),
                                          links_.reachability(from.process, to.process));

@@ -102,8 +102,8 @@ class SimNetwork {
   void heartbeat(Writer& writer, ReliableStream& stream);
   void schedule_heartbeat(Writer& writer, const std::shared_ptr<ReliableStream>& stream);
   void give_arrived(ReliableStream& stream, Duration delay);
-  /// Whether writer and reader know each other. If not, the waiting messages are lost.
-  bool is_matched(const Writer& writer, ReliableStream& stream);
+  /// Updates and returns whether writer and reader know each other. If not, the waiting messages are lost.
+  bool update_match(const Writer& writer, ReliableStream& stream);
   void lose_waiting(ReliableStream& stream);
   /// Whether a single datagram of a reliable message arrives.
   bool arrives(ProcessId from, ProcessId to);

@@ -56,7 +56,7 @@ class Replay {
     commands_ = std::ranges::any_of(
         all_topics(), [this](const TopicInfo& topic) { return is_chosen(topic) && is_commanding(topic); });
     listener_.run_until(listener_.now() + kDiscovery);
-    if (!is_allowed()) return kExitFailure;
+    if (!check_domain()) return kExitFailure;
     const Scenario scenario = playback_.scenario();
     for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
       if (!is_chosen(topic)) return;
@@ -78,7 +78,8 @@ class Replay {
     return options_.topics.empty() || std::ranges::find(options_.topics, topic.name) != options_.topics.end();
   }
 
-  bool is_allowed() {
+  /// Whether nothing in the domain forbids the replay. Otherwise says what does.
+  bool check_domain() {
     if (!commands_) return true;
     const auto reason = reason_against_replay(endpoints_of_others(listener_));
     if (!reason) return true;
@@ -112,7 +113,7 @@ class Replay {
     bus_.run_until(*begun_at_ + from_seconds(to_seconds(recorded_at - recorded_from_) / options_.speed));
     if (bus_.now() - checked_at_ >= kCheckPeriod) {
       checked_at_ = bus_.now();
-      if (!is_allowed()) return false;
+      if (!check_domain()) return false;
     }
     return !is_stopped_;
   }

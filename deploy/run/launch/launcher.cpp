@@ -129,7 +129,7 @@ void Launcher::work() {
   }
   if (options_.monitor_port) start_monitor();
   start_core();
-  while (!is_over()) {
+  while (!check_end()) {
     start_due_agents();
     send_revoked_keys();
     bus_.run_until(next_poll());
@@ -285,15 +285,15 @@ void Launcher::print_last_lines(const std::string& process) {
   }
 }
 
-bool Launcher::is_over() {
+bool Launcher::check_end() {
   if (is_interrupted_ && is_ready_ && metrics_.awaits_orders()) return true;
   if (is_interrupted_) abort_reason_ = kInterrupted;
   if (!abort_reason_.empty()) return true;
-  if (!is_ready_) return is_startup_over();
-  return director_.act ? director_.act() : is_drive_over();
+  if (!is_ready_) return check_end_of_startup();
+  return director_.act ? director_.act() : check_end_of_drive();
 }
 
-bool Launcher::is_startup_over() {
+bool Launcher::check_end_of_startup() {
   const bool all_started = agents_started_ == scenario_.robots.size();
   // The coordinator grants only after every agent has registered, so their status need not be awaited.
   // Without the simulator there is no ground truth.
@@ -324,7 +324,7 @@ std::string Launcher::startup_failure() const {
   return fmt::format("not ready after {} s: {}", to_seconds(kStartupTimeout), fmt::join(reasons, "; "));
 }
 
-bool Launcher::is_drive_over() {
+bool Launcher::check_end_of_drive() {
   const Time now = bus_.now();
   const bool awaits_orders = metrics_.awaits_orders();
   const bool may_end = !awaits_orders || (options_.until_idle && metrics_.has_had_orders());

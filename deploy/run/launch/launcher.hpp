@@ -88,10 +88,10 @@ class Launcher {
   /// With the report. A failure becomes recording_failure_.
   void finish_recording(const Report& report);
   void print_last_lines(const std::string& process);
-  /// Whether the run is over. If it was aborted, abort_reason_ then says why.
-  bool is_over();
-  bool is_startup_over();
-  bool is_drive_over();
+  /// Whether the run is over: sets abort_reason_ if it has to be aborted.
+  bool check_end();
+  bool check_end_of_startup();
+  bool check_end_of_drive();
   std::string startup_failure() const;
   /// When the coordinator first granted; if other launchers preceded this one, when the first of them began.
   Time drive_began() const;

@@ -32,13 +32,14 @@ class OtherRun {
     });
   }
 
-  bool is_heard() {
+  /// Whether a coordinator is heard.
+  bool listen() {
     bus_.run_until(bus_.now() + kListeningTime);
     return coordinator_.has_value();
   }
 
   /// "run of crossing on host lab-3 works in it, whose coordinator has been running since 2026-11-28
-  /// 03:10:17". Precondition: is_heard().
+  /// 03:10:17". Precondition: listen() has heard one.
   std::string describe() {
     ask();
     const std::string names =
@@ -84,7 +85,7 @@ DdsSettings as_operator(const DdsSettings& given) {
 
 void require_free_domain(const DdsSettings& dds) {
   OtherRun other(as_operator(dds));
-  if (other.is_heard())
+  if (other.listen())
     throw std::invalid_argument(
         fmt::format("DDS domain {} is in use: {}; end that run, or choose another --domain or --domain auto",
                     dds.domain, other.describe()));

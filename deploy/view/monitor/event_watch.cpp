@@ -41,14 +41,14 @@ void EventWatch::add(Severity severity, std::string kind, std::string text, Time
   log_.add({0, at, severity, std::move(kind), std::move(text), std::move(robots)});
 }
 
-bool EventWatch::has_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal) {
+bool EventWatch::store_if_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal) {
   const auto [last, is_new] = last_.try_emplace({what, id}, normal);
   if (last->second == value) return false;
   last->second = value;
   return true;
 }
 
-bool EventWatch::is_new_order(std::uint32_t sender, std::uint64_t number) {
+bool EventWatch::store_order(std::uint32_t sender, std::uint64_t number) {
   if (sent_orders_.size() >= kMaxSenders && !sent_orders_.contains(sender)) sent_orders_.clear();
   return std::exchange(sent_orders_[sender], number) != number;
 }
@@ -84,14 +84,14 @@ void EventWatch::on(const msg::GroundTruth& truth, Time now) {
 void EventWatch::on(const msg::Feedback& feedback, Time now) {
   const std::uint32_t robot = feedback.robot();
   if (robot >= kMaxRobots) return;
-  if (has_changed(Watched::kOffReference, robot, feedback.is_off_reference())) {
+  if (store_if_changed(Watched::kOffReference, robot, feedback.is_off_reference())) {
     feedback.is_off_reference()
         ? add(Severity::kWarning, "off reference",
               fmt::format("robot {} lost its reference and stops by itself", robot), now, {robot})
         : add(Severity::kInfo, "on reference", fmt::format("robot {} is on its reference again", robot), now,
               {robot});
   }
-  if (has_changed(Watched::kLifted, robot, feedback.is_lifted()))
+  if (store_if_changed(Watched::kLifted, robot, feedback.is_lifted()))
     add(Severity::kInfo, feedback.is_lifted() ? "lifted" : "placed",
         fmt::format("robot {} is {} the floor", robot, feedback.is_lifted() ? "off" : "on"), now, {robot});
 }
@@ -105,7 +105,7 @@ void EventWatch::on(const msg::AgentStatus& status, Time now) {
     add(Severity::kWarning, "restart", fmt::format("agent {} has started again", robot), now, {robot});
   if (agent == last_.end() || agent->second < incarnation) last_[{Watched::kAgent, robot}] = incarnation;
   const auto state = static_cast<std::uint64_t>(status.agent_state());
-  if (!has_changed(Watched::kAgentState, robot, state)) return;
+  if (!store_if_changed(Watched::kAgentState, robot, state)) return;
   if (status.agent_state() == msg::AgentState::AGENT_ARRIVED)
     add(Severity::kInfo, "arrived", fmt::format("robot {} has arrived", robot), now, {robot});
   if (status.agent_state() == msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND)
@@ -117,12 +117,12 @@ void EventWatch::on(const msg::AgentStatus& status, Time now) {
 void EventWatch::on(const msg::OrderStatus& status, Time now) {
   const std::uint32_t robot = status.robot();
   if (robot >= kMaxRobots) return;
-  if (has_changed(Watched::kHeld, robot, status.is_held()))
+  if (store_if_changed(Watched::kHeld, robot, status.is_held()))
     add(Severity::kInfo, status.is_held() ? "hold" : "resume",
         fmt::format("robot {} is {}", robot, status.is_held() ? "held" : "released"), now, {robot});
   const auto report = decode(status);
   const bool is_blocked = report && report->blockage;
-  if (!has_changed(Watched::kOrder, robot, is_blocked)) return;
+  if (!store_if_changed(Watched::kOrder, robot, is_blocked)) return;
   is_blocked
       ? add(Severity::kWarning, "blocked",
             fmt::format("robot {} is blocked: {}", robot, to_text(*report->blockage)), now, {robot})
@@ -133,7 +133,7 @@ void EventWatch::on(const msg::CoordinatorState& state, Time now) {
   const std::uint32_t number = state.coordinator();
   if (number >= kMaxCoordinators) return;
   const auto mode = static_cast<std::uint64_t>(state.coordinator_mode());
-  if (has_changed(Watched::kCoordinator, number, state.epoch() << 2 | (mode & 3))) {
+  if (store_if_changed(Watched::kCoordinator, number, state.epoch() << 2 | (mode & 3))) {
     constexpr std::array kModes{"stands by", "asks all robots to register", "grants"};
     std::string text = fmt::format("{} {} in epoch {}", coordinator_process(static_cast<int>(number)),
                                    kModes[std::min<std::size_t>(mode, 2)], state.epoch());
@@ -147,7 +147,7 @@ void EventWatch::on(const msg::CoordinatorState& state, Time now) {
   for (const msg::RobotNotice& notice : state.notices()) {
     if (notice.robot() >= kMaxRobots) continue;
     const unsigned value = (notice.is_quarantined() ? 1u : 0u) | (notice.is_displaced() ? 2u : 0u);
-    if (!has_changed(Watched::kNotice, notice.robot(), value) || value == 0) continue;
+    if (!store_if_changed(Watched::kNotice, notice.robot(), value) || value == 0) continue;
     add(Severity::kError, notice.is_quarantined() ? "quarantined" : "displaced",
         fmt::format("robot {} {}", notice.robot(),
                     notice.is_quarantined() ? "has reported a motion that was never granted"
@@ -162,7 +162,7 @@ void EventWatch::on(const msg::Order& order, Time now) {
   const msg::OrderKind kind = order.terms().order_kind();
   if (!is_enumerator(kind, msg::OrderKind::ORDER_REMOVE_ZONE)) return;
   // A client repeats its order until a coordinator answers.
-  if (!is_new_order(order.header().sender(), order.terms().order_number()) || !outside_.admit(now)) return;
+  if (!store_order(order.header().sender(), order.terms().order_number()) || !outside_.admit(now)) return;
   add(Severity::kInfo, "order",
       name_of_client(order.header().sender()) + " " +
           fmt::format(fmt::runtime(kTexts[static_cast<std::size_t>(kind)]), who(order.robot())),
@@ -225,7 +225,7 @@ void EventWatch::on_refused(std::uint32_t sender, Time now) {
 
 void EventWatch::watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot,
                                Time now) {
-  if (!has_changed(Watched::kSilent, id, is_silent)) return;
+  if (!store_if_changed(Watched::kSilent, id, is_silent)) return;
   const std::vector<RobotId> robots = is_robot ? std::vector<RobotId>{id} : std::vector<RobotId>{};
   is_silent ? add(Severity::kError, "silent", name + " is silent", now, robots)
             : add(Severity::kInfo, "heard", name + " is heard again", now, robots);

@@ -56,13 +56,13 @@ class EventWatch {
   };
 
   void add(Severity severity, std::string kind, std::string text, Time at, std::vector<RobotId> robots = {});
-  /// Whether the value differs from the last one with this key. The first value counts as a change if it is
-  /// not `normal`.
-  bool has_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
+  /// Stores the last value with this key. Returns whether it has changed; the first value counts as a change
+  /// if it is not `normal`.
+  bool store_if_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
   void watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot, Time now);
 
-  /// Whether this is not a repetition of the sender's last order.
-  bool is_new_order(std::uint32_t sender, std::uint64_t number);
+  /// Stores the sender's last order. Returns whether it is not a repetition.
+  bool store_order(std::uint32_t sender, std::uint64_t number);
 
   EventLog& log_;
   /// Limits these events, because anybody on the network can cause them.

@@ -272,7 +272,7 @@ McapRecord McapReader::attachment_of(Bytes content) {
   return attachment;
 }
 
-bool McapReader::may_keep(Bytes content) {
+bool McapReader::count_kept(Bytes content) {
   constexpr std::size_t kMaxKept = 32 << 20;
   kept_bytes_ += content.size();
   if (kept_bytes_ > kMaxKept) fail(fmt::format("schemas and channels take more than {} bytes", kMaxKept));
@@ -280,7 +280,7 @@ bool McapReader::may_keep(Bytes content) {
 }
 
 void McapReader::learn_schema(Bytes content) {
-  if (!may_keep(content)) return;
+  if (!count_kept(content)) return;
   McapDecoder decoder(content);
   const auto id = decoder.number<std::uint16_t>();
   McapSchema schema{decoder.text(), decoder.text(), decoder.text()};
@@ -291,7 +291,7 @@ void McapReader::learn_schema(Bytes content) {
 }
 
 void McapReader::learn_channel(Bytes content) {
-  if (!may_keep(content)) return;
+  if (!count_kept(content)) return;
   McapDecoder decoder(content);
   const auto id = decoder.number<std::uint16_t>();
   McapChannel channel;

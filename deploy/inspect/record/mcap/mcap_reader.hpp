@@ -69,8 +69,8 @@ class McapReader {
   McapRecord record_of(const Frame& frame);
   McapRecord message_of(std::span<const std::uint8_t> content);
   McapRecord attachment_of(std::span<const std::uint8_t> content);
-  /// Whether the data that must be kept until the end of the file is still within its limit.
-  bool may_keep(std::span<const std::uint8_t> content);
+  /// Counts data that must be kept until the end of the file. False, and a failure, beyond their limit.
+  bool count_kept(std::span<const std::uint8_t> content);
   void learn_schema(std::span<const std::uint8_t> content);
   void learn_channel(std::span<const std::uint8_t> content);
   void check_end(std::span<const std::uint8_t> data_end, std::uint32_t sum);

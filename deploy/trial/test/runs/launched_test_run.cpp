@@ -82,7 +82,7 @@ class LaunchedTestRun {
     schedule_->apply_due(now, faults_);
     faults_.update();
     ended_at_ = now;
-    return end_.is_over(to_seconds(now - *observer_.begin()), launcher_.metrics().progress());
+    return end_.update(to_seconds(now - *observer_.begin()), launcher_.metrics().progress());
   }
 
   const FaultTest& test_;

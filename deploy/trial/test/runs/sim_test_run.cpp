@@ -40,7 +40,7 @@ void play(const FaultTest& test, SimSystem& system, SimFaults& faults, FaultSche
   for (;;) {
     schedule.apply_due(system.now(), faults);
     faults.update();
-    if (end.is_over(to_seconds(system.now() - zero), system.metrics().progress())) return;
+    if (end.update(to_seconds(system.now() - zero), system.metrics().progress())) return;
     system.run_until(std::min({system.now() + kStep, schedule.next(), faults.next()}));
   }
 }

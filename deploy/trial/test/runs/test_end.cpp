@@ -38,7 +38,7 @@ TestEnd::TestEnd(const FaultTest& test)
   decided_s_ += kSettlingTime_s;
 }
 
-bool TestEnd::is_over(double at_s, const std::vector<RobotProgress>& progress) {
+bool TestEnd::update(double at_s, const std::vector<RobotProgress>& progress) {
   const bool have_arrived = std::ranges::all_of(progress, [this](const RobotProgress& row) {
     return row.arrived || std::ranges::find(arriving_, row.robot) == arriving_.end();
   });

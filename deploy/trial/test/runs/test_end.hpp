@@ -16,8 +16,8 @@ class TestEnd {
  public:
   explicit TestEnd(const FaultTest& test);
 
-  /// `at_s` is the time since the first grant; it must never decrease.
-  [[nodiscard]] bool is_over(double at_s, const std::vector<RobotProgress>& progress);
+  /// Returns whether the test is over. `at_s` is the time since the first grant; it must never decrease.
+  [[nodiscard]] bool update(double at_s, const std::vector<RobotProgress>& progress);
 
  private:
   double decided_s_ = 0;  // time at which all faults and deadlines are past

@@ -12,21 +12,21 @@ constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
 TEST_CASE("dates are trusted once a report has arrived at its date, but not for ever") {
   OdometryDates dates(4ms);
-  CHECK_FALSE(dates.is_believed(kBegin, kBegin + 10ms));
-  CHECK(dates.is_believed(kBegin + 20ms, kBegin + 24ms));
-  CHECK(dates.is_believed(kBegin + 30ms, kBegin + 50ms));
-  CHECK_FALSE(dates.is_believed(kBegin + 30ms, kBegin + 51ms));
-  CHECK(dates.is_believed(kBegin + 500ms, kBegin + 510ms));
-  CHECK_FALSE(dates.is_believed(kBegin + 520ms, kBegin + 530ms));
+  CHECK_FALSE(dates.admit(kBegin, kBegin + 10ms));
+  CHECK(dates.admit(kBegin + 20ms, kBegin + 24ms));
+  CHECK(dates.admit(kBegin + 30ms, kBegin + 50ms));
+  CHECK_FALSE(dates.admit(kBegin + 30ms, kBegin + 51ms));
+  CHECK(dates.admit(kBegin + 500ms, kBegin + 510ms));
+  CHECK_FALSE(dates.admit(kBegin + 520ms, kBegin + 530ms));
 }
 
 TEST_CASE("a report from the future is refused, and ends the trust until another proof") {
   OdometryDates dates(4ms);
-  CHECK(dates.is_believed(kBegin, kBegin));
-  CHECK(dates.is_believed(kBegin + 14ms, kBegin + 10ms));
-  CHECK_FALSE(dates.is_believed(kBegin + 25ms, kBegin + 20ms));
-  CHECK_FALSE(dates.is_believed(kBegin + 20ms, kBegin + 30ms));
-  CHECK(dates.is_believed(kBegin + 40ms, kBegin + 40ms));
+  CHECK(dates.admit(kBegin, kBegin));
+  CHECK(dates.admit(kBegin + 14ms, kBegin + 10ms));
+  CHECK_FALSE(dates.admit(kBegin + 25ms, kBegin + 20ms));
+  CHECK_FALSE(dates.admit(kBegin + 20ms, kBegin + 30ms));
+  CHECK(dates.admit(kBegin + 40ms, kBegin + 40ms));
 }
 
 TEST_CASE("a base whose clock is off by more than the error plus the delay is never trusted") {
@@ -45,7 +45,7 @@ TEST_CASE("a base whose clock is off by more than the error plus the delay is ne
     for (int i = 0; i < 300; ++i) {
       now += 20ms;
       const Duration delay = least_delay + from_seconds(rng.uniform(0, to_seconds(jitter)));
-      REQUIRE_FALSE(dates.is_believed(now + offset, now + delay));
+      REQUIRE_FALSE(dates.admit(now + offset, now + delay));
     }
   }
 }

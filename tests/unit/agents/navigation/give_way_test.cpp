@@ -36,7 +36,7 @@ struct Robot {
   }
   std::optional<Vec2> decide_once(double seconds, const Vec2& position_m,
                                   const std::vector<OtherRobot>& others, const ObstacleWorld& fixed) {
-    if (give_way.is_due(at(seconds), 5 - position_m.x()) && !give_way.is_searching())
+    if (give_way.track_progress(at(seconds), 5 - position_m.x()) && !give_way.is_searching())
       give_way.begin_search(at(seconds), position_m, others, fixed);
     while (give_way.is_searching()) give_way.search(at(seconds), rng);
     return give_way.place_m();
@@ -191,16 +191,16 @@ TEST_CASE("a robot goes on giving way when the right of way changes, until the o
 TEST_CASE("progress and another goal end a search") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  CHECK_FALSE(robot.give_way.is_due(at(0), 5));
-  REQUIRE(robot.give_way.is_due(at(0.9), 5) == false);
-  REQUIRE(robot.give_way.is_due(at(1.6), 5));
+  CHECK_FALSE(robot.give_way.track_progress(at(0), 5));
+  REQUIRE(robot.give_way.track_progress(at(0.9), 5) == false);
+  REQUIRE(robot.give_way.track_progress(at(1.6), 5));
   const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
   robot.give_way.begin_search(at(1.6), {0, 0}, facing, fixed);
   CHECK(robot.give_way.is_searching());
-  CHECK(robot.give_way.is_due(at(1.7), 5));
+  CHECK(robot.give_way.track_progress(at(1.7), 5));
   const bool has_progress = GENERATE(false, true);
   if (has_progress)
-    CHECK_FALSE(robot.give_way.is_due(at(1.8), 4.8));
+    CHECK_FALSE(robot.give_way.track_progress(at(1.8), 4.8));
   else
     robot.give_way.restart(at(1.8));
   CHECK_FALSE(robot.give_way.is_searching());

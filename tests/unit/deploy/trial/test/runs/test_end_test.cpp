@@ -25,7 +25,7 @@ double end_s(const std::string& keys, const std::set<RobotId>& arriving) {
       progress[robot - 1].robot = robot;
       progress[robot - 1].arrived = at_s >= 5 && arriving.contains(robot);
     }
-    if (end.is_over(at_s, progress)) return at_s;
+    if (end.update(at_s, progress)) return at_s;
   }
 }
 
