@@ -86,10 +86,7 @@ DrivenRobot::DrivenRobot(RobotId robot, const DriveSettings& settings, const rob
       moved_at_(now + kStoppingTime) {}
 
 void DrivenRobot::on_command(const Command& command, Time now, robot::StableMemory& memory) {
-  const robot::Version version = command.version ? to_plain(*command.version) : robot::Version{};
-  const robot::Command plain{command.incarnation, command.epoch, to_ns(command.sent_at),
-                             command.version ? &version : nullptr};
-  if (!side_.on_command(plain, to_ns(now), memory)) return;
+  if (!pass_command(command, now, side_, memory)) return;
   target_heading_rad_ = wrapped_rad(command.desired_heading_rad);
   if (!command.fix) return;
   if (!side_.has_pose())

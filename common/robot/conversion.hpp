@@ -15,6 +15,17 @@ Version from_plain(const robot::Version& version, RobotId robot);
 /// Converts the protocol's part of a fact. The caller sets the robot's estimate and robot_incarnation.
 Feedback from_plain(const robot::Facts& facts, RobotId robot);
 
+/// Passes the protocol's part of a command to the robot side. Returns whether it is from an agent that the
+/// robot obeys.
+template <typename Real>
+[[nodiscard]] bool pass_command(const Command& command, Time now, robot::RobotSide<Real>& side,
+                                robot::StableMemory& memory) {
+  const robot::Version version = command.version ? to_plain(*command.version) : robot::Version{};
+  const robot::Command plain{command.incarnation, command.epoch, to_ns(command.sent_at),
+                             command.version ? &version : nullptr};
+  return side.on_command(plain, to_ns(now), memory);
+}
+
 inline robot::Vec<double> to_plain(const Vec2& v) { return {v.x(), v.y()}; }
 
 }  // namespace sidestep

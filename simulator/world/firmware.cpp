@@ -50,10 +50,7 @@ void Firmware::update_executing() {
 }
 
 void Firmware::on_command(const Command& command, Time now) {
-  const robot::Version version = command.version ? to_plain(*command.version) : robot::Version{};
-  const robot::Command plain{command.incarnation, command.epoch, to_ns(command.sent_at),
-                             command.version ? &version : nullptr};
-  const bool is_obeyed = side_.on_command(plain, to_ns(now), flash_);
+  const bool is_obeyed = pass_command(command, now, side_, flash_);
   update_executing();
   if (!is_obeyed) return;
   target_heading_rad_ = wrapped_rad(command.desired_heading_rad);
