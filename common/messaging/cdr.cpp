@@ -43,6 +43,21 @@ template <typename Message>
 }  // namespace
 
 template <typename Message>
+std::shared_ptr<void> make_message() {
+  return std::make_shared<Message>();
+}
+
+template <typename Message>
+std::shared_ptr<const void> copy_message(const void* message) {
+  return std::make_shared<const Message>(*static_cast<const Message*>(message));
+}
+
+template <typename Message>
+std::uint32_t message_sender(const void* message) {
+  return static_cast<const Message*>(message)->header().sender();
+}
+
+template <typename Message>
 std::size_t cdr_size(const void* message) {
   return fast_dds::cdr_size(*static_cast<const Message*>(message));
 }
@@ -81,6 +96,9 @@ bool read_cdr(Bytes bytes, ByteOrder order, std::size_t max_elements, void* mess
 
 // One instantiation for each message of the topic table.
 #define SIDESTEP_INSTANTIATE_CDR(Message)                                             \
+  template std::shared_ptr<void> make_message<msg::Message>();                        \
+  template std::shared_ptr<const void> copy_message<msg::Message>(const void*);       \
+  template std::uint32_t message_sender<msg::Message>(const void*);                   \
   template std::size_t cdr_size<msg::Message>(const void*);                           \
   template std::size_t write_cdr<msg::Message>(const void*, std::span<std::uint8_t>); \
   template CdrKey cdr_key<msg::Message>(const void*);                                 \

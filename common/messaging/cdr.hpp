@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "fast_dds/cdr.hpp"
@@ -15,8 +16,18 @@ using ByteOrder = fast_dds::ByteOrder;
 /// The CDR bytes of a key, big-endian and padded with zeros.
 using CdrKey = std::array<std::uint8_t, 16>;
 
-/// The templates below are instantiated in cdr.cpp for the messages of all topics. Each `message` points to a
-/// Message. Bytes have no encapsulation header.
+/// The templates below are instantiated in cdr.cpp for the messages of all topics, not in every file that
+/// includes the topic table. Each `message` points to a Message. Bytes have no encapsulation header.
+
+template <typename Message>
+std::shared_ptr<void> make_message();
+
+template <typename Message>
+std::shared_ptr<const void> copy_message(const void* message);
+
+/// Header.sender.
+template <typename Message>
+std::uint32_t message_sender(const void* message);
 
 template <typename Message>
 std::size_t cdr_size(const void* message);

@@ -62,15 +62,17 @@ struct Topic : TopicInfo {};
 
 template <typename Message>
 constexpr MessageType message_type(const char* name, std::size_t max_elements = 0) {
-  const auto copy = [](const void* m) -> std::shared_ptr<const void> {
-    return std::make_shared<const Message>(*static_cast<const Message*>(m));
-  };
   std::uint32_t (*sender)(const void*) = nullptr;
-  if constexpr (requires(const Message& m) { m.header().sender(); })
-    sender = [](const void* m) -> std::uint32_t { return static_cast<const Message*>(m)->header().sender(); };
-  const auto make = [] { return std::shared_ptr<void>(std::make_shared<Message>()); };
-  return {name,   max_elements,     make, copy, cdr_size<Message>, write_cdr<Message>, cdr_key<Message>,
-          sender, read_cdr<Message>};
+  if constexpr (requires(const Message& m) { m.header().sender(); }) sender = message_sender<Message>;
+  return {name,
+          max_elements,
+          make_message<Message>,
+          copy_message<Message>,
+          cdr_size<Message>,
+          write_cdr<Message>,
+          cdr_key<Message>,
+          sender,
+          read_cdr<Message>};
 }
 
 /// The DDS topic name: the topic's name, followed by the robot's number for topics with one channel per
