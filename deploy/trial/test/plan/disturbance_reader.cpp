@@ -2,8 +2,8 @@
 #include "deploy/trial/test/plan/disturbance_reader.hpp"
 
 #include <algorithm>
-#include <array>
 
+#include "deploy/audit/disturbances.hpp"
 #include "deploy/trial/test/plan/plan_names.hpp"
 #include "simulator/world/disturbance_codec.hpp"
 
@@ -11,25 +11,6 @@ namespace sidestep {
 namespace {
 
 using Kind = msg::DisturbanceKind;
-
-struct DisturbanceKey {
-  const char* key;
-  Kind kind;
-};
-constexpr std::array<DisturbanceKey, 14> kDisturbanceKeys{{{"push", Kind::DISTURBANCE_PUSH},
-                                                           {"slip", Kind::DISTURBANCE_SLIP},
-                                                           {"block", Kind::DISTURBANCE_BLOCK},
-                                                           {"lift", Kind::DISTURBANCE_LIFT},
-                                                           {"place", Kind::DISTURBANCE_PLACE},
-                                                           {"reboot", Kind::DISTURBANCE_REBOOT},
-                                                           {"forget_pose", Kind::DISTURBANCE_FORGET_POSE},
-                                                           {"clock", Kind::DISTURBANCE_CLOCK},
-                                                           {"switch_off", Kind::DISTURBANCE_SWITCH_OFF},
-                                                           {"switch_on", Kind::DISTURBANCE_SWITCH_ON},
-                                                           {"carry", Kind::DISTURBANCE_CARRY},
-                                                           {"seen_beside", Kind::DISTURBANCE_SEEN_BESIDE},
-                                                           {"seen_as", Kind::DISTURBANCE_SEEN_AS},
-                                                           {"seen_frozen", Kind::DISTURBANCE_SEEN_FROZEN}}};
 
 // The ranges of the options of `sidestep fault`, or narrower ones where the simulator accepts less.
 constexpr Range kPush_mps{-10, 10};
@@ -57,7 +38,10 @@ void read_seconds(YamlMap& map, RobotDisturbance& disturbance) {
 
 std::vector<std::string> disturbance_keys() {
   std::vector<std::string> keys;
-  for (const DisturbanceKey& entry : kDisturbanceKeys) keys.emplace_back(entry.key);
+  while (const auto cause = cause_of(static_cast<Kind>(keys.size()))) {
+    std::string& key = keys.emplace_back(*cause);
+    std::ranges::replace(key, ' ', '_');
+  }
   return keys;
 }
 
@@ -70,9 +54,8 @@ bool has_duration(const RobotDisturbance& disturbance) {
 RobotDisturbance read_disturbance(YamlMap& map, const std::string& key, const Scenario& scenario) {
   RobotDisturbance disturbance;
   disturbance.robot = robot_from(map, key, scenario);
-  disturbance.kind = std::ranges::find_if(kDisturbanceKeys, [&](const DisturbanceKey& entry) {
-                       return entry.key == key;
-                     })->kind;
+  const std::vector<std::string> keys = disturbance_keys();
+  disturbance.kind = static_cast<Kind>(std::ranges::find(keys, key) - keys.begin());
   switch (disturbance.kind) {
     case Kind::DISTURBANCE_PUSH:
       require(map, "velocity_mps");

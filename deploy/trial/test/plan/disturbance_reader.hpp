@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// The keys for disturbances of robots: push, slip, block, lift, place, reboot, forget_pose, clock,
-/// switch_off, switch_on, carry.
+/// The keys for disturbances of robots: the names of all kinds (cause_of()), such as push or forget_pose, in
+/// the order of DisturbanceKind.
 [[nodiscard]] std::vector<std::string> disturbance_keys();
 
 /// Reads the robot's disturbance under one of these keys. Throws ConfigError.
