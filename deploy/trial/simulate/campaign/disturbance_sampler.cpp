@@ -38,14 +38,11 @@ class DisturbanceSampler {
   double log_uniform(double low, double high) { return sample_log_uniform(low, high, rng_); }
   double angle_rad() { return rng_.uniform(-std::numbers::pi, std::numbers::pi); }
   RobotId random_robot() { return scenario_.robots[rng_.below(scenario_.robots.size())].id; }
-  void add(Duration at, Fault fault) {
-    if (at < plan_.healed_at) plan_.faults.push_back({at, std::move(fault)});
-  }
   void add(Duration at, RobotId robot, Kind kind) {
     RobotDisturbance disturbance;
     disturbance.robot = robot;
     disturbance.kind = kind;
-    add(at, disturbance);
+    plan_.add(at, disturbance);
   }
 
   void sample_body() {
@@ -60,7 +57,7 @@ class DisturbanceSampler {
     disturbance.grip = rng_.uniform(0.05, 0.9);
     disturbance.heading_rad = angle_rad();
     disturbance.duration = times_.until_healed(at, log_uniform(0.05, 3));
-    add(at, disturbance);
+    plan_.add(at, disturbance);
   }
 
   /// The operator places a robot at any free place: others may be driving there.
@@ -76,7 +73,7 @@ class DisturbanceSampler {
     Place place{robot, {}, angle_rad()};
     while (place.places_m.size() < kPlaces) place.places_m.push_back(positions_.sample());
     const Duration ready = rng_.chance(0.3) ? sample_restart_in_hand(robot, at) : at;
-    add(times_.after(ready, log_uniform(0.05, 10)), std::move(place));
+    plan_.add(times_.after(ready, log_uniform(0.05, 10)), std::move(place));
   }
 
   /// Somebody changes the battery of a lifted robot. Returns when it is on again.
@@ -97,12 +94,12 @@ class DisturbanceSampler {
     add(at, robot, Kind::DISTURBANCE_SWITCH_OFF);
     if (rng_.chance(0.4)) {
       at = times_.after(at, rng_.uniform(0.5, 4));
-      add(at, carry_of(robot));
+      plan_.add(at, carry_of(robot));
     }
     const Duration end = times_.after(at, log_uniform(0.05, 8));
     if (rng_.chance(0.3) && !plan_.ends.contains(robot)) {
       plan_.ends[robot] = RobotEnd::kTakenAway;
-      add(end, TakeAway{robot});
+      plan_.add(end, TakeAway{robot});
     } else {
       add(end, robot, Kind::DISTURBANCE_SWITCH_ON);
     }
@@ -110,7 +107,7 @@ class DisturbanceSampler {
 
   void sample_carry() {
     const RobotId robot = random_robot();
-    add(times_.sample(rng_), carry_of(robot));
+    plan_.add(times_.sample(rng_), carry_of(robot));
   }
   void sample_sight_error() {
     static constexpr Kind kKinds[] = {Kind::DISTURBANCE_SEEN_BESIDE, Kind::DISTURBANCE_SEEN_AS,
@@ -124,7 +121,7 @@ class DisturbanceSampler {
     const Duration at = times_.sample(rng_);
     disturbance.duration = times_.until_healed(at, log_uniform(0.03, 4));
     const bool is_confused = disturbance.kind == Kind::DISTURBANCE_SEEN_AS;
-    if (!is_confused || disturbance.other_robot != disturbance.robot) add(at, disturbance);
+    if (!is_confused || disturbance.other_robot != disturbance.robot) plan_.add(at, disturbance);
   }
   void sample_lost_pose() {
     const RobotId robot = random_robot();
@@ -151,7 +148,7 @@ class DisturbanceSampler {
     disturbance.robot = robot.id;
     disturbance.kind = Kind::DISTURBANCE_CLOCK;
     disturbance.clock_offset = robot.clock_offset + error;
-    add(at, disturbance);
+    plan_.add(at, disturbance);
   }
   Carry carry_of(RobotId robot) {
     const double speed_mps = rng_.uniform(0.3, 1.5);

@@ -9,9 +9,10 @@ namespace sidestep {
 namespace {
 
 struct KindOf {
+  bool has_end = false;
+
   std::string operator()(const LinkChange&) const { return "network"; }
-  std::string operator()(const Partition&) const { return "partition"; }
-  std::string operator()(const LastingCut&) const { return "lasting cut"; }
+  std::string operator()(const Partition&) const { return has_end ? "partition" : "lasting cut"; }
   std::string operator()(const ClockJump&) const { return "process clock step"; }
   std::string operator()(const Pause&) const { return "pause"; }
   std::string operator()(const Kill&) const { return "kill"; }
@@ -54,7 +55,8 @@ struct KindOf {
 
 std::set<std::string> fault_kinds(const Scenario& scenario, const FaultPlan& plan) {
   std::set<std::string> kinds;
-  for (const TimedFault& timed : plan.faults) kinds.insert(std::visit(KindOf{}, timed.fault));
+  for (const TimedFault& timed : plan.faults)
+    kinds.insert(std::visit(KindOf{timed.duration.has_value()}, timed.fault));
   if (!plan.clocks.empty()) kinds.insert("clock offsets");
   if (!robots_with(plan, RobotEnd::kClockOutOfBound).empty()) kinds.insert("clock out of bound");
   if (std::ranges::any_of(scenario.robots, [](const RobotSpec& r) { return r.clock_drift_ppm != 0; }))

@@ -87,7 +87,7 @@ std::string to_text(const Order& order) {
 /// Describes a fault in words.
 class Describe {
  public:
-  explicit Describe(const FaultPlan& plan) : plan_(plan) {}
+  Describe(const FaultPlan& plan, std::optional<Duration> duration) : plan_(plan), duration_(duration) {}
 
   std::string operator()(const LinkChange& change) const {
     const LinkQuality& q = change.quality;
@@ -99,18 +99,16 @@ class Describe {
         100 * q.loss, q.mean_burst, 100 * q.duplicate);
   }
   std::string operator()(const Partition& partition) const {
-    return fmt::format("partition from {} to {} for {:.3f} s", group(partition.from), group(partition.to),
-                       to_seconds(partition.duration));
-  }
-  std::string operator()(const LastingCut& cut) const {
-    return fmt::format("links from {} to {} cut for good", group(cut.from), group(cut.to));
+    const std::string from = group(partition.from), to = group(partition.to);
+    if (!duration_) return fmt::format("links from {} to {} cut for good", from, to);
+    return fmt::format("partition from {} to {} for {:.3f} s", from, to, to_seconds(*duration_));
   }
   std::string operator()(const ClockJump& jump) const {
     return fmt::format("clock of {} set to {:+.4f} ms", jump.process, ms(jump.offset));
   }
   std::string operator()(const Pause& pause) const {
     return fmt::format("{} paused for {:.3f} s, at most {} messages queued", group(pause.processes),
-                       to_seconds(pause.duration), pause.max_queued);
+                       to_seconds(duration_.value()), pause.max_queued);
   }
   std::string operator()(const Kill& kill) const { return kill.process + " killed"; }
   std::string operator()(const Start& start) const { return start.process + " started"; }
@@ -158,6 +156,7 @@ class Describe {
   }
 
   const FaultPlan& plan_;
+  std::optional<Duration> duration_;
 };
 
 }  // namespace
@@ -183,8 +182,8 @@ std::vector<std::string> to_lines(const FaultPlan& plan) {
   for (const auto& [robot, end] : plan.ends)
     lines.push_back(fmt::format("robot {} is one of those {}", robot, to_text(end)));
   for (const TimedFault& timed : plan.faults) {
-    lines.push_back(
-        fmt::format("{:.3f} s: {}", to_seconds(timed.at), std::visit(Describe(plan), timed.fault)));
+    lines.push_back(fmt::format("{:.3f} s: {}", to_seconds(timed.at),
+                                std::visit(Describe(plan, timed.duration), timed.fault)));
   }
   lines.push_back(fmt::format("{:.3f} s: end of all faults", to_seconds(plan.healed_at)));
   return lines;

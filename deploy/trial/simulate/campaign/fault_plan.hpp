@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -11,39 +12,20 @@
 #include "common/protocol/order.hpp"
 #include "common/protocol/robot_disturbance.hpp"
 #include "common/time/clock_error.hpp"
+#include "deploy/trial/fault/fault_schedule.hpp"
+#include "deploy/trial/fault/process_faults.hpp"
 
 namespace sidestep {
-
-using ProcessNames = std::vector<std::string>;
 
 /// Sets the quality of the links between these processes where they are on different hosts.
 struct LinkChange {
   ProcessNames from, to;
   LinkQuality quality;
 };
-/// Drops all messages between these processes for some time.
-struct Partition {
-  ProcessNames from, to;
-  Duration duration{0};
-};
-/// Permanently drops all messages from these processes to a coordinator, or from a coordinator to them. The
-/// other coordinators must work without it.
-struct LastingCut {
-  ProcessNames from, to;
-};
 /// Sets how far the clock of a process is ahead.
 struct ClockJump {
   std::string process;
   Duration offset{0};
-};
-/// Sends SIGSTOP and, after the duration, SIGCONT.
-struct Pause {
-  ProcessNames processes;
-  Duration duration{0};
-  std::size_t max_queued = 0;  ///< maximum number of queued messages per process; further ones are lost
-};
-struct Kill {
-  std::string process;
 };
 /// Starts a dead process, or a second agent for a robot.
 struct Start {
@@ -92,11 +74,16 @@ struct GiveOrder {
 
 using Fault =
     std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance, Carry, Place, TakeAway,
-                 StartWithOtherRule, StartWithOwnRules, SendForgery, LastingCut, ClockJump, GiveOrder>;
+                 StartWithOtherRule, StartWithOwnRules, SendForgery, ClockJump, GiveOrder>;
 
 struct TimedFault {
   Duration at{0};  ///< time since the start of the run
   Fault fault;
+  /// Of a partition or pause. A partition without it lasts for good: a coordinator no longer hears these
+  /// processes, or they no longer hear it, and the other coordinators must work without it.
+  std::optional<Duration> duration = std::nullopt;
+
+  FaultSpan span() const { return {at, duration ? std::optional(at + *duration) : std::nullopt}; }
 };
 
 /// The state of a robot at the end of a run if its fault is not corrected.
@@ -108,8 +95,8 @@ enum class RobotEnd {
   kTakenAway,         ///< it is off the floor and has no power
 };
 
-/// All faults of one run. None occurs or persists after `healed_at`, except lasting cuts and the states of
-/// robots in `ends`.
+/// All faults of one run. None occurs or persists after `healed_at`, except partitions without a
+/// duration and the states of robots in `ends`.
 struct FaultPlan {
   std::vector<ProcessNames> hosts;           ///< messages within a host are fast and never lost
   std::map<std::string, ClockError> clocks;  ///< indexed by process
@@ -117,6 +104,11 @@ struct FaultPlan {
   std::map<RobotId, RobotEnd> ends;
   std::vector<TimedFault> faults;  ///< sorted by time
   Duration healed_at{0};
+
+  /// Adds a fault unless all faults have ended by then.
+  void add(Duration at, Fault fault, std::optional<Duration> duration = std::nullopt) {
+    if (at < healed_at) faults.push_back({at, std::move(fault), duration});
+  }
 };
 
 /// The robots that end in a given state, sorted.

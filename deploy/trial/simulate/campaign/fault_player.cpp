@@ -2,9 +2,9 @@
 #include "deploy/trial/simulate/campaign/fault_player.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "deploy/trial/simulate/campaign/other_rules.hpp"
-#include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
 namespace {
@@ -19,7 +19,12 @@ LinkQuality between_hosts() {
 }  // namespace
 
 FaultPlayer::FaultPlayer(SimSystem& system, const Scenario& scenario, const FaultPlan& plan)
-    : system_(system), scenario_(scenario), plan_(plan), operator_(system, scenario) {
+    : system_(system),
+      scenario_(scenario),
+      plan_(plan),
+      operator_(system, scenario),
+      links_(system, between_hosts()),
+      schedule_(plan.faults, system.begin()) {
   for (const TimedFault& timed : plan.faults) {
     const auto* const send = std::get_if<SendForgery>(&timed.fault);
     const auto is_of = [send](const auto& forger) { return forger->victim() == send->victim; };
@@ -30,59 +35,41 @@ FaultPlayer::FaultPlayer(SimSystem& system, const Scenario& scenario, const Faul
     return std::holds_alternative<GiveOrder>(timed.fault);
   };
   if (std::ranges::any_of(plan.faults, is_order)) clients_.emplace(system, scenario.radius_m);
-  for (const ProcessNames& from_host : plan.hosts) {
-    for (const ProcessNames& to_host : plan.hosts) {
-      for (const std::string& from : from_host) {
-        for (const std::string& to : to_host) {
-          Link link{from, to, between_hosts(), &from_host == &to_host, 0};
-          set(links_[from][to] = link);
-        }
-      }
-    }
+  for (const ProcessNames& host : plan.hosts) {
+    for (const std::string& process : host) host_of_[process] = &host;
+    std::ranges::copy(host, std::back_inserter(processes_));
   }
+  set_qualities(processes_, processes_, between_hosts());
 }
 
-template <typename Do>
-void FaultPlayer::for_each_link(const ProcessNames& from, const ProcessNames& to, Do change) {
+void FaultPlayer::set_qualities(const ProcessNames& from, const ProcessNames& to,
+                                const LinkQuality& between) {
   for (const std::string& sender : from) {
     for (const std::string& receiver : to) {
-      Link& link = links_.at(sender).at(receiver);
-      change(link);
-      set(link);
+      const bool is_within_host = host_of_.at(sender) == host_of_.at(receiver);
+      links_.set_quality(sender, receiver, is_within_host ? within_host() : between);
     }
   }
 }
 
-void FaultPlayer::set(const Link& link) {
-  LinkQuality quality = link.is_within_host ? within_host() : link.quality;
-  quality.is_cut = link.cuts > 0 || link.is_cut_for_good;
-  system_.set_link(link.from, link.to, quality);
+void FaultPlayer::begin(std::size_t fault) {
+  const TimedFault& timed = plan_.faults[fault];
+  std::visit([&](const auto& kind) { apply(kind, timed); }, timed.fault);
 }
 
-void FaultPlayer::operator()(const LinkChange& change) {
-  for_each_link(change.from, change.to, [&](Link& link) { link.quality = change.quality; });
+void FaultPlayer::end(std::size_t fault) {
+  if (const auto* partition = std::get_if<Partition>(&plan_.faults[fault].fault)) links_.end(*partition);
 }
 
-void FaultPlayer::operator()(const Partition& partition) {
-  for_each_link(partition.from, partition.to, [](Link& link) { ++link.cuts; });
-  ends_.push_back({system_.now() - system_.begin() + partition.duration, partition});
+void FaultPlayer::apply(const Partition& partition, const TimedFault& timed) {
+  links_.begin(partition);
+  if (timed.duration || !clients_) return;
+  for (const std::string& process : partition.to) clients_->expect_nothing_of(process);
 }
 
-void FaultPlayer::operator()(const LastingCut& cut) {
-  for_each_link(cut.from, cut.to, [](Link& link) { link.is_cut_for_good = true; });
-  if (!clients_) return;
-  for (const std::string& process : cut.to) clients_->expect_nothing_of(process);
-}
-
-void FaultPlayer::operator()(const Pause& pause) {
-  for (const std::string& process : pause.processes) {
-    system_.pause(process, pause.duration, pause.max_queued);
-  }
-}
-
-void FaultPlayer::operator()(const RobotDisturbance& disturbance) {
-  msg::Disturbance message = encode(disturbance);
-  system_.disturb(message);
+void FaultPlayer::apply(const Pause& pause, const TimedFault& timed) {
+  for (const std::string& process : pause.processes)
+    system_.pause(process, timed.duration.value(), pause.max_queued);
 }
 
 void FaultPlayer::start_with(const Scenario& scenario, const std::string& process) {
@@ -91,13 +78,13 @@ void FaultPlayer::start_with(const Scenario& scenario, const std::string& proces
   system_.restart(process);
 }
 
-void FaultPlayer::operator()(const StartWithOtherRule& start) {
+void FaultPlayer::apply(const StartWithOtherRule& start, const TimedFault&) {
   Scenario other = scenario_;
   other_rules()[start.rule].change(other);
   start_with(other, start.process);
 }
 
-void FaultPlayer::operator()(const SendForgery& send) {
+void FaultPlayer::apply(const SendForgery& send, const TimedFault&) {
   for (const auto& forger : forgers_) {
     if (forger->victim() != send.victim) continue;
     forgeries()[send.forgery].change(*forger);
@@ -109,46 +96,34 @@ std::vector<std::string> FaultPlayer::order_failures() const {
   return clients_ ? clients_->failures() : std::vector<std::string>{};
 }
 
-void FaultPlayer::advance(Duration until) {
+void FaultPlayer::advance(Time until) {
   for (;;) {
-    Duration next = until;
-    for (const End& end : ends_) next = std::min(next, end.at);
-    if (const auto due = operator_.due()) next = std::min(next, *due - system_.begin());
-    system_.run_until(system_.begin() + next);
-    std::erase_if(ends_, [&](const End& end) {
-      if (end.at > next) return false;
-      for_each_link(end.partition.from, end.partition.to, [](Link& link) { --link.cuts; });
-      return true;
-    });
+    const Time next = std::min(until, operator_.due().value_or(until));
+    system_.run_until(next);
     operator_.update();
     if (next >= until) return;
   }
 }
 
+void FaultPlayer::play(Time until) {
+  while (schedule_.next() <= until) {
+    advance(schedule_.next());
+    schedule_.apply_next(*this);
+  }
+  advance(until);
+}
+
 void FaultPlayer::heal() {
   is_healed_ = true;
   operator_.resume_held();
-  ends_.clear();
-  for (auto& [sender, row] : links_) {
-    for (auto& [receiver, link] : row) {
-      link.quality = between_hosts();
-      link.cuts = 0;
-      set(link);
-    }
-  }
+  while (schedule_.next() < Time::max()) schedule_.apply_next(*this);
+  set_qualities(processes_, processes_, between_hosts());
 }
 
 void FaultPlayer::run_until(Duration after_begin) {
-  while (next_ < plan_.faults.size() && plan_.faults[next_].at <= after_begin) {
-    const TimedFault& timed = plan_.faults[next_++];
-    advance(timed.at);
-    std::visit(*this, timed.fault);
-  }
-  if (!is_healed_ && plan_.healed_at <= after_begin) {
-    advance(plan_.healed_at);
-    heal();
-  }
-  advance(after_begin);
+  if (!is_healed_) play(system_.begin() + std::min(after_begin, plan_.healed_at));
+  if (!is_healed_ && plan_.healed_at <= after_begin) heal();
+  advance(system_.begin() + after_begin);
 }
 
 }  // namespace sidestep

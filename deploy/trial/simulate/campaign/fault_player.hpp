@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,8 @@
 #include "deploy/trial/simulate/campaign/floor_operator.hpp"
 #include "deploy/trial/simulate/campaign/forger.hpp"
 #include "deploy/trial/simulate/campaign/order_clients.hpp"
-#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_link_faults.hpp"
+#include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
 
@@ -23,44 +25,40 @@ class FaultPlayer {
   /// Runs until this time after the start, and applies all faults up to then.
   void run_until(Duration after_begin);
 
-  void operator()(const LinkChange& change);
-  void operator()(const Partition& partition);
-  void operator()(const LastingCut& cut);
-  void operator()(const ClockJump& jump) { system_.set_clock(jump.process, jump.offset); }
-  void operator()(const Pause& pause);
-  void operator()(const Kill& kill) { system_.kill(kill.process); }
-  void operator()(const Start& start) { system_.restart(start.process); }
-  void operator()(const RobotDisturbance& disturbance);
-  void operator()(const Carry& carry) { operator_.carry(carry, system_.begin() + plan_.healed_at); }
-  void operator()(const Place& place) { operator_.place(place); }
-  void operator()(const TakeAway& take) { operator_.take_away(take.robot); }
-  void operator()(const StartWithOtherRule& start);
-  void operator()(const StartWithOwnRules& start) { start_with(scenario_, start.process); }
-  void operator()(const SendForgery& send);
-  void operator()(const GiveOrder& give) { clients_->give(give.order); }
-
   /// What was wrong with clients' orders, in words.
   std::vector<std::string> order_failures() const;
 
+  /// Effects of the schedule.
+  void begin(std::size_t fault);
+  void end(std::size_t fault);
+
  private:
-  struct Link {
-    std::string from, to;
-    LinkQuality quality;
-    bool is_within_host = false;
-    int cuts = 0;  // partitions may overlap
-    bool is_cut_for_good = false;
-  };
-  struct End {
-    Duration at;
-    Partition partition;
-  };
-  template <typename Do>
-  void for_each_link(const ProcessNames& from, const ProcessNames& to, Do change);
-  void set(const Link& link);
+  void apply(const LinkChange& change, const TimedFault&) {
+    set_qualities(change.from, change.to, change.quality);
+  }
+  void apply(const Partition& partition, const TimedFault& timed);
+  void apply(const Pause& pause, const TimedFault& timed);
+  void apply(const ClockJump& jump, const TimedFault&) { system_.set_clock(jump.process, jump.offset); }
+  void apply(const Kill& kill, const TimedFault&) { system_.kill(kill.process); }
+  void apply(const Start& start, const TimedFault&) { system_.restart(start.process); }
+  void apply(const RobotDisturbance& disturbance, const TimedFault&) { system_.disturb(encode(disturbance)); }
+  void apply(const Carry& carry, const TimedFault&) {
+    operator_.carry(carry, system_.begin() + plan_.healed_at);
+  }
+  void apply(const Place& place, const TimedFault&) { operator_.place(place); }
+  void apply(const TakeAway& take, const TimedFault&) { operator_.take_away(take.robot); }
+  void apply(const StartWithOtherRule& start, const TimedFault&);
+  void apply(const StartWithOwnRules& start, const TimedFault&) { start_with(scenario_, start.process); }
+  void apply(const SendForgery& send, const TimedFault&);
+  void apply(const GiveOrder& give, const TimedFault&) { clients_->give(give.order); }
+  /// Sets the quality of links between hosts; within a host it stays the same.
+  void set_qualities(const ProcessNames& from, const ProcessNames& to, const LinkQuality& between);
   void start_with(const Scenario& scenario, const std::string& process);
   void heal();
-  /// Runs the system, ends partitions and lets the operator act.
-  void advance(Duration until);
+  /// Runs the system and lets the operator act.
+  void advance(Time until);
+  /// Does that, and begins and ends faults.
+  void play(Time until);
 
   SimSystem& system_;
   const Scenario& scenario_;
@@ -68,10 +66,11 @@ class FaultPlayer {
   FloorOperator operator_;
   std::vector<std::unique_ptr<Forger>> forgers_;  // one per victim
   std::optional<OrderClients> clients_;           // set if the plan has orders
-  std::size_t next_ = 0;
   bool is_healed_ = false;
-  std::map<std::string, std::map<std::string, Link>> links_;  // indexed by sender, then receiver
-  std::vector<End> ends_;
+  ProcessNames processes_;
+  std::map<std::string, const ProcessNames*> host_of_;
+  SimLinkFaults links_;
+  FaultSchedule<TimedFault> schedule_;
 };
 
 }  // namespace sidestep

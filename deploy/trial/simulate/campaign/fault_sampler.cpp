@@ -48,9 +48,6 @@ class FaultSampler {
   const Item& pick(const std::vector<Item>& from) {
     return from[rng_.below(from.size())];
   }
-  void add(Duration at, Fault fault) {
-    if (at < plan_.healed_at) plan_.faults.push_back({at, std::move(fault)});
-  }
   std::string random_agent() { return agent_process(pick(scenario_.robots).id); }
   /// Processes with more influence are chosen more often.
   std::string random_victim() {
@@ -104,18 +101,18 @@ class FaultSampler {
   }
 
   void sample_network() {
-    add(Duration{0}, LinkChange{processes_, processes_, sample_quality()});
+    plan_.add(Duration{0}, LinkChange{processes_, processes_, sample_quality()});
     for (std::uint64_t left = rng_.below(5); left > 0; --left) {
       const ProcessNames& host = pick(plan_.hosts);
       const double u = rng_.uniform();
       const LinkQuality quality = sample_quality();
       const Duration at = time();
       if (u < 0.4)
-        add(at, LinkChange{processes_, processes_, quality});
+        plan_.add(at, LinkChange{processes_, processes_, quality});
       else if (u < 0.7)
-        add(at, LinkChange{host, all_except(host), quality});
+        plan_.add(at, LinkChange{host, all_except(host), quality});
       else
-        add(at, LinkChange{all_except(host), host, quality});
+        plan_.add(at, LinkChange{all_except(host), host, quality});
     }
   }
 
@@ -130,8 +127,8 @@ class FaultSampler {
     if (group.size() == 1 && rng_.chance(0.6)) rest = {pick(rest)};
     if (rest.empty()) return;
     const double direction = rng_.uniform();
-    if (direction < 0.7) add(at, Partition{group, rest, length});
-    if (direction > 0.35) add(at, Partition{rest, group, length});
+    if (direction < 0.7) plan_.add(at, Partition{group, rest}, length);
+    if (direction > 0.35) plan_.add(at, Partition{rest, group}, length);
   }
 
   void sample_pause() {
@@ -142,18 +139,18 @@ class FaultSampler {
                       : u < 0.3  ? ProcessNames{"simulator"}
                                  : ProcessNames{random_victim()};
     const Duration at = time();
-    pause.duration = until_healed(at, log_uniform(0.1, 5));
+    const Duration length = until_healed(at, log_uniform(0.1, 5));
     pause.max_queued = static_cast<std::size_t>(log_uniform(10, 5000));
-    add(at, pause);
+    plan_.add(at, pause, length);
   }
 
   void sample_kill() {
     const std::string victim = random_victim();
     const Duration at = time();
-    add(at, Kill{victim});
+    plan_.add(at, Kill{victim});
     // Every killed process is restarted, because no later coordinator would grant without all agents.
     const double dead_s = rng_.chance(0.3) ? 0 : log_uniform(0.01, 4);
-    add(times_.after(at, dead_s), Start{victim});
+    plan_.add(times_.after(at, dead_s), Start{victim});
   }
 
   /// Makes a process work with other rules for a while. A standby may do so for good if there is another
@@ -169,16 +166,16 @@ class FaultSampler {
     while (victim.starts_with("agent") && other_rules()[rule].changes_roster)
       rule = rng_.below(other_rules().size());
     const Duration at = time();
-    add(at, StartWithOtherRule{victim, rule});
+    plan_.add(at, StartWithOtherRule{victim, rule});
     const bool is_for_good = scenario_.coordinators > 1 && u < 0.15;
-    if (!is_for_good) add(times_.after(at, log_uniform(0.2, 8)), StartWithOwnRules{victim});
+    if (!is_for_good) plan_.add(times_.after(at, log_uniform(0.2, 8)), StartWithOwnRules{victim});
   }
   void sample_forgeries() {
     const RobotId victim = pick(scenario_.robots).id;
     repeat(12, [&] {
       const std::size_t forgery = rng_.below(forgeries().size());
       const Duration at = time();
-      if (!forgeries()[forgery].is_plausible_fact) add(at, SendForgery{victim, forgery});
+      if (!forgeries()[forgery].is_plausible_fact) plan_.add(at, SendForgery{victim, forgery});
     });
   }
 
@@ -191,16 +188,16 @@ class FaultSampler {
       processes_.push_back(second);
       // An agent is not restarted earlier than this after the start of its second agent.
       const Duration at = std::max(Duration{0}, std::min(time(), plan_.healed_at - kMinTwinLifetime));
-      add(at, Start{second});
+      plan_.add(at, Start{second});
       const Duration first_kill = at + until_healed(at, log_uniform(0.02, 10)) - Duration{4};
-      add(first_kill, Kill{first});
+      plan_.add(first_kill, Kill{first});
       // The surviving agent may have yielded permanently to the dead one, so both are killed and one is
       // restarted.
       const Duration end =
           rng_.chance(0.5) ? first_kill + until_healed(first_kill, log_uniform(0.02, 10)) : plan_.healed_at;
-      add(std::max(first_kill, end - Duration{3}), Kill{first});
-      add(std::max(first_kill, end - Duration{3}), Kill{second});
-      add(std::max(first_kill, end - Duration{3}) + Duration{1}, Start{first});
+      plan_.add(std::max(first_kill, end - Duration{3}), Kill{first});
+      plan_.add(std::max(first_kill, end - Duration{3}), Kill{second});
+      plan_.add(std::max(first_kill, end - Duration{3}) + Duration{1}, Start{first});
     });
   }
 
@@ -211,16 +208,16 @@ class FaultSampler {
     const Duration at = time();
     if (!seconds_.insert(second).second) return;
     plan_.hosts.push_back({second});
-    add(at, Start{second});
+    plan_.add(at, Start{second});
     if (rng_.chance(0.5)) {
       const ProcessNames rest{rng_.chance(0.5) ? first : random_victim()};
       const Duration length = until_healed(at, log_uniform(0.05, 8));
-      if (rng_.chance(0.7)) add(at, Partition{{second}, rest, length});
-      add(at, Partition{rest, {second}, length});
+      if (rng_.chance(0.7)) plan_.add(at, Partition{{second}, rest}, length);
+      plan_.add(at, Partition{rest, {second}}, length);
     }
-    add(plan_.healed_at - Duration{1}, Kill{second});
+    plan_.add(plan_.healed_at - Duration{1}, Kill{second});
     // If it was started again meanwhile, it was the later one, and has ended.
-    add(plan_.healed_at - Duration{1}, Start{first});
+    plan_.add(plan_.healed_at - Duration{1}, Start{first});
   }
 
   const Scenario& scenario_;

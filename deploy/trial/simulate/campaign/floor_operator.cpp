@@ -42,11 +42,6 @@ const Vec2* FloorOperator::position_of(RobotId robot) const {
   return found == on_floor_.end() ? nullptr : &found->second;
 }
 
-void FloorOperator::publish(const RobotDisturbance& disturbance) {
-  msg::Disturbance message = encode(disturbance);
-  system_.disturb(message);
-}
-
 void FloorOperator::carry(const Carry& carry, Time limit) {
   const Vec2* const position_m = position_of(carry.robot);
   if (!position_m) return;
@@ -56,7 +51,7 @@ void FloorOperator::carry(const Carry& carry, Time limit) {
   disturbance.place_m = carry.place_m;
   const Duration path_time = from_seconds((carry.place_m - *position_m).norm() / carry.speed_mps);
   disturbance.duration = std::max(kMinCarryTime, std::min(path_time, limit - system_.now()));
-  publish(disturbance);
+  system_.disturb(encode(disturbance));
 }
 
 void FloorOperator::place(const Place& place) {
@@ -68,7 +63,7 @@ void FloorOperator::take_away(RobotId robot) {
   RobotDisturbance lift;
   lift.robot = robot;
   lift.kind = msg::DisturbanceKind::DISTURBANCE_LIFT;
-  publish(lift);
+  system_.disturb(encode(lift));
   taken_away_.insert(robot);
   due_ = system_.now();
 }
@@ -119,7 +114,7 @@ void FloorOperator::update() {
     disturbance.kind = msg::DisturbanceKind::DISTURBANCE_PLACE;
     disturbance.place_m = request.places_m[placing.requests++ / kRequestsPerPlace % request.places_m.size()];
     disturbance.heading_rad = request.heading_rad;
-    publish(disturbance);
+    system_.disturb(encode(disturbance));
     return false;
   });
   if (taken_away_.empty()) return;

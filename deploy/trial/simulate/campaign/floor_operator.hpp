@@ -41,7 +41,6 @@ class FloorOperator {
   void resume_if_held();
   void send_to_goals();
   void give(msg::OrderKind kind, RobotId robot, std::vector<Goal> goals = {});
-  void publish(const RobotDisturbance& disturbance);
 
   SimSystem& system_;
   const Scenario& scenario_;

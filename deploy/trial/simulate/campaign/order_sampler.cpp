@@ -31,9 +31,7 @@ class OrderSampler {
   void repeat(std::uint64_t max_count, Do sample_one) {
     for (std::uint64_t left = 1 + rng_.below(max_count); left > 0; --left) sample_one();
   }
-  void add(Duration at, Order order) {
-    if (at < plan_.healed_at) plan_.faults.push_back({at, GiveOrder{std::move(order)}});
-  }
+  void add(Duration at, Order order) { plan_.add(at, GiveOrder{std::move(order)}); }
   RobotId random_robot() { return scenario_.robots[rng_.below(scenario_.robots.size())].id; }
   ClientId random_client() {
     const double u = rng_.uniform();

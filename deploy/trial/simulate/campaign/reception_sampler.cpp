@@ -26,9 +26,6 @@ class ReceptionSampler {
   }
 
  private:
-  void add(Duration at, Fault fault) {
-    if (at < plan_.healed_at) plan_.faults.push_back({at, std::move(fault)});
-  }
   /// A coordinator with other rules cannot serve, nor take over one whose clock is so wrong that it refuses
   /// what vision says.
   bool can_others_serve() const {
@@ -63,7 +60,7 @@ class ReceptionSampler {
     const Duration at = times_.sample(rng_);
     const Duration length = times_.until_healed(at, sample_log_uniform(0.5, 15, rng_));
     if (others.empty()) return;
-    add(at, is_deaf ? Partition{others, {process}, length} : Partition{{process}, others, length});
+    plan_.add(at, is_deaf ? Partition{others, {process}} : Partition{{process}, others}, length);
   }
   void sample_for_good() {
     const std::string process = random_coordinator();
@@ -71,7 +68,7 @@ class ReceptionSampler {
     const bool is_deaf = rng_.chance(0.5);
     const Duration at = times_.sample(rng_);
     if (others.empty()) return;
-    add(at, is_deaf ? LastingCut{others, {process}} : LastingCut{{process}, others});
+    plan_.add(at, is_deaf ? Partition{others, {process}} : Partition{{process}, others});
   }
 
   const Scenario& scenario_;

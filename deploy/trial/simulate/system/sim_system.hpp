@@ -64,7 +64,7 @@ class SimSystem {
   /// Pauses a process as if by SIGSTOP and SIGCONT; see SimBus::pause. No effect if it is dead.
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
   /// Disturbs a robot on an operator's behalf.
-  void disturb(msg::Disturbance& disturbance) {
+  void disturb(msg::Disturbance disturbance) {
     disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
     disturbance_writer_.publish(disturbance, now());
   }

@@ -10,12 +10,6 @@
 
 namespace sidestep {
 
-/// A fault that could not be applied.
-struct FaultProblem {
-  double at_s = 0;   ///< in seconds since the first grant
-  std::string text;  ///< the fault and the reason
-};
-
 /// The outcome of a run of a test.
 struct RunOutcome {
   RunHistory history;

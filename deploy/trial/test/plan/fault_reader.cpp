@@ -19,8 +19,6 @@ namespace {
 constexpr std::size_t kMaxFaults = 1000;
 constexpr Range kFaultSeconds{0.001, 3600};
 
-using Names = std::vector<std::string>;
-
 /// Reads one fault.
 class FaultReader {
  public:
@@ -30,7 +28,7 @@ class FaultReader {
   PlannedFault read() {
     PlannedFault fault;
     fault.at_s = moment_from(map_, "at_s", scenario_);
-    Names keys{"kill", "restart", "pause", "partition", "network", "twin", "attest_absence"};
+    ProcessNames keys{"kill", "restart", "pause", "partition", "network", "twin", "attest_absence"};
     std::ranges::copy(disturbance_keys(), std::back_inserter(keys));
     key_ = only_key_of(map_, keys, "a fault");
     fault.action = read_action();
@@ -44,12 +42,12 @@ class FaultReader {
 
  private:
   FaultAction read_action() {
-    if (key_ == "kill") return KillFault{read_running_process()};
+    if (key_ == "kill") return Kill{read_running_process()};
     if (key_ == "restart") return read_restart();
     if (key_ == "pause") {
       (void)map_.require("seconds");
       read_seconds();
-      return PauseFault{read_running_process()};
+      return Pause{{read_running_process()}};
     }
     if (key_ == "partition") return read_partition();
     if (key_ == "network") return read_impairment();
@@ -69,7 +67,7 @@ class FaultReader {
 
   /// Reads the name of a process, which may be a second agent or the active coordinator.
   std::string read_running_process() {
-    Names names = processes_;
+    ProcessNames names = processes_;
     names.emplace_back(kActiveCoordinator);
     for (const RobotSpec& robot : scenario_.robots) names.push_back(twin_process(robot.id));
     return subject_ = process_from(map_, key_, names);
@@ -81,45 +79,42 @@ class FaultReader {
   }
 
   RestartFault read_restart() {
-    Names names = processes_;
+    ProcessNames names = processes_;
     std::erase(names, "simulator");  // the simulator holds the ground truth
     RestartFault fault{subject_ = process_from(map_, key_, names), {}};
     const YAML::Node file = map_.find("scenario");
     if (!file.IsDefined()) return fault;
     const YamlLocation location = map_.location_of("scenario");
     fault.scenario_file = (std::filesystem::path(folder_) / text_from(file, location)).string();
-    const Names others = system_process_names(load_scenario(fault.scenario_file));
+    const ProcessNames others = system_process_names(load_scenario(fault.scenario_file));
     const bool is_agent = fault.process.starts_with("agent ");
     if (is_agent && std::ranges::find(others, fault.process) == others.end())
       location.fail(fmt::format("that scenario has no {}", fault.process));
     return fault;
   }
 
-  PartitionFault read_partition() {
-    PartitionFault fault;
-    fault.group = processes_from(map_, key_, processes_);
-    subject_ = fmt::format("{}{}", fault.group.front(), fault.group.size() > 1 ? " and others" : "");
+  Partition read_partition() {
+    const ProcessNames group = processes_from(map_, key_, processes_);
+    subject_ = fmt::format("{}{}", group.front(), group.size() > 1 ? " and others" : "");
     const auto is_in_group = [&](const std::string& process) {
-      return std::ranges::find(fault.group, process) != fault.group.end();
+      return std::ranges::find(group, process) != group.end();
     };
+    ProcessNames others;
     if (map_.find("from").IsDefined())
-      fault.others = processes_from(map_, "from", processes_);
+      others = processes_from(map_, "from", processes_);
     else
-      std::ranges::copy_if(processes_, std::back_inserter(fault.others), std::not_fn(is_in_group));
-    const auto both = std::ranges::find_if(fault.others, is_in_group);
-    if (both != fault.others.end()) map_.location_of("from").fail(*both + " is on both sides");
-    if (fault.others.empty()) map_.location_of(key_).fail("no process is on the other side");
-    if (map_.find("one_way").IsDefined()) {
-      const std::string direction = process_from(map_, "one_way", {"in", "out"});
-      fault.cuts_in = direction == "in";
-      fault.cuts_out = direction == "out";
-    }
+      std::ranges::copy_if(processes_, std::back_inserter(others), std::not_fn(is_in_group));
+    const auto both = std::ranges::find_if(others, is_in_group);
+    if (both != others.end()) map_.location_of("from").fail(*both + " is on both sides");
+    if (others.empty()) map_.location_of(key_).fail("no process is on the other side");
+    const bool is_one_way = map_.find("one_way").IsDefined();
+    const bool is_in = is_one_way && process_from(map_, "one_way", {"in", "out"}) == "in";
     read_seconds();
-    return fault;
+    return is_in ? Partition{others, group, false} : Partition{group, others, !is_one_way};
   }
 
   ImpairmentFault read_impairment() {
-    Names names = processes_;
+    ProcessNames names = processes_;
     names.emplace_back("all");
     ImpairmentFault fault{subject_ = process_from(map_, key_, names), kUnimpairedLink};
     map_.read("loss", {0, 1}, fault.quality.loss);
@@ -154,7 +149,7 @@ class FaultReader {
   YamlMap& map_;
   const Scenario& scenario_;
   const std::string& folder_;
-  Names processes_;
+  ProcessNames processes_;
   std::string key_, subject_;
   std::optional<double> seconds_;
 };

@@ -4,36 +4,21 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 #include "common/messaging/impairment.hpp"
 #include "common/protocol/robot_disturbance.hpp"
+#include "deploy/trial/fault/fault_schedule.hpp"
+#include "deploy/trial/fault/process_faults.hpp"
 
 namespace sidestep {
-
-// Processes have the same names as in reports: "agent 3", "agent 3 (twin)", "coordinator 1", "vision",
-// "simulator".
 
 /// The name for the coordinator that is granting when the fault begins.
 inline constexpr const char* kActiveCoordinator = "active coordinator";
 
-struct KillFault {
-  std::string process;
-};
 /// Starts a process, killing it first if it is running.
 struct RestartFault {
   std::string process;
   std::string scenario_file;  ///< scenario that it uses from then on; empty: the test's own
-};
-/// Sends SIGSTOP, and SIGCONT at the end.
-struct PauseFault {
-  std::string process;
-};
-/// Messages between two groups of processes are lost.
-struct PartitionFault {
-  std::vector<std::string> group, others;
-  bool cuts_in = true;   ///< cuts messages from other processes to the group
-  bool cuts_out = true;  ///< cuts messages from the group to other processes
 };
 /// Messages that arrive at a process are lost, delayed and duplicated.
 struct ImpairmentFault {
@@ -49,8 +34,8 @@ struct AbsenceFault {
   RobotId robot = 0;
 };
 
-using FaultAction = std::variant<KillFault, RestartFault, PauseFault, PartitionFault, ImpairmentFault,
-                                 RobotDisturbance, TwinFault, AbsenceFault>;
+using FaultAction = std::variant<Kill, RestartFault, Pause, Partition, ImpairmentFault, RobotDisturbance,
+                                 TwinFault, AbsenceFault>;
 
 /// A fault of a test, with its time.
 struct PlannedFault {
@@ -61,6 +46,9 @@ struct PlannedFault {
 
   /// When the fault's effect ends.
   double end_s() const { return at_s + seconds.value_or(0); }
+  FaultSpan span() const {
+    return {from_seconds(at_s), seconds ? std::optional(from_seconds(end_s())) : std::nullopt};
+  }
 };
 
 }  // namespace sidestep

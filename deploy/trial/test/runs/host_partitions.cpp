@@ -23,9 +23,9 @@ bool contains(const std::vector<std::string>& processes, const std::string& proc
 std::string sides_of(const std::string& process, const FaultTest& test) {
   std::string sides;
   for (const PlannedFault& fault : test.faults) {
-    const auto* partition = std::get_if<PartitionFault>(&fault.action);
+    const auto* partition = std::get_if<Partition>(&fault.action);
     if (partition)
-      sides += contains(partition->group, process) ? 'g' : contains(partition->others, process) ? 'o' : '-';
+      sides += contains(partition->from, process) ? 'f' : contains(partition->to, process) ? 't' : '-';
   }
   return sides;
 }
@@ -65,7 +65,7 @@ Hosts hosts_for_partitions(const FaultTest& test) {
 
 HostPartitions::HostPartitions(const FaultTest& test, const RunHosts& hosts) : test_(test), hosts_(hosts) {
   for (const PlannedFault& fault : test.faults) {
-    if (const auto* partition = std::get_if<PartitionFault>(&fault.action)) check(*partition, fault.text);
+    if (const auto* partition = std::get_if<Partition>(&fault.action)) check(*partition, fault.text);
   }
 }
 
@@ -85,8 +85,8 @@ HostPartitions::HostSet HostPartitions::hosts_of(const std::vector<std::string>&
   return hosts;
 }
 
-void HostPartitions::check(const PartitionFault& partition, const std::string& text) const {
-  for (const auto* side : {&partition.group, &partition.others}) {
+void HostPartitions::check(const Partition& partition, const std::string& text) const {
+  for (const auto* side : {&partition.from, &partition.to}) {
     const HostSet hosts = hosts_of(*side);
     for (const HostSpec* host : hosts) {
       if (host->transport != HostTransport::kNamespace)
@@ -101,16 +101,16 @@ void HostPartitions::check(const PartitionFault& partition, const std::string& t
   }
 }
 
-void HostPartitions::change(const PartitionFault& partition, int count) {
-  const HostSet inside = hosts_of(partition.group), outside = hosts_of(partition.others);
-  for (const HostSpec* in : inside) {
-    for (const HostSpec* out : outside) {
-      if (partition.cuts_in) cuts_[in][out->interface] += count;
-      if (partition.cuts_out) cuts_[out][in->interface] += count;
+void HostPartitions::change(const Partition& partition, int count) {
+  const HostSet senders = hosts_of(partition.from), receivers = hosts_of(partition.to);
+  for (const HostSpec* sender : senders) {
+    for (const HostSpec* receiver : receivers) {
+      cuts_[receiver][sender->interface] += count;
+      if (partition.is_two_way) cuts_[sender][receiver->interface] += count;
     }
   }
-  for (const HostSpec* host : inside) set_filter(*host);
-  for (const HostSpec* host : outside) set_filter(*host);
+  for (const HostSpec* host : receivers) set_filter(*host);
+  for (const HostSpec* host : senders) set_filter(*host);
 }
 
 void HostPartitions::set_filter(const HostSpec& host) const {

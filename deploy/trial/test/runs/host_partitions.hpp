@@ -28,15 +28,15 @@ class HostPartitions {
   HostPartitions& operator=(const HostPartitions&) = delete;
 
   /// Throws std::runtime_error if the packet filter cannot be set.
-  void begin(const PartitionFault& partition) { change(partition, 1); }
-  void end(const PartitionFault& partition) { change(partition, -1); }
+  void begin(const Partition& partition) { change(partition, 1); }
+  void end(const Partition& partition) { change(partition, -1); }
 
  private:
   using HostSet = std::set<const HostSpec*>;
 
   HostSet hosts_of(const std::vector<std::string>& processes) const;
-  void check(const PartitionFault& partition, const std::string& text) const;
-  void change(const PartitionFault& partition, int count);
+  void check(const Partition& partition, const std::string& text) const;
+  void change(const Partition& partition, int count);
   void set_filter(const HostSpec& host) const;
 
   const FaultTest& test_;

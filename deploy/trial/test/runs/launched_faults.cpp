@@ -42,12 +42,14 @@ LaunchedFaults::LaunchedFaults(const FaultTest& test, const RunHosts& hosts, con
   if (has_fault<RobotDisturbance>(test)) disturbances_.emplace(settings, topics::kDisturbance);
   if (has_fault<ImpairmentFault>(test)) network_faults_.emplace(settings, topics::kNetworkFault);
   if (has_fault<AbsenceFault>(test)) absences_.emplace(settings, topics::kAttestation);
-  if (has_fault<PartitionFault>(test)) partitions_.emplace(test, hosts);
+  if (has_fault<Partition>(test)) partitions_.emplace(test, hosts);
 }
 
 void LaunchedFaults::require_possible(const PlannedFault& fault) const {
-  if (const auto* kill = std::get_if<KillFault>(&fault.action)) require_local(kill->process, fault.text);
-  if (const auto* pause = std::get_if<PauseFault>(&fault.action)) require_local(pause->process, fault.text);
+  if (const auto* kill = std::get_if<Kill>(&fault.action)) require_local(kill->process, fault.text);
+  if (const auto* pause = std::get_if<Pause>(&fault.action)) {
+    for (const std::string& process : pause->processes) require_local(process, fault.text);
+  }
   if (const auto* restart = std::get_if<RestartFault>(&fault.action))
     require_local(restart->process, fault.text);
 }
@@ -73,12 +75,11 @@ void LaunchedFaults::begin(std::size_t fault) {
 
 void LaunchedFaults::end(std::size_t fault) {
   const FaultAction& action = test_.faults[fault].action;
-  if (const auto* partition = std::get_if<PartitionFault>(&action)) partitions_->end(*partition);
+  if (const auto* partition = std::get_if<Partition>(&action)) partitions_->end(*partition);
   if (const auto* impairment = std::get_if<ImpairmentFault>(&action))
     impair(impairment->target, kUnimpairedLink, 0);
   // A process that was killed meanwhile is not stopped.
-  if (const auto paused = paused_.find(fault); paused != paused_.end())
-    (void)launcher_.send_signal(paused->second, SIGCONT);
+  for (const std::string& process : paused_[fault]) (void)launcher_.send_signal(process, SIGCONT);
 }
 
 void LaunchedFaults::send_signal(const std::string& process, int signal) {
@@ -91,7 +92,7 @@ void LaunchedFaults::impair(const std::string& target, const LinkQuality& qualit
   network_faults_->writer().write(&fault);
 }
 
-void LaunchedFaults::apply(const KillFault& fault, std::size_t) {
+void LaunchedFaults::apply(const Kill& fault, std::size_t) {
   send_signal(resolved(fault.process, observer_.history()), SIGKILL);
 }
 
@@ -99,13 +100,15 @@ void LaunchedFaults::apply(const RestartFault& fault, std::size_t) {
   launcher_.restart(fault.process, fault.scenario_file.empty() ? test_.file : fault.scenario_file);
 }
 
-void LaunchedFaults::apply(const PauseFault& fault, std::size_t index) {
-  const std::string process = resolved(fault.process, observer_.history());
-  send_signal(process, SIGSTOP);
-  paused_[index] = process;
+void LaunchedFaults::apply(const Pause& fault, std::size_t index) {
+  for (const std::string& name : fault.processes) {
+    const std::string process = resolved(name, observer_.history());
+    send_signal(process, SIGSTOP);
+    paused_[index].push_back(process);
+  }
 }
 
-void LaunchedFaults::apply(const PartitionFault& fault, std::size_t) { partitions_->begin(fault); }
+void LaunchedFaults::apply(const Partition& fault, std::size_t) { partitions_->begin(fault); }
 
 void LaunchedFaults::apply(const ImpairmentFault& fault, std::size_t index) {
   require_subscriber(*network_faults_, parse_fault_target(fault.target)->participant);

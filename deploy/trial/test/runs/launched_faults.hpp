@@ -34,10 +34,10 @@ class LaunchedFaults {
   void require_local(const std::string& process, const std::string& text) const;
   void require_possible(const PlannedFault& fault) const;
 
-  void apply(const KillFault& fault, std::size_t index);
+  void apply(const Kill& fault, std::size_t index);
   void apply(const RestartFault& fault, std::size_t index);
-  void apply(const PauseFault& fault, std::size_t index);
-  void apply(const PartitionFault& fault, std::size_t index);
+  void apply(const Pause& fault, std::size_t index);
+  void apply(const Partition& fault, std::size_t index);
   void apply(const ImpairmentFault& fault, std::size_t index);
   void apply(const RobotDisturbance& fault, std::size_t index);
   void apply(const TwinFault& fault, std::size_t index);
@@ -53,7 +53,7 @@ class LaunchedFaults {
   std::optional<OperatorChannel> disturbances_, network_faults_, absences_;
   std::optional<HostPartitions> partitions_;
   AbsenceAttestations attestations_;
-  std::map<std::size_t, std::string> paused_;  // indexed by fault: the process
+  std::map<std::size_t, ProcessNames> paused_;  // indexed by fault
 };
 
 }  // namespace sidestep

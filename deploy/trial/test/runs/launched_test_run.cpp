@@ -9,7 +9,7 @@
 
 #include "deploy/run/launch/process_group.hpp"
 #include "deploy/run/launch/process_keys.hpp"
-#include "deploy/trial/test/runs/fault_schedule.hpp"
+#include "deploy/trial/fault/fault_schedule.hpp"
 #include "deploy/trial/test/runs/launched_faults.hpp"
 #include "deploy/trial/test/runs/run_end.hpp"
 #include "deploy/trial/test/runs/test_end.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 Hosts hosts_of(const FaultTest& test, const LaunchOptions& options) {
   if (!options.hosts_file.empty()) return load_hosts(options.hosts_file);
-  return has_fault<PartitionFault>(test) ? hosts_for_partitions(test) : local_hosts(options.dds.interface);
+  return has_fault<Partition>(test) ? hosts_for_partitions(test) : local_hosts(options.dds.interface);
 }
 
 RunOptions run_options(const FaultTest& test, const LaunchOptions& options, const RunHosts& hosts) {
@@ -91,7 +91,7 @@ class LaunchedTestRun {
   RunObserver observer_;
   LaunchedFaults faults_;
   TestEnd end_;
-  std::optional<FaultSchedule> schedule_;
+  std::optional<FaultSchedule<PlannedFault>> schedule_;
   std::optional<Time> ended_at_;
 };
 

@@ -7,15 +7,25 @@
 #include "common/config/scenario_loader.hpp"
 #include "common/protocol/senders.hpp"
 #include "deploy/trial/test/runs/active_coordinator.hpp"
-#include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
 namespace {
 
 // About as long as the launcher takes.
 constexpr Duration kRestartDelay = std::chrono::milliseconds(200);
-// Messages that a paused process can still receive afterwards, as in the buffer of a socket.
-constexpr std::size_t kMaxQueued = 1000;
+
+/// The probability that at least one of two independent events happens.
+double either(double a, double b) { return 1 - (1 - a) * (1 - b); }
+
+LinkQuality impaired(const NetworkSpec& network, const LinkQuality& fault) {
+  LinkQuality quality = fault;
+  quality.loss = either(network.loss, fault.loss);
+  quality.duplicate = either(network.duplicate, fault.duplicate);
+  quality.delay_min += network.delay_min;
+  quality.delay_mean += (network.delay_min + network.delay_max) / 2;
+  quality.delay_max += network.delay_max;
+  return quality;
+}
 
 bool is_restarted(const std::string& process, const RestartSpec& restart) {
   if (process.ends_with(" (twin)")) return false;
@@ -30,7 +40,7 @@ SimFaults::SimFaults(const FaultTest& test, SimSystem& system, Bus& bus, const R
     : test_(test),
       system_(system),
       observer_(observer),
-      links_(system, test.scenario),
+      links_(system, impaired(test.scenario.network, kUnimpairedLink)),
       attestation_writer_(bus.advertise(topics::kAttestation)),
       attestations_(observer, [this](msg::AbsenceAttestation& attestation) {
         attestation.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
@@ -44,8 +54,9 @@ void SimFaults::begin(std::size_t fault) {
 
 void SimFaults::end(std::size_t fault) {
   const FaultAction& action = test_.faults[fault].action;
-  if (const auto* partition = std::get_if<PartitionFault>(&action)) links_.end(*partition);
-  if (const auto* impairment = std::get_if<ImpairmentFault>(&action)) links_.end(*impairment);
+  if (const auto* partition = std::get_if<Partition>(&action)) links_.end(*partition);
+  if (const auto* impairment = std::get_if<ImpairmentFault>(&action))
+    impair(impairment->target, kUnimpairedLink);
 }
 
 Time SimFaults::next() const {
@@ -69,16 +80,16 @@ std::string SimFaults::running(const std::string& process) const {
   return name;
 }
 
-void SimFaults::apply(const KillFault& fault, const PlannedFault&) {
+void SimFaults::apply(const Kill& fault, const PlannedFault&) {
   const std::string process = running(fault.process);
   system_.kill(process);
-  links_.end_impairment(process);
+  end_impairment(process);
   if (is_restarted(process, test_.scenario.restart)) restarts_[process] = system_.now() + kRestartDelay;
 }
 
 void SimFaults::apply(const RestartFault& fault, const PlannedFault&) {
   system_.kill(fault.process);
-  links_.end_impairment(fault.process);
+  end_impairment(fault.process);
   restarts_.erase(fault.process);
   if (!fault.scenario_file.empty()) {
     system_.use_scenario(fault.process, load_scenario(fault.scenario_file));
@@ -89,13 +100,22 @@ void SimFaults::apply(const RestartFault& fault, const PlannedFault&) {
   system_.restart(fault.process);
 }
 
-void SimFaults::apply(const PauseFault& fault, const PlannedFault& planned) {
-  system_.pause(running(fault.process), from_seconds(planned.seconds.value()), kMaxQueued);
+void SimFaults::apply(const Pause& fault, const PlannedFault& planned) {
+  for (const std::string& process : fault.processes)
+    system_.pause(running(process), from_seconds(planned.seconds.value()), fault.max_queued);
 }
 
-void SimFaults::apply(const RobotDisturbance& fault, const PlannedFault&) {
-  msg::Disturbance message = encode(fault);
-  system_.disturb(message);
+void SimFaults::impair(const std::string& target, const LinkQuality& quality) {
+  ProcessNames processes = system_process_names(test_.scenario);
+  for (const RobotSpec& robot : test_.scenario.robots) processes.push_back(twin_process(robot.id));
+  const LinkQuality link = impaired(test_.scenario.network, quality);
+  for (const std::string& to : processes) {
+    if (target != "all" && target != to) continue;
+    impaired_.insert(to);
+    for (const std::string& from : processes) {
+      if (from != to) links_.set_quality(from, to, link);
+    }
+  }
 }
 
 void SimFaults::apply(const TwinFault& fault, const PlannedFault&) {

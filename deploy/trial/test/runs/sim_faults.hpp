@@ -5,11 +5,11 @@
 #include <set>
 #include <string>
 
-#include "deploy/trial/simulate/system/sim_system.hpp"
+#include "deploy/trial/simulate/system/sim_link_faults.hpp"
 #include "deploy/trial/test/judgement/run_observer.hpp"
 #include "deploy/trial/test/plan/fault_test.hpp"
 #include "deploy/trial/test/runs/absence_attestations.hpp"
-#include "deploy/trial/test/runs/sim_link_faults.hpp"
+#include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
 
@@ -29,14 +29,20 @@ class SimFaults {
   std::vector<FaultProblem> problems() const { return attestations_.problems(); }
 
  private:
-  void apply(const KillFault& fault, const PlannedFault&);
+  void apply(const Kill& fault, const PlannedFault&);
   void apply(const RestartFault& fault, const PlannedFault&);
-  void apply(const PauseFault& fault, const PlannedFault& planned);
-  void apply(const PartitionFault& fault, const PlannedFault&) { links_.begin(fault); }
-  void apply(const ImpairmentFault& fault, const PlannedFault&) { links_.begin(fault); }
-  void apply(const RobotDisturbance& fault, const PlannedFault&);
+  void apply(const Pause& fault, const PlannedFault& planned);
+  void apply(const Partition& fault, const PlannedFault&) { links_.begin(fault); }
+  void apply(const ImpairmentFault& fault, const PlannedFault&) { impair(fault.target, fault.quality); }
+  void apply(const RobotDisturbance& fault, const PlannedFault&) { system_.disturb(encode(fault)); }
   void apply(const TwinFault& fault, const PlannedFault&);
   void apply(const AbsenceFault& fault, const PlannedFault&);
+  /// Replaces the impairment of a process, or of "all".
+  void impair(const std::string& target, const LinkQuality& quality);
+  /// A process that dies loses its impairment, as over DDS.
+  void end_impairment(const std::string& process) {
+    if (impaired_.contains(process)) impair(process, kUnimpairedLink);
+  }
   /// The name of the running process with this name, or of the active coordinator. Throws std::runtime_error
   /// if it is not running.
   std::string running(const std::string& process) const;
@@ -45,6 +51,7 @@ class SimFaults {
   SimSystem& system_;
   const RunObserver& observer_;
   SimLinkFaults links_;
+  std::set<std::string> impaired_;  // processes
   Writer<msg::AbsenceAttestation> attestation_writer_;
   AbsenceAttestations attestations_;
   std::map<std::string, Time> restarts_;    // when to restart killed processes

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <iterator>
 
+#include "deploy/trial/fault/fault_schedule.hpp"
 #include "deploy/trial/simulate/system/sim_log.hpp"
-#include "deploy/trial/test/runs/fault_schedule.hpp"
 #include "deploy/trial/test/runs/run_end.hpp"
 #include "deploy/trial/test/runs/sim_faults.hpp"
 #include "deploy/trial/test/runs/test_end.hpp"
@@ -35,7 +35,8 @@ bool run_until_granting(SimSystem& system, const RunObserver& observer) {
   return true;
 }
 
-void play(const FaultTest& test, SimSystem& system, SimFaults& faults, FaultSchedule& schedule, Time zero) {
+void play(const FaultTest& test, SimSystem& system, SimFaults& faults, FaultSchedule<PlannedFault>& schedule,
+          Time zero) {
   TestEnd end(test);
   for (;;) {
     schedule.apply_due(system.now(), faults);

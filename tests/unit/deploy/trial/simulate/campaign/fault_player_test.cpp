@@ -37,8 +37,8 @@ struct Verdicts {
 
 TEST_CASE("a partition cuts links for its duration, even if two partitions overlap") {
   const Scenario scenario = pair_of_robots();
-  const Partition first{{"coordinator"}, {"agent 0"}, 2s}, second{{"coordinator"}, {"agent 0"}, 1s};
-  const FaultPlan plan = plan_of(scenario, {{1s, first}, {2500ms, second}}, 20s);
+  const Partition partition{{"coordinator"}, {"agent 0"}};
+  const FaultPlan plan = plan_of(scenario, {{1s, partition, 2s}, {2500ms, partition, 1s}}, 20s);
   SimSystem system(scenario, 1);
   Verdicts verdicts(system);
   FaultPlayer player(system, scenario, plan);
@@ -98,7 +98,7 @@ TEST_CASE("the operator places a robot whose lifting takes effect late, because 
   lift.robot = 1;
   lift.kind = msg::DisturbanceKind::DISTURBANCE_LIFT;
   const FaultPlan plan = plan_of(
-      scenario, {{1s, Pause{{"simulator"}, 3s, 1000}}, {1100ms, lift}, {2s, Place{1, {Vec2(0.5, 1.5)}, 1}}},
+      scenario, {{1s, Pause{{"simulator"}, 1000}, 3s}, {1100ms, lift}, {2s, Place{1, {Vec2(0.5, 1.5)}, 1}}},
       20s);
   SimSystem system(scenario, 1);
   std::size_t on_floor = 0;
@@ -154,7 +154,7 @@ TEST_CASE("at the end of all faults link qualities recover and partitions end") 
   const auto processes = system_process_names(scenario);
   const FaultPlan plan = plan_of(
       scenario,
-      {{0s, LinkChange{processes, processes, terrible}}, {1s, Partition{processes, processes, 30s}}}, 3s);
+      {{0s, LinkChange{processes, processes, terrible}}, {1s, Partition{processes, processes}, 30s}}, 3s);
   SimSystem system(scenario, 1);
   Verdicts verdicts(system);
   FaultPlayer player(system, scenario, plan);

@@ -84,10 +84,10 @@ TEST_CASE("random faults of links and processes fill their ranges") {
         sizes.add("loss", quality.loss);
         sizes.add("burst", quality.mean_burst);
         sizes.add("duplicates", quality.duplicate);
-      } else if (const auto* partition = std::get_if<Partition>(&timed.fault)) {
-        if (timed.at < kHealedAt - 8s) sizes.add("partition", partition->duration);
+      } else if (std::holds_alternative<Partition>(timed.fault)) {
+        if (timed.at < kHealedAt - 8s) sizes.add("partition", timed.duration.value());
       } else if (const auto* pause = std::get_if<Pause>(&timed.fault)) {
-        if (timed.at < kHealedAt - 8s) sizes.add("pause", pause->duration);
+        if (timed.at < kHealedAt - 8s) sizes.add("pause", timed.duration.value());
         sizes.add("queue", static_cast<double>(pause->max_queued));
       }
     }

@@ -67,11 +67,11 @@ void check_expectation_rejected(const std::string& expectation, const std::strin
 }
 
 TEST_CASE("faults of processes are read") {
-  CHECK(action_of<KillFault>("at_s: 1, kill: agent 4").process == "agent 4");
-  CHECK(action_of<KillFault>("at_s: 1, kill: agent 4 (twin)").process == "agent 4 (twin)");
-  CHECK(action_of<KillFault>("at_s: 1, kill: active coordinator").process == kActiveCoordinator);
+  CHECK(action_of<Kill>("at_s: 1, kill: agent 4").process == "agent 4");
+  CHECK(action_of<Kill>("at_s: 1, kill: agent 4 (twin)").process == "agent 4 (twin)");
+  CHECK(action_of<Kill>("at_s: 1, kill: active coordinator").process == kActiveCoordinator);
   CHECK(action_of<RestartFault>("at_s: 1, restart: coordinator 1").scenario_file.empty());
-  CHECK(action_of<PauseFault>("at_s: 1, pause: vision, seconds: 2").process == "vision");
+  CHECK(action_of<Pause>("at_s: 1, pause: vision, seconds: 2").processes == ProcessNames{"vision"});
   CHECK(action_of<TwinFault>("at_s: 1, twin: 4").robot == 4);
   CHECK(action_of<AbsenceFault>("at_s: 1, attest_absence: 1").robot == 1);
   const FaultTest test = with_fault("at_s: 1.5, pause: coordinator, seconds: 2");
@@ -96,14 +96,18 @@ TEST_CASE("a process restarts with another scenario, whose path is relative to t
 }
 
 TEST_CASE("a partition separates processes from all others, or from those that are named") {
-  const auto all = action_of<PartitionFault>("at_s: 1, partition: [coordinator, vision]");
-  CHECK(all.group == std::vector<std::string>{"coordinator", "vision"});
-  CHECK(all.others ==
-        std::vector<std::string>{"simulator", "coordinator 1", "agent 0", "agent 1", "agent 4"});
-  CHECK((all.cuts_in && all.cuts_out));
-  const auto some = action_of<PartitionFault>("at_s: 1, partition: agent 1, from: [vision], one_way: in");
-  CHECK(some.others == std::vector<std::string>{"vision"});
-  CHECK((some.cuts_in && !some.cuts_out));
+  const auto all = action_of<Partition>("at_s: 1, partition: [coordinator, vision]");
+  CHECK(all.from == ProcessNames{"coordinator", "vision"});
+  CHECK(all.to == ProcessNames{"simulator", "coordinator 1", "agent 0", "agent 1", "agent 4"});
+  CHECK(all.is_two_way);
+  const auto in = action_of<Partition>("at_s: 1, partition: agent 1, from: [vision], one_way: in");
+  CHECK(in.from == ProcessNames{"vision"});
+  CHECK(in.to == ProcessNames{"agent 1"});
+  CHECK_FALSE(in.is_two_way);
+  const auto out = action_of<Partition>("at_s: 1, partition: agent 1, from: [vision], one_way: out");
+  CHECK(out.from == ProcessNames{"agent 1"});
+  CHECK(out.to == ProcessNames{"vision"});
+  CHECK_FALSE(out.is_two_way);
 }
 
 TEST_CASE("network faults have the values of `sidestep fault network`") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/trial/test/runs/fault_schedule.hpp"
+#include "deploy/trial/fault/fault_schedule.hpp"
 
 #include "tests/catch.hpp"
 
@@ -18,9 +18,15 @@ struct Effects {
   std::vector<std::string> done;
 };
 
-const std::vector<PlannedFault> kFaults{{3, std::nullopt, KillFault{"agent 1"}, "kill agent 1"},
-                                        {1, 2.5, PauseFault{"vision"}, "pause vision"},
-                                        {3, 0.25, PauseFault{"simulator"}, "pause simulator"}};
+struct Fault {
+  FaultSpan span() const { return times; }
+
+  FaultSpan times;
+  std::string text;
+};
+
+const std::vector<Fault> kFaults{
+    {{3s, std::nullopt}, "kill agent 1"}, {{1s, 3500ms}, "pause vision"}, {{3s, 3250ms}, "pause simulator"}};
 
 TEST_CASE("faults begin and end at their times, those of the same time in the file's order") {
   const Time zero = time_from_ns(5'000'000'000);
