@@ -11,16 +11,15 @@ const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find
 }  // namespace
 
 Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
-             std::shared_ptr<PlanningScratch> scratch, const PlanningSettings& settings)
+             std::shared_ptr<PlanningScratch> scratch)
     : robot_(spec_of(scenario, robot)),
-      settings_(settings),
       scratch_(std::move(scratch)),
       cycle_(scenario.cycle),
       negotiation_(robot, incarnation, scenario.cycle),
-      observations_(scenario, robot_, scratch_->rules, settings_),
+      observations_(scenario, robot_, scratch_->rules),
       orders_(scenario, robot_),
-      planner_(scenario, robot_, settings_, *scratch_),
-      search_(*scratch_, settings_),
+      planner_(scenario, robot_, *scratch_),
+      search_(*scratch_),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)) {}
 
 bool Agent::on_feedback(const Feedback& feedback) {

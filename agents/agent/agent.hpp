@@ -11,7 +11,6 @@
 #include "agents/agent/observations.hpp"
 #include "agents/agent/order_execution.hpp"
 #include "agents/agent/planning_scratch.hpp"
-#include "agents/agent/planning_settings.hpp"
 #include "agents/agent/proposal_search.hpp"
 #include "common/config/scenario.hpp"
 #include "common/protocol/drop_counters.hpp"
@@ -33,7 +32,7 @@ class Agent {
 
   /// Precondition: `scenario` contains the robot, and `scratch` was made for this scenario.
   Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
-        std::shared_ptr<PlanningScratch> scratch, const PlanningSettings& settings = {});
+        std::shared_ptr<PlanningScratch> scratch);
 
   /// Processes feedback. Returns whether the agent should propose again immediately, because the robot does
   /// not execute the version that the last proposal was based on.
@@ -127,7 +126,6 @@ class Agent {
   msg::AgentState state(Time now) const;
 
   const RobotSpec robot_;
-  const PlanningSettings settings_;
   const std::shared_ptr<PlanningScratch> scratch_;
   const Duration cycle_;
   Negotiation negotiation_;

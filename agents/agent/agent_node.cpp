@@ -41,12 +41,12 @@ auto timed(DurationHistogram& histogram, Work work) {
 }  // namespace
 
 AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
-                     std::shared_ptr<PlanningScratch> scratch, const PlanningSettings& settings)
+                     std::shared_ptr<PlanningScratch> scratch)
     : bus_(bus),
       robot_(robot),
       cycle_(scenario.cycle),
       max_speed_mps_(scenario.limits.speed_mps),
-      agent_(scenario, robot, incarnation, std::move(scratch), settings),
+      agent_(scenario, robot, incarnation, std::move(scratch)),
       clocks_(budget_of(scenario), scenario.margin_m),
       world_(robot),
       changes_(events_, robot),

@@ -22,7 +22,7 @@ namespace sidestep {
 class AgentNode {
  public:
   AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
-            std::shared_ptr<PlanningScratch> scratch, const PlanningSettings& settings = {});
+            std::shared_ptr<PlanningScratch> scratch);
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 

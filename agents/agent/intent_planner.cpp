@@ -12,6 +12,13 @@
 namespace sidestep {
 namespace {
 
+/// For this long lower ids have priority, then higher ids.
+constexpr Duration kRightOfWayPeriod{10'000'000'000};
+/// Intended speeds below this fraction of the limit count as waiting.
+constexpr double kWaitingSpeedFraction = 0.5;
+constexpr double kRecoveryClearPath_m = 0.5;  ///< length of free path that a recovery direction requires
+constexpr double kRecoveryHold_s = 0.3;       ///< how long the velocity of a recovery is held
+
 /// The state at a time on a robot's trajectory, assuming that it does not brake: the velocity is that at the
 /// end of the first phase.
 State state_if_continued(const Trajectory& trajectory, Time t) {
@@ -23,10 +30,11 @@ State state_if_continued(const Trajectory& trajectory, Time t) {
 }
 
 /// The rest of a version's intent at a time; nullopt if the robot will stay at its goal.
-std::optional<Intent> intent_at(const Version& version, Time t, double at_goal_m) {
+std::optional<Intent> intent_at(const Version& version, Time t) {
   if (!version.intent) return std::nullopt;
   const bool is_at_rest = t >= version.trajectory.end();
-  if (is_at_rest && (version.trajectory.rest_position_m() - version.intent->goal_m).norm() < at_goal_m)
+  if (is_at_rest &&
+      (version.trajectory.rest_position_m() - version.intent->goal_m).norm() < kNeighbourAtGoal_m)
     return std::nullopt;
   Intent intent = *version.intent;
   intent.velocity_duration_s =
@@ -37,8 +45,8 @@ std::optional<Intent> intent_at(const Version& version, Time t, double at_goal_m
 }  // namespace
 
 IntentPlanner::IntentPlanner(RobotId robot, const std::optional<LocalMethods>& local, const FloorRules& rules,
-                             const PlanningSettings& settings, Steering& steering)
-    : robot_(robot), local_(local), rules_(rules), settings_(settings), steering_(steering) {}
+                             Steering& steering)
+    : robot_(robot), local_(local), rules_(rules), steering_(steering) {}
 
 Intent IntentPlanner::choose(const Query& query, const RouteToTarget& routes, Neighbours& neighbours) {
   return local_ ? steer_locally(query, routes, neighbours) : steer(query, routes, neighbours);
@@ -47,8 +55,8 @@ Intent IntentPlanner::choose(const Query& query, const RouteToTarget& routes, Ne
 Intent IntentPlanner::steer(const Query& query, const RouteToTarget& routes, Neighbours& neighbours) {
   const Route& route = query.route;
   if (recovery_.is_active()) {
-    return {rules_.limits.speed_mps * recovery_direction(query, routes), settings_.recovery_hold_s,
-            route.waypoint_m, route.end_m};
+    return {rules_.limits.speed_mps * recovery_direction(query, routes), kRecoveryHold_s, route.waypoint_m,
+            route.end_m};
   }
   steering_.clear();
   add_robots(query, neighbours);
@@ -65,14 +73,14 @@ Intent IntentPlanner::steer(const Query& query, const RouteToTarget& routes, Nei
 }
 
 void IntentPlanner::add_robots(const Query& query, Neighbours& neighbours) {
-  const double horizon_m = page_horizon_m(rules_, settings_);
+  const double horizon_m = page_horizon_m(rules_);
   for (const Version* version : neighbours.newest(query.at_start.position_m, horizon_m)) {
     const State state = state_if_continued(version->trajectory, query.start);
     const double separation = rules_.min_separation_m() + version->inflation_m;
-    const std::optional<Intent> intent = intent_at(*version, query.start, settings_.neighbour_at_goal_m);
+    const std::optional<Intent> intent = intent_at(*version, query.start);
     if (!intent)
       steering_.add_stationary(state.position_m, separation);
-    else if (has_right_of_way(version->robot, robot_, query.start, settings_.right_of_way_period))
+    else if (has_right_of_way(version->robot, robot_, query.start, kRightOfWayPeriod))
       steering_.add_moving(state, *intent, separation);
   }
 }
@@ -81,7 +89,7 @@ void IntentPlanner::add_obstacles(const Vec2& position, const ZoneMap& zones) {
   const double separation_m = required_separation_m(rules_);
   for (const Shape& obstacle : rules_.obstacles) {
     const Circle disc = disc_facing(position, obstacle);
-    const bool is_far = (disc.centre_m - position).norm() > page_horizon_m(rules_, settings_);
+    const bool is_far = (disc.centre_m - position).norm() > page_horizon_m(rules_);
     if (disc.radius_m > 0 || !is_far) steering_.add_stationary(disc.centre_m, disc.radius_m + separation_m);
   }
   if (rules_.map) add_walls(position);
@@ -91,7 +99,7 @@ void IntentPlanner::add_obstacles(const Vec2& position, const ZoneMap& zones) {
 
 void IntentPlanner::add_walls(const Vec2& position_m) {
   constexpr int kDirections = 32;
-  const double horizon_m = page_horizon_m(rules_, settings_), separation_m = required_separation_m(rules_);
+  const double horizon_m = page_horizon_m(rules_), separation_m = required_separation_m(rules_);
   if (const auto nearest = rules_.map->disc_facing(position_m, separation_m))
     steering_.add_stationary(nearest->centre_m, nearest->radius_m + separation_m);
   for (int i = 0; i < kDirections; ++i) {
@@ -114,8 +122,7 @@ Intent IntentPlanner::steer_locally(Query query, const RouteToTarget& routes, Ne
     local_driver_.emplace(*local_, rules_.field, rules_.radius_m, required_separation_m(rules_),
                           rules_.limits);
   bodies_nearby_.clear();
-  for (const Version* version :
-       neighbours.newest(query.at_start.position_m, page_horizon_m(rules_, settings_)))
+  for (const Version* version : neighbours.newest(query.at_start.position_m, page_horizon_m(rules_)))
     bodies_nearby_.push_back({state_if_continued(version->trajectory, query.start).position_m,
                               rules_.radius_m + version->inflation_m});
   const LocalChoice choice = local_driver_->choose(
@@ -123,7 +130,7 @@ Intent IntentPlanner::steer_locally(Query query, const RouteToTarget& routes, Ne
   route.waypoint_m = choice.target_m;
   if (!choice.velocity_mps) return steer(query, routes, neighbours);
   preferred_mps_.assign(choice.preferred_mps.begin(), choice.preferred_mps.end());
-  return {*choice.velocity_mps, settings_.recovery_hold_s, choice.target_m, route.end_m};
+  return {*choice.velocity_mps, kRecoveryHold_s, choice.target_m, route.end_m};
 }
 
 std::span<const Vec2> IntentPlanner::preferred_accelerations(const Vec2& velocity_mps, Duration hold) {
@@ -134,16 +141,15 @@ std::span<const Vec2> IntentPlanner::preferred_accelerations(const Vec2& velocit
 }
 
 void IntentPlanner::on_search(const Intent& intent, bool desired_is_clear, double speed_mps, Time now) {
-  const bool is_waiting =
-      intent.velocity_duration_s > 0 &&
-      intent.velocity_mps.norm() < settings_.waiting_speed_fraction * rules_.limits.speed_mps;
+  const bool is_waiting = intent.velocity_duration_s > 0 &&
+                          intent.velocity_mps.norm() < kWaitingSpeedFraction * rules_.limits.speed_mps;
   recovery_.update(desired_is_clear && !is_waiting, speed_mps, now);
 }
 
 Vec2 IntentPlanner::recovery_direction(const Query& query, const RouteToTarget& routes) const {
   const Vec2& position = query.at_start.position_m;
   const Vec2 straight = (query.route.waypoint_m - position).stableNormalized();
-  const double length = std::min(query.route.length_m, settings_.recovery_clear_path_m);
+  const double length = std::min(query.route.length_m, kRecoveryClearPath_m);
   for (const double fraction : {1.0, 0.75, 0.5, 0.25}) {
     const Vec2 direction = rotated(straight, -fraction * recovery_.angle_rad());
     const Vec2 end = position + length * direction;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "agents/agent/neighbours.hpp"
-#include "agents/agent/planning_settings.hpp"
 #include "agents/agent/route_to_target.hpp"
 #include "agents/navigation/deadlock_recovery.hpp"
 #include "agents/navigation/local_driver.hpp"
@@ -28,10 +27,10 @@ class IntentPlanner {
     Duration max_hold{};  ///< how long an acceleration may be held
   };
 
-  /// `rules`, `settings` and `steering` must outlive this object. `steering` is working memory. `local`: the
+  /// `rules` and `steering` must outlive this object. `steering` is working memory. `local`: the
   /// local methods of the robot's planner; nullopt if it has none.
   IntentPlanner(RobotId robot, const std::optional<LocalMethods>& local, const FloorRules& rules,
-                const PlanningSettings& settings, Steering& steering);
+                Steering& steering);
 
   [[nodiscard]] Intent choose(const Query& query, const RouteToTarget& routes, Neighbours& neighbours);
   /// The accelerations that lead to the velocities that the local methods preferred in the last choice; empty
@@ -61,7 +60,6 @@ class IntentPlanner {
   const RobotId robot_;
   const std::optional<LocalMethods> local_;
   const FloorRules& rules_;
-  const PlanningSettings& settings_;
   Steering& steering_;
   DeadlockRecovery recovery_;
   LastChoice last_choice_;

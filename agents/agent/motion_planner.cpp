@@ -10,10 +10,16 @@
 namespace sidestep {
 namespace {
 
-std::span<const double> extra_clearances_m(const Scenario& scenario, const PlanningSettings& settings) {
-  // The wider a robot passes a corner, the earlier it sees what is behind it.
-  if (scenario.laser) return settings.clearances_in_sight_m;
-  return {&settings.extra_clearance_m, 1};
+/// Minimum time for which an acceleration is held, even if cycles are shorter. Motors take about 10 ms to
+/// reach an acceleration, so robots would deviate from versions that soon brake again.
+constexpr Duration kMinHold{16'000'000};
+/// A goal that is unreachable for longer than this is reported as blocked.
+constexpr Duration kBlockedAfter{300'000'000};
+constexpr double kStandstill_mps = 0.01;  ///< intended speeds below this count as standing still
+
+std::span<const double> extra_clearances_m(const Scenario& scenario) {
+  if (scenario.laser) return kClearancesInSight_m;
+  return {&kExtraClearance_m, 1};
 }
 
 NamedPlanner planner_of(const Scenario& scenario, const RobotSpec& robot) {
@@ -21,23 +27,21 @@ NamedPlanner planner_of(const Scenario& scenario, const RobotSpec& robot) {
 }
 
 /// Whether a robot that executes the version stays at the place.
-bool ends_at(const Version& base, const Vec2& place_m, double at_goal_m) {
-  return (base.trajectory.rest_position_m() - place_m).norm() < at_goal_m && base.inflation_m == 0;
+bool ends_at(const Version& base, const Vec2& place_m) {
+  return (base.trajectory.rest_position_m() - place_m).norm() < kAtGoal_m && base.inflation_m == 0;
 }
 
 }  // namespace
 
-MotionPlanner::MotionPlanner(const Scenario& scenario, const RobotSpec& robot,
-                             const PlanningSettings& settings, PlanningScratch& scratch)
+MotionPlanner::MotionPlanner(const Scenario& scenario, const RobotSpec& robot, PlanningScratch& scratch)
     : rules_(scratch.rules),
-      settings_(settings),
       cycle_(scenario.cycle),
-      surroundings_(rules_, settings),
-      route_(planner_of(scenario, robot), rules_, settings, extra_clearances_m(scenario, settings)),
-      blockage_(settings.blocked_after),
-      passage_(rules_, settings),
-      corners_(rules_.radius_m, settings),
-      intents_(robot.id, route_.local_methods(), rules_, settings, scratch.steering) {}
+      surroundings_(rules_),
+      route_(planner_of(scenario, robot), rules_, extra_clearances_m(scenario)),
+      blockage_(kBlockedAfter),
+      passage_(rules_),
+      corners_(rules_.radius_m),
+      intents_(robot.id, route_.local_methods(), rules_, scratch.steering) {}
 
 std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
   const Version& base = query.base;
@@ -73,7 +77,7 @@ Vec2 MotionPlanner::target_m(const Query& query) const {
 
 std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& target) {
   const bool gives_way = passage_.place_m().has_value();
-  if (ends_at(query.base, target, settings_.at_goal_m) && !is_kept_out(target)) {
+  if (ends_at(query.base, target) && !is_kept_out(target)) {
     if (!gives_way) blockage_.clear();
     route_.on_arrival();
     return std::nullopt;
@@ -87,8 +91,7 @@ std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& t
   if (!route) return std::nullopt;
   if (!gives_way) update_blockage(*route, query.now);
   passage_.on_route(*route);
-  const bool is_as_near_as_possible =
-      !route->reaches_goal && ends_at(query.base, route->end_m, settings_.at_goal_m);
+  const bool is_as_near_as_possible = !route->reaches_goal && ends_at(query.base, route->end_m);
   return is_as_near_as_possible ? std::nullopt : route;
 }
 
@@ -111,7 +114,7 @@ double MotionPlanner::max_speed_mps(const Query& query, const State& at_start) c
 }
 
 HoldBounds MotionPlanner::hold_bounds(int lead) const {
-  const Duration min = std::max(cycle_, settings_.min_hold);
+  const Duration min = std::max(cycle_, kMinHold);
   return {min, std::max(min, cycle_ * lead)};
 }
 
@@ -123,8 +126,8 @@ std::optional<MotionPlan> MotionPlanner::follow_intent(const Query& query, const
   const double max_speed = max_speed_mps(query, at_start);
   const double dead_reckoning_m = seen.own().dead_reckoning_m(at_start.position_m);
   const double length_m = std::min(route.length_m, dead_reckoning_m);
-  const IntentToFollow followed{
-      intent, at_start, length_m, rules_.limits, settings_.standstill_mps, hold_bounds(query.lead)};
+  const IntentToFollow followed{intent,        at_start,        length_m,
+                                rules_.limits, kStandstill_mps, hold_bounds(query.lead)};
   SearchQuery search{query.start, at_start};
   search.max_speed_mps = max_speed;
   AccelerationCommand desired;

@@ -42,9 +42,8 @@ class MotionPlanner {
     Rng& rng;
   };
 
-  /// `settings` and `scratch` must outlive this object.
-  MotionPlanner(const Scenario& scenario, const RobotSpec& robot, const PlanningSettings& settings,
-                PlanningScratch& scratch);
+  /// `scratch` must outlive this object.
+  MotionPlanner(const Scenario& scenario, const RobotSpec& robot, PlanningScratch& scratch);
 
   /// Plans the motion from `start` on. Returns nullopt if the base already ends where the robot wants to be,
   /// if the search for a route takes longer than this cycle, or if the robot must come to rest first.
@@ -85,7 +84,6 @@ class MotionPlanner {
   HoldBounds hold_bounds(int lead) const;
 
   const FloorRules& rules_;
-  const PlanningSettings& settings_;
   const Duration cycle_;
   const RouteSurroundings surroundings_;
   RouteToTarget route_;

@@ -9,16 +9,20 @@
 namespace sidestep {
 namespace {
 
+/// A robot stops if, for longer than this, vision has not observed it or its agent has received no list of
+/// obstacles.
+constexpr Duration kMaxFixAge{300'000'000};
+/// A robot stops if the coordinator has not compared any robots with their versions for longer than this.
+constexpr Duration kMaxWatchAge{600'000'000};
+
 /// Whether a time is recent. A time far in the future means that a clock has been set.
 bool is_recent(Time t, Time now, Duration max_age) { return std::chrono::abs(now - t) <= max_age; }
 
 }  // namespace
 
-Observations::Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules,
-                           const PlanningSettings& settings)
-    : settings_(settings),
-      max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
-      page_horizon_m_(page_horizon_m(rules, settings)),
+Observations::Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules)
+    : max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
+      page_horizon_m_(page_horizon_m(rules)),
       own_({robot.start_m, Vec2::Zero()}, drift_bound_m(scenario.tracking_bound_m)),
       neighbours_(robot.id),
       obstacles_(scenario.max_opponent_speed_mps, max_clock_difference_),
@@ -26,7 +30,7 @@ Observations::Observations(const Scenario& scenario, const RobotSpec& robot, con
                  std::max(scenario.max_opponent_speed_mps, scenario.limits.speed_mps),
                  max_clock_difference_) {
   neighbours_.set_horizon(robot.start_m, page_horizon_m_);
-  if (scenario.laser) laser_.emplace(scenario, rules, settings);
+  if (scenario.laser) laser_.emplace(scenario, rules);
 }
 
 void Observations::on_feedback(const Feedback& feedback) {
@@ -59,18 +63,16 @@ void Observations::on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now)
 }
 
 WaitReason Observations::wait_reason(Time now) const {
-  if (!is_recent(last_fix_, now, settings_.max_fix_age)) return WaitReason::kNotSeen;
-  if (laser_ && !is_recent(laser_->sight().captured_at(), now, settings_.max_fix_age))
-    return WaitReason::kNoScan;
-  if (!laser_ && !is_recent(obstacles_.complete_at(), now, settings_.max_fix_age))
-    return WaitReason::kNoObstacleList;
-  if (!is_recent(watched_until_, now, settings_.max_watch_age)) return WaitReason::kNotWatched;
+  if (!is_recent(last_fix_, now, kMaxFixAge)) return WaitReason::kNotSeen;
+  if (laser_ && !is_recent(laser_->sight().captured_at(), now, kMaxFixAge)) return WaitReason::kNoScan;
+  if (!laser_ && !is_recent(obstacles_.complete_at(), now, kMaxFixAge)) return WaitReason::kNoObstacleList;
+  if (!is_recent(watched_until_, now, kMaxWatchAge)) return WaitReason::kNotWatched;
   return WaitReason::kNone;
 }
 
 bool Observations::is_only_coordinator_blind(Time now) const {
-  const bool is_watched = is_recent(watched_until_, now, settings_.max_watch_age);
-  return is_recent(last_fix_, now, settings_.max_fix_age) && !is_watched;
+  const bool is_watched = is_recent(watched_until_, now, kMaxWatchAge);
+  return is_recent(last_fix_, now, kMaxFixAge) && !is_watched;
 }
 
 bool Observations::may_end_inflation(const Version& base, Time start) const {

@@ -10,7 +10,6 @@
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/observed_obstacles.hpp"
 #include "agents/agent/own_reports.hpp"
-#include "agents/agent/planning_settings.hpp"
 #include "agents/agent/robot_laser.hpp"
 #include "agents/agent/wait_reason.hpp"
 
@@ -22,9 +21,8 @@ namespace sidestep {
 /// to drive by. All times are by the robot's clock; `now` is an upper bound of the time.
 class Observations {
  public:
-  /// `rules` and `settings` must outlive this object.
-  Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules,
-               const PlanningSettings& settings);
+  /// `rules` must outlive this object.
+  Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules);
 
   void on_feedback(const Feedback& feedback);
   /// Processes a world state. If the robot's clock has not been measured yet, the observation is only
@@ -60,7 +58,6 @@ class Observations {
   void count_drops(DropCounters& drops) const;
 
  private:
-  const PlanningSettings& settings_;
   Duration max_clock_difference_;  // between two clocks that both stay within the clock bound
   double page_horizon_m_;
   OwnReports own_;

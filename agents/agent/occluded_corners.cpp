@@ -6,25 +6,32 @@
 #include <limits>
 
 namespace sidestep {
+namespace {
+
+// A corner that stops the robot for longer than this is avoided for a while, if the robot has not moved
+// farther away meanwhile.
+constexpr Duration kOccludedAfter{3'000'000'000}, kOccludedCornerMemory{20'000'000'000};
+constexpr double kOccludedRange_m = 0.4;
+/// If a person or robot is this near, the robot's stop is not attributed to a corner.
+constexpr double kCornerSlack_m = 0.4;
+
+}  // namespace
 
 bool OccludedCorners::update(const Approach& approach, const RobotLaser& laser, Time now) {
   std::erase_if(corners_, [&](const Corner& corner) { return now >= corner.until; });
   if (!measure_standstill(approach, now)) return false;
   const std::optional<Vec2> corner = corner_ahead_m(approach, laser.hidden_space());
   if (!corner || is_body(*corner, laser)) return false;
-  std::erase_if(corners_,
-                [&](const Corner& c) { return (c.at_m - *corner).norm() < settings_.corner_slack_m; });
-  corners_.push_back({*corner, now + settings_.occluded_corner_memory});
+  std::erase_if(corners_, [&](const Corner& c) { return (c.at_m - *corner).norm() < kCornerSlack_m; });
+  corners_.push_back({*corner, now + kOccludedCornerMemory});
   return true;
 }
 
 bool OccludedCorners::measure_standstill(const Approach& approach, Time now) {
   if (approach.is_creeping && !standstill_) standstill_ = {approach.at_start.position_m, approach.start};
   if (!standstill_) return false;
-  if ((approach.at_start.position_m - standstill_->at_m).norm() > settings_.occluded_range_m)
-    standstill_.reset();
-  if (!approach.is_creeping || !standstill_ || now - standstill_->since < settings_.occluded_after)
-    return false;
+  if ((approach.at_start.position_m - standstill_->at_m).norm() > kOccludedRange_m) standstill_.reset();
+  if (!approach.is_creeping || !standstill_ || now - standstill_->since < kOccludedAfter) return false;
   standstill_->since = now;
   return true;
 }
@@ -47,7 +54,7 @@ std::optional<Vec2> OccludedCorners::corner_ahead_m(const Approach& approach,
 
 bool OccludedCorners::is_body(const Vec2& corner, const RobotLaser& laser) const {
   const auto is_of = [&](const Circle& disc) {
-    return (disc.centre_m - corner).norm() < disc.radius_m + settings_.corner_slack_m;
+    return (disc.centre_m - corner).norm() < disc.radius_m + kCornerSlack_m;
   };
   const auto is_of_person = [&](const LaserTrack& track) {
     return is_of({track.position_m, track.radius_m});

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "agents/agent/planning_settings.hpp"
 #include "agents/agent/robot_laser.hpp"
 #include "common/motion/trajectory.hpp"
 
@@ -15,9 +14,7 @@ namespace sidestep {
 /// routes avoid for a while.
 class OccludedCorners {
  public:
-  /// `settings` must outlive this object.
-  OccludedCorners(double radius_m, const PlanningSettings& settings)
-      : radius_m_(radius_m), settings_(settings) {}
+  explicit OccludedCorners(double radius_m) : radius_m_(radius_m) {}
 
   /// What a robot does at a corner.
   struct Approach {
@@ -58,7 +55,6 @@ class OccludedCorners {
   bool is_body(const Vec2& corner_m, const RobotLaser& laser) const;
 
   double radius_m_;  // the robot's
-  const PlanningSettings& settings_;
   std::optional<Standstill> standstill_;
   std::vector<Corner> corners_;
 };

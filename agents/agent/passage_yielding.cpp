@@ -7,11 +7,19 @@
 #include "agents/agent/planning_distances.hpp"
 
 namespace sidestep {
+namespace {
 
-PassageYielding::PassageYielding(const FloorRules& rules, const PlanningSettings& settings)
+// A robot has the right of way where robots cannot pass each other for the time to drive this far plus a
+// fixed time.
+constexpr double kPassage_m = 40, kPassage_s = 10;
+/// Trips of other robots; for longer ones, only the next waypoint counts.
+constexpr double kLongestTrip_m = 20;
+
+}  // namespace
+
+PassageYielding::PassageYielding(const FloorRules& rules)
     : rules_(rules),
-      settings_(settings),
-      passage_period_(from_seconds(settings.passage_s + settings.passage_m / rules.limits.speed_mps)),
+      passage_period_(from_seconds(kPassage_s + kPassage_m / rules.limits.speed_mps)),
       give_way_({rules.field, rules.radius_m, required_separation_m(rules), rules.min_separation_m()},
                 {.give_up_after = passage_period_ * 2 / 3}) {}
 
@@ -35,8 +43,8 @@ void PassageYielding::on_route(const Route& route) {
 std::vector<OtherRobot> PassageYielding::others_in_passages(Time now, Observations& observations,
                                                             const Assignment& assignment) const {
   std::vector<OtherRobot> others;
-  for (const Version* version : observations.neighbours().newest(observations.own().estimate().position_m,
-                                                                 page_horizon_m(rules_, settings_)))
+  for (const Version* version :
+       observations.neighbours().newest(observations.own().estimate().position_m, page_horizon_m(rules_)))
     others.push_back(other_nearby(*version, now, assignment));
   for (const RobotId robot : give_way_.yields_to()) {
     const OtherAssignment orders = assignment.other(robot);
@@ -54,7 +62,7 @@ OtherRobot PassageYielding::other_nearby(const Version& version, Time now,
   other.goals_m = {version.intent->goal_m, version.intent->target_m};
   // A route across a large floor would take too long to plan.
   for (std::optional<Vec2>& goal : other.goals_m)
-    if ((*goal - other.position_m).norm() > settings_.longest_trip_m) goal = version.intent->waypoint_m;
+    if ((*goal - other.position_m).norm() > kLongestTrip_m) goal = version.intent->waypoint_m;
   other.has_right_of_way = assignment.yields_to({version.robot, orders.number}, now, passage_period_);
   return other;
 }

@@ -16,8 +16,8 @@ namespace sidestep {
 /// instead of its goal.
 class PassageYielding {
  public:
-  /// `rules` and `settings` must outlive this object.
-  PassageYielding(const FloorRules& rules, const PlanningSettings& settings);
+  /// `rules` must outlive this object.
+  explicit PassageYielding(const FloorRules& rules);
 
   /// Call it once per planning.
   void update(Time now, Observations& observations, const Assignment& assignment, const RouteToTarget& route,
@@ -37,7 +37,6 @@ class PassageYielding {
   OtherRobot other_nearby(const Version& version, Time now, const Assignment& assignment) const;
 
   const FloorRules& rules_;
-  const PlanningSettings& settings_;
   Duration passage_period_;  // how long a robot has the right of way in a passage
   GiveWay give_way_;
   // Remaining length of the last route; infinite if it does not lead to the goal.

@@ -6,8 +6,8 @@
 
 namespace sidestep {
 
-ProposalSearch::ProposalSearch(PlanningScratch& scratch, const PlanningSettings& settings)
-    : scratch_(scratch), horizon_m_(search_horizon_m(scratch.rules, settings)) {}
+ProposalSearch::ProposalSearch(PlanningScratch& scratch)
+    : scratch_(scratch), horizon_m_(search_horizon_m(scratch.rules)) {}
 
 SearchResult ProposalSearch::find(const SearchQuery& query, const Version& base, const Neighbours& neighbours,
                                   Rng& rng) {

@@ -3,7 +3,6 @@
 
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/planning_scratch.hpp"
-#include "agents/agent/planning_settings.hpp"
 #include "agents/safety/safety_search.hpp"
 
 namespace sidestep {
@@ -14,7 +13,7 @@ namespace sidestep {
 class ProposalSearch {
  public:
   /// `scratch` is working memory, and must outlive this object.
-  ProposalSearch(PlanningScratch& scratch, const PlanningSettings& settings);
+  explicit ProposalSearch(PlanningScratch& scratch);
 
   /// Finds no candidate if every motion would come too near to something; the robot then brakes.
   [[nodiscard]] SearchResult find(const SearchQuery& query, const Version& base, const Neighbours& neighbours,

@@ -7,6 +7,9 @@
 namespace sidestep {
 namespace {
 
+constexpr double kMaxHeadingError_rad = 0.02;  ///< bound of the error of a scan's heading
+constexpr double kCreep_mps = 0.03;            ///< a slower robot counts as being at rest
+
 /// The position of a robot at a time, which may be shortly before its version starts.
 Vec2 position_at(const Trajectory& trajectory, Time t) {
   if (t >= trajectory.start()) return trajectory.state_at(t).position_m;
@@ -16,15 +19,14 @@ Vec2 position_at(const Trajectory& trajectory, Time t) {
 
 }  // namespace
 
-RobotLaser::RobotLaser(const Scenario& scenario, const FloorRules& rules, const PlanningSettings& settings)
-    : settings_(settings),
-      rules_(rules),
+RobotLaser::RobotLaser(const Scenario& scenario, const FloorRules& rules)
+    : rules_(rules),
       max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
       max_person_speed_mps_(scenario.max_opponent_speed_mps),
       scan_period_(from_seconds(1 / scenario.laser->rate_hz)),
       sight_(*scenario.laser, rules,
              LaserSightSettings{.position_error_m = scenario.tracking_bound_m,
-                                .heading_error_rad = settings.max_heading_error_rad}) {}
+                                .heading_error_rad = kMaxHeadingError_rad}) {}
 
 void RobotLaser::on_scan(const LaserScan& scan, Neighbours& neighbours, Time now) {
   if (scan.captured_at > now + max_clock_difference_) {
@@ -32,7 +34,7 @@ void RobotLaser::on_scan(const LaserScan& scan, Neighbours& neighbours, Time now
     return;
   }
   robots_.clear();
-  for (const Version* version : neighbours.newest(scan.at_m, page_horizon_m(rules_, settings_)))
+  for (const Version* version : neighbours.newest(scan.at_m, page_horizon_m(rules_)))
     robots_.push_back({position_at(version->trajectory, scan.captured_at), rules_.radius_m});
   sight_.update(scan, robots_);
 }
@@ -41,8 +43,8 @@ HiddenSpace RobotLaser::hidden_space() const {
   const Visibility& visibility = sight_.visibility();
   HiddenSpace hidden{visibility.frontiers(), visibility.closed_gaps(), sight_.captured_at(),
                      max_person_speed_mps_};
-  hidden.heading_error_rad = settings_.max_heading_error_rad;
-  hidden.creep_mps = settings_.creep_mps;
+  hidden.heading_error_rad = kMaxHeadingError_rad;
+  hidden.creep_mps = kCreep_mps;
   hidden.observed_from_m = sight_.beams().at_m();
   return hidden;
 }

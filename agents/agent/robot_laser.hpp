@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "agents/agent/neighbours.hpp"
-#include "agents/agent/planning_settings.hpp"
 #include "agents/perception/laser_sight.hpp"
 #include "agents/safety/hidden_space.hpp"
 #include "common/config/scenario.hpp"
@@ -17,8 +16,8 @@ namespace sidestep {
 /// explain part of what the laser sees. Output: the sight, and the floor that the laser did not see.
 class RobotLaser {
  public:
-  /// `rules` and `settings` must outlive this object. Precondition: the robots of the scenario have lasers.
-  RobotLaser(const Scenario& scenario, const FloorRules& rules, const PlanningSettings& settings);
+  /// `rules` must outlive this object. Precondition: the robots of the scenario have lasers.
+  RobotLaser(const Scenario& scenario, const FloorRules& rules);
 
   /// Processes a scan. Drops and counts it if its time is in the future. `now` is an upper bound of the time
   /// by the robot's clock.
@@ -38,7 +37,6 @@ class RobotLaser {
   std::uint64_t invalid() const { return invalid_; }
 
  private:
-  const PlanningSettings& settings_;
   const FloorRules& rules_;
   Duration max_clock_difference_;
   double max_person_speed_mps_;

@@ -8,6 +8,18 @@
 #include "agents/agent/planning_distances.hpp"
 
 namespace sidestep {
+namespace {
+
+constexpr Duration kStationaryAfter{
+    500'000'000};                          ///< a robot at rest for longer than this counts as an obstacle
+constexpr std::size_t kMaxStationary = 8;  ///< number of stationary robots considered, the nearest ones first
+constexpr std::size_t kMaxMoving = 4;      ///< number of moving obstacles considered, the nearest ones first
+constexpr double kMovingRange_m = 1.5;     ///< moving obstacles farther away are ignored
+/// Their positions and radii are rounded to this grid to avoid replanning in every cycle.
+constexpr double kMovingGrid_m = 0.05;
+constexpr Duration kMovingHorizon{150'000'000};  ///< radii are enlarged by their motion over this time
+
+}  // namespace
 
 std::vector<TemporaryObstacle> RouteSurroundings::find(const Vec2& target, Time now,
                                                        Observations& observations,
@@ -19,8 +31,8 @@ std::vector<TemporaryObstacle> RouteSurroundings::find(const Vec2& target, Time 
   if (const RobotLaser* laser = observations.laser())
     found = find_in_sight(target, *laser, corners, reaction);
   for (const Circle& circle : find_moving(target, now, observations)) found.push_back({circle});
-  for (const Neighbours::Stationary& other : observations.neighbours().find_stationary(
-           now - settings_.stationary_after, position, settings_.max_stationary)) {
+  for (const Neighbours::Stationary& other :
+       observations.neighbours().find_stationary(now - kStationaryAfter, position, kMaxStationary)) {
     // A robot that stands on the target but is going to leave is no reason to go elsewhere.
     const bool covers = (other.position_m - target).norm() <= rules_.radius_m + required_separation_m(rules_);
     if (!covers || will_stay(other, assignment, position))
@@ -46,22 +58,21 @@ std::vector<TemporaryObstacle> RouteSurroundings::find_in_sight(const Vec2& targ
 std::vector<Circle> RouteSurroundings::find_moving(const Vec2& target, Time now,
                                                    Observations& observations) const {
   const Vec2& position = observations.own().estimate().position_m;
-  const double grid_m = settings_.moving_grid_m;
   std::vector<Circle> found;
   const auto add = [&](const MovingObstacle& obstacle) {
-    if ((obstacle.position_m - position).norm() > settings_.moving_range_m) return;
-    const Vec2 centre = (obstacle.position_m / grid_m).array().round().matrix() * grid_m;
-    const double radius = std::round(obstacle.radius_m / grid_m) * grid_m;
+    if ((obstacle.position_m - position).norm() > kMovingRange_m) return;
+    const Vec2 centre = (obstacle.position_m / kMovingGrid_m).array().round().matrix() * kMovingGrid_m;
+    const double radius = std::round(obstacle.radius_m / kMovingGrid_m) * kMovingGrid_m;
     // The inflated circle must not cover the target.
     const double max_inflation =
-        (centre - target).norm() - radius - planning_separation_m(rules_, settings_) - settings_.at_goal_m;
-    const double inflation = grid_m + obstacle.speed_mps * to_seconds(settings_.moving_horizon);
+        (centre - target).norm() - radius - planning_separation_m(rules_) - kAtGoal_m;
+    const double inflation = kMovingGrid_m + obstacle.speed_mps * to_seconds(kMovingHorizon);
     found.push_back({centre, radius + std::clamp(max_inflation, 0.0, inflation)});
   };
   if (const RobotLaser* laser = observations.laser()) {
     // Routes keep a large distance from walls in order to see around corners early, but this is not needed
     // near people. If people are in the way, the robot waits rather than squeezing past along a wall.
-    const double less_m = settings_.clearances_in_sight_m.front() - settings_.extra_clearance_m;
+    const double less_m = kClearancesInSight_m.front() - kExtraClearance_m;
     for (const LaserTrack& track : laser->sight().tracks())
       add({track.position_m, std::max(0.05, track.radius_m - less_m), track.seen_at, 0});
   } else {
@@ -69,7 +80,7 @@ std::vector<Circle> RouteSurroundings::find_moving(const Vec2& target, Time now,
   }
   for (const UncontrolledBody& body : observations.displaced().recent(now)) add(body.reach);
   std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - position).squaredNorm(); });
-  if (found.size() > settings_.max_moving) found.resize(settings_.max_moving);
+  if (found.size() > kMaxMoving) found.resize(kMaxMoving);
   std::ranges::sort(found, {}, [](const Circle& c) { return std::pair(c.centre_m.x(), c.centre_m.y()); });
   return found;
 }
@@ -80,10 +91,9 @@ bool RouteSurroundings::will_stay(const Neighbours::Stationary& other, const Ass
   if (orders.is_held || !orders.has_to_go) return true;
   // The other robot waits as near to its goal as it can get. But if this robot is what blocks it, one of the
   // two must move.
-  const bool waits =
-      other.intent && (other.position_m - other.intent->goal_m).norm() < settings_.neighbour_at_goal_m;
+  const bool waits = other.intent && (other.position_m - other.intent->goal_m).norm() < kNeighbourAtGoal_m;
   return waits && orders.goal_m &&
-         (position - *orders.goal_m).norm() > rules_.radius_m + planning_separation_m(rules_, settings_);
+         (position - *orders.goal_m).norm() > rules_.radius_m + planning_separation_m(rules_);
 }
 
 }  // namespace sidestep

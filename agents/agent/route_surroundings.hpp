@@ -15,9 +15,8 @@ namespace sidestep {
 /// occluded corners. Inputs: what the agent has observed, and what other robots are ordered to do.
 class RouteSurroundings {
  public:
-  /// `rules` and `settings` must outlive this object.
-  RouteSurroundings(const FloorRules& rules, const PlanningSettings& settings)
-      : rules_(rules), settings_(settings) {}
+  /// `rules` must outlive this object.
+  explicit RouteSurroundings(const FloorRules& rules) : rules_(rules) {}
 
   /// The obstacles on the way to the target. `reaction` is the time from a scan to the robot's motion.
   std::vector<TemporaryObstacle> find(const Vec2& target_m, Time now, Observations& observations,
@@ -35,7 +34,6 @@ class RouteSurroundings {
                  const Vec2& position_m) const;
 
   const FloorRules& rules_;
-  const PlanningSettings& settings_;
 };
 
 }  // namespace sidestep

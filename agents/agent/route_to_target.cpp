@@ -5,13 +5,16 @@
 #include <utility>
 
 namespace sidestep {
+namespace {
 
-RouteToTarget::RouteToTarget(NamedPlanner planner, const FloorRules& rules, const PlanningSettings& settings,
+/// A free route is kept for this long after obstacles have changed.
+constexpr Duration kMaxRouteAge{200'000'000};
+
+}  // namespace
+
+RouteToTarget::RouteToTarget(NamedPlanner planner, const FloorRules& rules,
                              std::span<const double> extra_clearances_m)
-    : planner_(std::move(planner)),
-      rules_(rules),
-      settings_(settings),
-      extra_clearances_m_(extra_clearances_m) {}
+    : planner_(std::move(planner)), rules_(rules), extra_clearances_m_(extra_clearances_m) {}
 
 void RouteToTarget::set_zones(std::span<const Order> zones) {
   zones_ = ZoneMap(zones);
@@ -40,7 +43,7 @@ void RouteToTarget::begin_if_due(const Query& query, std::span<const TemporaryOb
   }
   is_outdated_ |= obstacles_->set_temporary(temporary);
   const bool is_new = !has_route_ || query.target_m != route_planner_->goal_m();
-  const Duration max_age = from_seconds(to_seconds(settings_.max_route_age) * route_planner_->effort());
+  const Duration max_age = from_seconds(to_seconds(kMaxRouteAge) * route_planner_->effort());
   const bool is_old = std::chrono::abs(query.now - routed_at_) >= max_age;
   if (is_new || (is_outdated_ && (is_old || !route_planner_->is_free_from(query.robot_m)))) {
     route_planner_->begin(query.target_m);

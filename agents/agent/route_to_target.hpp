@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 
-#include "agents/agent/planning_settings.hpp"
 #include "agents/agent/route_obstacles.hpp"
 #include "agents/navigation/route_planner.hpp"
 #include "agents/navigation/zone_map.hpp"
@@ -25,9 +24,8 @@ class RouteToTarget {
   };
 
   /// `extra_clearances_m` are the preferred clearances from obstacles beyond the required one, in descending
-  /// order. They, `rules` and `settings` must outlive this object.
-  RouteToTarget(NamedPlanner planner, const FloorRules& rules, const PlanningSettings& settings,
-                std::span<const double> extra_clearances_m);
+  /// order. They and `rules` must outlive this object.
+  RouteToTarget(NamedPlanner planner, const FloorRules& rules, std::span<const double> extra_clearances_m);
   RouteToTarget(const RouteToTarget&) = delete;
   RouteToTarget& operator=(const RouteToTarget&) = delete;
 
@@ -69,7 +67,6 @@ class RouteToTarget {
 
   const NamedPlanner planner_;
   const FloorRules& rules_;
-  const PlanningSettings& settings_;
   std::span<const double> extra_clearances_m_;
   ZoneMap zones_;
   std::optional<RouteObstacles> obstacles_;

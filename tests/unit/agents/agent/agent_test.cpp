@@ -67,8 +67,7 @@ struct DrivenAgent {
   Scenario scenario = two_goals();
   Agent agent;
 
-  explicit DrivenAgent(const PlanningSettings& settings = {})
-      : agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario), settings) {
+  DrivenAgent() : agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario)) {
     agent.on_feedback(resting_at({0, 0}, 0.5));
     become_ready(agent);
   }
@@ -199,15 +198,6 @@ TEST_CASE("a robot does not drive to a place that an unlisted obstacle could rea
   CHECK(drives(2));
   CHECK_FALSE(drives(0.1));  // as large as the robot plus its margin
   CHECK_FALSE(drives(0));
-}
-
-TEST_CASE("planning settings replace the defaults") {
-  PlanningSettings settings;
-  settings.max_fix_age = from_seconds(0.45);
-  DrivenAgent d(settings);
-  d.observe(0, 0.6, 0.61);
-  CHECK(d.plans(1.04));
-  CHECK_FALSE(d.plans(1.06));
 }
 
 TEST_CASE(
