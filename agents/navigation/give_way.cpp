@@ -5,11 +5,28 @@
 #include <utility>
 
 namespace sidestep {
+namespace {
+
+/// Without progress for this long, a robot may be in the way of another one.
+constexpr Duration kStuckAfter{1'500'000'000};
+/// Progress means coming this much nearer to the goal than ever before.
+constexpr double kProgress_m = 0.1;
+/// Interval between two searches, and between two checks whether the way is free.
+constexpr Duration kRetryAfter{500'000'000};
+/// A place is given up if the robot comes no nearer to it for this long.
+constexpr Duration kUnreachableAfter{3'000'000'000};
+/// After a longer time without decisions, progress is measured anew.
+constexpr Duration kMaxPause{1'000'000'000};
+/// Places up to this distance are searched first, later ones up to twice as far.
+constexpr double kFirstRange_m = 1;
+constexpr double kLongestRange_m = 8;
+
+}  // namespace
 
 GiveWay::GiveWay(const GiveWayFloor& floor, const GiveWaySettings& settings)
     : settings_(settings),
       search_(floor),
-      range_m_(settings.first_range_m),
+      range_m_(kFirstRange_m),
       min_separation_m_(floor.min_separation_m) {}
 
 void GiveWay::restart(Time now) {
@@ -20,21 +37,21 @@ void GiveWay::restart(Time now) {
   trips_.clear();
   unreachable_.clear();
   search_.cancel();
-  range_m_ = settings_.first_range_m;
+  range_m_ = kFirstRange_m;
 }
 
 bool GiveWay::track_progress(Time now, double remaining_m) {
-  const bool is_new = now - called_at_ > settings_.max_pause || now < progress_at_;
+  const bool is_new = now - called_at_ > kMaxPause || now < progress_at_;
   called_at_ = now;
   remaining_m_ = remaining_m;
-  if (is_new || remaining_m < shortest_m_ - settings_.progress_m) {
+  if (is_new || remaining_m < shortest_m_ - kProgress_m) {
     shortest_m_ = remaining_m;
     progress_at_ = now;
     if (way_.empty()) search_.cancel();
   }
   if (search_.is_active()) return true;
-  if (way_.empty() && now - progress_at_ < settings_.stuck_after) return false;
-  return now - checked_at_ >= settings_.retry_after || now < checked_at_;
+  if (way_.empty() && now - progress_at_ < kStuckAfter) return false;
+  return now - checked_at_ >= kRetryAfter || now < checked_at_;
 }
 
 void GiveWay::begin_search(Time now, const Vec2& position_m, std::span<const OtherRobot> others,
@@ -67,11 +84,11 @@ void GiveWay::check_place(Time now, const Vec2& position_m, std::span<const Othe
     return other.is_near && (other.position_m - place).norm() < min_separation_m_;
   });
   const double distance_m = (position_m - place).norm();
-  if (distance_m < nearest_m_ - settings_.progress_m / 2 || distance_m < settings_.progress_m) {
+  if (distance_m < nearest_m_ - kProgress_m / 2 || distance_m < kProgress_m) {
     nearest_m_ = distance_m;
     nearer_at_ = now;
   }
-  const bool is_unreachable = now - nearer_at_ >= settings_.unreachable_after;
+  const bool is_unreachable = now - nearer_at_ >= kUnreachableAfter;
   if (is_unreachable) unreachable_.push_back(place);
   if (is_covered || is_unreachable) way_.clear();
 }
@@ -79,7 +96,7 @@ void GiveWay::check_place(Time now, const Vec2& position_m, std::span<const Othe
 void GiveWay::remember_trips(const OtherRobot& other) {
   trips_.erase(other.id);
   for (const std::optional<Vec2>& goal : other.goals_m)
-    if (goal && (*goal - other.position_m).norm() >= settings_.progress_m)
+    if (goal && (*goal - other.position_m).norm() >= kProgress_m)
       trips_.emplace(other.id, Trip(other.position_m, *goal));
 }
 
@@ -91,7 +108,7 @@ void GiveWay::search(Time now, Rng& rng) {
     return;
   }
   if (!search_.is_in_the_way()) {
-    range_m_ = settings_.first_range_m;
+    range_m_ = kFirstRange_m;
     shortest_m_ = remaining_m_;
     yields_to_.clear();
     unreachable_.clear();
@@ -101,7 +118,7 @@ void GiveWay::search(Time now, Rng& rng) {
   began_at_ = nearer_at_ = now;
   nearest_m_ = kInfinity_m;
   if (way_.empty())
-    range_m_ = std::min(2 * range_m_, settings_.longest_range_m);
+    range_m_ = std::min(2 * range_m_, kLongestRange_m);
   else
     yields_to_ = searched_;
 }

@@ -16,18 +16,7 @@
 namespace sidestep {
 
 struct GiveWaySettings {
-  /// Without progress for this long, a robot may be in the way of another one.
-  Duration stuck_after{1'500'000'000};
-  /// Progress means coming this much nearer to the goal than ever before.
-  double progress_m = 0.1;
-  /// Interval between two searches, and between two checks whether the way is free.
-  Duration retry_after{500'000'000};
-  /// A place is given up if the robot comes no nearer to it for this long.
-  Duration unreachable_after{3'000'000'000};
-  Duration give_up_after{20'000'000'000};
-  Duration max_pause{1'000'000'000};  ///< after a longer time without decisions, progress is measured anew
-  double first_range_m = 1;  ///< places up to this distance are searched first, later ones up to twice as far
-  double longest_range_m = 8;
+  Duration give_up_after{20'000'000'000};  ///< a robot gives way for no longer than this
 };
 
 /// Another robot, and the places to which it may want to go.

@@ -7,6 +7,9 @@
 namespace sidestep {
 namespace {
 
+constexpr double kRouteClearance_m =
+    0.02;                              ///< distance from other robots' routes beyond the minimum separation
+constexpr std::size_t kMaxPlans = 12;  ///< maximum number of paths to places that are planned in one search
 constexpr std::size_t kMaxPathSamples = 5000;
 
 /// Whether a robot that drives along this way, or stays at its only place, would block a route.
@@ -32,8 +35,8 @@ bool is_farther(const std::pair<double, Vec2>& a, const std::pair<double, Vec2>&
 
 }  // namespace
 
-GiveWaySearch::GiveWaySearch(const GiveWayFloor& floor, const GiveWaySearchSettings& settings)
-    : floor_(floor), settings_(settings), planner_(make_driving_planner("lazy-visibility")) {}
+GiveWaySearch::GiveWaySearch(const GiveWayFloor& floor)
+    : floor_(floor), planner_(make_driving_planner("lazy-visibility")) {}
 
 Circle GiveWaySearch::disc_at(const Vec2& position_m) const {
   return {position_m, std::max(0.0, floor_.min_separation_m - floor_.required_m)};
@@ -95,14 +98,14 @@ void GiveWaySearch::begin_places() {
   // Robots are never exactly at rest.
   for (const Vec2& other : query_.others_m) {
     Circle disc = disc_at(other);
-    disc.radius_m += settings_.clearance_m;
+    disc.radius_m += kRouteClearance_m;
     fixed_.add(disc);
   }
   candidates_.clear();
   taken_.clear();
   unreachable_.clear();
   ring_ = index_ = 0;
-  rings_ = static_cast<int>(query_.range_m / (settings_.grid_fraction * floor_.radius_m));
+  rings_ = static_cast<int>(query_.range_m / (kGridFraction * floor_.radius_m));
   stage_ = Stage::kPlaces;
 }
 
@@ -116,12 +119,12 @@ void GiveWaySearch::search_places(Rng& rng) {
       unreachable_.push_back(*place);
   }
   const bool are_all_examined = ring_ > rings_ && candidates_.empty();
-  if (!way_.empty() || are_all_examined || unreachable_.size() == settings_.max_plans) stage_ = Stage::kIdle;
+  if (!way_.empty() || are_all_examined || unreachable_.size() == kMaxPlans) stage_ = Stage::kIdle;
 }
 
 std::optional<Vec2> GiveWaySearch::next_place() {
-  const double spacing_m = settings_.grid_fraction * floor_.radius_m;
-  for (int examined = 0; examined < settings_.max_places; ++examined) {
+  const double spacing_m = kGridFraction * floor_.radius_m;
+  for (int examined = 0; examined < kMaxPlaces; ++examined) {
     // All places that are nearer than the ring have been examined.
     if (!candidates_.empty() && (ring_ > rings_ || candidates_.front().first <= ring_ * spacing_m)) {
       std::ranges::pop_heap(candidates_, is_farther);
@@ -147,7 +150,7 @@ bool GiveWaySearch::take_candidate(const Vec2& place) {
   const Vec2 cell = (place - query_.position_m) / (2 * floor_.radius_m);
   const std::pair key{std::lround(cell.x()), std::lround(cell.y())};
   if (taken_.contains(key)) return false;
-  const double separation_m = floor_.min_separation_m + settings_.clearance_m;
+  const double separation_m = floor_.min_separation_m + kRouteClearance_m;
   const auto is_near = [&](const Vec2& other) { return (other - place).norm() < 2 * floor_.radius_m; };
   if (std::ranges::any_of(query_.unreachable_m, is_near)) return false;
   if (!floor_.field.contains(place, floor_.radius_m) || fixed_.touches(place, floor_.required_m) ||
@@ -167,7 +170,7 @@ std::optional<Vec2> GiveWaySearch::next_of_grid() {
     ++ring_;
     index_ = 0;
   }
-  return query_.position_m + settings_.grid_fraction * floor_.radius_m * cell;
+  return query_.position_m + kGridFraction * floor_.radius_m * cell;
 }
 
 std::optional<std::vector<Vec2>> GiveWaySearch::path(const Vec2& from_m, const Vec2& to_m, Rng& rng) const {

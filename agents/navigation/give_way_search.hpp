@@ -19,13 +19,6 @@ struct GiveWayFloor {
   double min_separation_m;  ///< distance between the centres of two robots
 };
 
-struct GiveWaySearchSettings {
-  double clearance_m = 0.02;   ///< distance from other robots' routes beyond the minimum separation
-  double grid_fraction = 0.5;  ///< spacing of the examined places, as a fraction of the robot's radius
-  std::size_t max_plans = 12;  ///< maximum number of paths to places that are planned in one search
-  int max_places = 500;        ///< maximum number of places that one step examines
-};
-
 /// The input of a search.
 struct GiveWayQuery {
   Vec2 position_m{0, 0};
@@ -43,7 +36,11 @@ struct GiveWayQuery {
 /// most one path and examines a limited number of places, so that it fits into a control cycle.
 class GiveWaySearch {
  public:
-  explicit GiveWaySearch(const GiveWayFloor& floor, const GiveWaySearchSettings& settings = {});
+  /// Spacing of the examined places, as a fraction of the robot's radius.
+  static constexpr double kGridFraction = 0.5;
+  static constexpr int kMaxPlaces = 500;  ///< maximum number of places that one step examines
+
+  explicit GiveWaySearch(const GiveWayFloor& floor);
 
   /// Starts a search and discards the last one. `fixed`: all obstacles except robots.
   void begin(GiveWayQuery query, ObstacleWorld fixed);
@@ -80,7 +77,6 @@ class GiveWaySearch {
   Circle disc_at(const Vec2& position_m) const;
 
   GiveWayFloor floor_;
-  GiveWaySearchSettings settings_;
   NamedPlanner planner_;
   Stage stage_ = Stage::kIdle;
   GiveWayQuery query_;

@@ -8,6 +8,25 @@
 namespace sidestep {
 namespace {
 
+// With a polyline or band: the robot steers to the first of these distances along it that is free in a
+// straight line.
+constexpr std::array<double, 4> kLookAhead_m{0.8, 0.4, 0.2, 0.1};
+/// Nearer to the goal than this, a window's grid of velocities is too coarse.
+constexpr double kFinalApproach_m = 0.25;
+constexpr std::size_t kRays = 64;     ///< number of rays along which the window sees the nearest obstacles
+constexpr double kRay_m = 1.6;        ///< length of the rays
+constexpr double kReaction_s = 0.35;  ///< velocities that can be reached in this time are considered
+constexpr double kMinProgress_mps = 0.3;  ///< minimum speed towards the target of a useful velocity
+constexpr std::size_t kMaxPreferred = 4;  ///< velocities offered besides the best one
+// A band is restarted if it is longer than this factor times the path's length plus this length.
+constexpr double kMaxDetour = 1.2, kMaxDetour_m = 0.3;
+constexpr double kBand_m = 10;  ///< only the beginning of a longer path becomes a band
+/// On a path chosen by a planner, the heading matters most. The table would only round times down.
+constexpr DiscWindowSettings kDrivingWindow{.method = CollisionMethod::kExact,
+                                            .weights = {.distance = 0.2, .heading = 0.5, .speed = 0.3}};
+/// Turns right around obstacles ahead, so that two robots that meet do not push each other back and forth.
+constexpr PotentialFieldSettings kDrivingField{.reach_m = 0.4, .rotation = 0.6};
+
 // Paths may touch the obstacles that they lead around.
 constexpr double kTolerance_m = 0.002;
 // The end of a band is on the path if it is within this distance.
@@ -26,18 +45,17 @@ double length_m(const Vec2& from_m, std::span<const Vec2> path_m) {
 }  // namespace
 
 LocalDriver::LocalDriver(const LocalMethods& methods, const Field& field, double radius_m,
-                         double separation_m, const MotionLimits& limits, const LocalDriverSettings& settings)
+                         double separation_m, const MotionLimits& limits)
     : methods_(methods),
       field_(field),
       radius_m_(radius_m),
       separation_m_(separation_m - kTolerance_m),
-      settings_(settings),
       band_(separation_m - kTolerance_m),
       field_force_(separation_m - kTolerance_m, kDrivingField),
       max_speed_mps_(limits.speed_mps) {
-  if (methods.uses_window) window_.emplace(separation_m - kTolerance_m, limits, settings.window);
-  points_m_.reserve(settings.rays + 1);
-  preferred_mps_.reserve(settings.max_preferred);
+  if (methods.uses_window) window_.emplace(separation_m - kTolerance_m, limits, kDrivingWindow);
+  points_m_.reserve(kRays + 1);
+  preferred_mps_.reserve(kMaxPreferred);
 }
 
 std::span<const Bubble> LocalDriver::bubbles() const {
@@ -48,7 +66,7 @@ LocalChoice LocalDriver::choose(const LocalQuery& query) {
   if (methods_.uses_band) update_band(query);
   LocalChoice choice{methods_.ignores_path ? query.path_m.back() : target_m(query)};
   const double length = length_m(query.at.position_m, query.path_m);
-  if (length <= settings_.final_approach_m) return choice;
+  if (length <= kFinalApproach_m) return choice;
   if (window_) choose_velocity(query, length, choice);
   if (methods_.uses_field) follow_force(query, choice);
   return choice;
@@ -89,7 +107,7 @@ void LocalDriver::update_band(const LocalQuery& query) {
   double length = 0;
   for (const Vec2& next : query.path_m) {
     const Vec2 leg = next - path_m_.back();
-    const double left_m = settings_.band_m - length;
+    const double left_m = kBand_m - length;
     if (leg.norm() > left_m) {
       path_m_.emplace_back(path_m_.back() + left_m * leg.stableNormalized());
       break;
@@ -104,13 +122,13 @@ bool LocalDriver::fits_path(const LocalQuery& query) const {
   const std::span<const Bubble> bubbles = band_.bubbles();
   if (bubbles.empty() || band_.is_broken()) return false;
   const Vec2 end = bubbles.back().centre_m;
-  if (end != query.path_m.back() && band_.length_m() < settings_.band_m / 2) return false;
+  if (end != query.path_m.back() && band_.length_m() < kBand_m / 2) return false;
   double length = 0;
   Vec2 last = query.at.position_m;
   for (const Vec2& next : query.path_m) {
     if (squared_distance(end, Segment{last, next}) < kOnPath_m * kOnPath_m) {
       length += (end - last).norm();
-      return band_.length_m() <= settings_.max_detour * length + settings_.max_detour_m;
+      return band_.length_m() <= kMaxDetour * length + kMaxDetour_m;
     }
     length += (next - last).norm();
     last = next;
@@ -120,27 +138,26 @@ bool LocalDriver::fits_path(const LocalQuery& query) const {
 
 Vec2 LocalDriver::target_m(const LocalQuery& query) const {
   if (bubbles().empty()) return query.path_m.front();
-  for (const double ahead_m : settings_.look_ahead_m) {
+  for (const double ahead_m : kLookAhead_m) {
     const Vec2 target = band_.position_m(ahead_m);
     if (is_line_free(query, target)) return target;
   }
-  return band_.position_m(settings_.look_ahead_m.back());
+  return band_.position_m(kLookAhead_m.back());
 }
 
 void LocalDriver::cast_rays(const LocalQuery& query) {
   constexpr double kHit_m = 0.005;
   points_m_.clear();
-  for (std::size_t i = 0; i < settings_.rays; ++i) {
-    const double angle_rad =
-        2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(settings_.rays);
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const double angle_rad = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kRays);
     const Vec2 direction(std::cos(angle_rad), std::sin(angle_rad));
     double along_m = 0;
-    while (along_m < settings_.range_m) {
+    while (along_m < kRay_m) {
       const double distance = distance_m(query, query.at.position_m + along_m * direction);
       if (distance < kHit_m) break;
       along_m += distance;
     }
-    if (along_m < settings_.range_m) points_m_.emplace_back(along_m * direction);
+    if (along_m < kRay_m) points_m_.emplace_back(along_m * direction);
   }
 }
 
@@ -151,13 +168,13 @@ void LocalDriver::choose_velocity(const LocalQuery& query, double length, LocalC
                                                    .velocity_mps = query.at.velocity_mps,
                                                    .goal_m = length * direction,
                                                    .cycle_s = query.cycle_s,
-                                                   .window_s = settings_.reaction_s});
+                                                   .window_s = kReaction_s});
   if (found.admissible.empty()) return;
   const Vec2& best = found.admissible.front().velocity_mps;
-  if (best.dot(direction) < settings_.min_progress_mps) return;
+  if (best.dot(direction) < kMinProgress_mps) return;
   choice.velocity_mps = best;
   preferred_mps_.clear();
-  for (std::size_t i = 1; i < found.admissible.size() && i <= settings_.max_preferred; ++i)
+  for (std::size_t i = 1; i < found.admissible.size() && i <= kMaxPreferred; ++i)
     preferred_mps_.push_back(found.admissible[i].velocity_mps);
   choice.preferred_mps = preferred_mps_;
 }
@@ -169,7 +186,7 @@ void LocalDriver::follow_force(const LocalQuery& query, LocalChoice& choice) con
   if (nearest.distance_m <= separation_m_) return;
   const Vec2 force = field_force_.force(at, choice.target_m, nearest);
   const Vec2 velocity = max_speed_mps_ * force.stableNormalized();
-  if (velocity.dot((choice.target_m - at).stableNormalized()) < settings_.min_progress_mps) return;
+  if (velocity.dot((choice.target_m - at).stableNormalized()) < kMinProgress_mps) return;
   choice.velocity_mps = velocity;
 }
 

@@ -16,28 +16,6 @@
 
 namespace sidestep {
 
-struct LocalDriverSettings {
-  // With a polyline or band: the robot steers to the first of these distances along it that is free in a
-  // straight line.
-  std::array<double, 4> look_ahead_m{0.8, 0.4, 0.2, 0.1};
-  /// Nearer to the goal than this, a window's grid of velocities is too coarse.
-  double final_approach_m = 0.25;
-  std::size_t rays = 64;          ///< number of rays along which the window sees the nearest obstacles
-  double range_m = 1.6;           ///< length of the rays
-  double reaction_s = 0.35;       ///< velocities that can be reached in this time are considered
-  double min_progress_mps = 0.3;  ///< minimum speed towards the target of a useful velocity
-  std::size_t max_preferred = 4;  ///< velocities offered besides the best one
-  // A band is restarted if it is longer than this factor times the path's length plus this length.
-  double max_detour = 1.2, max_detour_m = 0.3;
-  double band_m = 10;  ///< only the beginning of a longer path becomes a band
-  /// On a path chosen by a planner, the heading matters most. The table would only round times down.
-  DiscWindowSettings window{.method = CollisionMethod::kExact,
-                            .weights = {.distance = 0.2, .heading = 0.5, .speed = 0.3}};
-};
-
-/// Turns right around obstacles ahead, so that two robots that meet do not push each other back and forth.
-inline constexpr PotentialFieldSettings kDrivingField{.reach_m = 0.4, .rotation = 0.6};
-
 /// The input of the local methods. Needs to exist only during the call.
 struct LocalQuery {
   State at;
@@ -60,9 +38,9 @@ struct LocalChoice {
 class LocalDriver {
  public:
   /// The robot's centre keeps `separation_m` from the edges of obstacles and `radius_m` from the field's
-  /// border. Throws std::invalid_argument if a distance, limit or setting is invalid.
+  /// border. Throws std::invalid_argument if a distance or limit is invalid.
   LocalDriver(const LocalMethods& methods, const Field& field, double radius_m, double separation_m,
-              const MotionLimits& limits, const LocalDriverSettings& settings = {});
+              const MotionLimits& limits);
 
   [[nodiscard]] LocalChoice choose(const LocalQuery& query);
 
@@ -86,7 +64,6 @@ class LocalDriver {
   LocalMethods methods_;
   Field field_;
   double radius_m_, separation_m_;
-  LocalDriverSettings settings_;
   BubbleBand band_;
   std::optional<DiscWindow> window_;
   PotentialField field_force_;

@@ -23,6 +23,19 @@ constexpr std::array kViaAlong{0.3, 0.5, 0.7};
 constexpr std::array kViaLateral{0.06, 0.12, 0.18, 0.25, 0.33, 0.45};
 // A via point nearer than this would count as passed immediately.
 constexpr double kMinViaDistance_m = 1.25 * batch::kWaypointRadius_m;
+// Costs in seconds that are added to the predicted time to the goal.
+/// Cost of sharing a robot's position during the first prediction step.
+constexpr double kDanger_s = 1;
+/// Danger at the end of the prediction, as a fraction of kDanger_s.
+constexpr double kFinalDangerFraction = 0.08;
+constexpr double kDangerDecayExponent = 1.75;  ///< shape of the decay between the two
+/// Cost of turning left: robots that all turn right can pass each other.
+constexpr double kLeftTurnPenalty_s = 0.16;
+constexpr double kSwitchPenalty_s = 0.06;  ///< cost of giving up the previous detour for another candidate
+/// Below this, the previous detour is kept without comparing others.
+constexpr double kTolerableDanger_s = 0.02;
+// Preferred clearances beyond the minimum separation.
+constexpr double kMovingClearance_m = 0.035, kStationaryClearance_m = 0.016;
 // Danger that occurs later than this after a robot's arrival is ignored.
 constexpr float kAfterArrival_s = 0.2F;
 // Being this far outside the field is as dangerous as sharing another robot's position.
@@ -31,9 +44,8 @@ constexpr float kFullDangerOutside_m = 0.1F;
 }  // namespace
 
 Steering::Steering(const Field& field, double radius_m, const MotionLimits& limits,
-                   const SteeringSettings& settings, const batch::Kernels& kernels)
+                   const batch::Kernels& kernels)
     : kernels_(&kernels),
-      settings_(settings),
       speed_mps_(limits.speed_mps),
       half_length_m_(static_cast<float>(field.length_m / 2 - radius_m)),
       half_width_m_(static_cast<float>(field.width_m / 2 - radius_m)),
@@ -41,10 +53,9 @@ Steering::Steering(const Field& field, double radius_m, const MotionLimits& limi
       candidates_(limits, kernels) {
   for (std::size_t i = 0; i < kPredictionSamples; ++i) {
     const double remaining = 1 - static_cast<double>(i) / static_cast<double>(batch::kPredictionSteps);
-    const double final_fraction = settings_.final_danger_fraction;
     weights_[i] = static_cast<float>(
-        settings_.danger_s *
-        (final_fraction + (1 - final_fraction) * std::pow(remaining, settings_.danger_decay_exponent)));
+        kDanger_s *
+        (kFinalDangerFraction + (1 - kFinalDangerFraction) * std::pow(remaining, kDangerDecayExponent)));
   }
 }
 
@@ -56,14 +67,14 @@ void Steering::clear() {
 
 void Steering::add_moving(const State& state, const Intent& intent, double min_separation_m) {
   moving_.add(state, intent);
-  min_separations_m_.push_back(min_separation_m + settings_.extra_clearance_m);
+  min_separations_m_.push_back(min_separation_m + kMovingClearance_m);
 }
 
 void Steering::add_stationary(const Vec2& position, double min_separation_m) {
   Other& other = others_.emplace_back();
   std::ranges::fill(other.prediction.x_m, static_cast<float>(position.x()));
   std::ranges::fill(other.prediction.y_m, static_cast<float>(position.y()));
-  other.min_separation_m = min_separation_m + settings_.stationary_clearance_m;
+  other.min_separation_m = min_separation_m + kStationaryClearance_m;
 }
 
 Intent Steering::choose(const State& at, const Vec2& waypoint, const Vec2& goal, double elapsed_s,
@@ -77,7 +88,7 @@ Intent Steering::choose(const State& at, const Vec2& waypoint, const Vec2& goal,
   add_last_choice(at, waypoint, goal, elapsed_s, last);
   const std::size_t first_new_candidate = intents_.size();
   evaluate(at.position_m);
-  const bool last_choice_is_harmless = first_new_candidate > 1 && danger_s(1) <= settings_.tolerable_danger_s;
+  const bool last_choice_is_harmless = first_new_candidate > 1 && danger_s(1) <= kTolerableDanger_s;
   std::size_t chosen = 0;
   if (danger_s(0) > 0 && last_choice_is_harmless) {
     chosen = 1;
@@ -115,9 +126,9 @@ void Steering::add_last_choice(const State& at, const Vec2& waypoint, const Vec2
   if (again.velocity_duration_s > 0) {
     again.velocity_duration_s -= elapsed_s;
     again.waypoint_m = waypoint;
-    if (again.velocity_duration_s > 0) add_candidate(at, again, -settings_.switch_penalty_s);
+    if (again.velocity_duration_s > 0) add_candidate(at, again, -kSwitchPenalty_s);
   } else if ((again.waypoint_m - at.position_m).norm() > batch::kWaypointRadius_m) {
-    add_candidate(at, again, -settings_.switch_penalty_s);
+    add_candidate(at, again, -kSwitchPenalty_s);
   }
 }
 
@@ -129,7 +140,7 @@ void Steering::add_velocity_candidates(const State& at, const Intent& direct) {
     add_candidate(at, intent);
     for (int turn = -kTurnsPerSide; turn <= kTurnsPerSide; ++turn) {
       const Vec2 velocity = rotated(direct.velocity_mps, turn * kTurn_rad);
-      const double extra = turn > 0 ? settings_.left_turn_penalty_s : 0;
+      const double extra = turn > 0 ? kLeftTurnPenalty_s : 0;
       intent.velocity_mps = velocity;
       add_candidate(at, intent, extra);
       if (duration_s != kSlowDuration_s) continue;
@@ -146,7 +157,7 @@ void Steering::add_via_point_candidates(const State& at, const Vec2& goal) {
       if (std::hypot(along, lateral) * to_goal.norm() < kMinViaDistance_m) continue;
       const Vec2 middle = at.position_m + along * to_goal;
       add_candidate(at, {{0, 0}, 0, middle - lateral * left, goal});
-      add_candidate(at, {{0, 0}, 0, middle + lateral * left, goal}, settings_.left_turn_penalty_s);
+      add_candidate(at, {{0, 0}, 0, middle + lateral * left, goal}, kLeftTurnPenalty_s);
     }
   }
 }

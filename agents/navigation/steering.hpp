@@ -10,22 +10,6 @@
 
 namespace sidestep {
 
-/// Costs in seconds that are added to the predicted time to the goal, and preferred clearances.
-struct SteeringSettings {
-  /// Cost of sharing a robot's position during the first prediction step.
-  double danger_s = 1;
-  double final_danger_fraction = 0.08;  ///< danger at the end of the prediction, as a fraction of `danger_s`
-  double danger_decay_exponent = 1.75;  ///< shape of the decay between the two
-  /// Cost of turning left: robots that all turn right can pass each other.
-  double left_turn_penalty_s = 0.16;
-  double switch_penalty_s = 0.06;    ///< cost of giving up the previous detour for another candidate
-  double tolerable_danger_s = 0.02;  ///< below this, the previous detour is kept without comparing others
-  /// Preferred clearance from moving robots beyond the minimum separation.
-  double extra_clearance_m = 0.035;
-  /// Preferred clearance from stationary obstacles beyond the minimum separation.
-  double stationary_clearance_m = 0.016;
-};
-
 /// A robot's previous choice.
 struct LastChoice {
   std::optional<Intent> detour;  ///< a velocity that is held, or a via point; nullopt: the direct path
@@ -40,7 +24,7 @@ struct LastChoice {
 class Steering {
  public:
   Steering(const Field& field, double radius_m, const MotionLimits& limits,
-           const SteeringSettings& settings = {}, const batch::Kernels& kernels = batch::best_kernels());
+           const batch::Kernels& kernels = batch::best_kernels());
 
   /// Forgets the other robots and obstacles.
   void clear();
@@ -75,7 +59,6 @@ class Steering {
   std::size_t best() const;
 
   const batch::Kernels* kernels_;
-  SteeringSettings settings_;
   double speed_mps_;
   float half_length_m_, half_width_m_;
   float weights_[batch::kPredictionSamples] = {};

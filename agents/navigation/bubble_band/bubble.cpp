@@ -6,6 +6,15 @@
 namespace sidestep {
 namespace {
 
+// The forces on a bubble are displacements. The gains and the reach of obstacles are from Philippsen (EPFL
+// thesis 3146, ch. 3), whose robots are about 0.7 m wide; scale the internal force with the robot's size.
+constexpr double kInternalForce_m = 0.1;  ///< towards each neighbour
+/// Per metre by which the bubble's radius is below the reach of obstacles.
+constexpr double kExternalForce = 0.5;
+constexpr double kObstacleReach_radii = 2;  ///< reach of obstacles, in robot radii
+/// Longest displacement, as a fraction of the bubble's radius.
+constexpr double kMaxDisplacement_radii = 0.5;
+
 Vec2 direction(const Vec2& offset) {
   const double length = offset.norm();
   return length > 0 ? Vec2(offset / length) : Vec2(0, 0);
@@ -13,14 +22,13 @@ Vec2 direction(const Vec2& offset) {
 
 }  // namespace
 
-Vec2 displacement_m(const Vec2& previous_m, const Bubble& bubble, const Vec2& next_m, double robot_radius_m,
-                    const BubbleForces& forces) {
-  const double reach_m = forces.reach_radii * robot_radius_m;
+Vec2 displacement_m(const Vec2& previous_m, const Bubble& bubble, const Vec2& next_m, double robot_radius_m) {
+  const double reach_m = kObstacleReach_radii * robot_radius_m;
   const Vec2& centre = bubble.centre_m;
-  const Vec2 internal = forces.internal_m * (direction(previous_m - centre) + direction(next_m - centre));
-  const Vec2 external = forces.external * std::max(0.0, reach_m - bubble.radius_m) * bubble.away;
+  const Vec2 internal = kInternalForce_m * (direction(previous_m - centre) + direction(next_m - centre));
+  const Vec2 external = kExternalForce * std::max(0.0, reach_m - bubble.radius_m) * bubble.away;
   const Vec2 sum = std::min(1.0, bubble.radius_m / reach_m) * (internal + external);
-  const double length = sum.norm(), longest = forces.max_step * bubble.radius_m;
+  const double length = sum.norm(), longest = kMaxDisplacement_radii * bubble.radius_m;
   return length > longest ? Vec2(longest / length * sum) : sum;
 }
 

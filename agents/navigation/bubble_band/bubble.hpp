@@ -13,21 +13,11 @@ struct Bubble {
   double path_m = 0;  ///< path length along the band up to the centre
 };
 
-/// The forces on a bubble are displacements. The default gains and the default reach of obstacles are from
-/// Philippsen (EPFL thesis 3146, ch. 3), whose robots are about 0.7 m wide; scale the internal force with the
-/// robot's size.
-struct BubbleForces {
-  double internal_m = 0.1;  ///< towards each neighbour
-  double external = 0.5;    ///< per metre by which the bubble's radius is below the reach of obstacles
-  double reach_radii = 2;   ///< reach of obstacles, in robot radii
-  double max_step = 0.5;    ///< longest displacement, as a fraction of the bubble's radius
-};
-
 /// The displacement of a bubble: towards its neighbours, which shortens the band, and away from the nearest
 /// obstacle. Both forces shrink with bubbles smaller than the reach of obstacles. Since a displacement is
 /// shorter than the radius, a bubble never jumps over an obstacle.
 [[nodiscard]] Vec2 displacement_m(const Vec2& previous_m, const Bubble& bubble, const Vec2& next_m,
-                                  double robot_radius_m, const BubbleForces& forces);
+                                  double robot_radius_m);
 
 /// The diameter of the largest disc that can move straight from the centre of one bubble to that of another
 /// within both: the common chord if it lies between the centres, otherwise the diameter of the smaller

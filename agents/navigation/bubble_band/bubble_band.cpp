@@ -7,41 +7,34 @@
 namespace sidestep {
 namespace {
 
+// The values are from Philippsen, EPFL thesis 3146, ch. 3.
+// Passages between bubbles, in diameters of the robot.
+constexpr double kRemoveAt = 1.8;     ///< removes a bubble if its neighbours leave at least this passage
+constexpr double kInsertBelow = 1.2;  ///< inserts a bubble where the passage is smaller
+constexpr double kBrokenBelow = 1;    ///< the band is broken where the passage is smaller
+constexpr double kMaxBubble_m = 2;    ///< maximum radius of bubbles far from obstacles
+constexpr double kMinSpacing_radii = 0.125;  ///< minimum distance between centres of inserted bubbles
+constexpr double kCrowded_radii = 1;         ///< if a bubble's neighbours are closer, it may be removed
+constexpr std::size_t kMaxBubbles = 400;
+// Path lengths from which, and from which fully, obstacles near the robot are ignored.
+constexpr double kMaskedFrom_m = 2, kMaskedFullyFrom_m = 10;
+
 void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(what);
-}
-
-void check(double robot_radius_m, const BubbleBandSettings& settings) {
-  require(robot_radius_m > 0 && std::isfinite(robot_radius_m),
-          "a bubble band's robot radius has to be positive");
-  const BubbleForces& forces = settings.forces;
-  require(forces.internal_m >= 0 && forces.external >= 0 && forces.reach_radii > 0,
-          "forces on bubbles must not be negative");
-  require(forces.max_step > 0 && forces.max_step < 1, "a bubble has to move less than its radius");
-  require(settings.broken_below > 0 && settings.broken_below <= settings.insert_below &&
-              settings.insert_below < settings.remove_at,
-          "passages of a bubble band: 0 < broken_below <= insert_below < remove_at");
-  require(settings.max_radius_m >= robot_radius_m && std::isfinite(settings.max_radius_m),
-          "bubbles have to be as large as the robot");
-  require(settings.min_spacing > 0 && settings.crowded >= 0 && settings.max_bubbles >= 2,
-          "a bubble band needs a positive spacing and two bubbles");
-  require(settings.max_masked_m >= 0 && settings.masked_from_m >= 0 &&
-              settings.masked_fully_from_m > settings.masked_from_m,
-          "masked distances of a bubble band have to grow with the path length");
 }
 
 }  // namespace
 
 BubbleBand::BubbleBand(double robot_radius_m, const BubbleBandSettings& settings)
     : robot_radius_m_(robot_radius_m), settings_(settings) {
-  check(robot_radius_m, settings);
-  for (std::vector<Bubble>* bubbles : {&bubbles_, &kept_, &pending_})
-    bubbles->reserve(2 * settings.max_bubbles);
+  require(robot_radius_m > 0 && robot_radius_m <= kMaxBubble_m,
+          "a bubble band's robot radius has to be positive, and at most that of a bubble");
+  for (std::vector<Bubble>* bubbles : {&bubbles_, &kept_, &pending_}) bubbles->reserve(2 * kMaxBubbles);
 }
 
 double BubbleBand::masked_m(double path_m) const {
-  const double range_m = settings_.masked_fully_from_m - settings_.masked_from_m;
-  return settings_.max_masked_m * std::clamp((path_m - settings_.masked_from_m) / range_m, 0.0, 1.0);
+  constexpr double kRange_m = kMaskedFullyFrom_m - kMaskedFrom_m;
+  return settings_.max_masked_m * std::clamp((path_m - kMaskedFrom_m) / kRange_m, 0.0, 1.0);
 }
 
 Vec2 BubbleBand::position_m(double ahead_m) const {
@@ -66,7 +59,7 @@ void BubbleBand::begin(std::span<const Vec2> path_m) {
 
 void BubbleBand::measure(Bubble& bubble, const Query& free) const {
   const FreeDistance found = free(bubble.centre_m, masked_m(bubble.path_m));
-  bubble.radius_m = std::clamp(found.distance_m, 0.0, settings_.max_radius_m);
+  bubble.radius_m = std::clamp(found.distance_m, 0.0, kMaxBubble_m);
   bubble.away = found.away;
 }
 
@@ -86,7 +79,7 @@ void BubbleBand::follow(const Vec2& robot_m) {
 
 void BubbleBand::step(const Query& free) {
   constexpr int kAttempts = 3;
-  const double needed_m = settings_.broken_below * 2 * robot_radius_m_;
+  const double needed_m = kBrokenBelow * 2 * robot_radius_m_;
   // Each bubble takes into account where the previous one has moved, so that neighbours do not overshoot
   // together.
   for (std::size_t i = 1; i + 1 < bubbles_.size(); ++i) {
@@ -94,7 +87,7 @@ void BubbleBand::step(const Query& free) {
     Bubble& bubble = bubbles_[i];
     const double least_before_m = std::min(needed_m, passage_m(before, bubble));
     const double least_after_m = std::min(needed_m, passage_m(bubble, after));
-    Vec2 move = displacement_m(before.centre_m, bubble, after.centre_m, robot_radius_m_, settings_.forces);
+    Vec2 move = displacement_m(before.centre_m, bubble, after.centre_m, robot_radius_m_);
     for (int attempt = 0; attempt < kAttempts; ++attempt, move /= 2) {
       Bubble moved = bubble;
       moved.centre_m += move;
@@ -108,12 +101,12 @@ void BubbleBand::step(const Query& free) {
 
 bool BubbleBand::is_superfluous(const Bubble& before, const Bubble& bubble, const Bubble& after) const {
   const double without_m = passage_m(before, after), diameter_m = 2 * robot_radius_m_;
-  if (without_m >= settings_.remove_at * diameter_m) return true;
+  if (without_m >= kRemoveAt * diameter_m) return true;
   const double apart_m = (before.centre_m - after.centre_m).norm();
-  if (without_m >= settings_.insert_below * diameter_m) return apart_m <= settings_.crowded * robot_radius_m_;
+  if (without_m >= kInsertBelow * diameter_m) return apart_m <= kCrowded_radii * robot_radius_m_;
   // In narrow passages a bubble is only removed if its neighbours are so close together that insertion would
   // not put it back.
-  return apart_m < 2 * settings_.min_spacing * robot_radius_m_ &&
+  return apart_m < 2 * kMinSpacing_radii * robot_radius_m_ &&
          without_m >= std::min(passage_m(before, bubble), passage_m(bubble, after));
 }
 
@@ -128,14 +121,14 @@ void BubbleBand::remove_superfluous() {
 }
 
 void BubbleBand::insert_before(const Bubble& next, const Query& free) {
-  const double wanted_m = settings_.insert_below * 2 * robot_radius_m_;
-  const double closest_m = settings_.min_spacing * robot_radius_m_;
+  const double wanted_m = kInsertBelow * 2 * robot_radius_m_;
+  const double closest_m = kMinSpacing_radii * robot_radius_m_;
   pending_.clear();
   pending_.push_back(next);
   while (!pending_.empty()) {
     const Bubble &from = kept_.back(), &to = pending_.back();
     const double leg_m = (to.centre_m - from.centre_m).norm();
-    const bool has_room = kept_.size() + pending_.size() < settings_.max_bubbles;
+    const bool has_room = kept_.size() + pending_.size() < kMaxBubbles;
     if (passage_m(from, to) >= wanted_m || leg_m < 2 * closest_m || !has_room) {
       kept_.push_back(to);
       pending_.pop_back();
@@ -157,7 +150,7 @@ void BubbleBand::fit(const Query& free) {
   for (std::size_t i = 1; i < bubbles_.size(); ++i) {
     Bubble& bubble = bubbles_[i];
     bubble.path_m = bubbles_[i - 1].path_m + (bubble.centre_m - bubbles_[i - 1].centre_m).norm();
-    if (passage_m(bubbles_[i - 1], bubble) < settings_.broken_below * 2 * robot_radius_m_) is_broken_ = true;
+    if (passage_m(bubbles_[i - 1], bubble) < kBrokenBelow * 2 * robot_radius_m_) is_broken_ = true;
   }
 }
 

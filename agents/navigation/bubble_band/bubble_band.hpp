@@ -8,22 +8,11 @@
 
 namespace sidestep {
 
-/// Settings. The defaults are from Philippsen, EPFL thesis 3146, ch. 3.
 struct BubbleBandSettings {
-  BubbleForces forces{};
-  // Passages between bubbles, in diameters of the robot.
-  double remove_at = 1.8;      ///< removes a bubble if its neighbours leave at least this passage
-  double insert_below = 1.2;   ///< inserts a bubble where the passage is smaller
-  double broken_below = 1;     ///< the band is broken where the passage is smaller
-  double max_radius_m = 2;     ///< maximum radius of bubbles far from obstacles
-  double min_spacing = 0.125;  ///< minimum distance between centres of inserted bubbles, in robot radii
-  double crowded = 1;          ///< if a bubble's neighbours are closer, it may be removed; in robot radii
-  std::size_t max_bubbles = 400;
   /// Far along the band, obstacles near the robot are ignored: they may have moved when the robot gets there.
-  /// The distance from the robot within which they are ignored grows from 0 at the first path length to
-  /// `max_masked_m` at the second. With 0, nothing is ignored; Philippsen uses 4.
+  /// The distance from the robot within which they are ignored grows with the path length from 0 to this.
+  /// With 0, nothing is ignored; Philippsen uses 4.
   double max_masked_m = 0;
-  double masked_from_m = 2, masked_fully_from_m = 10;
 };
 
 /// A band of overlapping free bubbles from the robot to its goal (Quinlan, Khatib 1993; Philippsen, EPFL
@@ -36,7 +25,7 @@ struct BubbleBandSettings {
 /// distance and returns a FreeDistance. Does not allocate once warm.
 class BubbleBand {
  public:
-  /// Throws std::invalid_argument if the radius or a setting is out of range.
+  /// Throws std::invalid_argument if the radius is not positive or too large.
   explicit BubbleBand(double robot_radius_m, const BubbleBandSettings& settings = {});
 
   /// Starts along a path from the robot to the goal. Throws std::invalid_argument if the path has no point,

@@ -10,6 +10,9 @@
 namespace sidestep {
 namespace {
 
+/// Later collisions make no difference. Velocities that need this long to brake are inadmissible.
+constexpr double kDiscHorizon_s = 0.7;
+
 constexpr GridWindow kAllVelocities{{0, kGridSide - 1}, {0, kGridSide - 1}};
 
 void check_query(const DiscWindowQuery& query) {
@@ -36,13 +39,10 @@ std::vector<Vec2> velocities_of(const MotionLimits& limits) {
 DiscWindow::DiscWindow(double radius_m, const MotionLimits& limits, const DiscWindowSettings& settings)
     : limits_(limits),
       settings_(settings),
-      times_({radius_m, velocities_of(limits)}, settings.method, static_cast<float>(settings.horizon_s), [&] {
-        return disc_cell_times(radius_m, limits.speed_mps, settings.cell_m, settings.horizon_s);
-      }) {
+      times_({radius_m, velocities_of(limits)}, settings.method, static_cast<float>(kDiscHorizon_s),
+             [&] { return disc_cell_times(radius_m, limits.speed_mps, settings.cell_m, kDiscHorizon_s); }) {
   if (!(radius_m > 0) || !std::isfinite(radius_m))
     throw std::invalid_argument("a disc's radius has to be positive and finite");
-  if (!(settings.horizon_s > 0) || !std::isfinite(settings.horizon_s))
-    throw std::invalid_argument("the horizon of a disc's window has to be positive and finite");
   check(settings.weights);
   choice_.admissible.reserve(kSlots);
   reachable_.reserve(kSlots);
@@ -89,7 +89,7 @@ Objectives DiscWindow::rate(std::size_t slot, const Vec2& goal_m) const {
   const Vec2 to_go = goal_m - velocity * (cycle_s_ + speed / limits_.deceleration_mps2 / 2);
   const double stopping_mps = std::sqrt(2 * limits_.deceleration_mps2 * goal_m.norm());
   const double off_mps = speed - std::min(stopping_mps, limits_.speed_mps);
-  return {distance_objective(times_.time_s(slot), needed_s_[slot], static_cast<float>(settings_.horizon_s)),
+  return {distance_objective(times_.time_s(slot), needed_s_[slot], static_cast<float>(kDiscHorizon_s)),
           speed == 0 ? 0.5F  // without a direction
                      : heading_objective(static_cast<float>(velocity.dot(to_go)),
                                          static_cast<float>(cross(velocity, to_go))),

@@ -9,8 +9,6 @@
 namespace sidestep {
 
 struct DiscWindowSettings {
-  /// Later collisions make no difference. Velocities that need this long to brake are inadmissible.
-  double horizon_s = 0.7;
   double cell_m = 0.04;  ///< cell size of the table
   CollisionMethod method = CollisionMethod::kUniformTable;
   ObjectiveWeights weights{};

@@ -52,7 +52,6 @@ DynamicWindow::DynamicWindow(const DifferentialDrive& drive, const ConvexPolygon
   if (!(settings.horizon_s > 0) || !std::isfinite(settings.horizon_s))
     throw std::invalid_argument("the horizon of a dynamic window has to be positive and finite");
   check(settings.weights);
-  check(settings.states);
   choice_.admissible.reserve(kSlots);
 }
 
@@ -115,8 +114,7 @@ void DynamicWindow::add_admissible(const WindowQuery& query, const GridWindow& w
 const WindowChoice& DynamicWindow::choose(const WindowQuery& query) {
   check_query(query);
   prepare(query.cycle_s);
-  choice_.state =
-      next_state(choice_.state, query.goal, drive_.motion(query.wheels).speed_mps, settings_.states);
+  choice_.state = next_state(choice_.state, query.goal, drive_.motion(query.wheels).speed_mps);
   choice_.admissible.clear();
   choice_.best.reset();
   choice_.command = drive_.braked(query.wheels, query.cycle_s);

@@ -16,7 +16,6 @@ struct DynamicWindowSettings {
   double cell_m = 0.03;  ///< cell size of the table
   CollisionMethod method = CollisionMethod::kUniformTable;
   ObjectiveWeights weights{};
-  DriveStateSettings states{};
 };
 
 /// The input of a window's decision, in the robot's frame.

@@ -5,24 +5,31 @@
 #include <stdexcept>
 
 namespace sidestep {
+namespace {
+
+/// K in the potential U = rho²/2 + K/2 (1/rho1 - 1/rho0)², where rho is the distance to the goal, rho1 that
+/// to the nearest obstacle, and rho0 the reach of obstacles.
+constexpr double kRepulsion = 0.01;
+constexpr double kDescentStep_m = 0.01;  ///< step length of descend()
+constexpr double kArrival_m = 0.02;      ///< distance from the goal that counts as arrived
+/// Number of steps without progress after which a local minimum is reported.
+constexpr std::size_t kPatience = 200;
+
+}  // namespace
 
 PotentialField::PotentialField(double robot_radius_m, const PotentialFieldSettings& settings)
     : robot_radius_m_(robot_radius_m), settings_(settings) {
   if (!(robot_radius_m >= 0) || !std::isfinite(robot_radius_m))
     throw std::invalid_argument("a potential field's robot radius must not be negative");
-  if (!(settings.attraction > 0) || !(settings.repulsion >= 0) || !(settings.reach_m > 0) ||
-      !std::isfinite(settings.rotation))
-    throw std::invalid_argument("the gains and the reach of a potential field have to be positive");
-  if (!(settings.step_m > 0) || !(settings.arrival_m > 0) || settings.patience < 1)
-    throw std::invalid_argument(
-        "a potential field's step, arrival distance and patience have to be positive");
+  if (!(settings.reach_m > 0) || !std::isfinite(settings.rotation))
+    throw std::invalid_argument("the reach of a potential field has to be positive");
 }
 
 Vec2 PotentialField::force(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const {
-  const Vec2 attractive = settings_.attraction * (goal_m - at_m);
+  const Vec2 attractive = goal_m - at_m;
   const double gap = gap_m(free);
   if (gap >= settings_.reach_m || gap <= 0) return attractive;
-  const double repulsive = settings_.repulsion * (1 / gap - 1 / settings_.reach_m) / (gap * gap);
+  const double repulsive = kRepulsion * (1 / gap - 1 / settings_.reach_m) / (gap * gap);
   return attractive + repulsive * (free.away + settings_.rotation * left_of(free.away));
 }
 
@@ -30,8 +37,7 @@ double PotentialField::potential(const Vec2& at_m, const Vec2& goal_m, const Fre
   const double gap = gap_m(free);
   if (gap <= 0) return std::numeric_limits<double>::infinity();
   const double nearness = std::max(0.0, 1 / gap - 1 / settings_.reach_m);
-  return settings_.attraction / 2 * (goal_m - at_m).squaredNorm() +
-         settings_.repulsion / 2 * nearness * nearness;
+  return (goal_m - at_m).squaredNorm() / 2 + kRepulsion / 2 * nearness * nearness;
 }
 
 void PotentialField::begin(const Vec2& start_m) {
@@ -42,20 +48,19 @@ void PotentialField::begin(const Vec2& start_m) {
 }
 
 bool PotentialField::makes_progress() const {
-  const auto patience = static_cast<std::size_t>(settings_.patience);
   const std::vector<Vec2>& path = descent_.path_m;
-  if (path.size() <= patience) return true;
+  if (path.size() <= kPatience) return true;
   // A robot in a minimum steps back and forth across it.
   constexpr double kProgress = 0.05;
-  const double advanced_m = (path.back() - path[path.size() - 1 - patience]).norm();
-  return advanced_m > kProgress * settings_.step_m * settings_.patience;
+  const double advanced_m = (path.back() - path[path.size() - 1 - kPatience]).norm();
+  return advanced_m > kProgress * kDescentStep_m * kPatience;
 }
 
 bool PotentialField::check_end(const Vec2& goal_m, int max_steps) {
   const std::vector<Vec2>& path = descent_.path_m;
   if (is_touching_)
     descent_.end = DescentEnd::kTouching;
-  else if ((goal_m - path.back()).norm() <= settings_.arrival_m)
+  else if ((goal_m - path.back()).norm() <= kArrival_m)
     descent_.end = DescentEnd::kArrived;
   else if (!makes_progress())
     descent_.end = DescentEnd::kLocalMinimum;
@@ -73,7 +78,7 @@ void PotentialField::step(const Vec2& goal_m, const FreeDistance& free) {
   const double length = pull.norm();
   // At most half the gap, so that the path cannot step over an obstacle.
   const double longest_m =
-      std::min({settings_.step_m, gap_m(free) / 2, std::max((goal_m - at).norm(), settings_.arrival_m)});
+      std::min({kDescentStep_m, gap_m(free) / 2, std::max((goal_m - at).norm(), kArrival_m)});
   descent_.path_m.push_back(length > 0 ? Vec2(at + longest_m / length * pull) : at);
 }
 

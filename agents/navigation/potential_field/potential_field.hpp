@@ -8,16 +8,10 @@
 namespace sidestep {
 
 struct PotentialFieldSettings {
-  double attraction = 1;  ///< k in U = k/2 rho², where rho is the distance to the goal
-  /// K in U = k/2 (1/rho - 1/rho0)², where rho is the distance to the nearest obstacle.
-  double repulsion = 0.01;
-  double reach_m = 0.5;  ///< rho0: obstacles farther away do not repel
+  double reach_m = 0.5;  ///< obstacles farther away do not repel
   /// Force tangential to the nearest obstacle, as a fraction of the repulsive force; positive:
   /// counter-clockwise. It leads out of some local minima. It has no potential.
   double rotation = 0;
-  double step_m = 0.01;     ///< step length of descend()
-  double arrival_m = 0.02;  ///< distance from the goal that counts as arrived
-  int patience = 200;       ///< number of steps without progress after which a local minimum is reported
 };
 
 /// Why a descent ended.
@@ -42,7 +36,7 @@ class PotentialField {
   /// Throws std::invalid_argument if the radius or a setting is out of range.
   explicit PotentialField(double robot_radius_m, const PotentialFieldSettings& settings = {});
 
-  /// The force at a position with this free distance, in newtons per unit of the gains.
+  /// The force at a position with this free distance. To the goal it is the distance in metres.
   Vec2 force(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;
   /// The potential without the rotational force; infinite where the robot touches an obstacle.
   double potential(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;

@@ -8,8 +8,7 @@ namespace sidestep::deadlock_recovery_test {
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
 TEST_CASE("a blocked robot turns farther and farther right, and back once it is free") {
-  const DeadlockRecoverySettings settings;
-  DeadlockRecovery recovery(settings);
+  DeadlockRecovery recovery;
   double t = 1;
   double last = 0;
   recovery.update(false, 0, at_s(t));
@@ -17,7 +16,7 @@ TEST_CASE("a blocked robot turns farther and farther right, and back once it is 
   int rounds = 0;
   for (int i = 0; i < 400; ++i) {
     recovery.update(false, 0, at_s(t += 0.0166));
-    CHECK(recovery.is_active() == (recovery.angle_rad() > settings.activation_rad));
+    CHECK(recovery.is_active() == (recovery.angle_rad() > DeadlockRecovery::kActivation_rad));
     if (recovery.angle_rad() < last) {
       ++rounds;
       CHECK(recovery.angle_rad() == 0);
@@ -26,7 +25,7 @@ TEST_CASE("a blocked robot turns farther and farther right, and back once it is 
     }
     last = recovery.angle_rad();
   }
-  CHECK(rounds == static_cast<int>(400 * 0.0166 * settings.turn_rate_radps / 6.2832));
+  CHECK(rounds == static_cast<int>(400 * 0.0166 * DeadlockRecovery::kTurnRate_radps / 6.2832));
   for (int i = 0; i < 200; ++i) recovery.update(true, 0, at_s(t += 0.0166));
   CHECK(recovery.angle_rad() == 0);
 }
@@ -38,18 +37,17 @@ TEST_CASE("a robot that moves, though not as desired, does not start recovery") 
 }
 
 TEST_CASE("a robot that escapes a deadlock holds its angle for the release delay") {
-  const DeadlockRecoverySettings settings;
-  DeadlockRecovery recovery(settings);
+  DeadlockRecovery recovery;
   double t = 1;
   recovery.update(false, 0, at_s(t));
   while (!recovery.is_active()) recovery.update(false, 0, at_s(t += 0.0166));
   recovery.update(false, 0, at_s(t += 0.0166));
   const double angle = recovery.angle_rad(), freed = t;
-  while (t - freed < settings.release_delay_s - 0.02) {
+  while (t - freed < DeadlockRecovery::kReleaseDelay_s - 0.02) {
     recovery.update(true, 1, at_s(t += 0.0166));
     CHECK(recovery.angle_rad() == angle);
   }
-  while (t - freed < settings.release_delay_s + 1) recovery.update(true, 1, at_s(t += 0.0166));
+  while (t - freed < DeadlockRecovery::kReleaseDelay_s + 1) recovery.update(true, 1, at_s(t += 0.0166));
   CHECK(recovery.angle_rad() == 0);
 }
 

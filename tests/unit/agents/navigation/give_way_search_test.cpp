@@ -62,11 +62,10 @@ TEST_CASE("the place to give way is the nearest one, as a brute-force search con
 TEST_CASE("a search for a place that does not exist takes many steps but ends") {
   const ObstacleWorld corridor({Box{{-5, -2}, {5, -0.15}}, Box{{-5, 0.15}, {5, 2}}});
   Rng rng(1);
-  GiveWaySearchSettings settings;
-  GiveWaySearch search(kFloor, settings);
+  GiveWaySearch search(kFloor);
   search.begin({{0, 0}, {{{0.2, 0}, {-4.8, 0}}}, {{0.2, 0}}, {}, 8}, corridor);
-  const double rings = 8 / (settings.grid_fraction * kRadius_m);
-  CHECK(finish(search, rng) >= 4 * rings * rings / settings.max_places);
+  const double rings = 8 / (GiveWaySearch::kGridFraction * kRadius_m);
+  CHECK(finish(search, rng) >= 4 * rings * rings / GiveWaySearch::kMaxPlaces);
   CHECK(search.is_in_the_way());
   CHECK(search.way().empty());
 }

@@ -10,10 +10,9 @@ DriveGoal goal_at(double degrees, double distance_m = 2) {
 }
 
 TEST_CASE("a robot turns until the goal lies ahead, goes, and aims again if it is too far aside") {
-  const DriveStateSettings settings;
   DriveState state = DriveState::kTurn;
   const auto next = [&](const DriveGoal& goal, double speed_mps) {
-    return state = next_state(state, goal, speed_mps, settings);
+    return state = next_state(state, goal, speed_mps);
   };
   CHECK(next(goal_at(90), 0) == DriveState::kTurn);
   CHECK(next(goal_at(20), 0) == DriveState::kTurn);
@@ -27,22 +26,14 @@ TEST_CASE("a robot turns until the goal lies ahead, goes, and aims again if it i
 }
 
 TEST_CASE("at the goal, a robot turns to the goal's heading and stops") {
-  const DriveStateSettings settings;
   DriveGoal goal = goal_at(90, 0.05);
-  CHECK(next_state(DriveState::kGo, goal, 0.3, settings) == DriveState::kStop);
+  CHECK(next_state(DriveState::kGo, goal, 0.3) == DriveState::kStop);
   goal.heading_rad = 1;
-  CHECK(next_state(DriveState::kGo, goal, 0.3, settings) == DriveState::kAlign);
+  CHECK(next_state(DriveState::kGo, goal, 0.3) == DriveState::kAlign);
   goal.heading_rad = 2 * std::numbers::pi + 0.1;
-  CHECK(next_state(DriveState::kAlign, goal, 0, settings) == DriveState::kStop);
+  CHECK(next_state(DriveState::kAlign, goal, 0) == DriveState::kStop);
   // The goal has moved.
-  CHECK(next_state(DriveState::kStop, goal_at(90), 0, settings) == DriveState::kTurn);
-}
-
-TEST_CASE("settings of drive states that contradict each other are refused") {
-  CHECK_THROWS_AS(check(DriveStateSettings{.go_within_rad = 1, .aim_beyond_rad = 0.5}),
-                  std::invalid_argument);
-  CHECK_THROWS_AS(check(DriveStateSettings{.go_within_rad = 0}), std::invalid_argument);
-  CHECK_THROWS_AS(check(DriveStateSettings{.rest_mps = 0}), std::invalid_argument);
+  CHECK(next_state(DriveState::kStop, goal_at(90), 0) == DriveState::kTurn);
 }
 
 }  // namespace sidestep::drive_state_test

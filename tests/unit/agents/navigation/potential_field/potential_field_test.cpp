@@ -24,7 +24,7 @@ TEST_CASE("without rotation, the force is the negative gradient of the potential
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    const PotentialField field(kRadius_m, {.attraction = 2, .repulsion = 0.05, .reach_m = 0.8});
+    const PotentialField field(kRadius_m, {.reach_m = 0.8});
     const Vec2 at = random_point(rng, 1), goal = random_point(rng, 3), post = random_point(rng, 1);
     const auto free = [&](const Vec2& p) { return FreeDistance{(p - post).norm(), (p - post).normalized()}; };
     if (free(at).distance_m < kRadius_m + 0.05) continue;
@@ -92,8 +92,6 @@ TEST_CASE("descents end at contacts and when their steps are spent") {
 TEST_CASE("bad settings of potential fields are refused") {
   CHECK_THROWS_AS(PotentialField(-1), std::invalid_argument);
   CHECK_THROWS_AS(PotentialField(kRadius_m, {.reach_m = 0}), std::invalid_argument);
-  CHECK_THROWS_AS(PotentialField(kRadius_m, {.step_m = 0}), std::invalid_argument);
-  CHECK_THROWS_AS(PotentialField(kRadius_m, {.patience = 0}), std::invalid_argument);
 }
 
 }  // namespace sidestep::potential_field_test
