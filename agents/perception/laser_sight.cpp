@@ -8,6 +8,11 @@
 namespace sidestep {
 namespace {
 
+/// Minimum interval between scans that are added to the grid. This takes most of the time, and nothing
+/// appears on the floor that quickly.
+constexpr Duration kGridPeriod{90'000'000};
+constexpr double kUnknownRange_m = 2.5;  ///< squares farther away are ignored
+
 double explained_within_m(const LaserSpec& laser, const FloorRules& rules, double position_error_m) {
   const double cell_m = rules.map ? rules.map->cells().grid().resolution_m : 0;
   return laser.range_error_m + position_error_m + cell_m;
@@ -37,7 +42,7 @@ bool LaserSight::update(const LaserScan& scan, std::span<const Circle> robots) {
   captured_at_ = scan.captured_at;
   beams_.read(scan, robots);
   tracks_.update(beams_, grid_, floor_);
-  const bool is_grid_due = captured_at_ - grid_.updated_at() >= settings_.grid_period;
+  const bool is_grid_due = captured_at_ - grid_.updated_at() >= kGridPeriod;
   if (is_grid_due) grid_.update(beams_);
   visibility_.update(beams_, [&](const Vec2& p, double within_m) { return floor_.nearest_m(p, within_m); });
   if (is_grid_due) find_unknown();
@@ -45,20 +50,19 @@ bool LaserSight::update(const LaserScan& scan, std::span<const Circle> robots) {
 }
 
 void LaserSight::find_unknown() {
-  const double side_m = settings_.unknown_cell_m, range_m = settings_.unknown_range_m;
   squares_.clear();
   unknown_.clear();
   const Vec2& at = beams_.at_m();
-  grid_.for_each_occupied(inflated({at, at}, range_m), [&](const Cell& cell) {
-    if (grid_.occupied_for(cell) < settings_.unknown_after) return;
+  grid_.for_each_occupied(inflated({at, at}, kUnknownRange_m), [&](const Cell& cell) {
+    if (grid_.occupied_for(cell) < kUnknownAfter) return;
     const Box box = grid_.box_of(cell);
     const Vec2 centre = (box.min_m + box.max_m) / 2;
     if (floor_.is_near(centre, explained_within_m_)) return;
-    squares_.push_back({static_cast<int>(std::floor(centre.x() / side_m)),
-                        static_cast<int>(std::floor(centre.y() / side_m))});
+    squares_.push_back({static_cast<int>(std::floor(centre.x() / kUnknownCell_m)),
+                        static_cast<int>(std::floor(centre.y() / kUnknownCell_m))});
   });
   const auto centre_of = [&](const Cell& square) {
-    return Vec2((square.column + 0.5) * side_m, (square.row + 0.5) * side_m);
+    return Vec2((square.column + 0.5) * kUnknownCell_m, (square.row + 0.5) * kUnknownCell_m);
   };
   const auto key = [&](const Cell& square) {
     return std::tuple((centre_of(square) - at).squaredNorm(), square.column, square.row);
@@ -66,7 +70,8 @@ void LaserSight::find_unknown() {
   std::ranges::sort(squares_, {}, key);
   squares_.erase(std::ranges::unique(squares_).begin(), squares_.end());
   if (squares_.size() > settings_.max_unknown) squares_.resize(settings_.max_unknown);
-  for (const Cell& square : squares_) unknown_.push_back({centre_of(square), side_m / std::sqrt(2.0)});
+  for (const Cell& square : squares_)
+    unknown_.push_back({centre_of(square), kUnknownCell_m / std::sqrt(2.0)});
 }
 
 }  // namespace sidestep

@@ -18,20 +18,18 @@ struct LaserSightSettings {
   // bound.
   double position_error_m = SafetyBudget{}.tracking_bound_m;
   double heading_error_rad = 0.02;
-  /// Minimum interval between scans that are added to the grid. This takes most of the time, and nothing
-  /// appears on the floor that quickly.
-  Duration grid_period{90'000'000};
-  double unknown_cell_m = 0.2;   ///< side of the squares that report unknown standing obstacles
-  double unknown_range_m = 2.5;  ///< squares farther away are ignored
-  /// Cells that have been occupied for longer than this count as standing.
-  std::size_t max_unknown = 48;
-  Duration unknown_after{500'000'000};  ///< cells that were occupied for longer stand
+  std::size_t max_unknown =
+      48;  ///< number of squares with unknown standing obstacles, the nearest ones first
 };
 
 /// Interprets the scans of a robot's own laser: where people may step out, who moves, and which standing
 /// obstacles are not on the map. Only obstacles that the rules know to stand limit where people may be.
 class LaserSight {
  public:
+  /// Side of the squares that report unknown standing obstacles.
+  static constexpr double kUnknownCell_m = 0.2;
+  static constexpr Duration kUnknownAfter{500'000'000};  ///< cells that were occupied for longer stand
+
   /// `rules` must outlive this object.
   LaserSight(const LaserSpec& laser, const FloorRules& rules, const LaserSightSettings& settings = {});
 

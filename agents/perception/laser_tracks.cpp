@@ -6,6 +6,29 @@
 namespace sidestep {
 namespace {
 
+constexpr double kExplainedWithin_m = 0.12;  ///< a hit this near to something standing belongs to it
+/// Cells that have been occupied for this long count as standing.
+constexpr Duration kStandingAfter{2'000'000'000};
+constexpr double kJoin_m = 0.15;          ///< hits this near to each other belong to one object
+constexpr int kMinHits = 2;               ///< minimum number of hits in a cluster
+constexpr double kMaxPerson_m = 0.6;      ///< larger clusters are not people
+constexpr double kClusterNoise_m = 0.03;  ///< standard deviation of a cluster's centre, on each axis
+/// The same standard deviation if part of the cluster is hidden.
+constexpr double kPartialNoise_m = 0.1;
+constexpr MotionNoise kPersonMotion{0.15, 1};
+constexpr double kStartSpeed_mps = 1;  ///< standard deviation of a new track's velocity, on each axis
+constexpr double kGate_m = 0.4;        ///< maximum distance of a cluster from the prediction
+constexpr int kConfirmScans = 4;
+constexpr Duration kDropAfter{1'000'000'000};  ///< time without an observation after which a track ends
+constexpr double kMinSpeed_mps = 0.25;         ///< tracks slower than this do not move
+/// Nor do tracks whose speed is below this many standard deviations.
+constexpr double kSpeedDeviations = 2.5;
+constexpr double kMinMoved_m = 0.3;  ///< nor do tracks that have moved less than this
+/// How long a place counts as seen free after a beam crossed it.
+constexpr Duration kCrossingMemory{10'000'000'000};
+/// Fraction of a place that beams must cross for it to count as seen free.
+constexpr double kCrossedPart = 0.8;
+
 /// The mean of the hits on a disc is this much nearer than its centre, in radii: the mean of sqrt(1 - y²)
 /// over y.
 constexpr double kMeanDepth = std::numbers::pi / 4;
@@ -13,25 +36,9 @@ constexpr double kRadiusGain = 0.2;
 /// A hit may belong to a track if it is at most this far beyond the track's radius.
 constexpr double kTrackSlack_m = 0.15;
 
-void check(const LaserTrackSettings& settings) {
-  const auto is_positive = [](auto... numbers) {
-    return (... && (static_cast<double>(numbers) > 0 && std::isfinite(static_cast<double>(numbers))));
-  };
-  if (!is_positive(settings.explained_within_m, settings.standing_after.count(), settings.join_m,
-                   settings.min_hits, settings.max_radius_m, settings.noise_m, settings.partial_noise_m,
-                   settings.motion.acceleration_psd_m2ps3, settings.start_speed_mps, settings.gate_m,
-                   settings.confirm_scans, settings.drop_after.count(), settings.min_speed_mps,
-                   settings.speed_deviations, settings.min_moved_m, settings.memory.count(),
-                   settings.crossed_part) ||
-      !(settings.motion.manoeuvre_mps2 >= 0 && std::isfinite(settings.motion.manoeuvre_mps2)))
-    throw std::invalid_argument("the settings of laser tracks must be positive and finite");
-}
-
 }  // namespace
 
-LaserTracks::LaserTracks(const LaserTrackSettings& settings)
-    : settings_(settings), clusters_(settings.join_m) {
-  check(settings);
+LaserTracks::LaserTracks() : clusters_(kJoin_m) {
   entries_.reserve(kMaxTracks);
   listed_.reserve(kMaxTracks);
 }
@@ -39,7 +46,7 @@ LaserTracks::LaserTracks(const LaserTrackSettings& settings)
 bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor) {
   if (beams.captured_at() <= now_) return false;
   now_ = beams.captured_at();
-  std::erase_if(entries_, [&](const Entry& entry) { return now_ - entry.seen_at > settings_.drop_after; });
+  std::erase_if(entries_, [&](const Entry& entry) { return now_ - entry.seen_at > kDropAfter; });
   classify(beams, grid, floor);
   clusters_.find(beams, is_loose_);
   associate(grid);
@@ -52,23 +59,21 @@ bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const K
 void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor) {
   kinds_.assign(beams.all().size(), kOther);
   is_loose_.assign(beams.all().size(), 0);
-  const double within_m = settings_.explained_within_m;
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const Beam& beam = beams.all()[i];
     if (beam.end != BeamEnd::kHit) continue;
     const Vec2 hit = beams.end_m(beam);
-    kinds_[i] = floor.is_near(hit, within_m) || is_explained(hit, grid) ? kStanding : kLoose;
+    kinds_[i] = floor.is_near(hit, kExplainedWithin_m) || is_explained(hit, grid) ? kStanding : kLoose;
     is_loose_[i] = kinds_[i] == kLoose;
   }
 }
 
 bool LaserTracks::is_explained(const Vec2& hit, const LocalGrid& grid) const {
-  const double within_m = settings_.explained_within_m;
   bool is_found = false;
-  grid.for_each_occupied(inflated({hit, hit}, within_m), [&](const Cell& cell) {
+  grid.for_each_occupied(inflated({hit, hit}, kExplainedWithin_m), [&](const Cell& cell) {
     const Duration occupied_for = grid.occupied_for(cell);
-    is_found = is_found || (occupied_for >= settings_.standing_after &&
-                            signed_distance(hit, grid.box_of(cell)) <= within_m &&
+    is_found = is_found || (occupied_for >= kStandingAfter &&
+                            signed_distance(hit, grid.box_of(cell)) <= kExplainedWithin_m &&
                             !is_of_mover(hit, grid.updated_at() - occupied_for));
   });
   return is_found;
@@ -92,7 +97,7 @@ Vec2 LaserTracks::centre_m(const ScanCluster& cluster, double radius_m) const {
 }
 
 bool LaserTracks::is_trackable(const ScanCluster& cluster) const {
-  return cluster.hits >= settings_.min_hits && cluster.radius_m <= settings_.max_radius_m;
+  return cluster.hits >= kMinHits && cluster.radius_m <= kMaxPerson_m;
 }
 
 void LaserTracks::associate(const LocalGrid& grid) {
@@ -102,7 +107,7 @@ void LaserTracks::associate(const LocalGrid& grid) {
     const Vec2 predicted = predicted_m(entries_[e]);
     for (std::size_t c = 0; c < clusters.size(); ++c) {
       const double distance_m = (centre_m(clusters[c], entries_[e].radius_m) - predicted).norm();
-      if (distance_m <= settings_.gate_m && is_trackable(clusters[c])) pairs_.push_back({distance_m, e, c});
+      if (distance_m <= kGate_m && is_trackable(clusters[c])) pairs_.push_back({distance_m, e, c});
     }
   }
   std::ranges::sort(pairs_, {}, &Pair::distance_m);
@@ -118,8 +123,8 @@ void LaserTracks::associate(const LocalGrid& grid) {
 void LaserTracks::observe(Entry& entry, const ScanCluster& cluster, const LocalGrid& grid) {
   if (!cluster.is_partial) entry.radius_m += kRadiusGain * (cluster.radius_m - entry.radius_m);
   const Vec2 centre = centre_m(cluster, entry.radius_m);
-  const double noise_m = cluster.is_partial ? settings_.partial_noise_m : settings_.noise_m;
-  entry.filter.predict(to_seconds(now_ - entry.seen_at), settings_.motion);
+  const double noise_m = cluster.is_partial ? kPartialNoise_m : kClusterNoise_m;
+  entry.filter.predict(to_seconds(now_ - entry.seen_at), kPersonMotion);
   entry.filter.correct(centre - entry.filter.position(), noise_m * noise_m);
   entry.seen_at = now_;
   ++entry.scans;
@@ -128,20 +133,19 @@ void LaserTracks::observe(Entry& entry, const ScanCluster& cluster, const LocalG
 
 bool LaserTracks::is_fast(const Entry& entry) const {
   const double error = std::sqrt(entry.filter.covariance()(1, 1));
-  return entry.filter.velocity().norm() >
-         std::max(settings_.min_speed_mps, settings_.speed_deviations * error);
+  return entry.filter.velocity().norm() > std::max(kMinSpeed_mps, kSpeedDeviations * error);
 }
 
 bool LaserTracks::shows_motion(const Entry& entry, const LocalGrid& grid) const {
   const Vec2& here = entry.filter.position();
-  return (here - entry.start_m).norm() >= settings_.min_moved_m &&
-         (was_crossed({here, entry.radius_m}, now_ - settings_.memory, grid) ||
+  return (here - entry.start_m).norm() >= kMinMoved_m &&
+         (was_crossed({here, entry.radius_m}, now_ - kCrossingMemory, grid) ||
           was_crossed({entry.start_m, entry.radius_m}, entry.started_at, grid));
 }
 
 /// Whether beams have crossed nearly all cells of a disc since a time.
 bool LaserTracks::was_crossed(const Circle& disc, Time since, const LocalGrid& grid) const {
-  const double radius_m = std::max(disc.radius_m, 2 * grid.settings().resolution_m);
+  const double radius_m = std::max(disc.radius_m, 2 * LocalGrid::kResolution_m);
   const Cell first = grid.cell_at(disc.centre_m - Vec2(radius_m, radius_m));
   const Cell last = grid.cell_at(disc.centre_m + Vec2(radius_m, radius_m));
   int cells = 0, crossed = 0;
@@ -153,7 +157,7 @@ bool LaserTracks::was_crossed(const Circle& disc, Time since, const LocalGrid& g
       crossed += grid.crossed_at({column, row}) > since;
     }
   }
-  return crossed > settings_.crossed_part * cells;
+  return crossed > kCrossedPart * cells;
 }
 
 void LaserTracks::start(const ScanCluster& cluster) {
@@ -164,8 +168,7 @@ void LaserTracks::start(const ScanCluster& cluster) {
   entry.scans = 1;
   entry.started_at = entry.seen_at = now_;
   entry.radius_m = cluster.radius_m;
-  entry.filter = {centre, settings_.noise_m * settings_.noise_m,
-                  settings_.start_speed_mps * settings_.start_speed_mps};
+  entry.filter = {centre, kClusterNoise_m * kClusterNoise_m, kStartSpeed_mps * kStartSpeed_mps};
   entry.start_m = centre;
   entries_.push_back(entry);
 }
@@ -173,7 +176,7 @@ void LaserTracks::start(const ScanCluster& cluster) {
 void LaserTracks::list() {
   listed_.clear();
   for (const Entry& entry : entries_) {
-    if (entry.scans < settings_.confirm_scans) continue;
+    if (entry.scans < kConfirmScans) continue;
     listed_.push_back({entry.number, entry.filter.position(), entry.filter.velocity(), entry.radius_m,
                        std::sqrt(entry.filter.covariance()(0, 0)), std::sqrt(entry.filter.covariance()(1, 1)),
                        entry.seen_at, entry.has_moved() && is_fast(entry)});

@@ -8,27 +8,6 @@
 
 namespace sidestep {
 
-struct LaserTrackSettings {
-  double explained_within_m = 0.12;        ///< a hit this near to something standing belongs to it
-  Duration standing_after{2'000'000'000};  ///< cells that have been occupied for this long count as standing
-  double join_m = 0.15;                    ///< hits this near to each other belong to one object
-  int min_hits = 2;                        ///< minimum number of hits in a cluster
-  double max_radius_m = 0.6;               ///< larger clusters are not people
-  double noise_m = 0.03;                   ///< standard deviation of a cluster's centre, on each axis
-  double partial_noise_m = 0.1;            ///< the same standard deviation if part of the cluster is hidden
-  MotionNoise motion{0.15, 1};
-  double start_speed_mps = 1;  ///< standard deviation of a new track's velocity, on each axis
-  double gate_m = 0.4;         ///< maximum distance of a cluster from the prediction
-  int confirm_scans = 4;
-  Duration drop_after{1'000'000'000};  ///< time without an observation after which a track ends
-  double min_speed_mps = 0.25;         ///< tracks slower than this do not move
-  double speed_deviations = 2.5;       ///< nor do tracks whose speed is below this many standard deviations
-  double min_moved_m = 0.3;            ///< nor do tracks that have moved less than this
-  Duration memory{10'000'000'000};     ///< how long a place counts as seen free after a beam crossed it
-  /// Fraction of a place that beams must cross for it to count as seen free.
-  double crossed_part = 0.8;
-};
-
 /// An object that is not known to stand.
 struct LaserTrack {
   std::uint32_t number = 0;
@@ -54,8 +33,7 @@ class LaserTracks {
  public:
   static constexpr std::size_t kMaxTracks = 256;
 
-  /// Throws std::invalid_argument for numbers that are not positive and finite.
-  explicit LaserTracks(const LaserTrackSettings& settings = {});
+  LaserTracks();
 
   /// Processes a scan, which the grid must not have processed yet. Returns false and changes nothing if the
   /// scan is not newer than the last one. Does not allocate once warm.
@@ -99,7 +77,6 @@ class LaserTracks {
   void start(const ScanCluster& cluster);
   void list();
 
-  LaserTrackSettings settings_;
   ScanClusters clusters_;
   Time now_ = Time::min();
   std::uint32_t last_number_ = 0;

@@ -8,24 +8,6 @@
 namespace sidestep {
 namespace {
 
-void check(const LocalGridSettings& settings) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw std::invalid_argument(std::string("a local grid: ") + what);
-  };
-  const int side = settings.side_cells;
-  require(side >= 16 && side <= 4096 && std::has_single_bit(static_cast<unsigned>(side)),
-          "the cells per side are not a power of two from 16 to 4096");
-  require(settings.resolution_m >= kMinResolution_m && settings.resolution_m <= kMaxResolution_m,
-          "the resolution is out of range");
-  require(settings.hit > 0 && settings.miss > 0 && std::isfinite(settings.hit + settings.miss),
-          "hits and misses must be positive and finite");
-  require(settings.occupied_from > 0 && settings.free_up_to < 0 &&
-              std::max(settings.occupied_from, -settings.free_up_to) <= settings.limit &&
-              std::isfinite(settings.limit),
-          "0 must lie between free and occupied, and both within the limit");
-  require(settings.decay_s > 0 && std::isfinite(settings.decay_s), "the decay must be positive and finite");
-}
-
 /// One axis of a ray on its way through the cells.
 struct CellAxis {
   CellAxis(double from, double direction, double resolution_m)
@@ -48,8 +30,9 @@ struct CellAxis {
 }  // namespace
 
 LocalGrid::LocalGrid(const LocalGridSettings& settings) : settings_(settings) {
-  check(settings);
   const auto side = static_cast<std::size_t>(settings.side_cells);
+  if (settings.side_cells < 16 || settings.side_cells > 4096 || !std::has_single_bit(side))
+    throw std::invalid_argument("a local grid: the cells per side are not a power of two from 16 to 4096");
   log_odds_.resize(side * side);
   occupied_since_.resize(side * side);
   crossed_at_.resize(side * side, Time::min());
@@ -59,7 +42,7 @@ LocalGrid::LocalGrid(const LocalGridSettings& settings) : settings_(settings) {
 Cell LocalGrid::cell_at(const Vec2& p) const {
   constexpr double kMost = 2e9;  // beyond every window
   const auto number = [&](double at_m) {
-    const double at = std::floor(at_m / settings_.resolution_m);
+    const double at = std::floor(at_m / kResolution_m);
     return at >= -kMost && at <= kMost ? static_cast<int>(at) : std::numeric_limits<int>::max();
   };
   return {number(p.x()), number(p.y())};
@@ -95,7 +78,7 @@ void LocalGrid::move_window(const Cell& centre) {
 }
 
 void LocalGrid::decay(Duration passed) {
-  const auto factor = static_cast<float>(std::exp(-to_seconds(passed) / settings_.decay_s));
+  const auto factor = static_cast<float>(std::exp(-to_seconds(passed) / kDecay_s));
   constexpr float kNegligible = 1e-3F;  // avoids denormal numbers, which are slow
   for (float& odds : log_odds_) odds = std::abs(odds) < kNegligible ? 0 : odds * factor;
 }
@@ -105,20 +88,20 @@ void LocalGrid::add_hit(const Cell& cell) {
   const std::size_t i = index(cell);
   if (touched_[i] == scan_) return;
   touched_[i] = scan_;
-  if (log_odds_[i] < settings_.occupied_from) occupied_since_[i] = updated_at_;
-  log_odds_[i] = std::min(log_odds_[i] + settings_.hit, settings_.limit);
+  if (log_odds_[i] < kOccupiedFrom) occupied_since_[i] = updated_at_;
+  log_odds_[i] = std::min(log_odds_[i] + kHit, kLimit);
 }
 
 void LocalGrid::add_miss(std::size_t i) {
   if (touched_[i] == scan_) return;
   touched_[i] = scan_;
   crossed_at_[i] = updated_at_;
-  log_odds_[i] = std::max(log_odds_[i] - settings_.miss, -settings_.limit);
+  log_odds_[i] = std::max(log_odds_[i] - kMiss, -kLimit);
 }
 
 void LocalGrid::clear_along(const Vec2& from, const Beam& beam) {
-  CellAxis x(from.x(), beam.direction.x(), settings_.resolution_m);
-  CellAxis y(from.y(), beam.direction.y(), settings_.resolution_m);
+  CellAxis x(from.x(), beam.direction.x(), kResolution_m);
+  CellAxis y(from.y(), beam.direction.y(), kResolution_m);
   while (has({x.index, y.index})) {
     add_miss(index({x.index, y.index}));
     CellAxis& axis = x.next_m < y.next_m ? x : y;

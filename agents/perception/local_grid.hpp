@@ -6,17 +6,8 @@
 
 namespace sidestep {
 
-/// Settings. Evidence is counted in log odds: ln(p / (1 - p)), where p is the probability that a cell is
-/// occupied; 0 means unknown.
 struct LocalGridSettings {
-  int side_cells = 256;        ///< cells per side, a power of two from 16 to 4,096
-  double resolution_m = 0.05;  ///< side of a cell, kMinResolution_m to kMaxResolution_m
-  float hit = 0.85F;           ///< added to a cell with hits, once per scan
-  float miss = 0.4F;           ///< subtracted from a cell that beams cross, once per scan
-  float limit = 3.5F;          ///< evidence saturates at ± this value, so that changes are noticed soon
-  float occupied_from = 1.2F;  ///< a cell with at least this evidence is occupied
-  float free_up_to = -0.6F;    ///< a cell with at most this evidence is free; in between it is unknown
-  double decay_s = 20;         ///< time in which evidence decays to 1/e without observations
+  int side_cells = 256;  ///< cells per side, a power of two from 16 to 4,096
 };
 
 enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
@@ -27,7 +18,16 @@ enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 /// constructor.
 class LocalGrid {
  public:
-  /// Throws std::invalid_argument if a setting is out of range.
+  static constexpr double kResolution_m = 0.05;  ///< side of a cell
+  // Evidence is counted in log odds: ln(p / (1 - p)), where p is the probability that a cell is occupied; 0
+  // means unknown.
+  static constexpr float kHit = 0.85F;  ///< added to a cell with hits, once per scan
+  static constexpr float kMiss = 0.4F;  ///< subtracted from a cell that beams cross, once per scan
+  /// Evidence saturates at ± this value, so that changes are noticed soon.
+  static constexpr float kLimit = 3.5F;
+  static constexpr double kDecay_s = 20;  ///< time in which evidence decays to 1/e without observations
+
+  /// Throws std::invalid_argument if the number of cells is out of range.
   explicit LocalGrid(const LocalGridSettings& settings = {});
 
   /// Moves the window to the scanner, lets old evidence decay, and adds that of a scan. Beams clear the cells
@@ -37,12 +37,12 @@ class LocalGrid {
   /// kMaxMapOrigin_m.
   bool update(const LaserBeams& beams);
 
-  const LocalGridSettings& settings() const { return settings_; }
+  int side_cells() const { return settings_.side_cells; }
   Time updated_at() const { return updated_at_; }
   Cell cell_at(const Vec2& p) const;
   Box box_of(const Cell& cell) const {
-    const double side_m = settings_.resolution_m;
-    return {{cell.column * side_m, cell.row * side_m}, {(cell.column + 1) * side_m, (cell.row + 1) * side_m}};
+    return {{cell.column * kResolution_m, cell.row * kResolution_m},
+            {(cell.column + 1) * kResolution_m, (cell.row + 1) * kResolution_m}};
   }
   bool has(const Cell& cell) const {
     return in_window(cell.column, first_.column) && in_window(cell.row, first_.row);
@@ -52,8 +52,8 @@ class LocalGrid {
   float log_odds(const Cell& cell) const { return has(cell) ? log_odds_[index(cell)] : 0; }
   CellState state(const Cell& cell) const {
     const float odds = log_odds(cell);
-    if (odds >= settings_.occupied_from) return CellState::kOccupied;
-    return odds <= settings_.free_up_to ? CellState::kFree : CellState::kUnknown;
+    if (odds >= kOccupiedFrom) return CellState::kOccupied;
+    return odds <= kFreeUpTo ? CellState::kFree : CellState::kUnknown;
   }
   CellState state_at(const Vec2& p) const { return state(cell_at(p)); }
   /// How long a cell has been occupied without interruption; 0 if it is not occupied.
@@ -66,6 +66,10 @@ class LocalGrid {
   void for_each_occupied(const Box& box, const Call& call) const;
 
  private:
+  static constexpr float kOccupiedFrom = 1.2F;  // a cell with at least this evidence is occupied
+  static constexpr float kFreeUpTo =
+      -0.6F;  // a cell with at most this evidence is free; in between it is unknown
+
   bool in_window(int number, int first) const {
     const std::int64_t offset = std::int64_t{number} - first;
     return offset >= 0 && offset < settings_.side_cells;
@@ -97,7 +101,7 @@ class LocalGrid {
 
 template <typename Call>
 void LocalGrid::for_each_occupied(const Box& box, const Call& call) const {
-  const double cells_per_m = 1 / settings_.resolution_m;
+  const double cells_per_m = 1 / kResolution_m;
   const auto clipped = [&](double at, int first) {
     return static_cast<int>(
         std::clamp(at, static_cast<double>(first) - 1, static_cast<double>(first) + settings_.side_cells));

@@ -68,15 +68,15 @@ Json navigation_json(const EStar& field) {
 }
 
 Json local_json(const LocalGrid& grid, const Vec2& centre_m) {
-  const int side = grid.settings().side_cells;
+  const int side = grid.side_cells();
   const Cell centre = grid.cell_at(centre_m);
   const Cell first{centre.column - side / 2, centre.row - side / 2};
   Json values = Json::array();
   for (int row = 0; row < side; ++row)
     for (int column = 0; column < side; ++column)
       values.push_back(static_cast<int>(grid.state({first.column + column, first.row + row})));
-  Json json = grid_json(grid.box_of(first).min_m, grid.settings().resolution_m,
-                        static_cast<std::size_t>(side), static_cast<std::size_t>(side));
+  Json json = grid_json(grid.box_of(first).min_m, LocalGrid::kResolution_m, static_cast<std::size_t>(side),
+                        static_cast<std::size_t>(side));
   json["values"] = values;
   return json;
 }

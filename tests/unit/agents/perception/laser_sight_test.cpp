@@ -77,7 +77,7 @@ TEST_CASE("unknown things that stand for a while are reported as squares, the ne
   const std::vector<Circle> standing{
       {at_m + Vec2(1, 0), 0.1}, {at_m + Vec2(-2, 0), 0.1}, {at_m + Vec2(0, -3), 0.1}};
   Time at = kBegin;
-  for (; at < kBegin + watched.settings.unknown_after; at += kPeriod) {
+  for (; at < kBegin + LaserSight::kUnknownAfter; at += kPeriod) {
     REQUIRE(watched.scan(sight, at_m, at, standing));
     CHECK(sight.unknown().empty());
   }
@@ -89,7 +89,7 @@ TEST_CASE("unknown things that stand for a while are reported as squares, the ne
     const double distance_m = (square.centre_m - at_m).norm();
     CHECK(distance_m >= last_m);
     last_m = distance_m;
-    CHECK(square.radius_m == Approx(watched.settings.unknown_cell_m / std::sqrt(2.0)));
+    CHECK(square.radius_m == Approx(LaserSight::kUnknownCell_m / std::sqrt(2.0)));
     for (std::size_t i = 0; i < standing.size(); ++i)
       if (touch(square, standing[i])) found.insert(i);
   }

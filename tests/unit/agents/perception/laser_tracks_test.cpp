@@ -231,14 +231,10 @@ TEST_CASE("a track ends when it has not been seen for some time") {
   CHECK_FALSE(is_kept());
 }
 
-TEST_CASE("old scans do not change tracks and bad settings are refused") {
+TEST_CASE("old scans do not change tracks") {
   Hall hall;
   for (int i = 0; i < 5; ++i) hall.scan({{2, 1}, 0.25});
   CHECK_FALSE(hall.tracks.update(hall.beams, hall.grid));
-  CHECK_THROWS_AS(LaserTracks({.join_m = 0}), std::invalid_argument);
-  CHECK_THROWS_AS(LaserTracks({.noise_m = std::nan("")}), std::invalid_argument);
-  CHECK_THROWS_AS(LaserTracks({.motion = {1, -1}}), std::invalid_argument);
-  CHECK_THROWS_AS(LaserTracks({.memory = Duration::zero()}), std::invalid_argument);
 }
 
 }  // namespace sidestep::laser_tracks_test
