@@ -16,8 +16,7 @@ class Anytime {
  public:
   using State = typename D::State;
 
-  explicit Anytime(Planner planner, const SmoothingSettings& settings = {})
-      : planner_(std::move(planner)), smoother_(settings) {}
+  explicit Anytime(Planner planner) : planner_(std::move(planner)) {}
 
   /// The result belongs to this planner and is valid until its next plan.
   const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {

@@ -6,6 +6,8 @@
 namespace sidestep {
 namespace {
 
+constexpr double kGridCell_m = 0.1;
+
 constexpr std::uint32_t kNone = 0xffffffff;
 
 }  // namespace
@@ -22,13 +24,13 @@ const Plan<Vec2>& GridPlanner::plan(const DiscDomain& domain, const Vec2& start,
 /// Places the grid so that the start is the centre of a cell.
 void GridPlanner::lay_out(const DiscDomain& domain, const Vec2& start) {
   const double x = domain.field().length_m / 2, y = domain.field().width_m / 2;
-  const Vec2 cells_before((start.x() + x) / settings_.cell_m, (start.y() + y) / settings_.cell_m);
-  const Vec2 cells_after((x - start.x()) / settings_.cell_m, (y - start.y()) / settings_.cell_m);
+  const Vec2 cells_before((start.x() + x) / kGridCell_m, (start.y() + y) / kGridCell_m);
+  const Vec2 cells_after((x - start.x()) / kGridCell_m, (y - start.y()) / kGridCell_m);
   const auto floored = [](double count) { return static_cast<Cell>(std::max(std::floor(count), 0.0)); };
   columns_ = floored(cells_before.x()) + floored(cells_after.x()) + 1;
   rows_ = floored(cells_before.y()) + floored(cells_after.y()) + 1;
   start_ = floored(cells_before.y()) * columns_ + floored(cells_before.x());
-  origin_m_ = start - settings_.cell_m * Vec2(floored(cells_before.x()), floored(cells_before.y()));
+  origin_m_ = start - kGridCell_m * Vec2(floored(cells_before.x()), floored(cells_before.y()));
   start_m_ = start;
   goal_m_ = domain.goal(start);
   came_from_.assign(std::size_t{columns_} * rows_, kNone);
@@ -36,7 +38,7 @@ void GridPlanner::lay_out(const DiscDomain& domain, const Vec2& start) {
 
 Vec2 GridPlanner::position_of(Cell cell) const {
   if (cell == start_) return start_m_;
-  return origin_m_ + settings_.cell_m * Vec2(cell % columns_, cell / columns_);
+  return origin_m_ + kGridCell_m * Vec2(cell % columns_, cell / columns_);
 }
 
 void GridPlanner::search(const DiscDomain& domain, const Budget& budget) {
@@ -57,7 +59,7 @@ void GridPlanner::search(const DiscDomain& domain, const Budget& budget) {
     ++plan_.nodes;
     const double to_goal_m = domain.distance(position_of(at.cell), goal_m_);
     if (to_goal_m < domain.distance(position_of(nearest), goal_m_)) nearest = at.cell;
-    if (to_goal_m < 1.5 * settings_.cell_m && domain.check(position_of(at.cell), goal_m_)) {
+    if (to_goal_m < 1.5 * kGridCell_m && domain.check(position_of(at.cell), goal_m_)) {
       plan_.reason = PlanReason::kSolved;
       write_plan(at.cell);
       if (to_goal_m > 0) plan_.states.push_back(goal_m_);
@@ -75,7 +77,7 @@ void GridPlanner::expand(const DiscDomain& domain, const Open& at) {
       const Cell next = y * columns_ + x;
       if (came_from_[next] != kNone) continue;
       const bool is_diagonal = x != column && y != row;
-      const double cost_m = at.cost_m + settings_.cell_m * (is_diagonal ? std::sqrt(2.0) : 1.0);
+      const double cost_m = at.cost_m + kGridCell_m * (is_diagonal ? std::sqrt(2.0) : 1.0);
       push({cost_m + domain.distance(position_of(next), goal_m_), cost_m, next, at.cell});
     }
   }

@@ -15,7 +15,6 @@ enum class GridOrder {
 
 struct GridSettings {
   GridOrder order = GridOrder::kAStar;
-  double cell_m = 0.1;
 };
 
 /// Search on a regular 8-connected grid whose origin is chosen so that the start is the centre of a cell.

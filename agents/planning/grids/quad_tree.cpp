@@ -6,6 +6,9 @@
 namespace sidestep {
 namespace {
 
+/// Side of the smallest cell: longer side of the free area / 2^depth.
+constexpr int kTreeDepth = 8;
+
 constexpr std::uint32_t kNone = 0xffffffff;
 
 }  // namespace
@@ -13,7 +16,7 @@ constexpr std::uint32_t kNone = 0xffffffff;
 const Plan<Vec2>& QuadTree::plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng&) {
   begin_plan(domain, start, plan_);
   if (plan_straight(domain, start, plan_)) return plan_;
-  side_ = 1 << settings_.depth;
+  side_ = 1 << kTreeDepth;
   const double x = domain.field().length_m - 2 * domain.radius_m(),
                y = domain.field().width_m - 2 * domain.radius_m();
   unit_m_ = std::max(x, y) / side_;

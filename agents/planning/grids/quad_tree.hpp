@@ -5,17 +5,11 @@
 
 namespace sidestep {
 
-struct QuadTreeSettings {
-  int depth = 8;  ///< depth of the tree; side of the smallest cell: longer side of the free area / 2^depth
-};
-
 /// Approximate cell decomposition: squares that are neither completely free nor completely blocked are
 /// divided into four, down to a minimum size; squares that are then still undecided are dropped. Rebuilt for
 /// each query.
 class QuadTree {
  public:
-  explicit QuadTree(const QuadTreeSettings& settings = {}) : settings_(settings) {}
-
   /// The result belongs to this planner and is valid until its next plan. Deterministic.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
 
@@ -34,7 +28,6 @@ class QuadTree {
   struct Square {
     int x, y, size;
   };
-  QuadTreeSettings settings_;
   double unit_m_ = 0;
   Vec2 origin_m_{0, 0};
   int side_ = 0;                        // side of the root square, in units of the smallest square

@@ -10,6 +10,10 @@
 namespace sidestep {
 namespace {
 
+/// Maximum turn at a vertex of the polygons that approximate arcs.
+constexpr double kTrapezoidTurn_rad = 0.2;
+constexpr std::uint64_t kOrderSeed = 1;  ///< seed of the random order in which the map is built
+
 using Index = TrapezoidalMap::Index;
 
 constexpr std::int32_t kMargin = 16;      // margin of the box around the field, in grid units
@@ -96,7 +100,7 @@ void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
       const Vec2 from = arc.is_corner ? left_of(arc.first) : Vec2(0, 1);
       const double arc_turn_rad =
           arc.is_corner ? turn_rad(Side::kLeft, arc.first, arc.last) : 2 * std::numbers::pi;
-      append_vertices(arc, Side::kLeft, from, arc_turn_rad, settings_.vertex_turn_rad, vertices);
+      append_vertices(arc, Side::kLeft, from, arc_turn_rad, kTrapezoidTurn_rad, vertices);
     }
     add_polygon(vertices);
   }
@@ -117,7 +121,7 @@ void TrapezoidalDecomposition::add_polygon(const std::vector<Vec2>& vertices_m) 
 void TrapezoidalDecomposition::add_cells() {
   segments_.clear();
   for (const WindingSegment& boundary : boundaries_) segments_.push_back(boundary.segment);
-  Rng order(settings_.seed);
+  Rng order(kOrderSeed);
   map_.build(segments_, {half_field_.x + 2 * kMargin, half_field_.y + 2 * kMargin}, order);
   count_covers();
   cell_of_.assign(map_.trapezoids().size(), TrapezoidalMap::kNone);

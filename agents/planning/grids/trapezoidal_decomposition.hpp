@@ -8,11 +8,6 @@
 
 namespace sidestep {
 
-struct TrapezoidalDecompositionSettings {
-  double vertex_turn_rad = 0.2;  ///< maximum turn at a vertex of the polygons that approximate arcs
-  std::uint64_t seed = 1;        ///< seed of the random order in which the map is built
-};
-
 /// Exact cell decomposition (Latombe 1991, section 5.1) by the trapezoidal map of the obstacles' boundaries
 /// (de Berg et al. 2008, section 13.2). Obstacles inflated by the robot's radius are approximated by
 /// polygons, whose corners are rounded to an integer grid; the trapezoids that no polygon covers are the
@@ -20,9 +15,6 @@ struct TrapezoidalDecompositionSettings {
 /// each query, in expected time O((n + k) log n) after k crossings have been found.
 class TrapezoidalDecomposition {
  public:
-  explicit TrapezoidalDecomposition(const TrapezoidalDecompositionSettings& settings = {})
-      : settings_(settings) {}
-
   /// The result belongs to this planner and is valid until its next plan. Deterministic.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
 
@@ -47,7 +39,6 @@ class TrapezoidalDecomposition {
   Vec2 in_metres(double x, double y) const { return {unit_m_ * x, unit_m_ * y}; }
   GridPoint rounded(const Vec2& position_m) const;
 
-  TrapezoidalDecompositionSettings settings_;
   double unit_m_ = 1;     // unit of the grid
   GridPoint half_field_;  // half the size of the area of the robot's centre
   CrossingDivider divider_;

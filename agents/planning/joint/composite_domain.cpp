@@ -5,6 +5,14 @@
 #include <cmath>
 
 namespace sidestep {
+namespace {
+
+constexpr double kJointStep_m = 1;  ///< maximum motion of each robot in one extension
+// Probabilities that a robot's part of a sample is its start, or its goal. Otherwise it is a random free
+// position.
+constexpr double kJointStartProbability = 0.15, kJointGoalProbability = 0.15;
+
+}  // namespace
 
 double CompositeDomain::distance(const State& a, const State& b) const {
   double sum = 0;
@@ -32,7 +40,7 @@ std::optional<CompositeDomain::State> CompositeDomain::extend(const State& from,
     const Vec2 way = to[i] - from[i];
     const double length = way.norm();
     if (length == 0) continue;
-    reached[i] = length <= settings_.step_m ? to[i] : Vec2(from[i] + settings_.step_m / length * way);
+    reached[i] = length <= kJointStep_m ? to[i] : Vec2(from[i] + kJointStep_m / length * way);
     bool is_clear = is_clear_of_obstacles(from[i], reached[i]);
     for (std::size_t j = 0; j < from.size() && is_clear; ++j)
       is_clear = j == i || are_clear(from, reached, i, j);
@@ -69,9 +77,9 @@ CompositeDomain::State CompositeDomain::sample(Rng& rng) const {
   State state(problem_->robots());
   for (std::size_t i = 0; i < state.size(); ++i) {
     const double chance = rng.uniform();
-    if (chance < settings_.start_probability)
+    if (chance < kJointStartProbability)
       state[i] = problem_->starts_m[i];
-    else if (chance < settings_.start_probability + settings_.goal_probability)
+    else if (chance < kJointStartProbability + kJointGoalProbability)
       state[i] = problem_->goals_m[i];
     else
       state[i] = sample_free(rng);

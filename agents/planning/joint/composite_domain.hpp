@@ -9,13 +9,6 @@
 
 namespace sidestep {
 
-struct CompositeDomainSettings {
-  double step_m = 1;  ///< maximum motion of each robot in one extension
-  /// Probabilities that a robot's part of a sample is its start, or its goal. Otherwise it is a random free
-  /// position.
-  double start_probability = 0.15, goal_probability = 0.15;
-};
-
 /// Plans all robots as one (Bruce 2006, chapter 5). A state contains the positions of all robots, at rest. In
 /// a motion, all robots leave together, drive straight with the same speed profile scaled to their distances,
 /// and arrive together. So a motion is a straight line in the composite space, and every check is exact.
@@ -24,8 +17,7 @@ class CompositeDomain {
  public:
   using State = std::vector<Vec2>;
 
-  explicit CompositeDomain(const JointProblem& problem, const CompositeDomainSettings& settings = {})
-      : problem_(&problem), settings_(settings) {}
+  explicit CompositeDomain(const JointProblem& problem) : problem_(&problem) {}
 
   /// The Euclidean distance in the composite space.
   double distance(const State& a, const State& b) const;
@@ -43,7 +35,6 @@ class CompositeDomain {
   Vec2 sample_free(Rng& rng) const;
 
   const JointProblem* problem_;
-  CompositeDomainSettings settings_;
 };
 
 static_assert(StraightDomain<CompositeDomain>);

@@ -9,7 +9,7 @@ namespace sidestep {
 
 JointPlan CompositePlanner::plan(const JointProblem& problem, const Budget& budget, Rng& rng) {
   check(problem);
-  const CompositeDomain domain(problem, settings_.domain);
+  const CompositeDomain domain(problem);
   JointPlan result;
   if (!domain.check(problem.starts_m, problem.starts_m) || !domain.check(problem.goals_m, problem.goals_m)) {
     result.reason = PlanReason::kUnreachable;

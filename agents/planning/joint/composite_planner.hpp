@@ -8,26 +8,16 @@
 
 namespace sidestep {
 
-struct CompositeSettings {
-  CompositeDomainSettings domain{};
-  BidirectionalErrtSettings trees{};
-  SmoothingSettings smoothing{};
-};
-
 /// Plans all robots as one, with two trees in a space of 2n dimensions and subsequent smoothing. All robots
 /// are at rest at every state of the path. Probabilistically complete, but the space grows exponentially with
 /// the number of robots.
 class CompositePlanner {
  public:
-  explicit CompositePlanner(const CompositeSettings& settings = {})
-      : settings_(settings), trees_(settings.trees), smoother_(settings.smoothing) {}
-
   /// Returns kUnreachable if starts or goals touch each other, an obstacle or the border. Throws
   /// std::invalid_argument for problems that check() refuses.
   [[nodiscard]] JointPlan plan(const JointProblem& problem, const Budget& budget, Rng& rng);
 
  private:
-  CompositeSettings settings_;
   BidirectionalErrt<CompositeDomain> trees_;
   LeaderFollower<CompositeDomain> smoother_;
 };

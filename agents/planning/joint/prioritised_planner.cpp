@@ -10,6 +10,10 @@
 namespace sidestep {
 namespace {
 
+constexpr std::size_t kPlansPerRobot = 8;       ///< the one with the earliest arrival is kept
+constexpr std::size_t kSamplesPerRobot = 1500;  ///< for one tree, before another order of robots is tried
+constexpr std::size_t kMaxOrders = 1000;        ///< maximum number of orders of robots that are tried
+
 bool is_spent(const Budget& budget, std::size_t samples) {
   return samples >= budget.samples || (budget.clock && budget.clock() >= budget.until);
 }
@@ -32,10 +36,10 @@ JointPlan PrioritisedPlanner::plan(const JointProblem& problem, const Budget& bu
     result.reason = PlanReason::kUnreachable;
     return result;
   }
-  trees_.assign(problem.robots(), Tree(settings_.tree));
+  trees_.assign(problem.robots(), Tree());
   std::vector<std::size_t> order(problem.robots());
   std::iota(order.begin(), order.end(), 0);
-  for (std::size_t i = 0; i < settings_.max_orders && !is_spent(budget, result.samples); ++i) {
+  for (std::size_t i = 0; i < kMaxOrders && !is_spent(budget, result.samples); ++i) {
     const std::size_t place = plan_in_order(problem, order, budget, rng, result);
     if (place == order.size()) {
       result.reason = PlanReason::kSolved;
@@ -54,7 +58,7 @@ std::size_t PrioritisedPlanner::plan_in_order(const JointProblem& problem,
   for (std::size_t place = 0; place < order.size(); ++place) {
     if (is_spent(budget, result.samples)) return place;
     const std::size_t robot = order[place];
-    const SpaceTimeDomain domain(problem, robot, planned, settings_.domain);
+    const SpaceTimeDomain domain(problem, robot, planned);
     const std::vector<SpaceTimeState> path = path_of(robot, domain, budget, rng, result.samples);
     if (path.empty()) return place;
     planned.push_back(course_along(path, problem.limits));
@@ -68,10 +72,10 @@ std::vector<SpaceTimeState> PrioritisedPlanner::path_of(std::size_t robot, const
                                                         const Budget& budget, Rng& rng,
                                                         std::size_t& samples) {
   std::vector<SpaceTimeState> best;
-  for (std::size_t i = 0; i < settings_.plans_per_robot && !is_spent(budget, samples); ++i) {
+  for (std::size_t i = 0; i < kPlansPerRobot && !is_spent(budget, samples); ++i) {
     Budget share = budget;
-    share.nodes = settings_.samples_per_robot + 1;
-    share.samples = std::min(settings_.samples_per_robot, budget.samples - samples);
+    share.nodes = kSamplesPerRobot + 1;
+    share.samples = std::min(kSamplesPerRobot, budget.samples - samples);
     const Plan<SpaceTimeState>& plan = trees_[robot].plan(domain, domain.start(), share, rng);
     samples += plan.samples;
     if (!plan.arrives()) break;

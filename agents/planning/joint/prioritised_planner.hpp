@@ -7,22 +7,12 @@
 
 namespace sidestep {
 
-struct PrioritisedSettings {
-  SpaceTimeSettings domain{};
-  ErrtSettings tree{};
-  std::size_t plans_per_robot = 8;       ///< the one with the earliest arrival is kept
-  std::size_t samples_per_robot = 1500;  ///< for one tree, before another order of robots is tried
-  std::size_t max_orders = 1000;         ///< maximum number of orders of robots that are tried
-};
-
 /// Plans robots one after another (Erdmann and Lozano-Pérez 1987): each in space × time around the courses of
 /// those planned before. If a robot finds no path, it is moved to the front of the order and planning
 /// restarts; if it was already first, the order is shuffled. Fast, but incomplete: robots planned earlier
 /// leave no room for later ones.
 class PrioritisedPlanner {
  public:
-  explicit PrioritisedPlanner(const PrioritisedSettings& settings = {}) : settings_(settings) {}
-
   /// Returns kUnreachable if starts or goals touch each other, an obstacle or the border. Only the budget's
   /// sample and time limits apply. Throws std::invalid_argument for problems that check() refuses.
   [[nodiscard]] JointPlan plan(const JointProblem& problem, const Budget& budget, Rng& rng);
@@ -38,7 +28,6 @@ class PrioritisedPlanner {
   std::vector<SpaceTimeState> path_of(std::size_t robot, const SpaceTimeDomain& domain, const Budget& budget,
                                       Rng& rng, std::size_t& samples);
 
-  PrioritisedSettings settings_;
   std::vector<Tree> trees_;  // indexed by robot; each remembers its earlier paths
 };
 

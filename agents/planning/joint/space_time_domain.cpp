@@ -6,14 +6,22 @@
 #include "agents/planning/joint/leg.hpp"
 
 namespace sidestep {
+namespace {
+
+// Probabilities that a sample is the start (to wait there) or the goal (to arrive later), at a random time.
+constexpr double kWaitProbability = 0.1, kArrivalProbability = 0.2;
+/// Samples are at most this much later than the end of all courses, in addition to twice the straight drive.
+constexpr double kSpare_s = 1;
+
+}  // namespace
 
 SpaceTimeDomain::SpaceTimeDomain(const JointProblem& problem, std::size_t robot,
-                                 std::span<const Course> others, const SpaceTimeSettings& settings)
-    : problem_(&problem), robot_(robot), others_(others), settings_(settings) {
+                                 std::span<const Course> others)
+    : problem_(&problem), robot_(robot), others_(others) {
   Time end{};
   for (const Course& course : others_) end = std::max(end, course.end());
   const Time direct = earliest_arrival(start(), goal_m());
-  horizon_s_ = to_seconds(end - Time{}) + 2 * to_seconds(direct - Time{}) + settings_.spare_s;
+  horizon_s_ = to_seconds(end - Time{}) + 2 * to_seconds(direct - Time{}) + kSpare_s;
 }
 
 Time SpaceTimeDomain::earliest_arrival(const State& from, const Vec2& to_m) const {
@@ -71,8 +79,8 @@ SpaceTimeState SpaceTimeDomain::goal(const State& from) const {
 SpaceTimeState SpaceTimeDomain::sample(Rng& rng) const {
   const Time at = Time{} + from_seconds(rng.uniform(0, horizon_s_));
   const double chance = rng.uniform();
-  if (chance < settings_.start_probability) return {start().at_m, at};
-  if (chance < settings_.start_probability + settings_.goal_probability) return {goal_m(), at};
+  if (chance < kWaitProbability) return {start().at_m, at};
+  if (chance < kWaitProbability + kArrivalProbability) return {goal_m(), at};
   const double y = rng.uniform(-0.5, 0.5) * problem_->field.width_m,
                x = rng.uniform(-0.5, 0.5) * problem_->field.length_m;
   return {{x, y}, at};

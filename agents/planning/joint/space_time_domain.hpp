@@ -17,15 +17,6 @@ struct SpaceTimeState {
   bool operator==(const SpaceTimeState&) const = default;
 };
 
-struct SpaceTimeSettings {
-  /// Probabilities that a sample is the start (to wait there) or the goal (to arrive later), at a random
-  /// time.
-  double start_probability = 0.1, goal_probability = 0.2;
-  /// Samples are at most this much later than the end of all courses, in addition to twice the straight
-  /// drive.
-  double spare_s = 1;
-};
-
 /// Planning in space × time for one robot among others that follow fixed courses. In a motion, the robot
 /// waits where it is, then drives straight from rest to rest, as fast as its limits allow, and arrives at the
 /// state's time. A motion to the goal is free only if the robot can stay there for ever. Motions are one-way,
@@ -34,8 +25,7 @@ class SpaceTimeDomain {
  public:
   using State = SpaceTimeState;
 
-  SpaceTimeDomain(const JointProblem& problem, std::size_t robot, std::span<const Course> others,
-                  const SpaceTimeSettings& settings = {});
+  SpaceTimeDomain(const JointProblem& problem, std::size_t robot, std::span<const Course> others);
 
   State start() const { return {problem_->starts_m[robot_], Time{}}; }
   /// The time from a to b in seconds; more than a thousand if b is too early to be reached from a.
@@ -60,7 +50,6 @@ class SpaceTimeDomain {
   const JointProblem* problem_;
   std::size_t robot_;
   std::span<const Course> others_;
-  SpaceTimeSettings settings_;
   double horizon_s_ = 0;
 };
 

@@ -8,13 +8,6 @@
 
 namespace sidestep {
 
-struct SmoothingSettings {
-  std::size_t rounds = 6;   ///< maximum number of rounds; each runs forwards and backwards
-  double min_gain = 0.002;  ///< a smaller relative reduction of the length ends smoothing
-  /// Number of bisections of a motion to find the farthest state visible from the follower.
-  std::size_t halvings = 6;
-};
-
 /// Leader-follower smoothing (Bruce 2006, section 4.6.1): a leader advances along the path while the follower
 /// can reach it on a straight motion. When it no longer can, the follower moves to the last visible state,
 /// and the leader advances again. Repeated forwards and backwards, this pulls the path tight around
@@ -24,20 +17,18 @@ class LeaderFollower {
  public:
   using State = typename D::State;
 
-  explicit LeaderFollower(const SmoothingSettings& settings = {}) : settings_(settings) {}
-
   /// Shortens the plan's path, or leaves it unchanged. The path stays valid and keeps its ends.
   void smooth(const D& domain, Plan<State>& plan) {
     smoothed_.reserve(plan.states.size());
     reversed_.reserve(plan.states.size());
-    for (std::size_t round = 0; round < settings_.rounds && plan.states.size() > 2; ++round) {
+    for (std::size_t round = 0; round < kRounds && plan.states.size() > 2; ++round) {
       follow(domain, plan.states);
       std::reverse(smoothed_.begin(), smoothed_.end());
       reversed_.swap(smoothed_);
       follow(domain, reversed_);
       std::reverse(smoothed_.begin(), smoothed_.end());
       const double length = length_of(domain, smoothed_);
-      const bool is_last = length > plan.length * (1 - settings_.min_gain);
+      const bool is_last = length > plan.length * (1 - kMinGain);
       if (length < plan.length) {
         plan.states = smoothed_;
         plan.length = length;
@@ -71,7 +62,7 @@ class LeaderFollower {
                          const State& hidden) const {
     State last = visible;
     double low = 0, high = 1;
-    for (std::size_t i = 0; i < settings_.halvings; ++i) {
+    for (std::size_t i = 0; i < kHalvings; ++i) {
       const double fraction = (low + high) / 2;
       const State state = domain.between(visible, hidden, fraction);
       if (domain.check(follower, state)) {
@@ -84,7 +75,11 @@ class LeaderFollower {
     return last;
   }
 
-  SmoothingSettings settings_;
+  static constexpr std::size_t kRounds = 6;  // maximum number of rounds; each runs forwards and backwards
+  static constexpr double kMinGain = 0.002;  // a smaller relative reduction of the length ends smoothing
+  // Number of bisections of a motion to find the farthest state visible from the follower.
+  static constexpr std::size_t kHalvings = 6;
+
   std::vector<State> smoothed_, reversed_;
 };
 

@@ -7,9 +7,7 @@
 namespace sidestep {
 
 struct BidirectionalErrtSettings {
-  double waypoint_probability = 0.4;  ///< used while the cache is not empty
-  std::size_t cache_capacity = 50;    ///< 0: no cache
-  CacheReplacement replacement = CacheReplacement::kRandom;
+  std::size_t cache_capacity = 50;  ///< 0: no cache
   /// Maximum number per turn of one tree towards its target; 1: RRT-Connect.
   std::size_t growth_extensions = 100;
   std::size_t connect_extensions = 100;  ///< maximum number per turn of the other tree towards the new node
@@ -29,7 +27,7 @@ class BidirectionalErrt {
   using State = typename D::State;
 
   explicit BidirectionalErrt(const BidirectionalErrtSettings& settings = {})
-      : settings_(settings), cache_(settings.cache_capacity, settings.replacement) {}
+      : settings_(settings), cache_(settings.cache_capacity, CacheReplacement::kRandom) {}
 
   /// The result belongs to this planner and is valid until its next plan.
   const Plan<State>& plan(const D& domain, const State& start, const Budget& budget, Rng& rng) {
@@ -95,7 +93,7 @@ class BidirectionalErrt {
   }
 
   State choose_target(const D& domain, Rng& rng) {
-    if (!cache_.is_empty() && rng.chance(settings_.waypoint_probability)) return cache_.sample(rng);
+    if (!cache_.is_empty() && rng.chance(kWaypointProbability)) return cache_.sample(rng);
     return domain.sample(rng);
   }
 
@@ -106,6 +104,8 @@ class BidirectionalErrt {
     trees_[0].append_downwards(0, best, plan_.states);
     plan_.length = trees_[0].cost(best);
   }
+
+  static constexpr double kWaypointProbability = 0.4;  // used while the cache is not empty
 
   BidirectionalErrtSettings settings_;
   WaypointCache<State> cache_;

@@ -9,6 +9,10 @@
 namespace sidestep {
 namespace {
 
+/// Clearance in addition to the disc's radius, so that rounding does not cause contact.
+constexpr double kLazyStandoff_m = 1e-4;
+constexpr double kLazyTurn_rad = 0.35;  ///< maximum turn at a vertex of the path
+
 constexpr std::uint32_t kStart = 0, kGoal = 1, kObstacles = 2;
 constexpr std::uint32_t kNone = 0xffffffff;
 // A corner's arc covers at most half a circle, or slightly more if the start lies within the standoff.
@@ -125,7 +129,7 @@ void LazyVisibility::expand(const DiscDomain& domain, std::uint32_t arrival, std
   for (std::uint32_t arc = first_arc; arc < arcs_.size(); ++arc) {
     promising_[count] = arc;
     count += arc != at.arc && is_hidden_[arc] == 0 &&
-             may_have_tangent(from, at.side, arcs_[arc], 5 * settings_.standoff_m);
+             may_have_tangent(from, at.side, arcs_[arc], 5 * kLazyStandoff_m);
   }
   for (std::size_t i = 0; i < count; ++i) add_candidates(domain, arrival, from, promising_[i]);
 }
@@ -134,12 +138,12 @@ void LazyVisibility::add_candidates(const DiscDomain& domain, std::uint32_t arri
                                     std::uint32_t arc) {
   const Arrival& at = arrivals_[arrival];
   const TangentArc& to = arcs_[arc];
-  const TangentPair tangents = tangent_pair(from, at.side, to, settings_.standoff_m);
+  const TangentPair tangents = tangent_pair(from, at.side, to, kLazyStandoff_m);
   const SidePair from_sides = SidePair::Constant(sign(at.side));
   SidePair slack =
       arc_slack(from, from_sides, tangents.along).min(arc_slack(to, kSideSigns, tangents.along)) + 1e-9;
   // Within the standoff of an edge, a path may leave a start or reach a goal at a small angle to that edge.
-  if (at.arc == kStart || arc == kGoal) slack += 2 * settings_.standoff_m / tangents.length_m;
+  if (at.arc == kStart || arc == kGoal) slack += 2 * kLazyStandoff_m / tangents.length_m;
   const SidePair across = from_sides * cross(at.along, tangents.along), ahead = dot(at.along, tangents.along);
   const SidePair turns_rad = min_turns_rad(at.along, tangents.along);
   const SidePair x_m = to.centre_m.x() + kSideSigns * to.radius_m * tangents.along.y;
@@ -161,7 +165,7 @@ void LazyVisibility::add_candidates(const DiscDomain& domain, std::uint32_t arri
 }
 
 double LazyVisibility::refine_cost(Arrival& next) const {
-  next.vertex_turn_rad = settings_.vertex_turn_rad;
+  next.vertex_turn_rad = kLazyTurn_rad;
   const Arrival& at = arrivals_[next.parent];
   if (at.arc == kStart) return 0;
   const double turn = turn_rad(at.side, at.along, next.along);
@@ -190,7 +194,7 @@ bool LazyVisibility::is_dominated(const DiscDomain& domain, const Arrival& next)
     const double turn = turn_rad(next.side, arrivals_[i].along, next.along);
     if (arc.is_corner && turn > kMaxCornerTurn_rad) continue;
     if (next.cost_m < arrivals_[i].cost_m + arc.radius_m * turn - 1e-9) continue;
-    if (is_arc_free(domain, arrivals_[i], turn, next.along, settings_.vertex_turn_rad)) return true;
+    if (is_arc_free(domain, arrivals_[i], turn, next.along, kLazyTurn_rad)) return true;
   }
   return false;
 }
@@ -205,7 +209,7 @@ bool LazyVisibility::is_arc_free(const DiscDomain& domain, Arrival& next) {
   const Arrival& at = arrivals_[next.parent];
   if (is_arc_free(domain, at, next.turn_rad, next.along, next.vertex_turn_rad)) return true;
   // With smaller turns, the polyline stays closer to the arc.
-  next.vertex_turn_rad = settings_.vertex_turn_rad / 8;
+  next.vertex_turn_rad = kLazyTurn_rad / 8;
   return is_arc_free(domain, at, next.turn_rad, next.along, next.vertex_turn_rad);
 }
 
@@ -234,7 +238,7 @@ void LazyVisibility::discover(const DiscDomain& domain, const Vec2& from, const 
   if (!contact) return;
   const Shape& shape = domain.world().shape(contact->obstacle);
   const auto first_arc = static_cast<std::uint32_t>(arcs_.size());
-  append_arcs(shape, domain.radius_m() + settings_.standoff_m, arcs_);
+  append_arcs(shape, domain.radius_m() + kLazyStandoff_m, arcs_);
   known_.add(shape);
   hide_covered_corners(domain.field(), first_arc);
   last_.resize(arcs_.size() * 2, kNone);

@@ -8,19 +8,11 @@
 
 namespace sidestep {
 
-struct LazyVisibilitySettings {
-  /// Clearance in addition to the disc's radius, so that rounding does not cause contact.
-  double standoff_m = 1e-4;
-  double vertex_turn_rad = 0.35;  ///< maximum turn at a vertex of the path
-};
-
 /// Finds the shortest path of a disc among obstacles: A* over the tangents between arcs. A tangent is only
 /// checked when it is the most promising one, and an obstacle is only taken into account once such a tangent
 /// is blocked by it. A query therefore considers few obstacles, even in a world with many.
 class LazyVisibility {
  public:
-  explicit LazyVisibility(const LazyVisibilitySettings& settings = {}) : settings_(settings) {}
-
   /// The result belongs to this planner and is valid until its next plan. Deterministic. kUnreachable means
   /// that no path keeps the standoff.
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget& budget, Rng& rng);
@@ -77,7 +69,6 @@ class LazyVisibility {
   void hide_covered_corners(const Field& field, std::size_t first_arc);
   void write_plan(std::uint32_t arrival);
 
-  LazyVisibilitySettings settings_;
   std::vector<TangentArc> arcs_;  // the start, the goal, then the arcs of the known obstacles
   KnownObstacles known_;
   std::vector<std::uint8_t> is_hidden_;  // indexed by arc: not needed by any shortest path

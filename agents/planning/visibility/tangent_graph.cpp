@@ -6,6 +6,9 @@
 namespace sidestep {
 namespace {
 
+constexpr double kTangentStandoff_m = 1e-7;  ///< clearance beyond the disc's radius
+constexpr double kTangentTurn_rad = 0.02;    ///< maximum turn at a vertex of the path
+
 constexpr std::uint32_t kStart = 0, kGoal = 1, kObstacles = 2;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
@@ -13,11 +16,10 @@ double angle_on(Side side, const Vec2& along) { return sign(side) * std::atan2(a
 
 }  // namespace
 
-TangentGraph::TangentGraph(const ObstacleWorld& world, const Field& field, double radius_m,
-                           const TangentGraphSettings& settings)
-    : settings_(settings), domain_(world, field, radius_m, {0, 0}, {0, 0}), arcs_(kObstacles) {
+TangentGraph::TangentGraph(const ObstacleWorld& world, const Field& field, double radius_m)
+    : domain_(world, field, radius_m, {0, 0}, {0, 0}), arcs_(kObstacles) {
   for (const ObstacleId id : world.obstacles())
-    append_arcs(world.shape(id), radius_m + settings_.standoff_m, arcs_);
+    append_arcs(world.shape(id), radius_m + kTangentStandoff_m, arcs_);
   for (std::uint32_t a = kObstacles; a < arcs_.size(); ++a)
     for (std::uint32_t b = a + 1; b < arcs_.size(); ++b) join(a, b);
   world_nodes_ = nodes_.size();
@@ -44,7 +46,7 @@ void TangentGraph::join(std::uint32_t a, std::uint32_t b) {
 }
 
 void TangentGraph::join(std::uint32_t a, Side a_side, std::uint32_t b, Side b_side) {
-  const auto tangent_ab = tangent(arcs_[a], a_side, arcs_[b], b_side, settings_.standoff_m);
+  const auto tangent_ab = tangent(arcs_[a], a_side, arcs_[b], b_side, kTangentStandoff_m);
   if (!tangent_ab) return;
   const bool a_contains =
       a < kObstacles || arcs_[a].contains(tangent_point_direction(a_side, tangent_ab->along));
@@ -148,7 +150,7 @@ void TangentGraph::follow_ring(std::uint32_t node) {
   const double turn = turn_rad(side_of(at.ring), at.along, nodes_[next].along);
   if (arc.is_corner && turn > 3.2) return;
   vertices_.assign(1, position_of(at));
-  append_vertices(arc, side_of(at.ring), at.along, turn, settings_.vertex_turn_rad, vertices_);
+  append_vertices(arc, side_of(at.ring), at.along, turn, kTangentTurn_rad, vertices_);
   vertices_.push_back(position_of(nodes_[next]));
   for (std::size_t i = 1; i < vertices_.size(); ++i)
     if (!domain_.check(vertices_[i - 1], vertices_[i])) return;
@@ -163,7 +165,7 @@ void TangentGraph::write_plan(std::uint32_t node) {
     if (from.ring != to.ring) continue;
     const Side side = side_of(from.ring);
     append_vertices(arc_of(from.ring), side, from.along, turn_rad(side, from.along, to.along),
-                    settings_.vertex_turn_rad, plan_.states);
+                    kTangentTurn_rad, plan_.states);
   }
   plan_.states.push_back(arcs_[kGoal].centre_m);
   plan_.length = length_of(domain_, plan_.states);

@@ -7,18 +7,12 @@
 
 namespace sidestep {
 
-struct TangentGraphSettings {
-  double standoff_m = 1e-7;       ///< clearance beyond the disc's radius
-  double vertex_turn_rad = 0.02;  ///< maximum turn at a vertex of the path
-};
-
 /// The visibility graph of a disc: all free tangents between arcs, and the parts of the arcs between them,
 /// built once for a world. Its paths are shortest paths, except for the standoff and the approximation of
 /// arcs by polylines. They are the reference for other planners.
 class TangentGraph {
  public:
-  TangentGraph(const ObstacleWorld& world, const Field& field, double radius_m,
-               const TangentGraphSettings& settings = {});
+  TangentGraph(const ObstacleWorld& world, const Field& field, double radius_m);
 
   /// The result belongs to this planner and is valid until its next plan.
   const Plan<Vec2>& plan(const Vec2& start, const Vec2& goal);
@@ -68,7 +62,6 @@ class TangentGraph {
   void follow_ring(std::uint32_t node);
   void write_plan(std::uint32_t node);
 
-  TangentGraphSettings settings_;
   DiscDomain domain_;
   std::vector<TangentArc> arcs_;  // the start, the goal, then the arcs of the world
   std::vector<Node> nodes_;       // nodes of the world, then those of the query

@@ -10,6 +10,10 @@
 namespace sidestep {
 namespace {
 
+/// Maximum distance at which a start or goal in a blocked cell is joined to the centre of a free cell;
+/// measured from the border of the obstacles if the position touches any.
+constexpr double kMaxJoin_m = 0.5;
+
 constexpr std::size_t kFields = 2;
 
 /// Minimum distance that a disc must move to be within the field and touch nothing.
@@ -68,7 +72,7 @@ void NavigationPlanner::find_joins(const DiscDomain& domain, const Vec2& positio
   joins.clear();
   const EStar& values = fields_.front()->values();
   const GridLayout& layout = values.layout();
-  const double reach_m = settings_.join_m + depth_of(domain, position);
+  const double reach_m = kMaxJoin_m + depth_of(domain, position);
   const Vec2 at = layout.in_cells(position), reach = Vec2(1, 1) * (reach_m / layout.resolution_m);
   const Vec2 last(layout.columns - 1, layout.rows - 1);
   const Vec2 from = (at - reach).cwiseMax(Vec2(0, 0)), to = (at + reach).cwiseMin(last);

@@ -11,9 +11,6 @@ namespace sidestep {
 
 struct NavigationSettings {
   WorldFieldSettings field = {};
-  /// Maximum distance at which a start or goal in a blocked cell is joined to the centre of a free cell;
-  /// measured from the border of the obstacles if the position touches any.
-  double join_m = 0.5;
 };
 
 /// Plans paths that descend a navigation function. Keeps the functions of the last two radii or floors: a

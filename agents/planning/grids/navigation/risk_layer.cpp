@@ -28,19 +28,15 @@ Interval time_covered(const MovingDisc& disc, double radius_m, const Vec2& point
 
 RiskLayer::RiskLayer(const CostGrid& grid, const RiskSettings& settings) : grid_(grid), settings_(settings) {
   const auto is_positive = [](double x) { return x > 0 && std::isfinite(x); };
-  if (!(settings.robot_radius_m >= 0) || !std::isfinite(settings.robot_radius_m) ||
-      !is_positive(settings.robot_speed_mps) || !is_positive(settings.horizon_s) ||
-      !is_positive(settings.spread_s) || !(settings.cost >= 0 && settings.cost <= kMaxCost))
+  if (!is_positive(settings.robot_speed_mps) || !(settings.cost >= 0 && settings.cost <= kMaxCost))
     throw std::invalid_argument("the settings of a risk layer must be positive and finite");
 }
 
 float RiskLayer::risk_cost(const MovingDisc& disc, const Vec2& robot_m, const Vec2& cell_m) const {
-  const Interval covered =
-      time_covered(disc, disc.radius_m + settings_.robot_radius_m, cell_m, settings_.horizon_s);
+  const Interval covered = time_covered(disc, disc.radius_m + kRobotRadius_m, cell_m, kHorizon_s);
   if (covered.from_s > covered.to_s) return 0;
   const double arrival_s = (cell_m - robot_m).norm() / settings_.robot_speed_mps;
-  const double off =
-      std::max({covered.from_s - arrival_s, arrival_s - covered.to_s, 0.0}) / settings_.spread_s;
+  const double off = std::max({covered.from_s - arrival_s, arrival_s - covered.to_s, 0.0}) / kSpread_s;
   return static_cast<float>(settings_.cost * std::exp(-off * off / 2));
 }
 
@@ -49,8 +45,8 @@ std::uint32_t RiskLayer::add(const MovingDisc& disc, const Vec2& robot_m) {
       !(disc.radius_m >= 0) || !std::isfinite(disc.radius_m))
     throw std::invalid_argument("a moving disc and the robot need finite positions and velocities");
   const GridLayout& layout = grid_.layout();
-  const Vec2 end_m = disc.position_m + settings_.horizon_s * disc.velocity_mps;
-  const double reach_m = disc.radius_m + settings_.robot_radius_m;
+  const Vec2 end_m = disc.position_m + kHorizon_s * disc.velocity_mps;
+  const double reach_m = disc.radius_m + kRobotRadius_m;
   const Vec2 first = layout.in_cells(disc.position_m.cwiseMin(end_m) - Vec2(reach_m, reach_m));
   const Vec2 last = layout.in_cells(disc.position_m.cwiseMax(end_m) + Vec2(reach_m, reach_m));
   const auto clipped = [](double at, std::uint32_t count) {

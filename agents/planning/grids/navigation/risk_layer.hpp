@@ -12,10 +12,7 @@ struct MovingDisc {
 };
 
 struct RiskSettings {
-  double robot_radius_m = 0.25;
   double robot_speed_mps = 1;  ///< speed of the robot, to estimate when it reaches a cell
-  double horizon_s = 5;        ///< time for which the disc is predicted to keep its velocity
-  double spread_s = 1;         ///< standard deviation of the robot's time of arrival at a cell
   double cost = 20;            ///< cost added to a cell that both certainly occupy at the same time
 };
 
@@ -27,6 +24,10 @@ struct RiskSettings {
 /// std::invalid_argument for invalid settings, discs, positions and identifiers.
 class RiskLayer {
  public:
+  static constexpr double kRobotRadius_m = 0.25;
+  static constexpr double kHorizon_s = 5;  ///< time for which the disc is predicted to keep its velocity
+  static constexpr double kSpread_s = 1;   ///< standard deviation of the robot's time of arrival at a cell
+
   explicit RiskLayer(const CostGrid& grid, const RiskSettings& settings = {});
 
   /// Adds a disc, as seen by a robot at a position, and returns its identifier.

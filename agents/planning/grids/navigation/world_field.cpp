@@ -13,8 +13,7 @@ constexpr double kMaxSide = 32'000;  // maximum number of cells per side, as in 
 void check_settings(const WorldFieldSettings& settings) {
   const auto is_valid = [](double x, double max) { return x >= 0 && x <= max; };
   constexpr double kMaxLength_m = 1e15;
-  if (!(settings.cell_m > 0) || !is_valid(settings.cell_m, kMaxLength_m) || settings.max_cells == 0 ||
-      !is_valid(settings.clearance_m, kMaxLength_m) || !is_valid(settings.contact_cost, kMaxCost - 1))
+  if (!is_valid(settings.clearance_m, kMaxLength_m) || !is_valid(settings.contact_cost, kMaxCost - 1))
     throw std::invalid_argument("the settings of a navigation function must be positive and finite");
 }
 
@@ -31,9 +30,9 @@ std::optional<GridLayout> layout_of(const Field& floor, double radius_m, const W
   if (!std::isfinite(x_m) || !std::isfinite(y_m) || !(radius_m >= 0))
     throw std::invalid_argument("a floor and a disc need a finite size");
   if (!(x_m > 0) || !(y_m > 0)) return std::nullopt;
-  const auto max_cells = static_cast<double>(settings.max_cells);
+  const auto max_cells = static_cast<double>(kMaxFieldCells);
   const double wanted_m =
-      std::max({settings.cell_m, std::sqrt(x_m * y_m / max_cells), x_m / kMaxSide, y_m / kMaxSide});
+      std::max({kFieldCell_m, std::sqrt(x_m * y_m / max_cells), x_m / kMaxSide, y_m / kMaxSide});
   const double cell_m = std::min({wanted_m, x_m, y_m});
   // If rounding adds a tiny part of a cell, all cells are shrunk accordingly.
   const double columns = std::floor(x_m / cell_m + 1e-6), rows = std::floor(y_m / cell_m + 1e-6);

@@ -7,10 +7,11 @@
 
 namespace sidestep {
 
+inline constexpr double kFieldCell_m = 0.05;            ///< side of a cell
+inline constexpr std::size_t kMaxFieldCells = 250'000;  ///< cells are larger if the floor would need more
+
 struct WorldFieldSettings {
   GridKernel kernel = GridKernel::kLsm;
-  double cell_m = 0.05;             ///< side of a cell
-  std::size_t max_cells = 250'000;  ///< cells are larger if the floor would need more
   /// Cells cost more if, at their centre, the disc is nearer than this to an obstacle; 0: none do.
   double clearance_m = 0;
   /// Additional cost of a cell where the disc touches. Elsewhere this is multiplied by the square of the

@@ -99,9 +99,7 @@ TEST_CASE("priorities fail if the first robot's path leaves no room for the seco
   // The robots drive as fast as they can, so whichever is first is past the bay before the other is in it.
   const BayFloor floor;
   Rng rng(1);
-  PrioritisedSettings settings;
-  settings.max_orders = 6;
-  const JointPlan plan = PrioritisedPlanner(settings).plan(floor.problem, kBudget, rng);
+  const JointPlan plan = PrioritisedPlanner().plan(floor.problem, kBudget, rng);
   CHECK(plan.reason == PlanReason::kBudgetSpent);
   CHECK(plan.courses.empty());
 }

@@ -67,10 +67,10 @@ double sampled_risk(const MovingDisc& disc, const RiskSettings& settings, const 
   double risk = 0;
   const double arrival_s = (at - robot_m).norm() / settings.robot_speed_mps;
   for (int i = 0; i <= 20'000; ++i) {
-    const double time_s = settings.horizon_s * i / 20'000;
+    const double time_s = RiskLayer::kHorizon_s * i / 20'000;
     const Vec2 centre = disc.position_m + time_s * disc.velocity_mps;
-    if ((centre - at).norm() > disc.radius_m + settings.robot_radius_m) continue;
-    const double off = (time_s - arrival_s) / settings.spread_s;
+    if ((centre - at).norm() > disc.radius_m + RiskLayer::kRobotRadius_m) continue;
+    const double off = (time_s - arrival_s) / RiskLayer::kSpread_s;
     risk = std::max(risk, std::exp(-off * off / 2));
   }
   return risk;

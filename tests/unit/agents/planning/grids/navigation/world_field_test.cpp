@@ -12,16 +12,15 @@ TEST_CASE("cells cover the positions of the disc and leave margins narrower than
     const double length_m = rng.uniform(0.05, 40), width_m = rng.uniform(0.05, 40);
     const Field floor{length_m, width_m};
     const double radius_m = rng.chance(0.1) ? 0 : rng.uniform(0, 0.3);
-    const WorldFieldSettings settings{.cell_m = rng.uniform(0.02, 0.3), .max_cells = 20'000};
-    CAPTURE(seed, length_m, width_m, radius_m, settings.cell_m);
-    const auto layout = layout_of(floor, radius_m, settings);
+    CAPTURE(seed, length_m, width_m, radius_m);
+    const auto layout = layout_of(floor, radius_m, {});
     const double x_m = length_m - 2 * radius_m, y_m = width_m - 2 * radius_m;
     if (!layout) {
       REQUIRE((x_m <= 0 || y_m <= 0 || std::max(x_m, y_m) / std::min(x_m, y_m) > 20'000));
       continue;
     }
     check(*layout);
-    REQUIRE(layout->size() <= settings.max_cells);
+    REQUIRE(layout->size() <= kMaxFieldCells);
     const double cell_m = layout->resolution_m;
     const Vec2 first = layout->centre_of(0),
                last = layout->centre_of(static_cast<GridCell>(layout->size() - 1));
@@ -29,14 +28,13 @@ TEST_CASE("cells cover the positions of the disc and leave margins narrower than
     const Vec2 margin_m = Vec2(x_m, y_m) / 2 - last - Vec2(cell_m, cell_m) / 2;
     REQUIRE(margin_m.minCoeff() > -1e-9);
     REQUIRE(margin_m.maxCoeff() < cell_m / 2);
-    const bool is_small = x_m * y_m < 20'000 * settings.cell_m * settings.cell_m;
-    if (is_small && std::min(x_m, y_m) > settings.cell_m)
-      REQUIRE(cell_m == Approx(settings.cell_m).epsilon(1e-3));
+    const bool is_small = x_m * y_m < static_cast<double>(kMaxFieldCells) * kFieldCell_m * kFieldCell_m;
+    if (is_small && std::min(x_m, y_m) > kFieldCell_m) REQUIRE(cell_m == Approx(kFieldCell_m).epsilon(1e-3));
   }
 }
 
 TEST_CASE("floors whose length is a multiple of the cell size are covered completely") {
-  const auto layout = layout_of({10, 7}, 0.1, {.cell_m = 0.05});
+  const auto layout = layout_of({10, 7}, 0.1, {});
   REQUIRE(layout);
   CHECK(layout->columns == 196);
   CHECK(layout->rows == 136);
@@ -44,8 +42,6 @@ TEST_CASE("floors whose length is a multiple of the cell size are covered comple
 }
 
 TEST_CASE("invalid settings, floors and goals of a navigation function are rejected") {
-  CHECK_THROWS_AS(layout_of({10, 10}, 0.1, {.cell_m = 0}), std::invalid_argument);
-  CHECK_THROWS_AS(layout_of({10, 10}, 0.1, {.max_cells = 0}), std::invalid_argument);
   CHECK_THROWS_AS(layout_of({10, 10}, 0.1, {.contact_cost = 1e7}), std::invalid_argument);
   CHECK_THROWS_AS(layout_of({10, 10}, -0.1, {}), std::invalid_argument);
   CHECK_THROWS_AS(layout_of({std::nan(""), 10}, 0.1, {}), std::invalid_argument);
@@ -83,8 +79,8 @@ TEST_CASE("costs of clearance and values follow obstacles that move") {
     Rng rng(seed);
     const Field floor{3.4, 2.4};
     const double radius_m = rng.uniform(0.05, 0.2);
-    const WorldFieldSettings settings{
-        .cell_m = 0.1, .clearance_m = rng.uniform(0.1, 0.5), .contact_cost = rng.uniform(1, 20)};
+    const WorldFieldSettings settings{.clearance_m = rng.uniform(0.1, 0.5),
+                                      .contact_cost = rng.uniform(1, 20)};
     ObstacleWorld world;
     for (int i = 0; i < 6; ++i) world.add(moved(random_shape(rng), {-1.7, -1.2}));
     const auto layout = layout_of(floor, radius_m, settings);
