@@ -15,7 +15,7 @@ struct PlanningScratch {
   explicit PlanningScratch(const Scenario& scenario)
       : rules(floor_rules(scenario)),
         steering(rules.field, rules.radius_m, rules.limits),
-        safety_search(rules, {}) {}
+        safety_search(rules) {}
 
   const FloorRules rules;
   TrajectoryIndex others;

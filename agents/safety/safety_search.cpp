@@ -48,12 +48,8 @@ bool SafetySearch::Other::is_clear(const Trajectory& candidate) const {
                     : sidestep::is_clear(candidate, *obstacle, min_separation_m);
 }
 
-SafetySearch::SafetySearch(const FloorRules& rules, const SearchSettings& settings,
-                           const batch::Kernels& kernels)
-    : rules_(rules),
-      settings_(settings),
-      candidates_(settings.samples, rules.limits, kernels),
-      lanes_(kernels) {
+SafetySearch::SafetySearch(const FloorRules& rules, const batch::Kernels& kernels)
+    : rules_(rules), candidates_(kSamples, rules.limits, kernels), lanes_(kernels) {
   for (const Shape& obstacle : rules.obstacles)
     obstacles_.push_back(trajectory_bounds(Trajectory::resting(Time{}, centre_m(obstacle))));
   constexpr std::size_t kTypicalCount = 64;
@@ -97,7 +93,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
   keep_out_.find(query.keep_outs, query.at_start.position_m, query.way_out_m, disc, rules_.radius_m);
   compare(query, desired_bounds, max_deviation_m, result.checks);
   const UncontrolledBodies uncontrolled(query.uncontrolled, query.stop, query.start);
-  while (const auto index = candidates_.take_nearest(settings_.spread_mps2)) {
+  while (const auto index = candidates_.take_nearest(kSpread_mps2)) {
     const Trajectory trajectory =
         accelerate_then_stop(query.start, query.at_start, candidates_.acceleration(*index), query.hold_time,
                              limits.deceleration_mps2);

@@ -49,11 +49,6 @@ struct SearchQuery {
   }
 };
 
-struct SearchSettings {
-  int samples = 48;          ///< number of accelerations sampled from A(v) in addition to the desired one
-  double spread_mps2 = 0.5;  ///< minimum difference between the accelerations of two candidates
-};
-
 /// Clear trajectories, sorted by their distance from the desired acceleration.
 struct SearchResult {
   static constexpr std::size_t kMaxCandidates = 5;
@@ -69,8 +64,12 @@ struct SearchResult {
 /// Allocates nothing once warm.
 class SafetySearch {
  public:
-  SafetySearch(const FloorRules& rules, const SearchSettings& settings,
-               const batch::Kernels& kernels = batch::best_kernels());
+  /// Number of accelerations sampled from A(v) in addition to the desired one.
+  static constexpr int kSamples = 48;
+  /// Minimum difference between the accelerations of two candidates.
+  static constexpr double kSpread_mps2 = 0.5;
+
+  explicit SafetySearch(const FloorRules& rules, const batch::Kernels& kernels = batch::best_kernels());
 
   [[nodiscard]] SearchResult search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng);
 
@@ -95,7 +94,6 @@ class SafetySearch {
   bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
 
   FloorRules rules_;
-  SearchSettings settings_;
   // Parallel to rules_.obstacles; a circle is at rest at its centre.
   std::vector<TrajectoryBounds> obstacles_;
   CandidateSet candidates_;

@@ -24,7 +24,7 @@ void search_per_robot(benchmark::State& state, const batch::Kernels* kernels) {
   const auto& snapshot = bench::crossing_streams();
   const auto robots = static_cast<std::size_t>(state.range(0));
   const std::vector<Version> versions = versions_of(robots);
-  SafetySearch search(floor_rules(snapshot.scenario), {}, *kernels);
+  SafetySearch search(floor_rules(snapshot.scenario), *kernels);
   TrajectoryIndex index(*kernels);
   Rng rng(2);
   std::size_t i = 0, desired_clear = 0, candidates = 0, checks = 0;

@@ -73,7 +73,7 @@ double search_us_per_robot(int robots, std::uint64_t seed) {
     query.robot = version.robot;
     queries.push_back(query);
   }
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex index;
   double begin_us = 0;
   for (int round = 0; round <= kWarmUps; ++round) {

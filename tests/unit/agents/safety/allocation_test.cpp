@@ -44,7 +44,7 @@ TEST_CASE("a search allocates nothing once warm, with any neighbours") {
   Rng rng(1);
   FloorRules rules;
   rules.obstacles = {Circle{{0.5, 0.5}, 0.1}};
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex index;
   std::vector<std::vector<Version>> scenes(60);
   for (auto& scene : scenes) {
@@ -155,7 +155,7 @@ TEST_CASE(
   }
   ObstacleView view;
   ObservedObstacles obstacles(1.5, Duration{1'000'000});
-  SafetySearch search({}, {});
+  SafetySearch search({});
   TrajectoryIndex empty_index;
   Time now = kStart;
   std::size_t k = 0, stored = 0, found = 0;

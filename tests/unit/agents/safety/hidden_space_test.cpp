@@ -330,7 +330,7 @@ TEST_CASE("the search finds no candidate that a hidden person could touch in mot
     rules.field = {30, 30};
     rules.radius_m = crowd.radius_m;
     rules.limits.deceleration_mps2 = 5;
-    SafetySearch search(rules, {});
+    SafetySearch search(rules);
     SearchQuery query{kCapture + Duration{50'000'000}, {crowd.scanned_at, Vec2(crowd.rng.uniform(0, 2), 0)}};
     query.desired_mps2 = {crowd.rng.uniform(-3, 3), crowd.rng.uniform(-3, 3)};
     query.hold_time = Duration{16'666'667};

@@ -23,19 +23,19 @@ Version moving_robot(RobotId id, Vec2 position, Vec2 velocity) {
 }
 
 /// Slow reference: tests one candidate after another against one version after another.
-SearchResult reference_search(const FloorRules& rules, const SearchSettings& settings,
-                              const SearchQuery& query, std::span<const Version> others, Rng& rng) {
+SearchResult reference_search(const FloorRules& rules, const SearchQuery& query,
+                              std::span<const Version> others, Rng& rng) {
   const Vec2& velocity = query.at_start.velocity_mps;
   const Vec2 desired = limit_acceleration(query.desired_mps2, velocity, rules.limits, query.hold_time);
   std::vector<Vec2> sampled{desired};
-  for (int i = 0; i < settings.samples; ++i)
+  for (int i = 0; i < SafetySearch::kSamples; ++i)
     sampled.push_back(limit_acceleration(sample_acceleration(velocity, rules.limits, rng), velocity,
                                          rules.limits, query.hold_time));
   std::ranges::stable_sort(sampled, {}, [&](const Vec2& a) { return (a - desired).squaredNorm(); });
   SearchResult result;
   std::vector<Vec2> chosen;
   for (const Vec2& a : sampled) {
-    const auto is_close = [&](const Vec2& b) { return (a - b).norm() < settings.spread_mps2; };
+    const auto is_close = [&](const Vec2& b) { return (a - b).norm() < SafetySearch::kSpread_mps2; };
     if (result.count == SearchResult::kMaxCandidates || std::ranges::any_of(chosen, is_close)) continue;
     const Trajectory trajectory =
         accelerate_then_stop(query.start, query.at_start, a, query.hold_time, rules.limits.deceleration_mps2);
@@ -77,7 +77,7 @@ Scene random_scene(Rng& rng) {
 }
 
 TEST_CASE("without neighbours, the desired acceleration is the first candidate") {
-  SafetySearch search({}, {});
+  SafetySearch search({});
   Rng rng(1);
   TrajectoryIndex empty_index;
   const auto result = search.search({kStart, {{0, 0}, {1, 0}}, {2, 1}, kCycle}, empty_index, rng);
@@ -96,7 +96,7 @@ TEST_CASE(
   rules.field = {6, 6};
   rules.obstacles = {Circle{{0.5, 0.5}, 0.1}, Circle{{-0.6, 0.2}, 0.15}, Box{{0.4, -0.7}, {0.6, -0.5}},
                      Segment{{-0.7, -0.6}, {-0.4, -0.8}}};
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex index;
   std::size_t found = 0, blocked = 0;
   for (int scene = 0; scene < 3000; ++scene) {
@@ -136,7 +136,7 @@ TEST_CASE("the search finds the same candidates as a slow reference, on every in
                      Segment{{-0.7, -0.6}, {-0.4, -0.8}}};
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     CAPTURE(seed, kernels.name);
-    SafetySearch search(rules, {}, kernels);
+    SafetySearch search(rules, kernels);
     TrajectoryIndex index(kernels);
     Rng scenes(seed), rng(seed), slow_rng(seed);
     int found = 0, refused_desired = 0;
@@ -145,7 +145,7 @@ TEST_CASE("the search finds the same candidates as a slow reference, on every in
       const Scene scene = random_scene(scenes);
       index.assign(scene.others);
       const auto result = search.search(scene.query, index, rng);
-      const auto expected = reference_search(rules, {}, scene.query, scene.others, slow_rng);
+      const auto expected = reference_search(rules, scene.query, scene.others, slow_rng);
       REQUIRE(result.count == expected.count);
       REQUIRE(result.desired_is_clear == expected.desired_is_clear);
       for (std::size_t k = 0; k < result.count; ++k) {
@@ -169,7 +169,7 @@ TEST_CASE("near each border of the field, the search finds the same candidates a
   CAPTURE(seed);
   FloorRules rules;
   rules.field = {6, 4};
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex empty_index;
   Rng scenes(seed), rng(seed), slow_rng(seed);
   std::array<int, 4> refused{};
@@ -184,7 +184,7 @@ TEST_CASE("near each border of the field, the search finds the same candidates a
     const Vec2 at_m = (half_m - stop_m - scenes.uniform(0, 0.1)) * outwards;
     const SearchQuery query{kStart, {at_m, speed_mps * outwards}, 3 * outwards, kCycle};
     const auto result = search.search(query, empty_index, rng);
-    const auto expected = reference_search(rules, {}, query, {}, slow_rng);
+    const auto expected = reference_search(rules, query, {}, slow_rng);
     REQUIRE(result.count == expected.count);
     REQUIRE(result.desired_is_clear == expected.desired_is_clear);
     refused[border] += !result.desired_is_clear;
@@ -204,14 +204,14 @@ TEST_CASE("among the blocked cells of a map, the search finds the same candidate
     BitGrid blocked = test::noise(rng, grid.columns, grid.rows, 0.04);
     for (int row = 26; row < 34; ++row) blocked.set_run(26, 34, row, false);  // around the robot
     rules.map = std::make_shared<const FloorMap>(OccupancyMap(grid, std::move(blocked)));
-    SafetySearch search(rules, {});
+    SafetySearch search(rules);
     for (int k = 0; k < 20; ++k) {
       const Scene scene = random_scene(rng);
       TrajectoryIndex index;
       index.assign(scene.others);
       Rng first = rng, second = rng;
       const SearchResult result = search.search(scene.query, index, first);
-      const SearchResult expected = reference_search(rules, {}, scene.query, scene.others, second);
+      const SearchResult expected = reference_search(rules, scene.query, scene.others, second);
       CAPTURE(i, k);
       REQUIRE(result.count == expected.count);
       for (std::size_t n = 0; n < result.count; ++n)
@@ -222,7 +222,7 @@ TEST_CASE("among the blocked cells of a map, the search finds the same candidate
       open.map = nullptr;
       Rng third = rng;
       restricted +=
-          reference_search(open, {}, scene.query, scene.others, third).count != expected.count ? 1 : 0;
+          reference_search(open, scene.query, scene.others, third).count != expected.count ? 1 : 0;
       (void)rng.bits();
     }
   }
@@ -235,7 +235,7 @@ TEST_CASE("preferred accelerations that are safe are the first candidates after 
   CAPTURE(seed);
   Rng rng(seed);
   const FloorRules rules;
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex others;
   const auto first_mps2 = [](const Trajectory& candidate) {
     return Vec2(candidate.phases().front().acceleration_mps2);
@@ -252,7 +252,7 @@ TEST_CASE("preferred accelerations that are safe are the first candidates after 
 }
 
 TEST_CASE("the same seed gives the same candidates") {
-  SafetySearch one({}, {}), two({}, {});
+  SafetySearch one({}), two({});
   Rng rng_one(9), rng_two(9);
   TrajectoryIndex empty_index;
   for (int i = 0; i < 20; ++i) {
@@ -271,7 +271,7 @@ TEST_CASE("every candidate is at rest before any moving obstacle could reach it"
   Rng rng(seed);
   FloorRules rules;
   rules.field = {6, 6};
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex empty_index;
   std::size_t found = 0, blocked = 0, refused = 0;
   for (int scene = 0; scene < 1000; ++scene) {
@@ -312,7 +312,7 @@ TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen
   Rng rng(seed);
   FloorRules rules;
   rules.field = {6, 6};
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex empty_index;
   std::size_t found = 0, blocked = 0, refused = 0;
   for (int scene = 0; scene < 1000; ++scene) {
@@ -347,7 +347,7 @@ TEST_CASE(
   Rng rng(seed);
   FloorRules rules;
   rules.field = {20, 20};
-  SafetySearch search(rules, {});
+  SafetySearch search(rules);
   TrajectoryIndex empty_index;
   int found = 0, restricted = 0;
   for (int scene = 0; scene < 300; ++scene) {
