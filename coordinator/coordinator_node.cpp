@@ -151,7 +151,7 @@ void CoordinatorNode::handle(const Feedback& feedback) {
 
 void CoordinatorNode::on_world(const msg::WorldState& message) {
   const Time valid_at = time_from_ns(message.valid_at_ns());
-  // The farther a world state is dated ahead, the less certain its places are.
+  // The farther ahead a world state is timestamped, the less certain its positions are.
   if (valid_at > bus_.now() + max_vision_lead(max_clock_difference_))
     return drops_.count(DropReason::kFutureWorld);
   failover_.reception().on_vision(bus_.now());

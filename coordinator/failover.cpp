@@ -132,9 +132,9 @@ void Failover::on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId 
   const RoleCause cause{holder == EpochHolder::kRobot ? msg::RoleReason::ROLE_EPOCH_OF_ROBOT
                                                       : msg::RoleReason::ROLE_EPOCH_OF_AGENT,
                         robot, Duration{0}, epoch};
-  // A coordinator that has just become active begins a new epoch above the obeyed one, once. One that grants,
-  // that waits in vain, or that was superseded again has a rival whose heartbeats do not arrive. It then
-  // stands by, for twice as long each time.
+  // Once after becoming active, a coordinator begins a new epoch above the obeyed one. If it grants, waits in
+  // vain, or is superseded again, it has a rival whose heartbeats do not arrive. It then stands by, for twice
+  // as long each time.
   const bool is_new = now - active_since_ <= kRegistrationTime && !has_risen_;
   if (is_active() && !is_granting && is_new) {
     has_risen_ = true;

@@ -15,8 +15,8 @@ using std::chrono::milliseconds;
 
 // A base stops within this time after its last command, whoever sent it.
 constexpr Duration kStoppingTime = milliseconds(500);
-// First fixes of a robot at rest agree if they are within this many standard deviations of one of them, plus
-// this distance.
+// The first fixes of a robot at rest agree if all lie within this many standard deviations, plus this
+// distance, of one of them.
 constexpr double kAgreement = 5, kMinAgreement_m = 0.003;
 // After a longer pause of this process, the base's motion in the meantime is unknown.
 constexpr Duration kMaxPause = milliseconds(200);
@@ -45,7 +45,7 @@ EstimatorSettings estimator_settings(const DriveSettings& settings) {
   return estimator;
 }
 
-/// Maximum error of odometry dates: at the speed limit it displaces the estimate by the drift bound.
+/// Maximum error of an odometry timestamp: at the speed limit it displaces the estimate by the drift bound.
 Duration max_date_error(const DriveSettings& settings) {
   return from_seconds(drift_bound_m(settings.tracking_bound_m) / settings.limits.speed_mps);
 }

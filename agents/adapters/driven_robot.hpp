@@ -49,10 +49,10 @@ class DrivenRobot {
   void on_command(const Command& command, Time now, robot::StableMemory& memory);
   void on_malformed_command(Time now);
   /// Processes a base's measurement of its own motion, which is more accurate than the commands. A report
-  /// with a wrong date is refused and counted, because the velocity of another time would displace the
+  /// with a wrong timestamp is refused and counted, because a velocity from another time would displace the
   /// estimate.
   void on_odometry(const OdometryReport& report, Time now);
-  /// Number of odometry reports with dates that cannot be trusted.
+  /// Number of odometry reports with timestamps that cannot be trusted.
   std::uint64_t misdated_odometry() const { return misdated_; }
 
   /// Runs one period of the control loop and returns the velocity to send now.
@@ -63,7 +63,7 @@ class DrivenRobot {
   /// The facts, except robot_incarnation. Precondition: may_report().
   Feedback feedback(Time now);
 
-  /// Whether the base stands still, and will do so without further versions.
+  /// Whether the base is at rest, and stays at rest unless it receives further versions.
   bool is_at_rest(Time now) const;
 
   const robot::RobotSide<float>& side() const { return side_; }
@@ -98,7 +98,7 @@ class DrivenRobot {
   OdometryDates odometry_dates_;
   std::uint64_t misdated_ = 0;
   PoseEstimator estimator_;
-  /// Oldest fix that waits for the odometry of its time, which arrives later.
+  /// Oldest fix that is waiting for the odometry of its capture time, which arrives later.
   std::optional<PoseFix> waiting_fix_;
   double target_heading_rad_ = 0;
   Time moved_at_;                         ///< without a pose: when it may last have moved

@@ -11,7 +11,7 @@ namespace sidestep {
 /// The velocities that a base has recently measured, computed from differences of its odometry.
 class MeasuredMotion {
  public:
-  /// Precondition: the report is finite and its date is trusted.
+  /// Precondition: the report is finite and its timestamp is trusted.
   void add(const OdometryReport& report);
   /// The time of the latest report; Time{} before the first.
   Time until() const { return last_ ? last_->measured_at : Time{}; }

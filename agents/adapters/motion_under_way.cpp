@@ -18,7 +18,7 @@ constexpr std::size_t kMaxParts = UnderWay::kMaxParts;
 /// Maximum number of points of the path that are tried as ends of parts.
 constexpr std::size_t kMaxTried = 30;
 /// Weight of the squared deviation of velocities from their mean, in units of the squared duration. It
-/// decides where the path does not.
+/// matters only where the path leaves the velocities undetermined.
 constexpr double kRegularisation = 1e-8;
 /// Rounding error of numbers in single precision.
 constexpr double kRounding_m = 1e-6;
@@ -122,7 +122,7 @@ bool are_accelerations_small(const UnderWay& motion) {
   return true;
 }
 
-/// The last velocity throughout, for paths that are too short in time to fit anything.
+/// Constant at the last velocity, for paths that are too short in time to fit anything.
 UnderWay constant(std::span<const PathPoint> path, const Vec2& velocity_mps) {
   UnderWay motion;
   motion.from_mps = {static_cast<float>(velocity_mps.x()), static_cast<float>(velocity_mps.y())};

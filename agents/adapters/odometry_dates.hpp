@@ -7,10 +7,10 @@
 
 namespace sidestep {
 
-/// Decides whether the dates of a base's odometry can be trusted. A report cannot arrive before it was
-/// measured. But a base whose clock is behind cannot be distinguished from a slow connection. So dates are
-/// trusted for kBeliefPeriod after a report that arrived within `max_error` of its date; reports that are
-/// much older are never trusted. A report from the future ends the trust.
+/// Decides whether the timestamps of a base's odometry can be trusted. A report cannot arrive before it was
+/// measured. But a base whose clock is behind cannot be distinguished from a slow connection. So timestamps
+/// are trusted for kBeliefPeriod after a report that arrived within `max_error` of its timestamp; reports
+/// that are much older are never trusted. A report from the future ends the trust.
 class OdometryDates {
  public:
   static constexpr Duration kBeliefPeriod = std::chrono::milliseconds(500);

@@ -36,7 +36,7 @@ void add_options(const CliCommand& app, Options& options) {
       .check(in_range(0, static_cast<double>(to_seconds(CommandedMotion::kMaxLatency) * 1e3)))
       .show_default();
   app.add_option("--memory", options.memory_folder,
-                 "folder of what the robots must remember when this program restarts")
+                 "folder for what the robots must remember across restarts of this program")
       .show_default();
   add_bases_bus_options(app, "driver velocity", options.bases);
   app.add_option("--blue", options.blue, "driver league: ADDRESS:PORT for the blue team's commands")

@@ -70,7 +70,7 @@ class Agent {
 
   Registration registration();
   void on_request(Time now) { negotiation_.on_request(now); }
-  /// Whether the coordinator does not serve this agent, so that the agent should ask for another coordinator.
+  /// Whether the agent should ask for another coordinator, because this one does not serve it.
   bool is_unserved(Time now) const;
   /// See Negotiation.
   Registration epoch_notice() const { return negotiation_.epoch_notice(); }
@@ -81,9 +81,9 @@ class Agent {
 
   /// Plans the motion from `start` on. Returns nullopt if the version that the robot holds already ends at
   /// its goal. Also returns nullopt if vision has lost the robot, which must not rely on its own pose
-  /// estimate, and if the coordinator has lost vision, or the agent has had no list of obstacles
-  /// recently. `max_speed_mps`: the speed that the clocks allow. `max_lag`: how much the robot may be late,
-  /// beyond the clock bound (ClockMonitor).
+  /// estimate, and if the coordinator has lost vision, or the agent has had no list of obstacles recently.
+  /// `max_speed_mps`: the speed that the clocks allow. `max_lag`: how late the robot may be beyond the clock
+  /// bound (ClockMonitor).
   [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start,
                                                double max_speed_mps = std::numeric_limits<double>::infinity(),
                                                Duration max_lag = Duration{0});

@@ -67,7 +67,7 @@ void AgentChanges::report_wait(WaitReason reason, Time now) {
   if (reason == reported_wait_ || now - waits_since_ < kSettlingTime) return;
   reported_wait_ = reason;
   if (reason == WaitReason::kNone)
-    events_.report(LogLevel::kInfo, robot_, "waits no longer");
+    events_.report(LogLevel::kInfo, robot_, "no longer waits");
   else
     events_.report(LogLevel::kInfo, robot_, "waits for {}", to_text(reason));
 }
@@ -79,7 +79,7 @@ void AgentChanges::report_speed_limit(const ClockSpeedLimit& limit, Time now) {
     limited_since_ = is_limited ? std::optional(now) : std::nullopt;
   if (!is_limited) {
     if (limit.offset && std::exchange(reported_limit_mps_, 0) > 0)
-      events_.report(LogLevel::kInfo, robot_, "the clocks limit the speed no longer");
+      events_.report(LogLevel::kInfo, robot_, "the clocks no longer limit the speed");
     return;
   }
   const bool is_new = std::abs(limit.speed_mps - reported_limit_mps_) > kLimitChange * reported_limit_mps_;

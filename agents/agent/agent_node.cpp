@@ -108,7 +108,7 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
 
 void AgentNode::on_world(const msg::WorldState& message) {
   WorldObservations world = world_.decode(message);
-  // Otherwise the robot would take the place for its place at another time.
+  // With a clock beyond the bound, the robot would take this position for its position at another time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
   agent_.on_world(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
 }

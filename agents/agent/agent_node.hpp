@@ -32,7 +32,7 @@ class AgentNode {
   }
   void count_drops(DropCounters& drops) const;
   /// Whether this agent must keep its clock although the host's clock has been set: either the agent can
-  /// drive its robot by its clock, or a restart would turn it into a later agent than the one that its robot
+  /// drive its robot by this clock, or a restart would make it a later agent than the one that its robot
   /// obeys.
   bool uses_clock() const {
     return agent_.is_superseded() || clocks_.robot_coordinator_offset(bus_.now()).has_value();

@@ -105,7 +105,7 @@ void Assignment::compare(const Round& round) {
     told_by_.erase(last.process);
   else
     told_by_[last.process] = last.incarnation;
-  // Orders that this coordinator lacks stay remembered.
+  // Orders that this coordinator lacks are kept.
   told_ = round;
   changes_.clear();
   has_progressed_ = false;

@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// What prevents a robot from reaching its goal, and since when. Input: once per cycle, whether the route
-/// leads to the goal. Output: the blockage, once it has lasted.
+/// leads to the goal. Output: the blockage, once it has lasted long enough.
 class BlockageMonitor {
  public:
   /// A blockage is reported if it lasts for at least `reported_after`.

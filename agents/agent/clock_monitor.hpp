@@ -39,11 +39,11 @@ class ClockMonitor {
 
   /// Whether both clocks have recent measurements, and these are consistent with an offset within the bound.
   [[nodiscard]] bool allows_motion(Time now) const;
-  /// The speed at which even the largest offset consistent with the measurements does not use up the margin.
-  /// 0 without recent measurements; above every speed limit if the network is fast enough.
+  /// The highest speed at which even the largest offset consistent with the measurements does not use up the
+  /// margin. 0 without recent measurements; above every speed limit if the network is fast enough.
   [[nodiscard]] double max_speed_mps(Time now) const;
-  /// How much the robot may be late, beyond the clock bound, with the offsets that are consistent with the
-  /// measurements. Bodies that do not negotiate get nearer meanwhile.
+  /// How late the robot may be beyond the clock bound, given the offsets that the measurements permit. Bodies
+  /// that do not negotiate come nearer in that time.
   [[nodiscard]] Duration max_lag(Time now) const;
   /// Whether recent measurements prove that the offset exceeds the bound.
   [[nodiscard]] bool is_beyond_bound(Time now) const;

@@ -13,7 +13,7 @@ namespace sidestep {
 /// Determines in which region, and at which time, the agent knew all obstacles that vision sees. Vision
 /// states how far from the robots its list is complete; the world state of the same time says where this
 /// robot was. So an incomplete list is usable only together with that world state. A list that never becomes
-/// usable is like a lost one.
+/// usable counts as lost.
 class CompletenessMonitor {
  public:
   /// `max_speed_mps` is an upper bound of every obstacle's speed. `max_clock_difference` is an upper bound of

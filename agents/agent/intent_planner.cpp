@@ -63,8 +63,8 @@ Intent IntentPlanner::steer(const Query& query, const RouteToTarget& routes, Nei
   add_obstacles(query.at_start.position_m, routes.zones());
   const double elapsed_s = std::max(0.0, to_seconds(query.start - last_steered_start_));
   last_steered_start_ = query.start;
-  // On an open floor, the rest of the way is equally short from anywhere. With a map, walls may be in
-  // between.
+  // On an open floor the robot can head straight for the end of its route from anywhere. With a map, walls
+  // may be in between.
   const bool is_open = !rules_.map && std::ranges::all_of(rules_.obstacles, [](const Shape& obstacle) {
     return std::holds_alternative<Circle>(obstacle);
   });

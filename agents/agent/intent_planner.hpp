@@ -50,7 +50,7 @@ class IntentPlanner {
   Intent steer_locally(Query query, const RouteToTarget& routes, Neighbours& neighbours);
   /// Adds the nearby robots that this one steers around to the steering.
   void add_robots(const Query& query, Neighbours& neighbours);
-  /// Adds what stands near a position to the steering.
+  /// Adds the obstacles near a position to the steering.
   void add_obstacles(const Vec2& position_m, const ZoneMap& zones);
   /// Adds the walls of the map that a robot at a position would see to the steering.
   void add_walls(const Vec2& position_m);

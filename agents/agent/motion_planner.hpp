@@ -36,7 +36,7 @@ class MotionPlanner {
     const Version& base;  ///< the version that the motion continues
     int lead = 1;         ///< number of cycles from now to the start
     double max_speed_mps = std::numeric_limits<double>::infinity();  ///< the speed that the clocks allow
-    Duration max_lag{0};  ///< how much the robot may be late, beyond the clock bound
+    Duration max_lag{0};  ///< how late the robot may be beyond the clock bound
     const Assignment& assignment;
     Observations& observations;
     Rng& rng;
@@ -47,7 +47,7 @@ class MotionPlanner {
 
   /// Plans the motion from `start` on. Returns nullopt if the base already ends where the robot wants to be,
   /// if the search for a route takes longer than this cycle, or if the robot must come to rest first.
-  /// Precondition: nothing is missing that the agent waits for.
+  /// Precondition: the agent is not waiting for anything.
   [[nodiscard]] std::optional<MotionPlan> plan(const Query& query);
   /// Processes the result of the search for a plan.
   void on_search(const MotionPlan& plan, bool desired_is_clear, Time now);
@@ -60,7 +60,7 @@ class MotionPlanner {
   bool is_kept_out(const Vec2& position_m) const;
   bool is_recovering() const { return intents_.is_recovering(); }
   std::uint64_t route_changes() const { return intents_.changes(); }
-  /// What prevents the robot from reaching its goal, if it has lasted.
+  /// What prevents the robot from reaching its goal, once that has lasted long enough.
   std::optional<Blockage> lasting_blockage() const { return blockage_.lasting(last_plan_); }
   /// Estimated time to reach all remaining goals; nullopt: unknown.
   std::optional<double> remaining_s(const Assignment& assignment, bool has_arrived) const;

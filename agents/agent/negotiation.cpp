@@ -11,8 +11,8 @@ namespace {
 constexpr Duration kMaxStartTime{2'000'000'000};
 constexpr Duration kMaxUnheard{500'000'000};
 constexpr int kMaxProposalsPerStart = 4;
-// Number of cycles beyond its lead for which an agent proposes although it hears nothing from its robot. It
-// is limited because a robot without power rolls on while others rely on its versions.
+// Number of cycles beyond its lead for which an agent keeps proposing without hearing from its robot. It is
+// limited because a robot without power rolls on while others rely on its versions.
 constexpr int kMaxSilentCycles = 1;
 
 }  // namespace

@@ -37,8 +37,8 @@ class Observations {
   /// Processes a heartbeat of the coordinator in charge.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
 
-  /// The reason among kNotSeen and those that follow it in WaitReason for which the robot must not be driven;
-  /// kNone if everything is recent.
+  /// The first reason from kNotSeen onwards in WaitReason for which the robot must not be driven; kNone if
+  /// everything is recent.
   WaitReason wait_reason(Time now) const;
   /// Whether vision works, but the coordinator does not receive it.
   bool is_only_coordinator_blind(Time now) const;

@@ -52,7 +52,8 @@ class ObservedObstacles {
   /// Whether any stored observation is later than `now`, because it was accepted when the robot's clock was
   /// ahead.
   bool has_future(Time now) const;
-  /// Forgets everything. Lists count again only when every forgotten obstacle would have been dropped anyway.
+  /// Forgets everything. Lists are used again only once every forgotten obstacle would have been dropped
+  /// anyway.
   void forget(Time now);
 
   double max_speed_mps_;

@@ -24,7 +24,8 @@ class OccludedCorners {
     bool is_creeping = false;  ///< no speed is safe
   };
   /// Forgets old corners. Remembers the nearest one ahead if the robot has crept near one place for a while,
-  /// unless a person or another robot stands there: they will leave. Returns whether it remembers a new one.
+  /// unless a person or another robot is there, because these will leave. Returns whether it remembers a new
+  /// one.
   bool update(const Approach& approach, const RobotLaser& laser, Time now);
   /// Forgets everything, because the robot's clock was set back.
   void restart();

@@ -22,8 +22,8 @@ class OwnReports {
   /// How far the robot may drive on from a position ahead of it without being observed again. It must come to
   /// rest before its drift exceeds the tracking bound.
   double dead_reckoning_m(const Vec2& from_m) const;
-  /// Whether the estimate is as near to an observed position as it has to be. The robot may not have received
-  /// the observation yet.
+  /// Whether the estimate is close enough to an observed position. The robot may not have received the
+  /// observation yet.
   bool agrees_with(const Vec2& observed_m) const;
   /// Whether the robot has executed a granted version.
   bool has_moved() const { return has_moved_; }

@@ -30,7 +30,8 @@ class RouteObstacles {
   const ObstacleWorld& world() const { return world_; }
   /// The world without the temporary obstacles.
   ObstacleWorld fixed_world() const;
-  /// Describes the obstacle as the cause of a blocked goal, without the nearest place.
+  /// Describes the obstacle as the cause of a blocked goal, except for the place that the robot goes to
+  /// instead.
   Blockage blockage(ObstacleId obstacle) const;
 
  private:

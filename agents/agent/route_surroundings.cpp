@@ -33,7 +33,7 @@ std::vector<TemporaryObstacle> RouteSurroundings::find(const Vec2& target, Time 
   for (const Circle& circle : find_moving(target, now, observations)) found.push_back({circle});
   for (const Neighbours::Stationary& other :
        observations.neighbours().find_stationary(now - kStationaryAfter, position, kMaxStationary)) {
-    // A robot that stands on the target but is going to leave is no reason to go elsewhere.
+    // A robot on the target that is about to leave is no reason to go elsewhere.
     const bool covers = (other.position_m - target).norm() <= rules_.radius_m + required_separation_m(rules_);
     if (!covers || will_stay(other, assignment, position))
       found.push_back({{other.position_m, rules_.radius_m}, other.robot});

@@ -10,9 +10,10 @@
 
 namespace sidestep {
 
-/// Finds what a route has to lead around for the time being: people and other moving obstacles, displaced
-/// robots, robots at rest, and, where robots have lasers, standing obstacles that no rule mentions, and
-/// occluded corners. Inputs: what the agent has observed, and what other robots are ordered to do.
+/// Finds the temporary obstacles that a route has to lead around: people and other moving obstacles,
+/// displaced robots, robots at rest, and, where robots have lasers, stationary obstacles that the rules do
+/// not contain, and occluded corners. Inputs: what the agent has observed, and what other robots are ordered
+/// to do.
 class RouteSurroundings {
  public:
   /// `rules` must outlive this object.

@@ -11,9 +11,9 @@
 
 namespace sidestep {
 
-/// The robot's route to its target, around everything that stands, zones, and what is in the way for the time
-/// being. A route that is still free is kept for a while, even if there might be a shorter one. Inputs: the
-/// zones, and once per cycle the target, the robot's place and the temporary obstacles. Output: the route.
+/// The robot's route to its target, around static obstacles, zones and temporary obstacles. A route that is
+/// still free is kept for a while, even if there might be a shorter one. Inputs: the zones, and once per
+/// cycle the target, the robot's place and the temporary obstacles. Output: the route.
 class RouteToTarget {
  public:
   struct Query {
@@ -51,7 +51,8 @@ class RouteToTarget {
   double length_m() const { return length_m_; }
   /// All obstacles that routes avoid; nullptr before the first route.
   const RouteObstacles* obstacles() const { return obstacles_ ? &*obstacles_ : nullptr; }
-  /// What covers the target, without the nearest place. Precondition: there has been a route.
+  /// What covers the target, except for the place that the robot goes to instead. Precondition: there has
+  /// been a route.
   Blockage blockage() const;
   /// The last route, starting at its next waypoint. Precondition: there has been a route.
   std::span<const Vec2> remaining_waypoints_m() const { return route_planner_->remaining_waypoints_m(); }

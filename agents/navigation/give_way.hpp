@@ -38,12 +38,12 @@ class GiveWay {
 
   /// Returns whether to search: the robot has made no progress for a long time, or may be able to stop giving
   /// way. Call it once per decision, with the length of the robot's route to its goal, or infinity if there
-  /// is none. Robots that block each other move to and fro, which is no progress.
+  /// is none. Robots that block each other move back and forth, which does not count as progress.
   [[nodiscard]] bool track_progress(Time now, double remaining_m);
   /// Whether a search has begun, so that search() must be called. Otherwise call begin_search() if
   /// track_progress() says so.
   bool is_searching() const { return search_.is_active(); }
-  /// Starts a search. `others`: all robots nearby, and those of yields_to() that are still on their way.
+  /// Starts a search. `others`: all robots nearby, and those in yields_to() that are still under way.
   /// `fixed`: all obstacles except robots.
   void begin_search(Time now, const Vec2& position_m, std::span<const OtherRobot> others,
                     ObstacleWorld fixed);

@@ -12,7 +12,7 @@ constexpr double kRouteClearance_m =
 constexpr std::size_t kMaxPlans = 12;  ///< maximum number of paths to places that are planned in one search
 constexpr std::size_t kMaxPathSamples = 5000;
 
-/// Whether a robot that drives along this way, or stays at its only place, would block a route.
+/// Whether a robot on this path, which may be a single position, would block a route.
 bool is_on_route(const std::vector<Vec2>& route, const std::vector<Vec2>& way, double separation_m) {
   for (std::size_t i = 1; i < route.size(); ++i)
     for (std::size_t k = 0; k < way.size(); ++k)
@@ -81,7 +81,7 @@ void GiveWaySearch::check_passage(Rng& rng) {
   while (next_ < routes_.size()) {
     const Way& route = routes_[next_++];
     if (!is_place_on_route(route, query_.position_m, floor_.min_separation_m)) continue;
-    // Several robots together may close a way that each of them alone would leave open.
+    // Several robots together may close a path that each of them alone would leave open.
     std::vector<ObstacleId> robots{fixed_.add(disc_at(query_.position_m))};
     for (const Vec2& other : query_.others_m)
       if (other != route.front()) robots.push_back(fixed_.add(disc_at(other)));

@@ -25,7 +25,7 @@ struct GiveWayQuery {
   /// Trips of the robots with the right of way: start and destination.
   std::vector<std::pair<Vec2, Vec2>> trips;
   std::vector<Vec2> others_m;  ///< positions of all other robots
-  /// Way along which the robot already gives way; empty: it does not give way yet.
+  /// Path along which the robot is already giving way; empty: it is not giving way yet.
   std::vector<Vec2> way;
   double range_m = 1;                 ///< maximum distance of places
   std::vector<Vec2> unreachable_m{};  ///< places near these are not considered
@@ -53,7 +53,7 @@ class GiveWaySearch {
   /// Whether the robot, at its position, is in the way of another robot that cannot drive around it and all
   /// others. If it already gives way: whether it would be in the way of another robot anywhere along its way.
   bool is_in_the_way() const { return is_in_the_way_; }
-  /// The way to the place; empty if none is needed or there is no such place.
+  /// The path to the place; empty if none is needed or there is no such place.
   const std::vector<Vec2>& way() const { return way_; }
 
  private:

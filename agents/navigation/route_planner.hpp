@@ -36,10 +36,10 @@ class RoutePlanner {
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
   /// The robot's centre keeps at least `radius_m + margin_m` from the obstacles, plus the largest of the
-  /// extra clearances with which a route exists; they are given in descending order. A goal nearer to an
-  /// obstacle than that is reached in a straight line from the nearest place with that clearance, unless the
-  /// clearance is the last one. The path planner, one of kDrivingPlanners, and the obstacles must outlive
-  /// this object.
+  /// extra clearances with which a route exists; they are given in descending order. If a goal has less
+  /// clearance than that, the route ends with a straight line from the nearest place that has it, unless it
+  /// is the last clearance. The path planner, one of kDrivingPlanners, and the obstacles must outlive this
+  /// object.
   RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obstacles, const Field& field,
                double radius_m, double margin_m, std::span<const double> extra_clearances_m);
 

@@ -8,8 +8,8 @@ namespace sidestep {
 /// A piece of the border between the floor that was seen free and the rest.
 struct Frontier {
   Segment segment;
-  /// How far a person whose centre is beyond the segment can project over it: at capture if the segment is
-  /// open, at any time if it is closed. 0 for a closed segment if nobody who projects over it can touch a
+  /// How far a person whose centre is beyond the segment can protrude across it: at capture if the segment is
+  /// open, at any time if it is closed. 0 for a closed segment if nobody who protrudes across it can touch a
   /// robot.
   double bulge_m = 0;
 };

@@ -22,13 +22,13 @@ struct LaserSightSettings {
       48;  ///< number of squares with unknown standing obstacles, the nearest ones first
 };
 
-/// Interprets the scans of a robot's own laser: where people may step out, who moves, and which standing
-/// obstacles are not on the map. Only obstacles that the rules know to stand limit where people may be.
+/// Interprets the scans of a robot's own laser: where people may step out, who moves, and which stationary
+/// obstacles are not on the map. Only obstacles that the rules contain limit where people may be.
 class LaserSight {
  public:
   /// Side of the squares that report unknown standing obstacles.
   static constexpr double kUnknownCell_m = 0.2;
-  static constexpr Duration kUnknownAfter{500'000'000};  ///< cells that were occupied for longer stand
+  static constexpr Duration kUnknownAfter{500'000'000};  ///< cells occupied for longer are stationary
 
   /// `rules` must outlive this object.
   LaserSight(const LaserSpec& laser, const FloorRules& rules, const LaserSightSettings& settings = {});
@@ -44,7 +44,7 @@ class LaserSight {
   const LocalGrid& grid() const { return grid_; }
   const Visibility& visibility() const { return visibility_; }
   std::span<const LaserTrack> tracks() const { return tracks_.tracks(); }
-  /// Squares with a standing obstacle that the rules do not know; the nearest ones.
+  /// The nearest squares with a stationary obstacle that the rules do not contain.
   std::span<const Circle> unknown() const { return unknown_; }
 
  private:

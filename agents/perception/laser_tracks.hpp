@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// An object that is not known to stand.
+/// An object that is not known to be stationary.
 struct LaserTrack {
   std::uint32_t number = 0;
   Vec2 position_m{0, 0};  ///< position of the centre at seen_at
@@ -19,9 +19,9 @@ struct LaserTrack {
   bool is_moving = false;
 };
 
-/// Distinguishes moving from standing objects. Hits that neither the map nor the standing part of the local
-/// grid explains form clusters, and these update tracks (the nearest pair first, constant-velocity Kalman
-/// filter).
+/// Distinguishes moving from stationary objects. Hits that neither the map nor the stationary part of the
+/// local grid explains form clusters, and these update tracks (the nearest pair first, constant-velocity
+/// Kalman filter).
 ///
 /// As a robot drives, it sees changing parts of walls, for example through a door or beside a person, and
 /// these look like moving objects. Therefore speed alone is not enough. A track counts as moving only if it
@@ -41,7 +41,7 @@ class LaserTracks {
 
   /// The confirmed tracks.
   std::span<const LaserTrack> tracks() const { return listed_; }
-  /// Whether the hit of a beam in the last scan belongs to something standing.
+  /// Whether the hit of a beam in the last scan belongs to something stationary.
   bool is_standing(int beam) const { return kinds_[static_cast<std::size_t>(beam)] == kStanding; }
 
  private:

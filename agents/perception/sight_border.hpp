@@ -12,14 +12,14 @@ namespace sidestep {
 class SightBorder {
  public:
   /// `radius_m` is that of the smallest person. No robot touches anybody nearer than `untouched_m` to
-  /// something standing. Does not allocate once warm.
+  /// something stationary. Does not allocate once warm.
   void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double untouched_m);
 
   /// Whether a point is in the region. False within a nanometre of the border.
   [[nodiscard]] bool contains(const Vec2& p) const;
   /// Places where people may step out, sorted counter-clockwise around the scanner.
   std::span<const Frontier> frontiers() const { return frontiers_; }
-  /// Gaps between standing things that are too narrow for people. The bulge is 0 if nobody who projects
+  /// Gaps between stationary objects that are too narrow for people. The bulge is 0 if nobody who protrudes
   /// through the gap can touch a robot.
   std::span<const Frontier> closed_gaps() const { return closed_; }
 

@@ -13,28 +13,27 @@ struct SightRay {
   double angle_rad = 0;  ///< counter-clockwise from the first ray
   Vec2 direction{1, 0};  ///< unit vector
   double free_m = 0;     ///< certainly free up to this distance, which is positive
-  /// The known standing point that is nearest to the ray's end, relative to the scanner; nullopt: none is
-  /// near.
+  /// The known stationary point nearest to the ray's end, relative to the scanner; nullopt: none is near.
   std::optional<Vec2> post_m{};
   double post_error_m = 0;  ///< maximum error of that point in the scan's frame
 };
 
-/// A gap between two points that are known to stand; no person can pass it.
+/// A gap between two known stationary points; no person can pass it.
 struct ClosedGap {
   Segment posts;              ///< ends, relative to the scanner
-  double bulge_m = 0;         ///< maximum distance that a person can ever project through the gap
-  double reach_m = 0;         ///< distance from standing things within which such a person can touch
-  double unseen_bulge_m = 0;  ///< maximum distance that a person could project between the rays at capture
+  double bulge_m = 0;         ///< maximum distance that a person can ever protrude through the gap
+  double reach_m = 0;         ///< distance from stationary objects within which such a person can touch
+  double unseen_bulge_m = 0;  ///< maximum distance that a person could protrude between the rays at capture
 };
 
-/// How far a disc can project through a gap that is not wider than the disc.
+/// How far a disc can protrude through a gap that is not wider than the disc.
 [[nodiscard]] double sagitta_m(double radius_m, double gap_m);
 
 /// The counter-clockwise angle from one ray to another; a full turn from a ray to itself.
 [[nodiscard]] double angle_between_rad(const SightRay& ray, const SightRay& next);
 
-/// Maximum distance from a standing point at which a person of this radius can project across a line, if the
-/// place of projection on the line is at most `from_m` from the point. Precondition: from_m <= radius_m.
+/// Maximum distance from a stationary point that a person of this radius can reach by protruding across a
+/// line, if the place on the line is at most `from_m` from the point. Precondition: from_m <= radius_m.
 [[nodiscard]] double projection_m(double radius_m, double from_m);
 
 /// The closed gap between the ends of two rays; nullopt if it is not closed. It is closed if no disc of this

@@ -13,7 +13,7 @@ namespace sidestep {
 /// border people may have approached at up to their maximum speed since the time of the scan.
 struct HiddenSpace {
   std::span<const Frontier> frontiers{};    ///< places where people may step out
-  std::span<const Frontier> closed_gaps{};  ///< gaps too narrow for people, who may project through them
+  std::span<const Frontier> closed_gaps{};  ///< gaps too narrow for people, who may protrude through them
   Time observed_at{};
   double speed_mps = 0;          ///< upper bound of people's speed
   double heading_error_rad = 0;  ///< bound of the error of the scan's heading
@@ -27,9 +27,9 @@ struct HiddenSpace {
 };
 
 /// Whether the robot is at rest before a person who was hidden could reach it (passive safety), or creeps to
-/// a place where nobody can be nearer than at its present place; otherwise a robot that stands where somebody
-/// may step out could not leave. Until the trajectory ends, the disc of radius `min_separation_m`, the
-/// robot's radius plus the margin, around its centre stays clear of all positions that somebody may have
+/// a place where nobody can be nearer than at its present place. Otherwise a robot next to a place where
+/// somebody may step out could not leave. Until the trajectory ends, the disc of radius `min_separation_m`,
+/// the robot's radius plus the margin, around its centre stays clear of all positions that somebody may have
 /// reached from a frontier. Precondition: the trajectory begins in the region that was seen. Conservative:
 /// never falsely true; false negatives only within a millimetre.
 ///

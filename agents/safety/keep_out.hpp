@@ -11,8 +11,8 @@
 namespace sidestep {
 
 /// Zones that a disc must keep out of. A disc may already be in zones, because they were drawn there or
-/// because it stops in them. It may then only come to rest where it is in no zone deeper than it is now in
-/// its deepest one, or nearer to its way out of all zones.
+/// because it stops in them. It may then come to rest only where it is no deeper in any zone than it now is
+/// in its deepest one, or nearer to its exit from all zones.
 class KeepOut {
  public:
   /// Finds the zones that a candidate from `start_m` within `reach` may enter. `way_out_m` is a place outside

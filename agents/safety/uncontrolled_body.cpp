@@ -66,7 +66,7 @@ bool avoids_by_driving_on(const Trajectory& candidate, const UncontrolledBody& b
   return false;
 }
 
-/// Whether the candidate rests beside the body's path, or no farther in it than the stop.
+/// Whether the candidate rests beside the body's path, or no deeper in it than the stop.
 bool rests_well(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody& body) {
   const double distance_m = body.distance_from_path_m(rest_m);
   if (distance_m >= body.required_distance_m(rest_m)) return true;

@@ -13,7 +13,7 @@ namespace sidestep {
 /// is not enough: a robot must not come to rest where the body is going.
 struct UncontrolledBody {
   MovingObstacle reach;     ///< the positions that it can reach
-  Vec2 velocity_mps{0, 0};  ///< expected velocity; zero: it stands, or its velocity is unknown
+  Vec2 velocity_mps{0, 0};  ///< expected velocity; zero: it is at rest, or its velocity is unknown
   double separation_m = 0;  ///< distance between centres at contact with the robot, plus the margin
 
   /// Distance of a position from the centre line of the body's path, which is straight and endless; if the

@@ -21,7 +21,7 @@ bool lasts(const Order& order) {
   return drives(order) || stops(order) || order.kind == msg::OrderKind::ORDER_ZONE;
 }
 
-/// Whether a later order of the same client leaves nothing of an earlier one.
+/// Whether a later order of the same client completely replaces an earlier one.
 bool replaces(const Order& later, const Order& earlier) {
   const auto is_drive = [](const Order& o) { return drives(o) || o.kind == msg::OrderKind::ORDER_CANCEL; };
   const auto is_hold = [](const Order& o) { return stops(o) || o.kind == msg::OrderKind::ORDER_RESUME; };
@@ -47,7 +47,7 @@ bool is_refused(msg::OrderResult result) {
   return result != msg::OrderResult::RESULT_REMEMBERED && result != msg::OrderResult::RESULT_REPLACED;
 }
 
-/// Whether nothing more can be heard about an order.
+/// Whether no further news about an order can arrive.
 bool is_closed(const SentOrder& sent) {
   return is_final(sent.phase) || (!lasts(sent.order) && sent.phase == OrderPhase::kAccepted);
 }
@@ -134,8 +134,8 @@ bool OrderClient::renumber(SentOrder& sent, const msg::OrderAnswer& answer) {
                            sent.order.kind == msg::OrderKind::ORDER_RESUME;
   if (sent.is_number_final || !is_behind || !is_affected || is_refused(answer.result())) return false;
   if (sent.order.kind == msg::OrderKind::ORDER_RESUME) {
-    // If this client's clock has already passed the number, it belongs to a later order, perhaps a hold, and
-    // not to a clock that is ahead.
+    // If this client's clock has already passed the newest number, that number belongs to a later order,
+    // perhaps a hold, and not to a clock that is ahead.
     const bool is_late = answer.newest_number() <= static_cast<OrderNumber>(to_ns(bus_.now()));
     if (is_late || is_followed_by_hold(sent)) return false;
   }
@@ -258,7 +258,7 @@ void OrderClient::compare(SentOrder& sent, std::uint32_t coordinator, const Orde
   const RememberedOrder* const known = remembered.in_place_of(sent.order);
   if (known && known->order.number == number && known->order.client == client_) {
     missing_[sent.handle][coordinator] = 0;
-    // Only an answer says that a second process remembers the order, or a report of the robot's agent.
+    // Only an answer, or a report from the robot's agent, shows that a second process remembers the order.
     const bool has_started = known->progress.state != msg::OrderState::ORDER_ACCEPTED;
     // The robot's status is more recent than the memory, unless it was lost.
     if (known->progress.is_finished() || (sent.phase == OrderPhase::kSent && has_started))

@@ -42,12 +42,12 @@ struct SentOrder {
   std::optional<Blockage> blockage{};                              ///< cause, if the robot is blocked
 };
 
-/// Sends orders and tracks their state. An order is repeated until a coordinator has answered, and whenever
-/// a coordinator has forgotten it. Orders to go, holds and zones are kept alive while they are in force;
-/// other orders while coordinators remember the orders that they replaced, cancelled, lifted or removed. If
-/// this client's clock is behind other clients' clocks, an order is renumbered above every number that the
-/// coordinators know; otherwise an earlier order of another client would count as later. Renumbering never
-/// moves an order behind a later one of this client, nor a resume behind a later hold by any client.
+/// Sends orders and tracks their state. An order is repeated until a coordinator has answered, and whenever a
+/// coordinator has forgotten it. Drive orders, holds and zones are kept alive while they are in force. Other
+/// orders are kept alive while coordinators remember the orders that they replaced, cancelled, lifted or
+/// removed. If this client's clock is behind other clients' clocks, an order is renumbered above every number
+/// that the coordinators know; otherwise an earlier order of another client would count as later. Renumbering
+/// never moves an order behind a later one of this client, nor a resume behind a later hold by any client.
 class OrderClient {
  public:
   OrderClient(Bus& bus, ClientId client);
@@ -114,7 +114,7 @@ class OrderClient {
   std::map<OrderHandle, SentOrder> sent_;
   std::map<OrderNumber, OrderHandle> by_number_;  // keyed by the orders' current numbers
   std::size_t closed_count_ = 0;
-  /// How many complete memories in a row of each coordinator lack the order.
+  /// Number of consecutive complete memories of each coordinator that lack the order.
   std::map<OrderHandle, std::map<std::uint32_t, int>> missing_;
   std::map<RobotId, OrderReport> reports_;
   std::map<std::uint32_t, Round> rounds_;  // keyed by coordinator

@@ -118,8 +118,8 @@ std::string text_of(const ConvexPolygon& polygon) {
 std::string notice_of(const LoadedMap& map, const std::string& name, const std::string& unknown) {
   std::string text;
   if (map.unknown > 0)
-    text = fmt::format("map {}: nobody knows whether {} of {} cells are free; they count as {}{}", name,
-                       map.unknown, std::int64_t{map.cells.grid().columns} * map.cells.grid().rows, unknown,
+    text = fmt::format("map {}: {} of {} cells are unknown; they count as {}{}", name, map.unknown,
+                       std::int64_t{map.cells.grid().columns} * map.cells.grid().rows, unknown,
                        unknown == "free" ? "" : ", unless the scenario says `unknown: free`");
   if (map.yaw_rad != 0)
     text += fmt::format(

@@ -15,7 +15,7 @@ void write_text(std::FILE* stream, const std::string& text) noexcept {
 void open_closed_streams() noexcept {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number, because those below it are open.
+    // The lowest free descriptor, because those below it are open.
     (void)!open("/dev/null", O_RDWR);
   }
 }

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Writes the text to a stream at once. If that fails, because nobody reads any more or the disk is full, the
-/// text is lost: unlike fmt::print(), this does not throw, so that no work ends for want of a reader. The
+/// Writes the text to a stream at once. If that fails, because the reader is gone or the disk is full, the
+/// text is lost. Unlike fmt::print(), this does not throw, so a missing reader does not abort any work. The
 /// process must ignore SIGPIPE to outlive the reader of a pipe.
 void write_text(std::FILE* stream, const std::string& text) noexcept;
 
@@ -20,7 +20,7 @@ void print_to(std::FILE* stream, fmt::format_string<Values...> format, Values&&.
 }
 
 /// Opens /dev/null as each of stdin, stdout and stderr that is closed. Otherwise the next file or socket that
-/// the process opens gets its number, and what is printed goes there. Call it before any is opened.
+/// the process opens would get its descriptor and receive what is printed. Call it before any is opened.
 void open_closed_streams() noexcept;
 
 }  // namespace sidestep

@@ -14,9 +14,9 @@ using OutputFile = std::unique_ptr<std::FILE, FileCloser>;
 
 enum class WriteMode { kReplace, kAppend };
 
-/// Opens a file for writing; processes that this one starts do not inherit it. A named pipe that nobody reads
-/// is refused, because waiting for a reader hangs without a word, and a signal does not end that in a process
-/// that handles it. Throws std::runtime_error ("cannot write PATH: reason").
+/// Opens a file for writing; processes that this one starts do not inherit it. A named pipe without a reader
+/// is refused, because opening it would hang silently, and a process that handles signals could not be
+/// interrupted. Throws std::runtime_error ("cannot write PATH: reason").
 [[nodiscard]] OutputFile open_output(const std::string& path, WriteMode mode = WriteMode::kReplace);
 
 /// Throws std::runtime_error ("cannot write PATH: reason").

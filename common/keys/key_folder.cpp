@@ -39,8 +39,8 @@ void require_own_private_key(const std::string& file, const Certificate& certifi
     throw std::invalid_argument(file + ": this private key is not that of the certificate beside it");
 }
 
-/// The clock may not have been set yet, so a key that is not valid yet is not wrong usage: if the process is
-/// restarted, it tries again.
+/// The clock may not have been set yet, so a key that is not valid yet is not a usage error: if the process
+/// is restarted, it tries again.
 void require_valid(const std::string& what, const Validity& validity, Time now,
                    const char* remedy = "make new keys in another folder") {
   if (now > validity.until)

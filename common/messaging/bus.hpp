@@ -96,8 +96,8 @@ class Bus {
     contest_watcher_ = std::move(watcher);
   }
 
-  /// From now on, if two processes write a single-writer channel, messages count if they come from the
-  /// process that was heard first. For observers of a simulation, who know that this one is genuine.
+  /// From now on, if two processes write a single-writer channel, only the messages of the process that was
+  /// heard first are used. For observers of a simulation, in which that one is genuine.
   void follow_first_senders() { follows_first_ = true; }
 
   /// From now on, new subscriptions to single-writer channels listen for a moment before they trust a writer.

@@ -48,13 +48,14 @@ void RoleWatch::on_counters(const msg::Counters& message) {
 std::string describe_other(std::uint32_t process, Incarnation own, Incarnation other) {
   const std::string name = process_name(process);
   const double by_s = to_seconds(Duration{static_cast<std::int64_t>(own - other)});
-  return fmt::format("another {} works in this domain, which started {:.1f} s {}; there must be only one",
-                     name, std::abs(by_s), by_s > 0 ? "earlier" : "later");
+  return fmt::format(
+      "another {} is running in this domain, which started {:.1f} s {}; there must be only one", name,
+      std::abs(by_s), by_s > 0 ? "earlier" : "later");
 }
 
 std::string describe_contest(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
   return fmt::format(
-      "two processes send '{}' as {}; nothing that either sends there counts until one of them has ended",
+      "two processes send '{}' as {}; the messages of both are ignored there until one of them has ended",
       channel_name(topic, robot),
       topic.per_robot ? fmt::format("robot {}", robot) : process_name(header.sender()));
 }

@@ -22,8 +22,8 @@ class RoleWatch {
   RoleWatch(const RoleWatch&) = delete;
   RoleWatch& operator=(const RoleWatch&) = delete;
 
-  /// Other processes are believed after this time, because messages from an earlier run of this process may
-  /// arrive late.
+  /// Another process is reported only after this time, because messages from an earlier run of this process
+  /// may arrive late.
   static constexpr Duration kConfirmation{500'000'000};
 
  private:

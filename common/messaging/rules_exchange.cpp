@@ -60,8 +60,8 @@ void RulesExchange::publish_if_due() {
   // Created only now: with many processes, unnecessary writers would dominate the start-up time.
   if (!writer_) {
     writer_ = bus_.advertise(topics::kRules);
-    // Over DDS the first message is lost, because nobody has discovered this writer yet, and the other
-    // process may not send another message that is refused. So the rules are sent again later.
+    // Over DDS the first message is lost, because nobody has discovered this writer yet. The other process
+    // might never again send a message that is refused, so the rules are sent again later.
     for (const int periods : {1, 2, 4}) bus_.at(now + periods * kPeriod, [this] { publish_if_due(); });
   }
   writer_->publish(message, now);

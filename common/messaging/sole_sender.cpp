@@ -28,8 +28,8 @@ SoleSender::Outcome SoleSender::receive(std::uint64_t incarnation, Time now) {
     other_heard_at_ = now;
     ++others_;
   }
-  // A message that the first one of a restarted process has overtaken does not prove a conflict, and neither
-  // does a single forged one.
+  // One late message, overtaken by the first message of the restarted process, does not prove a conflict, and
+  // neither does one forged message.
   if (std::min(others_, interleaved_) < kEvidence)
     return incarnation == sender_ ? Outcome::kCounts : Outcome::kRefused;
   gone_after_ = kGoneAfterContest;

@@ -25,9 +25,8 @@ std::string budget_line(const SafetyBudget& budget, double margin_m) {
   const double sight_m = sight_error_bound_m(budget.tracking_bound_m);
   if (shift_m > sight_m + 1e-9) {
     line += fmt::format(
-        "; warning: cameras' clocks may shift robots by {:.1f} mm, of which tracking covers {:.1f} mm: "
-        "expect own "
-        "stops, or set tracking_bound_m to {:.1f} mm or more",
+        "; warning: errors of the cameras' clocks may shift robots by {:.1f} mm, of which tracking covers "
+        "{:.1f} mm: expect own stops, or set tracking_bound_m to {:.1f} mm or more",
         shift_m * 1e3, sight_m * 1e3, shift_m / sight_error_bound_m(1) * 1e3);
   }
   const double measured_mps = budget.max_speed_mps(margin_m, kMeasuredOffset_s);

@@ -26,7 +26,7 @@ class VersionSet {
   bool forget(VersionNumber executing, Time at) {
     return forget(executing, at, [](const Version&) {});
   }
-  /// Like above, but calls back with every version before removing it.
+  /// Like the overload above, but calls back with every version before removing it.
   template <typename Callback>
   bool forget(VersionNumber executing, Time at, Callback on_removal) {
     if (!find(executing)) return false;
@@ -42,7 +42,7 @@ class VersionSet {
   void forget_started(Time at) {
     forget_started(at, [](const Version&) {});
   }
-  /// Like above, but calls back with every version before removing it.
+  /// Like the overload above, but calls back with every version before removing it.
   template <typename Callback>
   void forget_started(Time at, Callback on_removal) {
     remove_if([at](const Version& version) { return version.trajectory.start() <= at; }, on_removal);

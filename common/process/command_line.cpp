@@ -58,8 +58,8 @@ struct Element<std::vector<Value>> {
   using Type = Value;
 };
 
-/// Prevents misreadings by the CLI library: it takes 010 for 8, numbers that are too large for the maximum,
-/// and an empty text for no value. Such texts are refused or rewritten in the form that the library reads
+/// Prevents misreadings by the CLI library: it reads 010 as 8, a number that is too large as the maximum, and
+/// an empty text as a missing value. Such texts are refused or rewritten in the form that the library reads
 /// correctly.
 template <typename Number>
 std::string normalise_number(std::string& text) {
@@ -274,9 +274,9 @@ std::optional<CLI::ParseError> unknown_command(const CLI::App& root) {
   std::vector<std::string> names;
   for (const CLI::App* command : app->get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
-  return CLI::ParseError(
-      fmt::format("{} is no command, expected one of: {}", in_quotes(rest.front()), fmt::join(names, ", ")),
-      CLI::ExitCodes::ExtrasError);
+  return CLI::ParseError(fmt::format("{} is not a command, expected one of: {}", in_quotes(rest.front()),
+                                     fmt::join(names, ", ")),
+                         CLI::ExitCodes::ExtrasError);
 }
 
 }  // namespace

@@ -31,10 +31,10 @@ struct ValueCheck {
   };
   std::optional<Limits> limits{};  ///< of in_range()
 };
-/// For an option of a whole number, Option::check() makes in_whole_range() of it.
+/// For options with whole numbers, Option::check() replaces it with in_whole_range().
 [[nodiscard]] ValueCheck in_range(double min, double max);
 [[nodiscard]] ValueCheck in_whole_range(std::int64_t min, std::int64_t max);
-/// Above 0, and a duration of so many seconds or a rate of so many a second can be stated: from 1e-9 to 1e9.
+/// From 1e-9 to 1e9: positive, and usable as a duration in seconds or as a rate per second.
 [[nodiscard]] ValueCheck positive();
 [[nodiscard]] ValueCheck non_negative();
 [[nodiscard]] ValueCheck one_of(std::vector<std::string> values);

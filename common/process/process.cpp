@@ -57,7 +57,7 @@ void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings) {
   app.add_option("--keys", settings.keys,
                  "folder with the keys of this process, or that `sidestep keys init` has made");
   app.add_flag("--insecure", settings.insecure,
-               "work without keys, although other machines can reach the interface and command the robots");
+               "run without keys, although other machines can reach the interface and command the robots");
 }
 
 int run_guarded(const std::string& name, const std::function<int()>& work) {

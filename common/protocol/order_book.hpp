@@ -15,7 +15,7 @@ namespace sidestep {
 
 /// The orders that are in force. Each order has a place; the order with the highest number keeps it:
 /// - an order to drive, or its cancellation: one place per robot and rank;
-/// - a hold: one place per client and robot (or all robots); a resume: likewise;
+/// - a hold: one place per client and robot (or all robots); a resume has the same kind of place;
 /// - a zone, or its removal: one place per client and zone number.
 /// A hold gives up its place once it is lifted, and a resume once a later one lifts everything that it lifts.
 /// The number of remembered resumes and removals of clients is bounded: the oldest are forgotten first. So
@@ -93,7 +93,7 @@ class OrderBook {
   bool has_room(const Order& order) const;
   /// Whether a client's order may be a late repetition of an order that was completely forgotten.
   bool may_be_forgotten(const Order& order) const;
-  /// Whether the client has lifted its holds with this number of the robot or of all robots.
+  /// Whether the client has lifted its hold with this number, be it of the robot or of all robots.
   bool has_resumed(ClientId client, RobotId robot, OrderNumber number) const;
   /// Whether a later resume lifts everything that this one lifts.
   bool is_redundant(const Order& resume) const;

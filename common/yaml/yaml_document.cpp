@@ -36,7 +36,7 @@ class FirstReading : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     const auto is_it = [anchor](const auto& collection) { return collection.first == anchor; };
     if (std::ranges::any_of(open_, is_it))
-      throw ConfigError(file_name_, mark.line + 1, "an anchor is used within what it stands for");
+      throw ConfigError(file_name_, mark.line + 1, "an anchor is used inside its own value");
     add(mark, values_of_[anchor]);
   }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
@@ -77,7 +77,7 @@ class FirstReading : public YAML::EventHandler {
 
   const std::string& file_name_;
   std::size_t values_ = 0;
-  std::vector<std::pair<YAML::anchor_t, std::size_t>> open_;  // with the number of values before each
+  std::vector<std::pair<YAML::anchor_t, std::size_t>> open_;  // with the number of values before the anchor
   // Number of values by anchor; 0 stands for no anchor.
   std::map<YAML::anchor_t, std::size_t> values_of_;
 };

@@ -88,7 +88,7 @@ long integer_from(const YAML::Node& node, const YamlLocation& location, Range ra
 
 std::string text_from(const YAML::Node& node, const YamlLocation& location) {
   if (!node.IsScalar()) location.fail("expected text, got " + described(node));
-  // C functions that get it would read less than what was checked.
+  // C functions would stop at a zero byte, and so read less than what was checked.
   if (node.Scalar().find('\0') != std::string::npos) location.fail("expected text without zero bytes");
   return node.Scalar();
 }

@@ -12,8 +12,8 @@ namespace {
 /// As deep as yaml-cpp reads.
 constexpr int kMaxNesting = 500;
 
-/// What begins, ends or separates tokens within brackets. Dashes and line ends do so only outside, where
-/// yaml-cpp hands over each value as it reads it.
+/// Characters that begin, end or separate tokens within brackets. Dashes and line ends do so only outside
+/// brackets, where yaml-cpp hands over each value as it reads it.
 constexpr std::string_view kStructure = "[]{},:?&*!'\"";
 
 }  // namespace
@@ -22,8 +22,8 @@ void check_yaml_structure(const std::string& text, const std::string& file_name,
   const std::size_t max_structure = 2 * max_values;
   std::size_t structure = 0;
   int line = 1, nesting = 0;
-  bool is_comment = false;    // perhaps: the characters count, but nothing nests
-  bool is_directive = false;  // perhaps: yaml-cpp keeps its words, which blanks separate
+  bool is_comment = false;    // possibly in a comment: characters are counted, but brackets do not nest
+  bool is_directive = false;  // possibly in a directive, whose words yaml-cpp keeps
   char before = '\n';
   for (const char c : text) {
     if (c == '\n') {
@@ -39,8 +39,7 @@ void check_yaml_structure(const std::string& text, const std::string& file_name,
                           fmt::format("more than {} characters out of {}, expected at most {} values",
                                       max_structure, kStructure, max_values));
       if (!is_comment && (c == '[' || c == '{') && ++nesting > kMaxNesting)
-        throw ConfigError(file_name, line,
-                          fmt::format("expected at most {} brackets within each other", kMaxNesting));
+        throw ConfigError(file_name, line, fmt::format("expected at most {} nested brackets", kMaxNesting));
       if (!is_comment && (c == ']' || c == '}') && nesting > 0) --nesting;
     }
     before = c;

@@ -25,7 +25,7 @@ double length(double x, double y) { return std::sqrt(x * x + y * y); }
 struct Pair {
   const AuditPath& a;
   const AuditPath& b;
-  double a_from_s, b_from_s;  ///< origin of the common axis, on each path's own axis
+  double a_from_s, b_from_s;  ///< position of the common origin on each path's own time axis
 
   AuditPath::Node separation(double s) const {
     const AuditPath::Node p = a.at_s(a_from_s + s), q = b.at_s(b_from_s + s);

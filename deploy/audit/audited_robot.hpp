@@ -185,7 +185,8 @@ class AuditedRobot {
   const KnownVersion* find_near(std::size_t index, VersionNumber number) const;
   /// Whether the version is unknown and may have been evicted.
   bool was_evicted(VersionNumber number) const { return number <= max_evicted_version && !find(number); }
-  /// Whether all versions that the robot executed from one version to another, possibly equal one are known.
+  /// Whether all versions that the robot executed from one version to another, which may be the same, are
+  /// known.
   bool continues(VersionNumber from, VersionNumber to) const;
   /// The counts over the robot's whole life.
   ExecutedVersions executed_versions() const;

@@ -199,7 +199,7 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     ++totals_.invalid;
     return;
   }
-  // Such a registration registers nobody, and only tells a coordinator the epoch.
+  // Such a registration registers nobody, and only informs a coordinator of the epoch.
   if (registration.version_count() == 0 && !registration.is_absent()) return;
   orders_.on_registration(registration);
   AuditedRobot::Registered registered;

@@ -99,10 +99,10 @@ class Auditor {
   };
   /// A displacement that vision shows.
   struct SeenDisplacement {
-    /// In all observations since this time the robot is out of place.
+    /// The robot has been out of place in all observations since this time.
     std::int64_t since_ns = kNever;
     bool is_reported = false;  ///< ensures that it is reported only once
-    /// In all observations since this time it was in place; kNever: unknown.
+    /// The robot has been in place in all observations since this time; kNever: unknown.
     std::int64_t in_place_since_ns = kNever;
   };
 

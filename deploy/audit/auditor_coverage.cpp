@@ -27,8 +27,8 @@ void Auditor::begin_run() {
 
 void Auditor::hear_fact(const AuditedRobot& robot, VersionNumber executing, const Reception& reception) {
   if (executing != 0) begin_run();
-  // A robot that runs sends at least one fact per cycle, so this many missed facts cover at most as many
-  // cycles. They leave no doubt if all versions are known that the robot executed in between.
+  // A running robot sends at least one fact per cycle, so this many missed facts span at most as many cycles.
+  // They leave no doubt if all versions that the robot executed in between are known.
   const bool is_known = robot.fact && robot.continues(robot.fact->executing, executing);
   const auto missed = static_cast<std::int64_t>(std::min(reception.missed, kMaxMissed));
   facts_time_.hear(index_of(robot), now_, is_known ? Duration{0} : missed * scenario_.cycle);

@@ -22,8 +22,8 @@ constexpr std::int64_t kMaxMotorLead_ns = 300'000'000;
 constexpr std::int64_t kCheckPeriod_ns = 1'000'000;
 constexpr std::int64_t kRecoveryTimeout_ns = 25'000'000 + kCheckPeriod_ns;
 
-// A robot counts its incarnations on from that of its simulator, which is a clock reading in nanoseconds.
-// Another simulator starts later than that.
+// A robot's incarnations count up from its simulator's incarnation, which is a clock reading in nanoseconds.
+// Another simulator starts with a later reading.
 constexpr std::uint64_t kMaxSetbacks = 100'000;
 // If a robot is silent for this long, facts of an earlier simulator may be the true ones (PROTOCOL.md,
 // "Processes that must be alone").
@@ -51,7 +51,7 @@ const char* reason_of(Exclusion exclusion) {
 }  // namespace
 
 bool Auditor::is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const {
-  // A fact is dated by the robot's own clock, and stamped by that of the process that sends it.
+  // A fact's time is by the robot's own clock, and its stamp by the clock of the process that sends it.
   const bool is_dated_as_sent =
       std::abs(feedback.valid_at_ns() - feedback.header().stamp_ns()) <= clock_bound_ns_ + 1000;
   if (!input_.is_complete && !is_dated_as_sent) return false;
@@ -229,7 +229,8 @@ void Auditor::check_own_stop(const AuditedRobot& robot, const KnownVersion& own_
   const auto fail = [&](const std::string& detail) {
     report(AuditRule::kOffReference, robot.id, &own_stop, 0, detail);
   };
-  // With the same number, it is the stop that the robot is already executing, of which messages were missed.
+  // With the same number, it is the stop that the robot is already executing, and messages about it were
+  // missed.
   if (robot.fact && own_stop.number < robot.fact->executing)
     fail(fmt::format("is not numbered above version {}, which it replaces", robot.fact->executing));
   const AuditPath::Node& end = own_stop.path.last();
@@ -260,7 +261,7 @@ void Auditor::check_obeyed_epochs(AuditedRobot& robot, const KnownVersion& execu
            fmt::format("still obeys epoch {}, so it cannot have registered before the grant",
                        feedback.obeyed_epoch()));
   }
-  // Without every message the order of facts and grants is not known, nor who was attested to be absent.
+  // If messages may be missing, the order of facts and grants is unknown, and so are attestations of absence.
   for (auto& [epoch, record] : epochs_) {
     if (!input_.is_complete) break;
     if (record.is_reported || feedback.is_lifted() || feedback.obeyed_epoch() >= epoch) continue;
@@ -313,7 +314,7 @@ void Auditor::exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const
     if (known.exclusion != Exclusion::kNone) continue;
     known.exclusion = exclusion_by(fact, known);
     if (known.exclusion != Exclusion::kNone) known.excluded_ns = now_ns;
-    // Without every message it is not known how late a fact arrives: only pages tell what the ledger holds.
+    // If messages may be missing, the delay of a fact is unknown: only pages show what the ledger contains.
     if (!known.has_content || !input_.is_complete) continue;
     // If no fact was missed, this is the first one that excludes the version, and no component could know
     // earlier.

@@ -164,7 +164,7 @@ void Auditor::check_crashes(const msg::GroundTruth& truth, std::uint64_t reporte
     report(AuditRule::kCrash, index || robots_.empty() ? robot : robots_.front().id, nullptr, 0,
            fmt::format("{} crashes of moving robots so far, at a robot speed of up to {:.3f} m/s",
                        truth.crashes_while_moving(), truth.max_robot_crash_speed_mps()));
-    // One report covers those that are not listed.
+    // A single report covers all crashes that are not listed.
     if (!is_listed) k = truth.crashes_while_moving() - msg::MAX_CONTACTS - 1;
   }
 }

@@ -140,7 +140,7 @@ void Auditor::check_seen_position(const AuditedRobot& robot, const KnownVersion&
     displacement = {kNever, false, was_in_place ? displacement.in_place_since_ns : at_ns};
     return;
   }
-  // An auditor that joins a run does not know what has displaced a robot before.
+  // An auditor that joins a run does not know what displaced a robot earlier.
   if (!input_.is_complete && displacement.in_place_since_ns == kNever) return;
   if (is_known_to_be_displaced(robot)) {
     ++totals_.excused_displacements;

@@ -155,7 +155,7 @@ void Disturbances::update_pushes() {
 void Disturbances::update_displacement(std::size_t robot) {
   auto& displacement = states_[robot].displacement;
   if (!displacement) return;
-  // The clock of the times may have been set back.
+  // The clock that these times were read from may have been set back.
   displacement->end = std::min(displacement->end, *now_ + kMaxDuration);
   if (displacement->back_at) displacement->back_at = std::min(*displacement->back_at, *now_);
   const Duration elapsed = *now_ - displacement->end;
@@ -203,7 +203,7 @@ void Disturbances::add_pair_time(Time now) {
     ++on_floor;
     if (!states_[i].displacement) continue;
     for (std::size_t j = 0; j < states_.size(); ++j) {
-      // A pair of which both were disturbed counts once.
+      // A pair in which both robots were disturbed counts once.
       const bool is_counted_at_j = j < i && states_[j].displacement;
       excused += j != i && robots_[j] && !is_counted_at_j && excuse(i, j);
     }

@@ -11,9 +11,9 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxKept = 4096;
-// A coordinator may forget clients' oldest resumes beyond 512, but for exceptions from holds of all robots
-// that stand, and removals of zones beyond 256. Half as many at the time of a whole memory show that it may
-// do so before the next one.
+// A coordinator may forget clients' oldest resumes beyond 512, except those that exempt a robot from a hold
+// of all robots that is in force, and the oldest removals of zones beyond 256. If a complete memory contains
+// half as many, the coordinator may do so before the next one.
 constexpr std::size_t kManyResumes = 256, kManyRemovals = 128;
 constexpr auto kOperator = static_cast<std::uint32_t>(Sender::kOperator);
 // Clients other than operator, referee and scenario share one entry for orders to drive.
@@ -71,7 +71,7 @@ class OrderAudit::Memory {
     }
     return last;
   }
-  /// Whether the order stands, or the memory says why it does not.
+  /// Whether the order is in force, or the memory shows why it is not.
   bool accounts_for(const Terms& order) const {
     const auto found = by_subject_.find(order.subject);
     if (found != by_subject_.end() &&
@@ -92,7 +92,7 @@ class OrderAudit::Memory {
     // Otherwise, the absence of the hold shows that it was lifted.
     return !excepts(order) || resumed >= order.number;
   }
-  /// Whether the resume excepts a robot from a hold of all that stands.
+  /// Whether the resume exempts a robot from a hold of all robots that is in force.
   bool excepts(const Terms& resume) const {
     const auto hold = by_subject_.find({Matter::kHold, msg::ALL_ROBOTS, resume.client, 0});
     return resume.robot != msg::ALL_ROBOTS && hold != by_subject_.end() &&
@@ -197,7 +197,7 @@ void OrderAudit::on_registration(const msg::Registration& registration) {
   const std::int64_t stamp_ns = registration.header().stamp_ns();
   const bool is_repeated =
       latest.epoch == registration.epoch() && latest.incarnation == registration.header().incarnation();
-  // The agent was told all orders before the first one.
+  // The agent had received all orders before its first registration.
   if (registration.epoch() < latest.epoch || (is_repeated && stamp_ns >= latest.stamp_ns)) return;
   latest = {registration.header().incarnation(), registration.epoch(), stamp_ns};
 }
@@ -274,8 +274,8 @@ void OrderAudit::judge(std::uint32_t sender, Coordinator& coordinator, bool clai
   });
 }
 
-// A coordinator that told a hold, granted, and then tells it again has granted while it stood: a hold that
-// was lifted does not return.
+// If a coordinator announces a hold, grants, and then announces the hold again, it has granted while the hold
+// was in force: a lifted hold does not return.
 void OrderAudit::judge_grants(const Memory& memory, Coordinator& coordinator) {
   for (const auto& [subject, hold] : memory.orders()) {
     if (hold.kind != msg::OrderKind::ORDER_HOLD) continue;
@@ -294,8 +294,8 @@ void OrderAudit::judge_grants(const Memory& memory, Coordinator& coordinator) {
       }
       report_(
           AuditRule::kHeld, robot, granted.version, granted.epoch,
-          fmt::format("was granted {:.3f} s after the coordinator had told hold {} of client {}, which "
-                      "still stands",
+          fmt::format("was granted {:.3f} s after the coordinator had announced hold {} of client {}, which "
+                      "is still in force",
                       static_cast<double>(granted.stamp_ns - told->second) * 1e-9, hold.number, hold.client));
       grant = coordinator.grants.erase(grant);
     }

@@ -65,8 +65,8 @@ class SeenContacts {
   double position_error_m_;
   double acceleration_mps2_;
   double guaranteed_m_, guaranteed_to_obstacle_m_;
-  std::map<Pair, int> observations_;    ///< number of observations of each pair in contact
-  std::size_t seen_ = 0;                ///< counts robots, obstacles and the map
+  std::map<Pair, int> observations_;  ///< number of observations of each pair in contact
+  std::size_t seen_ = 0;  ///< number of objects that can be touched: robots, obstacles and the map
   std::vector<std::int64_t> apart_ns_;  ///< indexed by robot, then by what may touch it
 };
 

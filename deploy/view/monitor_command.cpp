@@ -63,7 +63,7 @@ WebResponse page_file(const WebRequest& request) {
   return {200, file->content_type, request.method == "GET" ? std::string(file->content) : std::string()};
 }
 
-/// What a monitor can do besides showing; nullptr: it cannot do it.
+/// Optional capabilities of a monitor; nullptr if it lacks one.
 struct MonitorParts {
   ControlApi* control = nullptr;
   NetworkView* network = nullptr;
@@ -328,7 +328,7 @@ void add_monitor_command(const CliCommand& root, std::function<int()>& action) {
                   "pages of these servers may use this one, e.g. https://example.org")
       .comma_separated();
   command.add_flag("--control", options->has_control,
-                   "viewers who have the token that is printed may give orders and cause faults");
+                   "viewers with the printed token may give orders and cause faults");
   command.add_option("--record", options->recording_file, "also write all messages to this MCAP file");
   add_dds_options(command, options->dds);
   command.on_parsed([options, &action] {

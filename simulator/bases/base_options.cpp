@@ -21,8 +21,9 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
       .show_default();
   app.add_option("--yellow", options.yellow, "with --league: ADDRESS:PORT for the yellow team's commands")
       .show_default();
-  app.add_option("--team-size", options.team_size,
-                 "with --league: fill up each team to this many robots, which the scenario does not know")
+  app.add_option(
+         "--team-size", options.team_size,
+         "with --league: fill up each team to this many robots with ones that the scenario does not know")
       .check(in_range(0, league::kRobotNumbers))
       .show_default();
   app.add_option("--latency-ms", options.latency_ms, "without firmware: from a command to first motion")
@@ -39,7 +40,7 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
                  "with --league: probability that a packet of commands or of vision is lost")
       .check(in_range(0, 1))
       .show_default();
-  app.add_option("--speed", options.speed, "without firmware: of the simulation, relative to real time")
+  app.add_option("--speed", options.speed, "without firmware: speed of the simulation, relative to real time")
       .check(in_range(0.1, 10))
       .show_default();
   app.add_flag("--accept-global", options.accepts_global,

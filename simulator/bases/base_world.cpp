@@ -13,7 +13,7 @@ namespace {
 
 // Opponents have the highest ids; an id ends in the robot's number.
 constexpr RobotId kFirstBlueOpponent = kMaxRobots - 32, kFirstYellowOpponent = kMaxRobots - 16;
-// For this long after a push by an opponent, a robot may be in motion without having driven.
+// For this long after a push by an opponent, a robot may be moving without having been driven.
 constexpr Duration kPushedTime = std::chrono::seconds(1);
 constexpr double kReach_m = 0.015, kFrontAngle_rad = 0.45;
 

@@ -41,7 +41,7 @@ class StaticView {
         parallax_(scene.height_m / (camera.position_m().z() - scene.height_m)),
         nadir_m_(camera.position_m().head<2>()) {}
 
-  /// Chooses the shapes that rays near a point at the height of the tops may meet.
+  /// Chooses the shapes that rays may meet near a point at the height of the tops.
   void select(const Vec2& top_m, double reach_m) {
     candidates_.clear();
     const Segment ray = ray_of(top_m);

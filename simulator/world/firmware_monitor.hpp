@@ -51,8 +51,8 @@ class FirmwareMonitor {
   Version executing_;
   bool is_own_ = false;  ///< executing an own stop
   bool is_lifted_ = false;
-  bool expects_reboot_stop_ = false;  ///< rebooted, and the own stop is still to come
-  bool expects_clock_stop_ = false;   ///< its clock has gone back, and the own stop is still to come
+  bool expects_reboot_stop_ = false;  ///< rebooted, and has not made its own stop yet
+  bool expects_clock_stop_ = false;   ///< its clock has gone back, and it has not made its own stop yet
   VersionNumber highest_executed_ = 0;
   std::uint64_t highest_seen_ = 0;  ///< highest version number or incarnation received
   Incarnation acknowledged_ = 0;    ///< highest incarnation reported in a fact

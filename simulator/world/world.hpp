@@ -40,9 +40,9 @@ class World {
   /// that its kind uses are in range (disturbance_codec.hpp).
   [[nodiscard]] bool disturb(std::size_t robot, const RobotDisturbance& disturbance, Time now);
 
-  /// A command reaches a robot. Precondition: time() <= now < time() + kPhysicsStep.
+  /// Delivers a command to a robot. Precondition: time() <= now < time() + kPhysicsStep.
   void on_command(std::size_t robot, const Command& command, Time now);
-  /// A command that could not be decoded reaches a robot. Precondition: as above.
+  /// Delivers a command that could not be decoded, with the same precondition.
   void on_malformed_command(std::size_t robot, Time now);
   /// The robot's clock. If it has gone back by more than the clock bound, the robot begins a new incarnation.
   Time robot_time(std::size_t robot, Time now);
@@ -51,7 +51,7 @@ class World {
   /// The host's clock, and with it the clocks of all robots, was set back by this duration. The time of this
   /// world continues.
   void on_host_clock_set_back(Duration by);
-  /// The host's clock at a time of this world.
+  /// The reading of the host's clock at a time of this world.
   Time host_time(Time t) const { return t - host_behind_; }
   /// The time of this world when the host's clock shows this time.
   Time world_time(Time shown) const { return shown + host_behind_; }

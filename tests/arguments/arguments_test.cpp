@@ -106,7 +106,8 @@ Row row_for(const Runner& runner, const std::string& command, const std::string&
   return {2, messages, words_of(command, placeholders)};
 }
 
-TEST_CASE("silly values of options are refused, and the message names the option and its limits", "[slow]") {
+TEST_CASE("invalid values of options are refused, and the message names the option and its limits",
+          "[slow]") {
   Runner runner;
   const std::vector<Row> rows = option_rows(runner.table(), runner.placeholders());
   REQUIRE(rows.size() > 1000);

@@ -41,7 +41,7 @@ struct RunFixture {
 
 }  // namespace
 
-TEST_CASE("a run goes on to its end and its report when nobody reads its output any more") {
+TEST_CASE("a run continues to its end and writes its report when its output has lost its reader") {
   const RunFixture f;
   const std::string output =
       GENERATE("2>err | head -1", "2>&1 | head -1", ">/dev/full 2>/dev/full", ">&- 2>&-");
@@ -53,7 +53,7 @@ TEST_CASE("a run goes on to its end and its report when nobody reads its output 
   CHECK_THAT(f.text("r.log"), !ContainsSubstring("SIGPIPE"));
 }
 
-TEST_CASE("a simulation goes on to its end and its report when nobody reads its output any more") {
+TEST_CASE("a simulation continues to its end and writes its report when its output has lost its reader") {
   const TemporaryFolder folder;
   const std::string runs = GENERATE(as<std::string>(), kScenario + " --seconds 1",
                                     "--faults none --seeds 1..40 --seconds 1 --jobs 2");
@@ -92,7 +92,7 @@ TEST_CASE("a run whose report cannot be written prints its summary") {
   CHECK_THAT(f.text("out"), ContainsSubstring("robots arrived") && !ContainsSubstring("report: "));
 }
 
-TEST_CASE("a simulated run ends as always if stderr is closed or on a full disk") {
+TEST_CASE("a simulated run ends as usual if stderr is closed or on a full disk") {
   const TemporaryFolder folder;
   const std::string output = GENERATE("2>&-", "2>/dev/full", "<&- >&- 2>&-");
   const ProgramRun run = run_in_shell("\"$0\" simulate " + kScenario + " --report r.json " + output, folder);

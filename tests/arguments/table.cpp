@@ -65,7 +65,7 @@ void add_rows(const std::vector<Section>& table, const Placeholders& given, cons
       // After the options have ended, "-1" is no option.
       row.command.insert(row.command.end(), {"--", text});
     } else {
-      // As shells pass --option "$UNSET". "--option=" says that there is no value.
+      // This is how shells pass --option "$UNSET". "--option=" says that there is no value.
       if (text.empty())
         row.command.insert(row.command.end(), {option[0], text});
       else

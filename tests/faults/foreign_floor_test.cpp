@@ -152,9 +152,8 @@ TEST_CASE("robots go on when the foreign simulator is killed and started again",
   WARN("after a restart of the simulator: " << ended << ", " << outcome(report));
 }
 
-TEST_CASE(
-    "our robots never touch each other and rest before opponents reach them that somebody drives at random",
-    "[both-cores]") {
+TEST_CASE("our robots never touch each other, and are at rest before randomly driven opponents reach them",
+          "[both-cores]") {
   const std::uint64_t seed = 1 + static_cast<std::uint64_t>(time(nullptr)) % 1000;
   CAPTURE(seed);
   ForeignFloor floor(shipped_scenario("league/eleven-blue"), {"--team-size", "11"}, {"--seconds", "60"});

@@ -20,7 +20,7 @@ using std::chrono::seconds;
 
 constexpr double kAtRest_mps = 0.03;
 
-/// The two teams, to and fro.
+/// The two teams, back and forth.
 std::string teams_to_and_fro() {
   std::string text;
   const std::regex robot("(.*start_m: )(\\[[^\\]]*\\])(.*goals_m: )\\[(\\[[^\\]]*\\])\\](.*)");
@@ -106,7 +106,7 @@ TEST_CASE("22 robots on three hosts with 5 % packet loss rest soon after they ar
   check_holds(*run, 0.2);
 }
 
-TEST_CASE("held robots stay although the coordinator and all agents are killed and a new agent joins",
+TEST_CASE("held robots stay at rest although the coordinator and all agents are killed and a new agent joins",
           "[slow]") {
   LaunchedRun run(shuttles(20, "restart: [coordinator, agents]\n"), {"--seconds", "25"});
   OrderClient client(run.bus(), client_id("holder"));

@@ -32,7 +32,7 @@ inline std::unique_ptr<TestKeys> keys_for(const std::string& scenario) {
   return keys;
 }
 
-/// Three robots that stand until somebody orders them to drive.
+/// Three robots that stay at rest until somebody orders them to drive.
 inline constexpr const char* kThreeWaitingRobots =
     "name: waiting\nfield: {length_m: 6, width_m: 5}\ntime_limit_s: 3600\nrobots:\n"
     "  - {id: 0, start_m: [-2, -1]}\n  - {id: 1, start_m: [-2, 0]}\n  - {id: 2, start_m: [-2, 1]}\n";
@@ -60,8 +60,7 @@ struct KeyedRun {
       arguments.insert(arguments.end(), {"--keys", keys.folder()});
     return run.command(arguments);
   }
-  /// A participant that knows these keys, and announces them as our processes do: one that has started so
-  /// long ago.
+  /// A participant that has these keys, and announces them as our processes do, with a start this long ago.
   AttackerSettings with_keys(const std::string& folder, Duration age = {}) const {
     const auto announced = [folder, age](const ParticipantId& id) {
       return credentials(Certificate::load(folder + "/" + key_files::kCertificate),
@@ -96,13 +95,13 @@ struct KeyedRun {
   }
 };
 
-/// An operator who sends the robots to and fro.
+/// An operator who sends the robots back and forth.
 class Shuttle {
  public:
   explicit Shuttle(const KeyedRun& keyed)
       : bus_(settings(keyed)), client_(bus_, static_cast<ClientId>(Sender::kOperator)) {}
 
-  /// Goes on for a moment. Returns how many orders have been carried out.
+  /// Continues for a moment. Returns how many orders have been carried out.
   int drive() {
     bus_.run_until(bus_.now() + std::chrono::milliseconds(1));
     for (RobotId robot = 0; robot < handles_.size(); ++robot) {

@@ -18,7 +18,7 @@ constexpr int kPerSecond = 10'000;
 constexpr double kStanding_mps = 0.05;
 constexpr std::uint8_t kFormerProcesses = 100;
 constexpr Duration kFormerAge = std::chrono::minutes(10);
-/// A process that kept what it is sent would grow by more in the shortest flood.
+/// A process that stored what it receives would grow by more than this in the shortest flood.
 constexpr double kMaxGrowth_mb = 6;
 
 /// Strangers, some of whom know a genuine announcement.

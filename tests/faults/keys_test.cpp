@@ -54,8 +54,8 @@ msg::Order order_as(std::uint32_t sender, const LaunchedRun& run) {
   return order;
 }
 
-/// Writes orders for some seconds, by default in the operator's name. Returns whether a robot moved; all
-/// stand before.
+/// Writes orders for some seconds, by default in the operator's name. Returns whether a robot moved; all are
+/// at rest before.
 bool attack(LaunchedRun& run, Attacker& attacker, Duration duration = seconds(3),
             std::uint32_t sender = static_cast<std::uint32_t>(Sender::kOperator)) {
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() < kMoving_mps / 2; }));
@@ -171,7 +171,7 @@ TEST_CASE("with keys, processes speak only for themselves") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
-  // A viewer reads and writes no more than he may, and his own library says so.
+  // A viewer cannot read or write more than it may, and its own library says so.
   CHECK(keyed.command({"topic", "pub", "order", "{}", "--keys", keyed.keys.folder_of("viewer")}) ==
         "exit code 2");
   CHECK(run.printed("the keys of viewer do not allow writing the topic 'order'"));
@@ -253,7 +253,7 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
       [&] { return run.logged("keys: refuses client forklift at 127.0.0.1, whose key is revoked"); }));
   CHECK_FALSE(attack(run, client, seconds(3), client_id("forklift")));
 
-  // One whom nobody hears before its key expires has a successor, see heard_attacker().
+  // If nobody hears an attacker before its key expires, another takes its place; see heard_attacker().
   std::unique_ptr<Attacker> brief;
   bool has_moved_robot = false;
   for (int i = 0; i < 4 && !has_moved_robot; ++i) {
@@ -316,7 +316,7 @@ TEST_CASE("keys that are revoked during a run are refused on other hosts, too") 
   keyed.check_unharmed();
 }
 
-/// A thread that goes round in a loop takes all that it can get of a core. All robots stand.
+/// A thread in an endless loop takes as much of a core as it can get. All robots are at rest.
 void check_no_thread_spins(LaunchedRun& run) {
   constexpr double kObserved_s = 4;
   const auto before = usage_of(run);
@@ -328,7 +328,7 @@ void check_no_thread_spins(LaunchedRun& run) {
   }
 }
 
-/// While robots drive to and fro, repeats and alters what their processes say to each other.
+/// While robots drive back and forth, replays and alters the datagrams that their processes exchange.
 void repeat_and_alter(Duration duration, std::uint64_t seed) {
   SIDESTEP_NEEDS_ROOT();
   KeyedRun keyed;
@@ -339,7 +339,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   const std::map<std::string, pid_t> processes = run.children();
   const Capture capture(keyed.domain());
   Shuttle shuttle(keyed);
-  // A replay repeats what has counted before, and also what has been answered since.
+  // A replay repeats what was accepted before, and also what has been answered since.
   const Time captured_until = run.bus().now() + seconds(5);
   REQUIRE(run.wait_until([&] { return shuttle.drive() > 3 && run.bus().now() > captured_until; }));
   const std::vector<CapturedDatagram> captured = capture.datagrams();
@@ -364,7 +364,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
       return run.bus().now() - part_begin > seconds(10);
     }));
   }
-  // They reached processes, beside what those said to each other.
+  // They reached processes, in addition to what these sent to each other.
   const std::uint64_t read = datagrams_read() - read_before;
   CHECK(read > static_cast<std::uint64_t>(replayed + changed));
   CHECK(run.children() == processes);

@@ -26,7 +26,7 @@ std::string waiting_robots() {
   return text;
 }
 
-/// A random order of two strangers: most of it can be understood, and every field is sometimes absurd.
+/// A random order from one of two strangers: most of it is valid, and every field is sometimes absurd.
 msg::Order hostile_order(Rng& rng, Time now) {
   const auto sometimes = [&](double usual, double absurd) { return rng.below(10) == 0 ? absurd : usual; };
   msg::Order order;

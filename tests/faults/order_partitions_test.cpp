@@ -40,7 +40,7 @@ struct Totals {
   int moved = 0;       ///< robots that moved although they were held
   int accepted = 0;    ///< rounds in which a coordinator accepted the holds
   int unanswered = 0;  ///< rounds in which none did, although it could reach the agents
-  int lost = 0;        ///< orders to go that were not carried out after the resume
+  int lost = 0;        ///< drive orders that were not carried out after the resume
 };
 
 class PartitionRounds {

@@ -101,11 +101,11 @@ void check_random_goals(Duration duration) {
   require_no_violations(run.report());
 }
 
-TEST_CASE("a client learns the end of every order while agents and coordinators are killed") {
+TEST_CASE("a client learns the outcome of every order while agents and coordinators are killed") {
   check_random_goals(seconds(12));
 }
 
-TEST_CASE("in ten minutes a client learns the end of every order", "[.long][slow]") {
+TEST_CASE("in ten minutes a client learns the outcome of every order", "[.long][slow]") {
   check_random_goals(minutes(10));
 }
 

@@ -97,7 +97,7 @@ TEST_CASE("kill -9 of the simulator: the run ends and reports its death") {
   require_no_violations(run.report());
 }
 
-TEST_CASE("of two living agents of one robot the later one drives it, without contact") {
+TEST_CASE("if two agents of one robot are alive, the later one drives it, without contact") {
   LaunchedRun run(shuttles(5, ""));
   REQUIRE(run.wait_until([&] { return run.speed_mps(3) > 0.8; }));
   std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--robot", "3"};

@@ -23,8 +23,8 @@ constexpr double kAtRest_mps = 0.03;                         // beyond the noise
 
 std::string pair(const Vec2& v) { return fmt::format("[{:g}, {:g}]", v.x(), v.y()); }
 
-/// Twenty-two robots that drive to and fro, except for two without goals beside the ball and two whose goals
-/// are beside the ball. The ball rolls.
+/// Twenty-two robots that drive back and forth, except for two without goals beside the ball and two whose
+/// goals are beside the ball. The ball rolls.
 std::string busy_teams() {
   const Scenario scenario = parse_scenario(shipped_scenario("two-teams-22"), "two-teams-22.yaml");
   std::string text =

@@ -102,7 +102,8 @@ TEST_CASE("an agent that is killed again and again is heard again, and leaves li
   (void)kill_agent(5, 2s);
 }
 
-TEST_CASE("the same for two hundred deaths", "[.long][slow]") {
+TEST_CASE("an agent that is killed two hundred times is heard again, and leaves little behind",
+          "[.long][slow]") {
   const Aftermath aftermath = kill_agent(200, 20s);
   CHECK(aftermath.max_matching < 500ms);
   CHECK(aftermath.max_cpu_growth_percent <= 1);

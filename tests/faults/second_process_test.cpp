@@ -23,8 +23,9 @@ void check_ends(LaunchedRun& run, const std::string& program, const std::string&
   REQUIRE(run.wait_until([&] { return run.exit_reason("second").has_value(); }));
   INFO(run.output());
   CHECK(run.exit_reason("second") == "exit code 1");
-  CHECK(run.printed("another " + kind + " works in this domain"));
-  // What two said at the same time does not count until the second one has been silent for a second.
+  CHECK(run.printed("another " + kind + " is running in this domain"));
+  // Messages that two processes sent at the same time are ignored until the second one has been silent for a
+  // second.
   const Time ended_at = run.bus().now();
   REQUIRE(run.wait_until([&] { return run.bus().now() > ended_at + seconds(2); }));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
@@ -53,7 +54,7 @@ TEST_CASE("a second run in one domain is refused before it starts a process, and
   run.start("second", "sidestep", arguments);
   REQUIRE(run.wait_until([&] { return run.exit_reason("second").has_value(); }));
   CHECK(run.exit_reason("second") == "exit code 2");
-  CHECK(run.printed("another run of shuttles on host " + host_name() + " works in it"));
+  CHECK(run.printed("another run of shuttles on host " + host_name() + " is using it"));
   const std::string ended = run.wait_for_end();
   INFO(run.output());
   CHECK(ended == "exit code 0");

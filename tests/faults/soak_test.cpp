@@ -106,13 +106,13 @@ Soak soak(const SoakSettings& settings) {
   return result;
 }
 
-TEST_CASE("the slope of a process's memory is found among noise") {
+TEST_CASE("the growth rate of a process's memory is found in spite of noise") {
   std::vector<MemorySample> samples;
   for (int i = 0; i < 330; ++i) samples.push_back({10.0 * i, 20 + 0.5 * (10.0 * i / 3600) + (i % 2) * 0.1});
   CHECK(memory_slope_mb_per_h(samples) == Approx(0.5).margin(0.01));
 }
 
-TEST_CASE("the slope of a process that keeps memory shows how much it keeps") {
+TEST_CASE("the growth rate of a process that leaks memory shows how much it leaks") {
   constexpr std::size_t kStep_bytes = 1'000'000;
   constexpr int kSteps = 20;
   std::vector<MemorySample> samples;

@@ -84,7 +84,7 @@ void start_bases(LaunchedRun& run, const std::vector<std::string>& options) {
 
 }  // namespace
 
-TEST_CASE("a run with keys drives ROS 2's bases, which have none, in a domain of their own", "[both-cores]") {
+TEST_CASE("a run with keys drives ROS 2's bases, which have no keys, in a separate domain", "[both-cores]") {
   const auto keys = keys_for(shipped_scenario("bases/four-bases"));
   const TestDomain bases;
   const std::string domain = std::to_string(bases.number());

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// Ends the program if something is not as the code under test promises. A fuzzer reports the input.
+/// Ends the program if the code under test breaks a promise. A fuzzer then reports the input.
 #define SIDESTEP_REQUIRE(condition)                                                      \
   do {                                                                                   \
     if (!(condition)) {                                                                  \

@@ -46,8 +46,8 @@ struct Submessage {
   View body;
 };
 
-/// The submessages as the specification has them, by another path than the code under test (RTPS 2.2, 8.3.4
-/// and 9.4.5.1.3). nullopt: one is cut off.
+/// The submessages according to the specification, parsed independently of the code under test (RTPS 2.2,
+/// 8.3.4 and 9.4.5.1.3). nullopt: one is cut off.
 std::optional<std::vector<Submessage>> submessages_of(View datagram) {
   std::vector<Submessage> result;
   for (std::size_t at = kDatagramHeaderSize; at < datagram.size();) {
@@ -64,7 +64,7 @@ std::optional<std::vector<Submessage>> submessages_of(View datagram) {
 
 bool begins(View part, View whole) { return part.data() == whole.data() && part.size() <= whole.size(); }
 
-/// What is passed on with keys consists of nothing but submessages that are understood.
+/// With keys, only known submessages are passed on.
 void check_passed(View passed) {
   static const std::set<std::uint8_t> kUnderstood{kAckNackSubmessage,     kHeartbeatSubmessage,
                                                   kGapSubmessage,         kTimestampSubmessage,

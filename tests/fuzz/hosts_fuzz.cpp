@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFile = "fuzz.yaml";
 
-/// What is accepted as an address is nothing but one: it becomes an argument of other programs.
+/// Only addresses are accepted as addresses, because they become arguments of other programs.
 void check_address(const std::string& text) {
   in_addr address{};
   SIDESTEP_REQUIRE(inet_pton(AF_INET, text.c_str(), &address) == 1);
@@ -23,7 +23,7 @@ void check_address(const std::string& text) {
   SIDESTEP_REQUIRE(text == plain);
 }
 
-/// The same for names: no option, no space, nothing that a shell takes for something else.
+/// Likewise, names contain no options, no spaces, and nothing that a shell interprets.
 void check_name(const std::string& text, std::string_view extra) {
   SIDESTEP_REQUIRE(!text.empty() && text[0] != '-');
   for (const char c : text) {

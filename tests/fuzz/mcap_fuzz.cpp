@@ -14,7 +14,7 @@
 namespace sidestep::fuzz {
 namespace {
 
-/// Encodes a message that was decoded; it must be one that is decoded to the same.
+/// Encodes a decoded message; decoding the result must give the same message.
 template <typename Message>
 void check_message(const TopicInfo& topic, const Message& message) {
   Bytes bytes, again;

@@ -64,7 +64,7 @@ void check_numbers(const Scenario& scenario) {
   }
 }
 
-/// Robots stand and end on the field, apart from each other, from obstacles and from blocked cells.
+/// Robots start and end on the field, apart from each other, from obstacles and from blocked cells.
 void check_robots(const Scenario& scenario) {
   constexpr double kRounding_m = 1e-6;
   const double x_m = scenario.field.length_m / 2 - scenario.radius_m + kRounding_m,
@@ -110,7 +110,7 @@ void check_floor(const Scenario& scenario) {
     SIDESTEP_REQUIRE(is_near(scenario.ball->position_m, 500) && is_near(scenario.ball->velocity_mps, 20));
 }
 
-/// What processes tell each other of their rules is understood by others.
+/// Rules that processes send each other can be decoded by the receiver.
 void check_rules(const Scenario& scenario) {
   const SharedRules rules(scenario);
   const auto heard = SharedRules::parse(rules.text());
@@ -138,7 +138,7 @@ std::vector<Bytes> seeds() {
   std::vector<Bytes> result;
   for (const auto& file : files_in("deploy/scenarios", ".yaml")) {
     Bytes text = file_content(file);
-    // Other files there are no scenarios, or their robots would stand in walls of this map.
+    // Other files there are not scenarios, or their robots would overlap walls of this map.
     constexpr std::size_t kMaxSize = 4096;
     if (text.size() <= kMaxSize && try_input(text)) result.push_back(std::move(text));
   }

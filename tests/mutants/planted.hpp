@@ -14,8 +14,8 @@ namespace planted {
 
 inline constexpr int kMaxFaults = 4096;
 
-/// With SIDESTEP_PLANTED_REACHED the program writes the numbers of all faults that it could execute to that
-/// file.
+/// If SIDESTEP_PLANTED_REACHED names a file, the program writes to it the numbers of all faults that it could
+/// execute.
 struct Reached {
   const char* file = std::getenv("SIDESTEP_PLANTED_REACHED");
   std::bitset<kMaxFaults> faults;

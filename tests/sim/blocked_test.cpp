@@ -70,7 +70,7 @@ TEST_CASE("robots that rest on each other's goals swap places") {
     OrderedSystem run(waiting_robots(6), seed);
     Rng rng(seed);
     run.system.run_for(seconds(1));
-    // Robots 0, 2 and 4 stand in a row; they go round in a ring, or two of them swap.
+    // Robots 0, 2 and 4 start in a row; they rotate their places, or two of them swap.
     std::vector<OrderNumber> orders;
     const std::size_t count = 2 + rng.below(2);
     for (std::size_t i = 0; i < count; ++i) {

@@ -378,10 +378,10 @@ const std::set<DropReason> kElsewhere{
     DropReason::kUnreadable,          // dds/robustness_test
     DropReason::kMalformedDatagram,   // dds/robustness_test
     DropReason::kForgottenPeer,       // dds/presence_test, of processes that sleep for seconds
-    DropReason::kUnknownParticipant,  // dds/gate_test, of processes with keys, as the next
+    DropReason::kUnknownParticipant,  // dds/gate_test, of processes with keys, like the next one
     DropReason::kRefusedParticipant,
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
-    DropReason::kMalformedLeaguePacket,  // league/league_source_test, as the next three
+    DropReason::kMalformedLeaguePacket,  // league/league_source_test, like the next three
     DropReason::kRepeatedLeagueFrame,
     DropReason::kUndatedLeagueFrame,
     DropReason::kUnusedLeagueDetection,

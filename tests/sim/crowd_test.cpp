@@ -32,7 +32,7 @@ void sample_conditions(Scenario& scenario, Rng& rng) {
   if (rng.chance(0.3)) network.loss = rng.uniform(0, 0.1);
 }
 
-/// Walks on a random route. Some people are as fast as the robots expect at most, others stand.
+/// Walks on a random route. Some people are as fast as the robots' assumed maximum, others stand still.
 OpponentSpec sample_person(test::PositionSampler& starts, double min_distance_m, double max_speed_mps) {
   Rng& rng = starts.rng;
   OpponentSpec person;

@@ -27,7 +27,7 @@ Vec2 random_place(Rng& rng, const Field& field, const std::vector<Vec2>& taken, 
   }
 }
 
-/// Robots that drive to and fro, so that they are in motion whenever a fault occurs.
+/// Robots that drive back and forth, so that they are in motion whenever a fault occurs.
 Scenario random_floor(std::uint64_t seed) {
   Rng rng(seed);
   Scenario scenario;
@@ -220,7 +220,7 @@ void count_touches(const Run& run, std::size_t first, const Fault& fault, const 
                    << " m/s touch " << to_seconds(before.at - fault.moved) << " s after robot " << fault.robot
                    << (fault.is_carried ? " was carried" : " lost power"));
     }
-    // A body that hits somebody leaves the path for which the others were judged.
+    // A body that hits a robot leaves the path for which the other robots were judged.
     if (is_with_body && !is_judged) is_on_path = false;
   }
 }
@@ -299,7 +299,7 @@ TEST_CASE("a thousand coasting and carried robots are named, and no robot drives
 
 // Robot 1 loses power and is carried to where robot 0 is about to drive. By the coordinator's clock, vision
 // may see robots in the future.
-TEST_CASE("a carried robot is named, or no robot drives, whatever the clocks within their bound") {
+TEST_CASE("a carried robot is named, or no robot drives, for all clocks within their bound") {
   Scenario scenario;
   scenario.name = "lax clocks";
   scenario.field = {6, 4};

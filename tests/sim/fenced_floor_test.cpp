@@ -22,7 +22,7 @@ constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 // After this time all robots know their poses and drive.
 constexpr Duration kWarmUp = 8s;
 
-/// Eight robots that drive to and fro across each other's ways.
+/// Eight robots that drive back and forth across each other's paths.
 Scenario shuttles() {
   Scenario scenario =
       load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/league/crossing.yaml");

@@ -107,7 +107,8 @@ std::string describe(const Matrix& matrix) {
   return text;
 }
 
-/// The longest rest of any robot after the links changed; nullopt if nobody could have driven them.
+/// The longest time that any robot rested after the links changed; nullopt if no coordinator could have
+/// served it.
 std::optional<double> run(std::uint64_t seed) {
   Rng rng(seed);
   const Scenario scenario = shuttles(4, 2 + static_cast<int>(rng.below(2)));

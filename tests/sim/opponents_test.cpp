@@ -94,7 +94,7 @@ Scenario crowded_scene(std::uint64_t seed, bool standing_first) {
 }
 
 TEST_CASE(
-    "of sixty opponents none touches a moving robot, whether the nearest are the oldest or the newest") {
+    "none of sixty opponents touches a moving robot, whether the nearest are the oldest or the newest") {
   const bool standing_first = GENERATE(true, false);
   std::uint64_t crashes = 0;
   int arrived = 0;

@@ -30,7 +30,7 @@ inline Scenario waiting_robots(int count, int coordinators = 1, const std::strin
   return parse_scenario(text, "waiting.yaml");
 }
 
-/// A whole system on SimBus that clients give orders, and what becomes of it.
+/// A whole system on SimBus to which clients give orders, with checks of the outcome.
 struct OrderedSystem {
   Scenario scenario;
   SimSystem system;

@@ -136,7 +136,7 @@ TEST_CASE("no order is lost while agents and coordinators are killed") {
       }
       run.system.run_for(milliseconds(rng.below(500)));
     }
-    // Each robot carries out the last order that it was given, or stands as near as others let it.
+    // Each robot carries out the last order that it was given, or rests as near to the goal as others permit.
     run.run_until(seconds(40), [&] {
       return std::ranges::all_of(latest, [&](const auto& l) { return run.arrived.contains(l.second); });
     });
@@ -172,7 +172,7 @@ struct RandomClient {
   }
 };
 
-TEST_CASE("a client learns the end of every order, whatever is killed meanwhile") {
+TEST_CASE("a client learns the outcome of every order, whatever is killed meanwhile") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);
@@ -250,7 +250,9 @@ TEST_CASE("robots that stopped by themselves before anything was granted are not
   run.require_safe();
 }
 
-TEST_CASE("another robot's agent restores an order that coordinator and agent have forgotten together") {
+TEST_CASE(
+    "another robot's agent restores an order that the coordinator and the robot's own agent have both "
+    "forgotten") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     INFO("seed " << seed);
     OrderedSystem run(waiting_robots(3), seed);

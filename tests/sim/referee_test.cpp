@@ -12,8 +12,8 @@ using std::chrono::seconds;
 
 constexpr double kMaxSpeed_mps = 1.5, kMinDistance_m = 0.5;  // limits of the league's rules for STOP
 
-/// Twenty-two robots that drive to and fro, except for two without goals beside the ball and two whose goals
-/// are beside the ball.
+/// Twenty-two robots that drive back and forth, except for two without goals beside the ball and two whose
+/// goals are beside the ball.
 Scenario busy_teams(const BallSpec& ball) {
   Scenario scenario = load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/two-teams-22.yaml");
   scenario.ball = ball;

@@ -148,7 +148,7 @@ TEST_CASE("an order and a zone outlive their coordinator too, although the stand
   run.require_safe();
 }
 
-TEST_CASE("after a restart of everything robots hold, also if none has moved") {
+TEST_CASE("after a restart of everything robots are held, even if none has moved") {
   const int coordinators = GENERATE(1, 2);
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(coordinators, seed);
@@ -195,7 +195,7 @@ TEST_CASE("coordinators and agents that restart while a fleet starts do not caus
     for (RobotSpec& robot : scenario.robots) robot.goals = {{robot.start_m + Vec2(0, 1)}};
     OrderedSystem run(scenario, seed);
     run.system.run_for(milliseconds(rng.below(1500)));
-    // One process: with a coordinator and an agent at once, an order might be forgotten.
+    // Only one process: if a coordinator and an agent die together, an order might be forgotten.
     const std::string victim = rng.below(2)
                                    ? agent_process(rng.below(4))
                                    : coordinator_process(rng.below(static_cast<std::uint32_t>(coordinators)));

@@ -79,7 +79,7 @@ TEST_CASE(
   CHECK_FALSE(system.is_alive(second_process("simulator")));
   CHECK(system.is_alive("simulator"));
   CHECK_FALSE(system.was_second_simulator_believed());
-  CHECK(watch.has_reported(second_process("simulator"), "another simulator works in this domain"));
+  CHECK(watch.has_reported(second_process("simulator"), "another simulator is running in this domain"));
   CHECK(system.run_until_arrived(system.now() + 60s));
   watch.require_safe();
 }
@@ -98,7 +98,7 @@ TEST_CASE("while two simulators stay, robots rest, and every process that hears 
   CHECK(watch.has_reported("vision", "two processes send 'detections' as simulator"));
   CHECK(watch.has_reported("coordinator", "two processes send 'feedback/3' as robot 3"));
   CHECK(watch.has_reported("agent 3", "two processes send 'feedback/3' as robot 3"));
-  CHECK(watch.has_reported("simulator", "another simulator works in this domain"));
+  CHECK(watch.has_reported("simulator", "another simulator is running in this domain"));
   system.run_for(from_seconds(rng.uniform(1, 20)));
   CHECK(watch.max_speed_mps() < 0.02);
   watch.require_safe();
@@ -108,7 +108,7 @@ TEST_CASE("while two simulators stay, robots rest, and every process that hears 
 }
 
 TEST_CASE(
-    "a robot that only a second simulator tells of, since its own is silent, breaks no rule of the ledger") {
+    "a robot that only a second simulator reports, because its own is silent, breaks no rule of the ledger") {
   const auto seed = GENERATE(range(1u, 11u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -193,7 +193,7 @@ TEST_CASE("a second vision ends by itself, and robots arrive") {
   system.restart(second_process("vision"));
   system.run_for(3s);
   CHECK_FALSE(system.is_alive(second_process("vision")));
-  CHECK(watch.has_reported(second_process("vision"), "another vision works in this domain"));
+  CHECK(watch.has_reported(second_process("vision"), "another vision is running in this domain"));
   CHECK(system.run_until_arrived(system.now() + 60s));
   watch.require_safe();
 }
@@ -207,8 +207,8 @@ TEST_CASE("two coordinators with the same number are named, and robots arrive") 
   system.run_for(from_seconds(rng.uniform(0, 3)));
   system.restart(second_process("coordinator"));
   system.run_for(3s);
-  CHECK(watch.has_reported("coordinator", "another coordinator works in this domain"));
-  CHECK(watch.has_reported(second_process("coordinator"), "another coordinator works in this domain"));
+  CHECK(watch.has_reported("coordinator", "another coordinator is running in this domain"));
+  CHECK(watch.has_reported(second_process("coordinator"), "another coordinator is running in this domain"));
   CHECK(system.run_until_arrived(system.now() + 60s));
   watch.require_safe();
 }

@@ -11,8 +11,8 @@
 
 namespace sidestep {
 
-/// Robots that drive to and fro for ever, each in its own lane. With `crosses`, every second lane crosses the
-/// others.
+/// Robots that drive back and forth for ever, each in its own lane. With `crosses`, every second lane crosses
+/// the others.
 inline Scenario shuttles(int robots, int coordinators, bool crosses = false, const std::string& more = "") {
   std::string text =
       fmt::format("field: {{length_m: 6, width_m: 6}}\ncoordinators: {}\n{}robots:\n", coordinators, more);

@@ -182,7 +182,7 @@ TEST_CASE("a plausible hostile epoch costs one change of epoch, an implausible o
 }
 
 TEST_CASE(
-    "standbys leave a coordinator alone that serves, also where messages take so long that robots slow "
+    "standbys do not replace a coordinator that serves, even if messages take so long that robots slow "
     "down") {
   for (const double delay_ms : {0.2, 0.6, 1.0, 3.0}) {
     const int coordinators = GENERATE(2, 4);

@@ -11,7 +11,8 @@ namespace sidestep {
 
 /// Whether the cameras have watched the floor for long enough that every obstacle in their view has been
 /// observed. Otherwise, for example after a pause of this process, there may be obstacles that have not been
-/// seen. The set of cameras is configured: a camera that is not heard, for however long, may see an obstacle.
+/// seen. The set of cameras is configured, because a camera may see an obstacle however long it has been
+/// silent.
 class CameraWatch {
  public:
   /// A camera watches as long as its frames are no farther apart than this, by their capture times.

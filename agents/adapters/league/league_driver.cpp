@@ -46,7 +46,7 @@ void LeagueDriver::receive() {
 void LeagueDriver::report_error(const league::SimulatorError& error, const league::Endpoint& from) {
   if (++errors_ < next_error_report_) return;
   next_error_report_ *= 10;
-  events_.report(LogLevel::kWarning, {}, "{} error(s) answered so far; latest, from {}: {} {}", errors_,
+  events_.report(LogLevel::kWarning, {}, "{} error(s) received so far; latest, from {}: {} {}", errors_,
                  to_text(from), error.code, error.message);
 }
 

@@ -11,7 +11,7 @@ namespace sidestep {
 
 struct DynamicWindowSettings {
   double padding_m = 0.02;  ///< distance that the hull should keep from points
-  /// Later collisions make no difference. Velocities that need this long to brake are inadmissible.
+  /// Collisions after this time are ignored. Velocities that need this long to brake are inadmissible.
   double horizon_s = 1;
   double cell_m = 0.03;  ///< cell size of the table
   CollisionMethod method = CollisionMethod::kUniformTable;

@@ -57,7 +57,7 @@ Time time_of(std::span<const std::uint8_t> bytes) {
   return time_from_ns(static_cast<std::int64_t>(ns));
 }
 
-/// The first component of a version. Versions in which it is equal understand each other.
+/// The major version. Versions with equal major versions can communicate.
 std::string first_number(const std::string& version) { return version.substr(0, version.find('.')); }
 
 const char* reason_text(Admission::Refusal refusal) {

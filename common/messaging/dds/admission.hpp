@@ -18,43 +18,44 @@
 
 namespace sidestep {
 
-/// What a participant with keys announces of itself, as its user data: the version of Fast DDS, when it
-/// started, the certificate, and a signature of its private key, which makes it true of this id only.
+/// What a participant with keys announces about itself as its user data: the version of Fast DDS, its start
+/// time, its certificate, and a signature by its private key, which makes the announcement valid for this id
+/// only.
 std::vector<std::uint8_t> credentials(const Certificate& certificate, const PrivateKey& key,
                                       const std::string& version, const ParticipantId& id, Time started);
 
 /// Decides which participants a process with keys listens to, and knows who they are.
 ///
-/// Fast DDS authenticates participants, but does not tell their identities, keeps what everybody announces,
-/// and reads the list of revoked keys only at its start. Participants therefore announce their certificate.
-/// The prefix of a participant's GUID depends on the certificate, and Fast DDS checks that the owner of the
-/// GUID has the certificate's private key. What is decided here is therefore true of all that Fast DDS
-/// accepts. An attacker cannot sign an announcement, but can repeat what another has announced, and then gets
-/// no further than authentication. So the participants with one certificate are limited, and those that are
-/// not the latest to start are admitted at a low rate while they do not prove to be genuine: Fast DDS keeps
-/// about a hundred bytes of each, for as long as the process lives. Where there is no place left, a new one
-/// displaces one that did not prove to be genuine in time, and that one waits before it is admitted again,
-/// twice as long each time. Nobody but the owner of the private key can announce a later start, so that a
-/// genuine process which restarts does not wait. Participants that exchange no messages, as agents among each
-/// other, are not admitted either: among many robots, most of the time at the start would go into their
-/// handshakes.
+/// Fast DDS authenticates participants, but does not report their identities, stores everybody's
+/// announcements, and reads the list of revoked keys only at its start. Participants therefore announce their
+/// certificate. The prefix of a participant's GUID depends on the certificate, and Fast DDS checks that the
+/// owner of the GUID has the certificate's private key. What is decided here therefore holds for all
+/// participants that Fast DDS accepts. An attacker cannot sign an announcement. It can replay another
+/// participant's, but then fails to authenticate. So the number of participants with one certificate is
+/// limited. Those that are not the latest to start are admitted at a low rate until they have authenticated,
+/// because Fast DDS keeps about a hundred bytes for each as long as the process lives. If no place is left, a
+/// new participant displaces one that has not authenticated in time. The displaced one must wait before it is
+/// admitted again, twice as long each time. Only the owner of the private key can announce a later start, so
+/// a genuine process that restarts does not wait. Participants that exchange no messages, such as two agents,
+/// do not admit each other: with many robots, their handshakes would take most of the start-up time.
 class Admission {
  public:
   static constexpr std::size_t kMaxPerCertificate = 24;
-  /// Between two that did not prove to be genuine, beyond the first kMaxPerCertificate.
+  /// Interval between admissions of participants that have not authenticated yet, beyond the first
+  /// kMaxPerCertificate.
   static constexpr Duration kUnprovenPeriod{5'000'000'000};
   static constexpr std::size_t kMaxParticipants = 1024;
   /// Announcements come once a second.
   static constexpr Duration kForgetAfter{10'000'000'000};
-  /// Fast DDS has shown within this time that a genuine participant is one.
+  /// Time within which Fast DDS has authenticated a genuine participant.
   static constexpr Duration kMaxUnproven{8'000'000'000};
-  /// A start that is farther ahead is not the latest: a wrong clock has dated it, and it would remain the
-  /// latest for as long.
+  /// A start that is farther ahead does not count as the latest: its time is from a wrong clock, and it would
+  /// remain the latest for that long.
   static constexpr Duration kMaxAhead{600'000'000'000};
-  /// A displaced participant waits so long before it is admitted again, the first time and at most. The first
-  /// wait is short, because a genuine one may be slow on a busy machine.
+  /// How long a displaced participant waits before it is admitted again: the first time, and at most. The
+  /// first wait is short, because a genuine one may be slow on a busy machine.
   static constexpr Duration kFirstWait{10'000'000'000}, kMaxWait{3'600'000'000'000};
-  /// Certificates and announcements whose signatures are checked: a burst, and then so many a second.
+  /// Limit on the certificates and announcements whose signatures are checked: a burst, and then a rate.
   static constexpr int kMaxChecks = 400, kChecksPerSecond = 400;
 
   enum class Refusal : std::uint8_t {
@@ -78,15 +79,15 @@ class Admission {
     std::string who{};  ///< "agent 3", as its certificate says; empty: unknown
   };
 
-  /// `version`: of this process's Fast DDS. A process admits itself.
+  /// `version` is that of this process's Fast DDS. A process admits itself.
   Admission(Identity self, Certificate authority, std::string version);
 
   /// The id of this process's own participant, which need not authenticate itself.
   void set_self(const ParticipantId& id) { self_id_ = id; }
-  /// Processes an announcement of a participant: untrusted bytes, as of credentials().
+  /// Processes a participant's announcement: untrusted bytes in the format of credentials().
   [[nodiscard]] Decision on_announcement(const ParticipantId& id, std::span<const std::uint8_t> announced,
                                          Time now);
-  /// Whether datagrams of the participant may be passed on. Its announcement comes first.
+  /// Whether datagrams of the participant may be passed on. Process its announcement first.
   [[nodiscard]] bool admits(const ParticipantId& id, Time now);
   /// Who the participant is; nullptr if it is not admitted.
   const Identity* identity_of(const ParticipantId& id) const;
@@ -95,7 +96,7 @@ class Admission {
   /// The identities of participants that have announced themselves for kMaxUnproven without
   /// on_authenticated(). Each participant is returned once.
   [[nodiscard]] std::vector<Identity> newly_unproven(Time now);
-  /// Adds serial numbers of revoked certificates. What was revoked stays revoked.
+  /// Adds serial numbers of revoked certificates. Revocations are never undone.
   void revoke(const std::set<std::string>& serials) { revoked_.insert(serials.begin(), serials.end()); }
   const std::set<std::string>& revoked() const { return revoked_; }
   /// Participants that are no longer admitted, because they are silent or were displaced, or their
@@ -121,7 +122,7 @@ class Admission {
   struct Participant {
     Known* known = nullptr;
     Time admitted, last_heard, start;
-    bool was_latest = false;  ///< it took no place of Known::unproven
+    bool was_latest = false;  ///< it used up no place of Known::unproven
     bool is_proven = false, is_reported = false;
   };
   struct Displaced {
@@ -133,9 +134,9 @@ class Admission {
   /// The certificate, if the authority has issued it; otherwise says why not.
   Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
   Refusal admit(const ParticipantId& id, Known& known, const Announced& announced, Time now);
-  /// Makes sure that one more participant with this certificate has a place. Displaces one that did not prove
-  /// to be genuine in time, or for the latest of a certificate any earlier one of the same certificate that
-  /// has not proved it yet. False if there is none.
+  /// Makes room for one more participant with this certificate. Displaces one that has not authenticated in
+  /// time. For the latest participant of a certificate, it may also displace any earlier one of the same
+  /// certificate that has not authenticated yet. Returns false if there is none to displace.
   bool make_room(const Known& known, bool is_latest, Time now);
   void displace(const ParticipantId& id, Time now);
   Refusal check_now(const Known& known, Time now) const;

@@ -18,14 +18,14 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kStatisticsSize = 56;
-/// Above the numbers that a process gives to messages of discovery, which count its own endpoints. Fast DDS
-/// 2.9.1 visits each number below the one that a heartbeat or a gap states.
+/// Upper bound of the sequence numbers of a process's discovery messages, which count its own endpoints. Fast
+/// DDS 2.9.1 visits each number below the one in a heartbeat or a gap.
 constexpr std::int64_t kMaxPlainNumber = 1 << 15;
-/// Of the messages of handshakes (DDS Security 1.1, 7.4.3), as many as there have been participants.
+/// Entity ids of handshake messages (DDS Security 1.1, 7.4.3), whose numbers count the participants so far.
 constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x000201c4;
 
-/// Takes the ids of reader and writer from the front. Returns whether they belong together: those of
-/// discovery, or with `is_handshake` those of handshakes. The reader may be unknown.
+/// Removes the ids of reader and writer from the front. Returns whether they belong together as a pair for
+/// discovery, or for handshakes, in which case it sets `is_handshake`. The reader may be unspecified.
 bool take_entities(NumberReader& reader, bool& is_handshake) {
   const std::uint32_t to = reader.identifier(), from = reader.identifier();
   if (!reader.is_valid()) return false;
@@ -72,7 +72,7 @@ bool is_valid_data(NumberReader& reader, std::uint8_t flags) {
   return !is_handshake || (has_payload && is_handshake_message(reader.take(reader.left())));
 }
 
-/// Numbers in the order in which they are sent, and nothing after them.
+/// Whether a submessage contains exactly the fields of its kind, with numbers within bounds.
 bool is_valid_content(const Submessage& submessage) {
   NumberReader reader(submessage.body, (submessage.flags & kLittleEndianFlag) != 0);
   switch (submessage.kind) {
@@ -103,14 +103,15 @@ bool is_valid_content(const Submessage& submessage) {
     default:
       return false;
   }
-  reader.number(4);  // how often this has been said
+  reader.number(4);  // how often this has been sent
   return reader.is_at_end();
 }
 
-/// Passes over an encrypted submessage: what it begins with, its content, and its code. False if one is
-/// missing, or has another size than it states.
+/// Skips an encrypted submessage: its prefix, body and postfix. False if one is missing, or its size differs
+/// from the stated one.
 bool skip_encrypted(const Submessage& prefix, Bytes& left) {
-  // Transformation, key, session, counter; code of 16 bytes, and no codes for single receivers.
+  // Prefix: transformation, key, session and counter. Postfix: a code of 16 bytes, and no codes for single
+  // receivers.
   constexpr std::size_t kPrefixSize = 20, kPostfixSize = 20, kCodeSize = 16;
   const auto body = take_submessage(left), postfix = take_submessage(left);
   if (!body || body->kind != kEncryptedBodySubmessage || !postfix ||

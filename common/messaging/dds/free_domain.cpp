@@ -20,7 +20,7 @@ std::set<unsigned> open_ports() {
   std::getline(file, line);
   std::set<unsigned> result;
   while (std::getline(file, line)) {
-    // "  sl  local_address", the latter as 0100007F:1CE8
+    // " sl local_address", with an address such as 0100007F:1CE8
     std::istringstream words(line);
     std::string slot, local;
     words >> slot >> local;

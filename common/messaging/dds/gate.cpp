@@ -45,7 +45,8 @@ bool Gate::passes(const ParticipantId& sender, std::span<const std::uint8_t> dat
       const std::lock_guard lock(mutex_);
       const Admission::Decision decision = admission_.on_announcement(sender, announcement->user_data, now);
       if (decision.refusal == Admission::Refusal::kNone) return true;
-      // Whoever announces itself when many do is heard a second later.
+      // Not worth a report: a participant that is not needed, or one that is admitted later because many
+      // announce themselves now.
       if (decision.refusal == Admission::Refusal::kNotNeeded ||
           decision.refusal == Admission::Refusal::kTooFast)
         return false;
@@ -116,7 +117,7 @@ void Gate::read_revoked() {
     admission_.revoke(listed);
     log(LogLevel::kInfo, "read the list of revoked keys again");
   } catch (const std::invalid_argument& problem) {
-    log(LogLevel::kError, fmt::format("{}; the former list still counts", problem.what()));
+    log(LogLevel::kError, fmt::format("{}; the former list remains in force", problem.what()));
   }
 }
 

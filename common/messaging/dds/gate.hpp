@@ -17,8 +17,8 @@
 
 namespace sidestep {
 
-/// Keeps strangers away from a participant with keys: Admission within a process, with logging and with a
-/// list of revoked keys that is reloaded when its file changes. Thread-safe.
+/// Keeps strangers away from a participant with keys: applies Admission in a process, logs refusals, and
+/// reloads the list of revoked keys when its file changes. Thread-safe.
 class Gate {
  public:
   /// Throws std::invalid_argument if the list of revoked keys cannot be read.

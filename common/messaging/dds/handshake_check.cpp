@@ -34,14 +34,14 @@ constexpr std::array<KnownProperty, 13> kProperties{{{"c.id", 1, kMaxDocument},
 constexpr std::array<std::string_view, 3> kTokens{"DDS:Auth:PKI-DH:1.0+Req", "DDS:Auth:PKI-DH:1.0+Reply",
                                                   "DDS:Auth:PKI-DH:1.0+Final"};
 
-/// Without the zero at its end; empty if there is none.
+/// A text without its terminating zero; empty if it has none.
 std::string_view take_text(NumberReader& reader) {
   const auto bytes = reader.counted_bytes();
   if (bytes.empty() || bytes.back() != 0) return {};
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size() - 1};
 }
 
-/// A list of parameters, in network order.
+/// Whether the bytes are a list of parameters in network order.
 bool is_participant_data(std::span<const std::uint8_t> bytes) {
   NumberReader reader(bytes, false);
   reader.skip_parameters();
@@ -60,7 +60,7 @@ bool take_property(NumberReader& reader) {
 
 bool is_handshake_message(std::span<const std::uint8_t> payload) {
   constexpr std::size_t kEncapsulationSize = 4;
-  // Identities of this message and of the one that it answers, then three GUIDs.
+  // The identities of this message and of the one that it answers, followed by three GUIDs.
   constexpr std::size_t kHeadSize = 2 * (16 + 8) + 3 * 16;
   if (payload.size() < kEncapsulationSize || payload[0] != 0 || payload[1] > 1) return false;
   NumberReader reader(payload.subspan(kEncapsulationSize), payload[1] == 1);

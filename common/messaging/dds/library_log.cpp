@@ -30,7 +30,7 @@ void keep_error(const Log::Entry& entry) {
   if (errors.size() < kKeptErrors) errors.push_back(entry.message);
 }
 
-/// Fast DDS calls it from one thread.
+/// Fast DDS calls this from a single thread.
 class LibraryLog : public eprosima::fastdds::dds::LogConsumer {
  public:
   void Consume(const Log::Entry& entry) override {

@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// Reads numbers from the front of bytes. Once they do not suffice, everything is 0 and is_valid() false.
+/// Reads numbers from the front of a byte sequence. Once there are too few bytes left, everything it returns
+/// is 0 or empty, and is_valid() is false.
 class NumberReader {
  public:
   using Bytes = std::span<const std::uint8_t>;
@@ -31,34 +32,34 @@ class NumberReader {
       result = result << 8 | bytes[is_little_endian_ ? bytes.size() - 1 - i : i];
     return result;
   }
-  /// High half, low half. It must be at least `min`, and below `limit`; else 0.
+  /// Reads a sequence number, high half first. Outside [min, limit) it is invalid, and 0 is returned.
   std::int64_t sequence_number(std::int64_t min, std::int64_t limit) {
     const std::uint32_t high = number(4), low = number(4);
     const auto result = static_cast<std::int64_t>(std::uint64_t{high} << 32 | low);
     is_valid_ = is_valid_ && result >= min && result < limit;
     return is_valid_ ? result : 0;
   }
-  /// The id of an entity, whose bytes have one order.
+  /// Reads an entity id, whose byte order is fixed.
   std::uint32_t identifier() {
     std::uint32_t result = 0;
     for (const std::uint8_t byte : take(4)) result = result << 8 | byte;
     return result;
   }
-  /// Bytes after their count, and padding to a multiple of four.
+  /// Reads bytes that are preceded by their count and padded to a multiple of four.
   Bytes counted_bytes() {
     const std::uint32_t count = number(4);
     const Bytes result = take(count);
     take((4 - count % 4) % 4);
     return is_valid_ ? result : Bytes();
   }
-  /// A count of bits, at most 256, and the words that hold them.
+  /// Skips a count of bits, at most 256, and the words that hold them.
   void skip_bitmap() {
     constexpr std::uint32_t kMaxBits = 256;
     const std::uint32_t bits = number(4);
     is_valid_ = is_valid_ && bits <= kMaxBits;
     take((bits + 31) / 32 * 4);
   }
-  /// Parameters until the one that ends the list (RTPS 2.2, 9.4.2.11).
+  /// Skips parameters up to the one that ends the list (RTPS 2.2, 9.4.2.11).
   void skip_parameters() {
     constexpr std::uint32_t kEnd = 1;
     while (is_valid_) {

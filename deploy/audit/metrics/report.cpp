@@ -120,7 +120,7 @@ std::string to_text(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.3f} {}", *value, unit) : "none";
 }
 
-/// What only faulty, foreign or hostile processes cause, in one line; empty: nothing.
+/// Drops that only faulty, third-party or hostile processes cause, in one line; empty if there are none.
 std::string unusual_text(const Report& report) {
   std::string text;
   for (const auto& [process, counts] : report.counters) {

@@ -17,12 +17,12 @@
 namespace sidestep {
 namespace {
 
-/// Of positions and velocities that vision shows. Its velocities are too noisy to tell a slow robot from one
-/// at rest; agents know that.
+/// Tolerances for positions and velocities from vision. Its velocities are too noisy to distinguish a slow
+/// robot from one at rest; agents can.
 constexpr double kSeenTolerance_m = 0.01, kSeenAtRest_mps = 1;
 /// More incarnations than a supervisor would ever start; any beyond are assumed to be forged.
 constexpr std::size_t kMaxLives = 1000;
-/// The same, of one process, whose counters are kept.
+/// Maximum number of incarnations of one process whose counters are kept separately.
 constexpr std::size_t kMaxCounterLives = 32;
 /// An incarnation is assumed dead after this many statuses of other incarnations without one of its own.
 constexpr int kSilentAfter = 5;

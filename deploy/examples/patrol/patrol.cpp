@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends a robot to and fro between places.
+// Sends a robot back and forth between places.
 //   sidestep-patrol DOMAIN ROBOT ROUNDS X,Y X,Y...
 #include <chrono>
 #include <cmath>

@@ -60,7 +60,7 @@ Json cylinder(double x_m, double y_m, double radius_m, double height_m, double h
           {"color", tint}};
 }
 
-/// The way on which the robot comes to rest, as a line. Null: there is none.
+/// The path on which the robot comes to rest, as a line; null if there is none.
 Json stop_line(const msg::Version& message, Time now) {
   constexpr int kPoints = 6;
   const std::optional<Version> version = decode(message);

@@ -71,7 +71,7 @@ class Copier {
   std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;
 };
 
-/// A part of a recording, or one that was put together, does not hold every message of a run.
+/// A cut or merged recording does not contain every message of a run.
 void mark_incomplete(McapMetadata& metadata) {
   if (metadata.name == kRecordingMetadata) metadata.texts["complete"] = "false";
 }
@@ -209,7 +209,7 @@ std::string merge_bags(const std::vector<std::string>& paths, const std::string&
   require_same_scenario(paths);
   Copier copier(out);
   std::vector<std::unique_ptr<Source>> sources;
-  // What comes before the first message, too, because playback expects it there.
+  // Also copies what precedes the first message, because playback expects it there.
   const auto advance = [&](Source& source) {
     for (;;) {
       source.record = source.reader.next();

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kParticipant = "sidestep-replay";
 constexpr Duration kDiscovery{1'500'000'000};  // participants announce themselves once a second
-/// Readers drop what they have not taken yet of a writer that is gone.
+/// When a writer disappears, readers drop those of its messages that they have not taken yet.
 constexpr Duration kLinger{300'000'000};
 constexpr Duration kCheckPeriod{1'000'000'000};
 
@@ -149,7 +149,7 @@ void add_replay_command(const CliCommand& root, std::function<int()>& action) {
     }
     if (!options->dds.keys.empty())
       throw UsageError(
-          "--keys: a replay says what others have said, which no key allows; replay without keys");
+          "--keys: a replay repeats other processes' messages, which no key allows; replay without keys");
     action = [options] { return Replay(*options).run(); };
   });
 }

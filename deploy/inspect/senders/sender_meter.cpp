@@ -19,7 +19,7 @@ void SenderMeter::add(const msg::Header& header, Time received) {
   stream.last_received = received;
   const Reception reception = stream.trace.record(0, header, received);
   if (!reception.is_newest) ++stream.not_newest;
-  // Both are times that a 64-bit count of nanoseconds holds; their difference may not be.
+  // Each of these times fits into 64 bits as nanoseconds; their difference might not.
   const auto difference_ns = static_cast<double>(to_ns(received)) - static_cast<double>(header.stamp_ns());
   const Duration delay = from_seconds(std::clamp(difference_ns * 1e-9, -1e9, 1e9));
   stream.min_delay = std::min(stream.min_delay, delay);

@@ -60,7 +60,8 @@ int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
     try {
       printer.add(decode_by_idl(*type, sample.bytes));
     } catch (const IdlDecodingError& error) {
-      fmt::print(stderr, "a message of '{}' is no {}: {}\n", options.topic, type->name, error.what());
+      fmt::print(stderr, "a message of '{}' is not a valid {}: {}\n", options.topic, type->name,
+                 error.what());
       is_decodable = false;
     }
     if (printer.is_done() || !is_decodable) listener.stop();

@@ -42,7 +42,7 @@ struct CsvLine {
   }
 };
 
-/// nullptr: there is none, which is no error for an element of a list. Throws std::invalid_argument for a
+/// nullptr: there is none, which is not an error for an element of a list. Throws std::invalid_argument for a
 /// name that is unknown.
 const Json* find_member(const Json& message, const std::vector<std::string>& path) {
   const Json* value = &message;

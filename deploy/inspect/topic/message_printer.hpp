@@ -33,7 +33,7 @@ class MessagePrinter {
   MessagePrinter(MessagePrinterSettings settings, std::function<void(const std::string&)> print)
       : settings_(std::move(settings)), print_(std::move(print)) {}
 
-  /// Throws std::invalid_argument if messages have no member with the name in a filter.
+  /// Throws std::invalid_argument if a filter names a member that messages do not have.
   void add(const nlohmann::ordered_json& message);
   bool is_done() const { return settings_.count > 0 && printed_ == settings_.count; }
   std::uint64_t printed() const { return printed_; }

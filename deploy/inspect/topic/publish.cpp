@@ -37,7 +37,8 @@ EncodedMessage encode_message(const TopicOptions& options, const IdlTypes& types
   return {type->second, encode_by_idl(*type->second, json), key_by_idl(*type->second, json)};
 }
 
-/// The name of a topic's type: as given, or of one of ours; nullopt: only others can say it.
+/// The name of a topic's type, if the user gives it or the topic is ours; nullopt: only other participants
+/// know it.
 std::optional<std::string> known_type_name(const TopicOptions& options) {
   if (!options.type.empty()) return options.type;
   for (const TopicInfo& topic : all_topics())
@@ -57,11 +58,11 @@ std::string announced_type_name(const TopicOptions& options, const DdsListener& 
 
 int publish_topic(const TopicOptions& options) {
   const auto json = nlohmann::ordered_json::parse(options.message, nullptr, false);
-  if (json.is_discarded()) throw std::invalid_argument("MESSAGE: is no valid JSON");
+  if (json.is_discarded()) throw std::invalid_argument("MESSAGE: is not valid JSON");
   const IdlTypes types = options.idl_file.empty() ? parse_idl(kIdlText, "idl") : load_idl(options.idl_file);
   std::optional<std::string> name = known_type_name(options);
   std::optional<EncodedMessage> message;
-  // What is wrong with the message is said before the network is touched, where that is possible.
+  // Where possible, errors in the message are reported before the network is touched.
   if (name) message = encode_message(options, types, *name, json);
   DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });

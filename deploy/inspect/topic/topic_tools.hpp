@@ -15,7 +15,7 @@ struct TopicOptions {
   double discovery_s = 1.5;  ///< participants announce themselves once per second
   MessagePrinterSettings printer;
   std::string recording_file;  ///< empty: a running system
-  std::string idl_file;        ///< IDL of the topic's type, which need not be one of ours; empty: it is
+  std::string idl_file;        ///< IDL of the topic's type, if it is not one of ours
   std::string type;            ///< name of the type; empty: as announced by the topic's writer
   std::string message;         ///< JSON to publish
   double rate_hz = 1;          ///< rate if several messages are published

@@ -119,7 +119,7 @@ void add_clock_command(const CliCommand& root, std::function<int()>& action) {
         if (!options->reference) throw UsageError("no process has the name '" + name + "'");
       },
       "process from whose clock offsets are shown, e.g. coordinator; default: this machine");
-  command.add_flag("--once", options->once, "print the table once, and end");
+  command.add_flag("--once", options->once, "print the table once, and exit");
   command.on_parsed([options, &action] { action = [options] { return show_clocks(*options); }; });
 }
 

@@ -25,7 +25,7 @@ struct ClockRow {
   std::uint32_t process = 0;
   std::string host;                      ///< empty until the process has answered
   std::optional<OffsetInterval> offset;  ///< offset of its clock from the reference clock
-  /// Of its quickest recent answer, minus the time that it took to answer.
+  /// Round-trip time of its quickest recent answer, minus the time that the process took to answer.
   Duration round_trip{0};
   ClockVerdict verdict = ClockVerdict::kNotMeasured;
   Duration host_ahead{0};               ///< its host's clock minus its own clock

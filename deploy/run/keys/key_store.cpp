@@ -42,7 +42,7 @@ void write_private_file(const std::string& path, const std::string& text) {
   if (!is_written) throw std::system_error(error, std::generic_category(), "cannot write " + path);
 }
 
-/// While it exists, no other process changes a folder of keys.
+/// A lock: while it exists, no other process changes the folder of keys.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder) {

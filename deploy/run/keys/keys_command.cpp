@@ -93,7 +93,8 @@ int revoke(const KeysOptions& options) {
         fmt::format("no key was issued for {}; `sidestep keys show` lists all", fmt::join(unknown, ", ")));
   for (const IssuedKey& key : store.keys()) {
     if (!key.problem.empty() && !key.is_revoked)
-      problems.push_back(fmt::format("not known whose key this is, so it is not revoked: {}", key.problem));
+      problems.push_back(
+          fmt::format("the owner of this key is unknown, so it is not revoked: {}", key.problem));
   }
   if (!problems.empty()) throw std::invalid_argument(fmt::format("{}", fmt::join(problems, "\n")));
   return 0;
@@ -143,7 +144,7 @@ void add_keys_command(const CliCommand& root, std::function<int()>& action) {
                            identity_forms() + "; 'agent 0-21' makes one key for each");
   issue_command.add_option("--scenario", options->scenario_file,
                            "all identities that `sidestep run` of it needs");
-  issue_command.add_flag("--again", options->again, "make new keys of identities that have some");
+  issue_command.add_flag("--again", options->again, "make new keys for identities that already have some");
   add_days(issue_command);
   add_folder(issue_command);
   const CliCommand revoke_command =

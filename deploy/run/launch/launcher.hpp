@@ -85,7 +85,7 @@ class Launcher {
   void start_monitor();
   /// Runs until the run is over.
   void work();
-  /// With the report. A failure becomes recording_failure_.
+  /// Adds the report to the recording and closes it. Stores the reason of a failure in recording_failure_.
   void finish_recording(const Report& report);
   void print_last_lines(const std::string& process);
   /// Whether the run is over: sets abort_reason_ if it has to be aborted.

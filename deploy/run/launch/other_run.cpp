@@ -38,14 +38,14 @@ class OtherRun {
     return coordinator_.has_value();
   }
 
-  /// "run of crossing on host lab-3 works in it, whose coordinator has been running since 2026-11-28
+  /// "run of crossing on host lab-3 is using it, whose coordinator has been running since 2026-11-28
   /// 03:10:17". Precondition: listen() has heard one.
   std::string describe() {
     ask();
     const std::string names =
         answer_ ? fmt::format(" of {} on host {}", answer_->scenario, answer_->host) : std::string();
     // Incarnations are readings of the clock at the start of a process.
-    return fmt::format("another run{} works in it, whose {} has been running since {}", names,
+    return fmt::format("another run{} is using it, whose {} has been running since {}", names,
                        process_name(coordinator_->sender()),
                        date_text(time_from_ns(static_cast<std::int64_t>(coordinator_->incarnation()))));
   }

@@ -88,8 +88,8 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, int ni
                    std::to_string(files.size())};
   append(remote, options);
   for (std::string& word : remote) word = shell_quoted(word);
-  // A hanging connection ends within seconds here, and on the remote host if its server is configured
-  // likewise.
+  // A hanging connection ends within seconds on this side, and on the remote host too if its server is
+  // configured to do so.
   return {find_program("ssh"),
           "-oBatchMode=yes",
           "-oServerAliveInterval=1",
@@ -99,8 +99,8 @@ Arguments ssh_arguments(const HostSpec& host, const std::string& program, int ni
           fmt::format("{}", fmt::join(remote, " "))};
 }
 
-/// How far agents give way to processes that all robots need, if they share a machine. On a machine with too
-/// little time for all, each process would otherwise get the same share. The simulator, vision and the
+/// The nice value of agents that share a machine with processes that all robots need. On an overloaded
+/// machine, each process would otherwise get the same share of processor time. The simulator, vision and the
 /// coordinator need more than an agent does, so all robots would wait for them.
 constexpr int kAgentNiceness = 15;
 

@@ -36,9 +36,9 @@ using std::chrono::steady_clock;
 
 constexpr int kDirectorSocket = 3;  // descriptor of the socket in the director
 constexpr auto kTerminationTimeout = 3000ms;
-constexpr auto kRepeatedStop = 1000ms;  // a director that begins does not hear signals yet
-constexpr auto kMaxIdle = 15'000ms;     // a director whose processes have ended is killed after so long
-constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // before the next director; twice as long after each
+constexpr auto kRepeatedStop = 1000ms;  // a starting director does not handle signals yet
+constexpr auto kMaxIdle = 15'000ms;     // a director is killed this long after its processes have ended
+constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // pause before the next director; doubles with each
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
 [[noreturn]] void fail(const char* what) {
@@ -163,7 +163,7 @@ class Keeper {
  public:
   explicit Keeper(ProcessGroup& group) : group_(group) {}
 
-  /// A new director is told again of those that have died for good.
+  /// A new director is told again about processes that have died for good.
   void begin() {
     events_ = ended_;
     is_ending_ = false;
@@ -241,7 +241,7 @@ class Keeper {
   ProcessGroup& group_;
   bool is_ending_ = false;
   std::map<std::string, pid_t> pids_;
-  std::vector<ChildEvent> events_;  // events of which the director has not been told
+  std::vector<ChildEvent> events_;  // events not yet reported to the director
   std::vector<ChildEvent> ended_;   // the last event of each process that has died for good
 };
 

@@ -39,7 +39,7 @@ std::optional<std::filesystem::file_time_type> written_at(const std::string& fil
 }  // namespace
 
 int run(const RunOptions& given) {
-  // Whoever reads the output may leave; the run goes on to its end and its report.
+  // The reader of the output may disappear; the run continues to its end and its report.
   std::signal(SIGPIPE, SIG_IGN);
   RunOptions options = given;
   std::optional<FreeDomain> free_domain;

@@ -60,7 +60,7 @@ Goal parse_goal(const std::string& text) {
   const auto numbers = parse_numbers(text);
   if (numbers.size() < 2 || numbers.size() > 3)
     throw UsageError(
-        fmt::format("\"{}\" is no goal, expected X,Y or X,Y,HEADING in metres and radians", text));
+        fmt::format("\"{}\" is not a goal, expected X,Y or X,Y,HEADING in metres and radians", text));
   require_near(text, numbers);
   if (numbers.size() == 3) {
     if (const std::string problem = heading_problem(numbers[2]); !problem.empty())
@@ -72,7 +72,7 @@ Goal parse_goal(const std::string& text) {
 Vec2 parse_place(const std::string& text, const std::string& what) {
   const auto numbers = parse_numbers(text);
   if (numbers.size() != 2)
-    throw UsageError(fmt::format("\"{}\" is no {}, expected X,Y in metres", text, what));
+    throw UsageError(fmt::format("\"{}\" is not a {}, expected X,Y in metres", text, what));
   require_near(text, numbers);
   return {numbers[0], numbers[1]};
 }
@@ -83,7 +83,7 @@ RobotId parse_robots(const std::string& text) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, robot);
   if (error != std::errc{} || stop != end || robot >= kMaxRobots)
-    throw UsageError(fmt::format("\"{}\" is no robot, expected 0 to {} or all", text, kMaxRobots - 1));
+    throw UsageError(fmt::format("\"{}\" is not a robot, expected 0 to {} or all", text, kMaxRobots - 1));
   return robot;
 }
 

@@ -238,7 +238,7 @@ void add_zone(const CliCommand& root, std::function<int()>& action) {
 void add_order_commands(const CliCommand& root, std::function<int()>& action) {
   add_go(root, action);
   add_simple(root, action, "cancel",
-             "Ends the operator's order to go; the robot goes on with what others have ordered", false,
+             "Cancels the operator's drive order; the robot continues with other clients' orders", false,
              &OrderClient::cancel);
   add_simple(root, action, "hold",
              "Stops robots until they are resumed. Not a certified emergency stop: it needs a coordinator",
@@ -248,7 +248,7 @@ void add_order_commands(const CliCommand& root, std::function<int()>& action) {
   add_zone(root, action);
   const CliCommand status = root.add_subcommand("status", "Shows what robots do with their orders");
   const Options options = add_command(status);
-  status.add_flag("--once", options->once, "print the table once, and end");
+  status.add_flag("--once", options->once, "print the table once, and exit");
   status.on_parsed([options, &action] { action = [options] { return show_status(*options); }; });
 }
 

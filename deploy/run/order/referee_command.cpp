@@ -34,7 +34,7 @@ league::RefereeCommand parse_command(const std::string& text) {
     if (name_of(command) == text) return command;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(command));
   }
-  throw UsageError(fmt::format("\"{}\" is no command of the referee: expected one of {}", text, names));
+  throw UsageError(fmt::format("\"{}\" is not a command of the referee: expected one of {}", text, names));
 }
 
 /// Throws UsageError.

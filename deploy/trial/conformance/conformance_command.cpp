@@ -127,9 +127,9 @@ int examine(const ConformanceOptions& options) {
 void add_conformance_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<ConformanceOptions>();
   options->dds.participant = "sidestep-conformance";
-  const CliCommand command = root.add_subcommand(
-      "conformance",
-      "Examines whether a robot, alone on a floor, does what others rely on, and measures its figures");
+  const CliCommand command = root.add_subcommand("conformance",
+                                                 "Tests whether a robot, alone on a floor, obeys the rules "
+                                                 "that others rely on, and measures its capabilities");
   command
       .add_option("SCENARIO", options->scenario_file, "scenario with this robot only, and without obstacles")
       .required();

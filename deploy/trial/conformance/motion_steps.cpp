@@ -26,8 +26,8 @@ constexpr Duration kLevelTime = 5s;
 constexpr double kNoiseDeviations = 4;
 // The tracking bound exceeds the largest measured error by this factor.
 constexpr double kReserve = 1.25;
-// The starts by which the latency is measured, and the part of each start in which the control has not
-// corrected it yet.
+// Number of starts from which the latency is measured, and the part of each start before the control has
+// corrected for the latency.
 constexpr int kStarts = 8;
 constexpr Duration kStartBegin = 20ms, kStartEnd = 200ms;
 constexpr Duration kMaxLate = 150ms;

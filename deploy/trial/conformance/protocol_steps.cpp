@@ -20,7 +20,7 @@ constexpr Duration kReadyTimeout = 15s, kAnswerTimeout = 1s;
 constexpr double kMaxGapCycles = 2.5;
 // After a version's start, a fact about it arrives within this time.
 constexpr Duration kFactTime = 100ms;
-// Between the robot's refusal and the next attempt.
+// Pause between the robot's refusal and the next attempt.
 constexpr Duration kPause = 50ms;
 
 Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
@@ -117,7 +117,7 @@ class RefusalStep : public ConformanceStep {
   struct Attempt {
     std::string rule;
     std::string what;
-    /// Spoils a command with a version that the robot would execute.
+    /// Corrupts a command whose version the robot would otherwise execute.
     std::function<void(msg::Command&, const ConformanceContext&)> spoil;
   };
   RefusalStep(std::string name, std::vector<Attempt> attempts)

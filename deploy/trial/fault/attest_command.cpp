@@ -78,7 +78,7 @@ int attest(const AttestOptions& options) {
 }  // namespace
 
 void add_attest_command(const CliCommand& root, std::function<int()>& action) {
-  const CliCommand robot = root.add_subcommand("robot", "What an operator knows of a robot");
+  const CliCommand robot = root.add_subcommand("robot", "Reports facts about a robot as the operator");
   robot.require_subcommand();
   const auto options = std::make_shared<AttestOptions>();
   options->dds.participant = "sidestep-robot";

@@ -110,7 +110,7 @@ void EventWatch::on(const msg::AgentStatus& status, Time now) {
     add(Severity::kInfo, "arrived", fmt::format("robot {} has arrived", robot), now, {robot});
   if (status.agent_state() == msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND)
     add(Severity::kError, "clock",
-        fmt::format("robot {} stands: its clock differs by more than the scenario allows", robot), now,
+        fmt::format("robot {} is stopped: its clock differs by more than the scenario allows", robot), now,
         {robot});
 }
 
@@ -126,7 +126,7 @@ void EventWatch::on(const msg::OrderStatus& status, Time now) {
   is_blocked
       ? add(Severity::kWarning, "blocked",
             fmt::format("robot {} is blocked: {}", robot, to_text(*report->blockage)), now, {robot})
-      : add(Severity::kInfo, "free", fmt::format("robot {} is blocked no longer", robot), now, {robot});
+      : add(Severity::kInfo, "free", fmt::format("robot {} is no longer blocked", robot), now, {robot});
 }
 
 void EventWatch::on(const msg::CoordinatorState& state, Time now) {

@@ -60,7 +60,7 @@ void add_version(Rows& rows, const msg::Version* version, Time now) {
     rows.unknown(kVersionColumns.size());
     return;
   }
-  // Both are times that a 64-bit count of nanoseconds holds; their difference may not be.
+  // Each of these times fits into 64 bits as nanoseconds; their difference might not.
   rows.add((static_cast<double>(version->start_ns()) - static_cast<double>(to_ns(now))) * 1e-9);
   rows.add(version->x_m()).add(version->y_m()).add(version->vx_mps()).add(version->vy_mps());
   const std::size_t phases = std::min<std::size_t>(version->phase_count(), msg::MAX_PHASES);

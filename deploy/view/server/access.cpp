@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// Equal, in a time that does not tell how many characters are.
+/// Compares two texts in a time that does not reveal how many characters are equal.
 bool is_same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;

@@ -25,9 +25,9 @@ using ErrorCode = boost::system::error_code;
 using Stream = websocket::stream<beast::tcp_stream>;
 
 constexpr auto kRequestTimeout = std::chrono::seconds(20);
-/// Of a viewer that answers no pings, e.g. because its machine sleeps.
+/// Timeout for a viewer that answers no pings, e.g. because its machine is asleep.
 constexpr auto kSilenceTimeout = std::chrono::seconds(30);
-/// What the kernel keeps for a slow viewer. Little, so that the newest state is sent soon.
+/// The kernel's buffer for a viewer. Small, so that a slow viewer gets the newest state soon.
 constexpr int kSendBufferBytes = 64 << 10;
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
@@ -81,10 +81,11 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
   }
   void send_event(WebMessage message) override {
     if (outbox_.add_event(std::move(message))) return write();
-    // The read in progress fails, and ends the session: later, because callers may be iterating over viewers.
+    // The read in progress then fails and ends the session. That happens later, because callers may be
+    // iterating over viewers.
     beast::get_lowest_layer(stream_).close();
   }
-  /// Disconnects, for a reason that the viewer gets.
+  /// Disconnects, and sends the viewer the reason.
   void close(const std::string& reason) {
     if (is_closing_) return;
     is_closing_ = true;

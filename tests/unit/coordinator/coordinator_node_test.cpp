@@ -158,7 +158,7 @@ TEST_CASE("malformed candidates and registrations are answered and counted") {
   CHECK(drops_of(floor.node).total() == 1);
 }
 
-TEST_CASE("an agent that registers nobody is told all orders, and nothing counts as malformed") {
+TEST_CASE("an agent that registers nobody receives all orders, and nothing counts as malformed") {
   Floor floor;
   auto registration = registration_of(floor.a, floor.node.coordinator().epoch());
   registration.knows_orders(true);
@@ -416,7 +416,7 @@ TEST_CASE("a coordinator whose clock was set back works as before") {
   CHECK(floor.node.coordinator().epoch() == epoch);
 }
 
-TEST_CASE("a coordinator tells all orders at the moment at which its epoch begins") {
+TEST_CASE("a coordinator announces all orders at the moment at which its epoch begins") {
   Floor floor(true);
   int whole_memories = 0;
   std::optional<Time> begun_at, told_at;
@@ -436,7 +436,7 @@ TEST_CASE("a coordinator tells all orders at the moment at which its epoch begin
   REQUIRE(begun_at);
   REQUIRE(told_at);
   CHECK(*told_at == *begun_at);
-  // And again until all agents have registered, for those that have not heard it.
+  // It repeats them until all agents have registered, for those that have not heard them.
   whole_memories = 0;
   for (int i = 0; i < 20; ++i) floor.run();
   CHECK(whole_memories >= 2);
@@ -477,7 +477,7 @@ TEST_CASE("a hold stops its robot at once, and is confirmed when the robot's age
 }
 
 TEST_CASE(
-    "an order to go is answered when an agent or another coordinator remembers it, and announced till then") {
+    "a drive order is answered once an agent or another coordinator remembers it, and announced until then") {
   Floor floor;
   floor.register_both();
   std::vector<msg::OrderAnswer> answers;

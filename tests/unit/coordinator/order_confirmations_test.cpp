@@ -29,7 +29,7 @@ struct Floor {
   std::size_t confirmed() { return confirmations.take_confirmed(book).size(); }
 };
 
-TEST_CASE("a hold is confirmed once, when the agent of its robot reports to be held") {
+TEST_CASE("a hold is confirmed once, when its robot's agent reports that the robot is held") {
   Floor floor;
   floor.report(3, true);  // by an earlier hold
   floor.hold(3);
@@ -42,7 +42,7 @@ TEST_CASE("a hold is confirmed once, when the agent of its robot reports to be h
   CHECK(floor.confirmed() == 0);
 }
 
-TEST_CASE("a hold of all robots is confirmed when any of their agents reports to be held") {
+TEST_CASE("a hold of all robots is confirmed when the agent of any of them reports that its robot is held") {
   Floor floor;
   floor.hold(kAllRobots);
   floor.report(3, false);
@@ -66,7 +66,7 @@ TEST_CASE("a hold is not confirmed by an agent whose robot may obey another coor
   CHECK(floor.confirmed() == 1);
 }
 
-TEST_CASE("a hold is not confirmed as long as no agent of its robots reports to be held") {
+TEST_CASE("a hold is not confirmed as long as no agent of its robots reports that its robot is held") {
   Floor floor;
   floor.hold(3);
   for (int i = 0; i < 100; ++i) {
@@ -77,7 +77,7 @@ TEST_CASE("a hold is not confirmed as long as no agent of its robots reports to 
   }
 }
 
-TEST_CASE("a hold that was lifted or replaced before it was confirmed is waited for no longer") {
+TEST_CASE("a hold that was lifted or replaced before its confirmation is no longer awaited") {
   Floor floor;
   floor.hold(3);
   floor.book.merge({{msg::OrderKind::ORDER_RESUME, 3, kClient, ++floor.number}});

@@ -47,7 +47,8 @@ TEST_CASE("before anything has moved, a coordinator gives the scenario's orders"
 }
 
 TEST_CASE(
-    "a coordinator that has forgotten waits for another memory, and then holds all robots for an operator") {
+    "a coordinator that has forgotten the orders waits for another memory, and then holds all robots for an "
+    "operator") {
   Keeper k;
   CHECK_FALSE(k.keeper.update(true, true, kNow));
   CHECK_FALSE(k.keeper.update(true, true, kNow + OrderKeeper::kMaxWait - Duration{1}));

@@ -22,7 +22,7 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
   CHECK(state.notices()[0].robot() == 1);
   CHECK(state.notices()[0].is_quarantined());
   CHECK_FALSE(state.notices()[0].is_missing());
-  // Its versions and the reported one stay, whatever it reports.
+  // Its versions and the reported one remain, whatever it reports.
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
   floor.receive(fact(floor.a, 1.02));
   floor.receive(fact(granted, 1.5));

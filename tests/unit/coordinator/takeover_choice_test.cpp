@@ -135,7 +135,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a standby does not take over while robots begin versions that somebody grants whom it does not hear") {
+    "a standby does not take over while robots begin versions granted by a coordinator that it does not "
+    "hear") {
   Coordinator c;
   c.other = kEpoch;
   c.is_fleet_served = true;

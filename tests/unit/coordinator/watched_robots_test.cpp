@@ -100,7 +100,7 @@ TEST_CASE(
   CHECK(floor.coordinator.is_silent(2));
 }
 
-TEST_CASE("what was dropped or not compared does not count as watching") {
+TEST_CASE("dropped or uncompared observations do not count as watching") {
   Floor floor;
   floor.register_both();
   const auto see = [&](std::vector<RobotObservation> robots, double now, bool is_whole = true) {

@@ -18,7 +18,7 @@ namespace {
 using Kind = McapRecordKind;
 using Bytes = std::span<const std::uint8_t>;
 
-/// The only ones that the specification allows in a chunk. Passing over others would take seconds: a
+/// The only record kinds that the specification allows in a chunk. Skipping others would take seconds: a
 /// compressed chunk of some kilobytes may hold millions of empty ones.
 bool is_for_chunks(Kind kind) {
   return kind == Kind::kSchema || kind == Kind::kChannel || kind == Kind::kMessage;

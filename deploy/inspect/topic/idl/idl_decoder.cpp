@@ -118,7 +118,7 @@ class Decoder {
     return found == type.enumerators.end() ? Json(value) : Json(found->second);
   }
 
-  /// Version 2 announces the size of what is appendable, and of lists of elements that are not primitive.
+  /// Version 2 states the size of appendable types, and of lists whose elements are not primitive.
   void skip_delimiter(const IdlType& element) {
     const bool is_primitive = element.kind < Kind::kString;
     if (is_version_2_ && !is_primitive) number<std::uint32_t>();

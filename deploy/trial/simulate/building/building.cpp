@@ -52,7 +52,7 @@ std::string text_of(const Vec2& p) { return fmt::format("[{:.3f}, {:.3f}]", p.x(
 std::string scenario_text(const BuildingOptions& options, const Scenario& scenario) {
   Rng rng(options.seed);
   PositionSampler positions(scenario, rng);
-  // In turn, so that robots are apart both at their starts and at each of their goals.
+  // Placed in turn, so that robots are apart both at their starts and at each of their goals.
   std::vector<std::vector<Vec2>> places;
   for (int i = 0; i <= options.goals; ++i) {
     std::vector<Vec2> taken;

@@ -76,8 +76,7 @@ class Forger {
 struct Forgery {
   std::string name;
   std::function<void(Forger&)> change;
-  /// Whether the fact could be true, so that a ledger contains for a while a version that no observer has
-  /// heard of.
+  /// Whether the fact could be true, so that for a while a ledger contains a version that no observer knows.
   bool is_plausible_fact = false;
 };
 

@@ -106,7 +106,7 @@ void OrderClients::on_truth(const msg::GroundTruth& truth) {
     Time& disturbed_until = disturbed_until_[body.robot()];
     if (body.disturbance_end_ns() >= 0)
       disturbed_until = std::max(disturbed_until, time_from_ns(body.disturbance_end_ns()));
-    // Somebody may carry another robot against this one.
+    // Somebody may carry another robot into this one.
     if (touches_another(body, truth)) disturbed_until = std::max(disturbed_until, now);
     const bool is_disturbed = disturbed_until != Time{} && now <= disturbed_until + kTimeToRest;
     if (!hold || now < *hold->confirmed_at + kTimeToRest || is_disturbed) continue;

@@ -38,7 +38,7 @@ class OrderSampler {
     return u < 0.2 ? kFloorOperator : u < 0.6 ? kFirstClient : kFirstClient + 1;
   }
 
-  /// Usually its owner lifts the hold, sometimes an operator. Sometimes somebody tries who may not.
+  /// Usually the owner lifts the hold, sometimes an operator. Sometimes somebody without permission tries.
   void sample_hold() {
     const ClientId client = random_client();
     const RobotId robot = rng_.chance(0.3) ? kAllRobots : random_robot();

@@ -169,7 +169,7 @@ void sample_opponents(Scenario& scenario, Rng& rng) {
   for (const RobotSpec& robot : scenario.robots) starts.push_back(robot.start_m);
   for (std::uint64_t left = 1 + rng.below(3); left > 0; --left) {
     OpponentSpec opponent;
-    // The distance that starts keep from each other is that of two robots.
+    // Starts keep the same distance from each other as two robots.
     opponent.radius_m = rng.uniform(0.4, 1) * scenario.radius_m;
     opponent.speed_mps = rng.chance(0.3) ? scenario.max_opponent_speed_mps
                                          : rng.uniform(0.1, 1) * scenario.max_opponent_speed_mps;

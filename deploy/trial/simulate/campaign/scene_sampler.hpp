@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// The latency with which robots obey if they are driven bases, which is the case sometimes; nullopt if they
+/// The latency with which robots obey, in scenes where they are driven bases; nullopt in scenes where they
 /// have firmware.
 std::optional<Duration> sample_base_latency(Rng& rng);
 

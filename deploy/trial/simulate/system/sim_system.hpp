@@ -52,8 +52,8 @@ class SimSystem {
   /// Starts a dead process as a new incarnation without any state of the old one. Also starts
   /// twin_process(robot) as a second agent, or second_process(name), which ends when it hears the first one.
   void restart(const std::string& process);
-  /// From now on, processes that should run alone do not end when they hear an earlier one, as another
-  /// program might behave.
+  /// From now on, processes that should run alone continue when they hear an earlier one, as a third-party
+  /// program might.
   void stay_with_others() { stays_with_others_ = true; }
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
   /// When the process was last started.

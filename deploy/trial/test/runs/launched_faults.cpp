@@ -83,7 +83,7 @@ void LaunchedFaults::end(std::size_t fault) {
 }
 
 void LaunchedFaults::send_signal(const std::string& process, int signal) {
-  if (!launcher_.send_signal(process, signal)) throw std::runtime_error(process + " does not run");
+  if (!launcher_.send_signal(process, signal)) throw std::runtime_error(process + " is not running");
 }
 
 void LaunchedFaults::impair(const std::string& target, const LinkQuality& quality, std::uint64_t seed) {

@@ -76,7 +76,7 @@ void SimFaults::update() {
 
 std::string SimFaults::running(const std::string& process) const {
   const std::string name = resolved(process, observer_.history());
-  if (!system_.is_alive(name)) throw std::runtime_error(name + " does not run");
+  if (!system_.is_alive(name)) throw std::runtime_error(name + " is not running");
   return name;
 }
 

@@ -10,7 +10,7 @@ namespace sidestep::commanded_motion_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a base moves as it was commanded, by its latency later") {
+TEST_CASE("a base moves as it was commanded, delayed by its latency") {
   const Time begin = time_from_ns(1'000'000'000'000);
   CommandedMotion motion(100ms);
   CHECK(motion.mean(begin, begin + 10ms).linear_mps == Vec2(0, 0));

@@ -14,7 +14,7 @@ using test::kDrivenRobot;
 using Scene = test::DrivenScene;
 
 TEST_CASE(
-    "a driven robot stands and is silent until fixes agree on where it is, and then reports its own stop "
+    "a driven robot is at rest and silent until fixes agree on its position, and then reports its own stop "
     "there") {
   Scene scene;
   scene.sees = false;
@@ -84,7 +84,7 @@ TEST_CASE("a driven robot that is moved makes an own stop where it is seen") {
   CHECK((fact.executing.trajectory.rest_position_m() - scene.position_m).norm() < fact.executing.inflation_m);
 }
 
-TEST_CASE("after a pause of its process a driven robot stands until it has found its pose again") {
+TEST_CASE("after a pause of its process a driven robot stays at rest until it has found its pose again") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
@@ -124,7 +124,7 @@ TEST_CASE("with its base's odometry a driven robot knows where it is although th
   scene.desired_heading_rad = 2;  // it turns as it drives
   scene.run(1500ms);
   scene.desired_heading_rad = 0.4;
-  // According to its commands it would be 7 mm farther at the end.
+  // By its commands alone it would end up 7 mm farther.
   scene.obeyed_part = 0.995;
   scene.sees = false;
   int periods = 0;
@@ -157,7 +157,7 @@ TEST_CASE("fixes that are newer than the odometry are used once the odometry has
   CHECK((scene.fact().estimate.position_m - before_m - push_m).norm() < 0.001);
 }
 
-TEST_CASE("odometry whose dates are wrong is counted, and does not mislead a driven robot") {
+TEST_CASE("odometry with wrong timestamps is counted, and does not mislead a driven robot") {
   const Duration date_error = GENERATE(-150ms, -100ms, -40ms, -10ms, 10ms, 40ms, 100ms, 150ms);
   CAPTURE(date_error.count());
   Scene scene;

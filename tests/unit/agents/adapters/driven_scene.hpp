@@ -49,7 +49,7 @@ class DrivenScene {
     command.desired_heading_rad = desired_heading_rad;
     return command;
   }
-  /// The base has reported its odometry a moment ago, in a frame of its own, with a date that may be wrong.
+  /// The base has just reported its odometry, in a frame of its own, with a timestamp that may be wrong.
   void report_odometry(Duration date_error = {}, Duration ago = {}) {
     const double s = to_seconds(ago);
     const Vec2 place_m = rotated(position_m - s * velocity_mps, 1.1) + Vec2(7, 8);
@@ -97,7 +97,7 @@ inline Version continuation(const Version& base, Incarnation agent, VersionNumbe
   return {kDrivenRobot, agent, number, base.number, trajectory, base.inflation_m};
 }
 
-/// The distance from where a version prescribes to be, less its inflation.
+/// The distance from the position that a version prescribes, minus the version's inflation.
 inline double beyond_m(const Version& version, const Vec2& position_m, Time at) {
   return (position_m - version.trajectory.state_at(at).position_m).norm() - version.inflation_m;
 }

@@ -16,7 +16,7 @@ using test::DrivenScene;
 
 constexpr double kTrackingBound_m = SafetyBudget{}.tracking_bound_m;
 
-/// Runs for a while, and returns how far the body comes out of the version that the facts state.
+/// Runs for a while, and returns how far the body leaves the version that the facts state.
 double run_and_measure(DrivenScene& scene, Duration duration) {
   double largest_m = 0;
   for (const Time end = scene.now + duration; scene.now < end;) {
@@ -81,7 +81,7 @@ TEST_CASE(
   CHECK(scene.fact().executing.number == scene.base.number);
 }
 
-TEST_CASE("of a chain of versions, those that start within the lead remain") {
+TEST_CASE("in a chain of versions, those that start within the lead are kept") {
   PendingScene scene(200ms);
   scene.run(10ms);
   // Further versions that the robot will not execute: on another base, and too late.

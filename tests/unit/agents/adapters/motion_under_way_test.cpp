@@ -70,12 +70,12 @@ double acceleration_mps2(const robot::MotionUnderWay<float>& motion) {
 }
 
 TEST_CASE(
-    "whenever commands change, the motion accelerates so that others can read it, and its error is bounded") {
+    "whenever commands change, the motion's accelerations are such that receivers accept them, and its error "
+    "is bounded") {
   const auto seed = GENERATE(range(1u, 301u));
   CAPTURE(seed);
   Rng rng(seed);
-  // Commands change every few milliseconds, and the first and the last one hold for as short as a
-  // microsecond.
+  // Commands change every few milliseconds, and the first and the last one may last for only a microsecond.
   std::vector<PathPoint> path{{Duration{0}, {1, 2}}};
   const auto changes = 1 + rng.below(40);
   Vec2 velocity{rng.uniform(-2, 2), rng.uniform(-2, 2)};
@@ -110,7 +110,8 @@ TEST_CASE("a motion that accelerates, brakes and rests is fitted within a fracti
   CHECK(motion.error_m < 0.0004);
 }
 
-TEST_CASE("a fitted motion takes as long as the path, ends at its velocity, and is as near as it claims") {
+TEST_CASE(
+    "a fitted motion takes as long as the path, ends at its velocity, and stays within its stated error") {
   double worst_ratio = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     CAPTURE(seed);

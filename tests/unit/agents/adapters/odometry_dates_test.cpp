@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-TEST_CASE("dates are trusted once a report has arrived at its date, but not for ever") {
+TEST_CASE("timestamps are trusted once a report has arrived on time, but not for ever") {
   OdometryDates dates(4ms);
   CHECK_FALSE(dates.admit(kBegin, kBegin + 10ms));
   CHECK(dates.admit(kBegin + 20ms, kBegin + 24ms));

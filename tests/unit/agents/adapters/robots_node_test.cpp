@@ -95,7 +95,7 @@ TEST_CASE("driven robots report at least once per cycle, and at once when they o
   CHECK(scene.driver.periods > 100);
 }
 
-TEST_CASE("odometry with a wrong date is counted for its robot") {
+TEST_CASE("odometry with a wrong timestamp is counted for its robot") {
   Scene scene;
   scene.run(100ms);
   const Time now = scene.network.now();

@@ -71,7 +71,7 @@ TEST_CASE("velocities go out as twists, and odometry comes in with its time of m
   CHECK(scene.reports[2].measured_at - sent < 1ms);
 }
 
-TEST_CASE("odometry with numbers that are none is dropped and counted") {
+TEST_CASE("odometry with invalid numbers is dropped and counted") {
   Scene scene;
   const auto bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e9);

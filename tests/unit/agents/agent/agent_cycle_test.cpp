@@ -179,7 +179,7 @@ TEST_CASE("an agent registers every three cycles until the coordinator's clock i
   CHECK_FALSE(floor.proposals.empty());
   floor.registrations.clear();
   floor.run(4s);
-  // A measurement counts for two seconds, and is repeated after one.
+  // A measurement is valid for two seconds, and is repeated after one.
   CHECK(floor.registrations.size() >= 3);
   CHECK(floor.registrations.size() <= 5);
 }

@@ -160,7 +160,7 @@ TEST_CASE("invalid feedback is counted and changes nothing") {
   CHECK(send([](msg::Feedback& m) { m.executing().phase_count(99); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_incarnation(kHuge); }) == 1);
-  // After other messages it would be refused as one of a second process.
+  // Sent after other messages, it would be refused as a second process's message.
   CHECK(NodeFixture().send_spoilt(topics::kFeedback, valid_feedback(),
                                   [](msg::Feedback& m) { m.header().incarnation(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.valid_at_ns(static_cast<std::int64_t>(kHuge)); }) == 1);
@@ -268,7 +268,7 @@ TEST_CASE(
   CHECK(repeated.back().second == number);
   CHECK(repeated.size() <= 22);
   CHECK(repeated.size() >= 15);
-  // The same announced again is repeated again: the coordinator has not heard it.
+  // If it is announced again, it is repeated again, because the coordinator has not heard it.
   const std::size_t before = repeated.size();
   announce(number);
   f.run();

@@ -26,7 +26,7 @@ Scenario with_laser() {
   return scenario;
 }
 
-/// A robot at the origin, at rest or driving along x, before which an unknown wall stands. What is behind it
+/// A robot at the origin, at rest or driving along x, with an unknown wall in front of it. What is behind it
 /// is hidden.
 ///
 ///      |

@@ -109,7 +109,7 @@ TEST_CASE("an agent plans towards its goal as long as vision observes its robot"
   CHECK(d.plans(0.95));
 }
 
-TEST_CASE("what moves gets nearer while the robot may be late") {
+TEST_CASE("a moving obstacle's reach grows by the time that the robot may be late") {
   const Duration max_lag = std::chrono::milliseconds(60);
   DrivenAgent d;
   d.observe_obstacle(2, 1, 0.6, 0.61);
@@ -177,7 +177,7 @@ TEST_CASE("an agent plans only as long as it receives lists of obstacles") {
   d.observe_self(0, 0.85, 0.86);
   CHECK(d.plans(0.89));
   CHECK_FALSE(d.plans(0.95));
-  // An incomplete list counts with the world state of its time.
+  // An incomplete list is usable with the world state of the same time.
   d.agent.on_obstacles(empty_list(0.92, 1), at_s(0.93));
   CHECK_FALSE(d.plans(0.95));
   d.observe_self(0, 0.92, 0.94);
@@ -254,7 +254,7 @@ TEST_CASE("an observation from the future is dropped and counted, and later vali
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 2);
 }
 
-TEST_CASE("an incomplete list does not count together with an observation that was dropped") {
+TEST_CASE("an incomplete list is not used if the observation of the same time was dropped") {
   DrivenAgent d;
   d.observe(0, 0.6, 0.61);
   REQUIRE(d.plans(0.62));
@@ -301,7 +301,8 @@ TEST_CASE(
   CHECK(hidden.observed_from_m == Vec2(0, 0));
   CHECK(hidden.speed_mps == scenario.max_opponent_speed_mps);
   CHECK(hidden.heading_error_rad == 0.02);
-  // Beside the range's error, the frontier may be turned about the robot, and people approach since the scan.
+  // In addition to the range error, the frontier may be rotated about the robot, and people have approached
+  // since the scan.
   const double frontier_m = 1.5 - scenario.laser->range_error_m;
   CHECK(hidden.distance_m({0.5, 0}, at_s(0.75)) ==
         Approx(frontier_m - 0.5 - 0.2 * scenario.max_opponent_speed_mps - 0.5 * 0.02).margin(0.01));

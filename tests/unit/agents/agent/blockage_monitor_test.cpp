@@ -11,7 +11,7 @@ constexpr Time kStart = Time{} + 5s;
 
 Blockage by_robot(std::uint32_t robot) { return {msg::BlockReason::BLOCK_ROBOT, robot, {1, 0}, {0, 0}}; }
 
-TEST_CASE("a blockage is reported once it has lasted, with its latest cause") {
+TEST_CASE("a blockage is reported once it has lasted long enough, with its latest cause") {
   BlockageMonitor monitor(300ms);
   CHECK_FALSE(monitor.is_blocked());
   monitor.on_blocked(by_robot(3), kStart);

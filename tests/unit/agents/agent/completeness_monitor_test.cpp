@@ -33,7 +33,7 @@ TEST_CASE("before the first list nothing is known") {
   CHECK(f.seen().radius_m == 0);
 }
 
-TEST_CASE("a complete list counts alone, an incomplete one only with the world state of the same time") {
+TEST_CASE("a complete list is usable alone, an incomplete one only with the world state of the same time") {
   Fixture f;
   f.monitor.on_list(list(10, kCompleteEverywhere_m));
   CHECK(f.monitor.complete_at() == at_s(10));
@@ -57,7 +57,9 @@ TEST_CASE("a complete list counts alone, an incomplete one only with the world s
   CHECK(f.seen().radius_m == 1);
 }
 
-TEST_CASE("a list counts only with a world state that contains the robot, of the same process and time") {
+TEST_CASE(
+    "an incomplete list is usable only with a world state of the same process and time that contains the "
+    "robot") {
   Fixture f;
   f.monitor.on_list(list(10, 2));
   WorldObservations without_self = world(10, {1, 2});

@@ -183,7 +183,8 @@ TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all ne
 }
 
 TEST_CASE(
-    "observations accepted when the robot's clock was ahead are forgotten, and lists count a second later") {
+    "observations accepted when the robot's clock was ahead are forgotten, and lists are used again a second "
+    "later") {
   Fixture f;
   f.receive(5, 1, 3600, 3600.02);
   REQUIRE(f.obstacles.complete_at() == at_s(3600));
@@ -196,7 +197,7 @@ TEST_CASE(
   CHECK(f.obstacles.complete_at() == Time{});
   f.receive(List(11.03).add(6, 2, 11.03), 11.05);
   CHECK(f.obstacles.complete_at() == at_s(11.03));
-  // Once more, before lists count.
+  // Again, before lists are used.
   f.receive(5, 1, 3600, 3600.02);
   f.receive(List(12).add(6, 2, 12), 12.02);
   f.receive(5, 1, 3600, 3600.02);

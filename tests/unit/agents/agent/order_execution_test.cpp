@@ -68,7 +68,7 @@ TEST_CASE("a robot in motion has not arrived") {
   CHECK(robot.orders.assignment().goal_index() == 0);
 }
 
-TEST_CASE("only the coordinator in charge of the epoch tells all orders") {
+TEST_CASE("only the coordinator in charge of the epoch can announce all orders") {
   OrderedRobot robot;
   CHECK(robot.orders.is_told_all_orders(7));
   (void)robot.orders.on_page(scenario_orders());

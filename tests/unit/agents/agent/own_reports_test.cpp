@@ -39,7 +39,7 @@ TEST_CASE("an estimate agrees with an observation that is no farther away than t
   CHECK_FALSE(own.agrees_with({1, -0.0031}));
 }
 
-TEST_CASE("a robot that has moved once has moved, even if it restarts") {
+TEST_CASE("a robot that has moved once counts as moved, even if it restarts") {
   OwnReports own({}, kDriftBound_m);
   Feedback moved = at({0, 0});
   moved.has_moved = true;

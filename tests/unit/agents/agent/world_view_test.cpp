@@ -47,7 +47,7 @@ TEST_CASE("a world's time and the robot's own observation are decoded unchanged"
   CHECK(view.invalid() == 0);
 }
 
-TEST_CASE("the robot is found wherever it is in the world, and only if it is there") {
+TEST_CASE("the robot is found at any index of the world state, and only if it is listed") {
   const std::uint64_t seed = 1;
   CAPTURE(seed);
   Rng rng(seed);

@@ -6,7 +6,7 @@
 
 namespace sidestep::free_space_test {
 
-TEST_CASE("obstacle points find the nearest point that is not masked") {
+TEST_CASE("a query finds the nearest obstacle point that is not masked") {
   ObstaclePoints points;
   int without = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {

@@ -60,7 +60,7 @@ TEST_CASE("a robot that is stuck in a corridor backs out into the nearest bay, u
   CHECK(std::abs(place->x() - bay_x_m) < 0.2);
   CHECK(place->y() >= kSeparation_m);
   CHECK_FALSE(fixed.touches(*place, kRequired_m));
-  // It stays as long as the other one is on its way, and goes on when that has passed.
+  // It stays as long as the other one is under way, and continues once that has passed.
   CHECK(robot.decide(7, *place, {coming_from(bay_x_m + 0.5, -4.9)}, fixed) == place);
   CHECK_FALSE(robot.decide(8, *place, {coming_from(bay_x_m - 0.5, -4.9)}, fixed));
 }
@@ -116,7 +116,7 @@ TEST_CASE("a robot does not take a place that another robot covers") {
   for (int i = 0; i < 80; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, others, fixed));
 }
 
-TEST_CASE("robots that block each other move to and fro, which is no progress") {
+TEST_CASE("robots that block each other move back and forth, which does not count as progress") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   const std::vector<OtherRobot> facing{coming_from(0.5, -4.9)};
@@ -175,7 +175,7 @@ TEST_CASE("a robot chooses another place if its place is taken, or if it comes n
   CHECK(place->y() < 0);
 }
 
-TEST_CASE("a robot goes on giving way when the right of way changes, until the other has passed") {
+TEST_CASE("a robot keeps giving way when the right of way changes, until the other has passed") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);

@@ -21,7 +21,7 @@ TEST_CASE("a robot comes to rest at its goal, however long its control cycle and
     const Duration max_hold = cycle * (1 + static_cast<int>(rng.uniform(0, 3)));
     const Vec2 goal_m(rng.uniform(-2, 2), rng.uniform(-2, 2));
     State state;
-    // More than the way takes at the speed limit, with as much again to speed up and to slow down.
+    // More than the distance takes at the speed limit, plus the same again for accelerating and braking.
     const double limit_s = 20 + 2 * goal_m.norm() / limits.speed_mps;
     double elapsed_s = 0;
     for (; elapsed_s < limit_s; elapsed_s += to_seconds(cycle)) {

@@ -64,7 +64,7 @@ TEST_CASE("the carrot runs ahead on the path, never back, and ends at its end") 
   CHECK((follower.carrot({10, 3}) - Vec2(30, 0)).norm() < 1e-9);
   CHECK((follower.carrot({90, -2}) - Vec2(100, 10)).norm() < 1e-9);
   CHECK((follower.carrot({97, 30}) - Vec2(100, 50)).norm() < 1e-9);
-  // The first piece has been driven: a robot that is thrown back to it is off the plan.
+  // The first piece has been driven, so a robot that is pushed back to it is off the plan.
   CHECK(follower.replan_reason({50, 0}, kPath.back()) == ReplanReason::kRobotLeftPlan);
   CHECK(follower.carrot({100, 55}) == Vec2(100, 60));
 }

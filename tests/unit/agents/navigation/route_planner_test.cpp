@@ -226,8 +226,8 @@ TEST_CASE("every planner leads through a passage that is hardly wider than the r
   }
 }
 
-/// Drives a route to its end, and returns its length and the least distance from obstacles where the route is
-/// not bound to be near them.
+/// Drives a route to its end, and returns its length and the smallest distance from obstacles where the route
+/// need not be near them.
 std::pair<double, double> length_and_clearance(const NamedPlanner& named, const std::vector<Shape>& obstacles,
                                                const Vec2& start, const Vec2& goal) {
   const ObstacleWorld world(obstacles);

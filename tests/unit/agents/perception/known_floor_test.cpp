@@ -6,7 +6,7 @@
 
 namespace sidestep::known_floor_test {
 
-TEST_CASE("the nearest known point is as near as the nearest standing thing, and belongs to it") {
+TEST_CASE("the nearest known point is as near as the nearest stationary object, and belongs to it") {
   int found = 0, none = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);

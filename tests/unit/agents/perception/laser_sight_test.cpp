@@ -67,10 +67,11 @@ TEST_CASE("a scan that is not newer than the last one changes nothing") {
   }
 }
 
-TEST_CASE("unknown things that stand for a while are reported as squares, the nearest ones first") {
+TEST_CASE(
+    "unknown objects that stay stationary for a while are reported as squares, the nearest ones first") {
   Watched watched;
   watched.settings.max_unknown = 3;
-  const Vec2 at_m(10, -7);  // away from the origin, so that distances from there count for nothing
+  const Vec2 at_m(10, -7);  // away from the origin, so that distances from there are irrelevant
   watched.rules.obstacles = {Circle{at_m + Vec2(0, 1.5), 0.3}};
   LaserSight sight(watched.laser, watched.rules, watched.settings);
   // The second one is nearer to the origin, and the last one out of range.

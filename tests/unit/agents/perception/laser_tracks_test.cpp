@@ -198,7 +198,7 @@ TEST_CASE("a person who stops keeps the track and does not become a wall") {
   CHECK(hall.at(at).is_moving);
 }
 
-TEST_CASE("something that has not moved since it was first seen counts as standing") {
+TEST_CASE("something that has not moved since it was first seen counts as stationary") {
   Hall hall;
   for (int i = 0; i < 60; ++i) hall.scan({{2, 1}, 0.25});
   CHECK(hall.tracks.tracks().empty());

@@ -116,7 +116,7 @@ struct View {
 
 //            |   |          posts that stand at x = 3, d apart
 //   robot    :   :
-TEST_CASE("a gap is closed if it is too narrow and both of its sides stand") {
+TEST_CASE("a gap is closed if it is too narrow and both of its sides are stationary") {
   const LaserSettings laser{1440, 2 * kPi, 0.05, 8};
   const VisibilitySettings settings{0.25, 0.01};
   const auto room = [](double gap_m) {

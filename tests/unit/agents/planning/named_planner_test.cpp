@@ -75,7 +75,7 @@ TEST_CASE("every planner's baseline is also a planner") {
   }
 }
 
-TEST_CASE("a planner with another name is refused") {
+TEST_CASE("an unknown planner name is refused") {
   CHECK_THROWS_WITH(make_planner("dijkstra"), ContainsSubstring("dijkstra") && ContainsSubstring("bi-errt"));
 }
 

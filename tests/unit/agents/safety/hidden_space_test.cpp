@@ -145,7 +145,7 @@ TEST_CASE("no hidden person can touch a robot that moves as the check allows") {
   CHECK(touched + walls > refused / 4);
 }
 
-/// The smallest room over many instants, by the formula of Visibility.
+/// The smallest clearance over many instants, by the formula in Visibility.
 double slow_room_m(const Trajectory& motion, const HiddenSpace& hidden) {
   double room_m = 1e9;
   constexpr int kSteps = 2000;

@@ -63,7 +63,7 @@ TEST_CASE("a robot may not come to rest in a body's path, unless its stop ends n
   CHECK(may_rest(2, 0.1, moving(), within));
   CHECK(may_rest(2, 0.2, moving(), within));
   CHECK_FALSE(may_rest(2, 0.09, moving(), within));
-  // Nor may it come towards the body, except as far as it comes out.
+  // Nor may it come nearer to the body, except by as much as it moves out of the path.
   CHECK_FALSE(may_rest(1.9, 0.1, moving(), within));
   CHECK_FALSE(may_rest(1.8, 0.2, moving(), within));
   CHECK(may_rest(1.9, 0.21, moving(), within));
@@ -93,7 +93,7 @@ TEST_CASE("a robot may pass before the body if it would be hit where it stops") 
 }
 
 TEST_CASE("a robot that cannot avoid a body completely drives where it stays farther from it") {
-  // The body touches it wherever it drives, but not everywhere as much.
+  // The body touches it wherever it drives, but not equally hard everywhere.
   const UncontrolledBody body = moving({2, 0});
   const Trajectory stop = driving({0.6, -0.2}, {0, 1.6}, 0);
   const double stop_m = spare_distance_m(stop, kNow, body);

@@ -151,7 +151,7 @@ bool is_sent_again(System& system, OrderHandle handle) {
   return std::ranges::any_of(system.received, [=](const Order& order) { return order.number == number; });
 }
 
-TEST_CASE("an order to go, and a hold, that all coordinators have forgotten are sent again as they were") {
+TEST_CASE("a drive order and a hold that all coordinators have forgotten are sent again unchanged") {
   System system;
   const OrderHandle go = system.client.go(0, {{{1, 0}}}), hold = system.client.hold(3);
   system.run_for(1s);
@@ -258,7 +258,7 @@ TEST_CASE("an order that has ended another order is sent again when the other re
   CHECK_FALSE(is_sent_again(system, ending));
 }
 
-TEST_CASE("an order to go that the robot has finished is sent again when the previous order returns") {
+TEST_CASE("a drive order that the robot has finished is sent again when the previous order returns") {
   System system;
   system.client.go(0, {{{1, 0}}});
   system.run_for(100ms);

@@ -252,7 +252,7 @@ TEST_CASE("starts and goals in blocked cells, and maps that cannot be read, are 
 TEST_CASE(
     "robots drive through unknown cells of a map only if the scenario allows it, and a notice says so") {
   const test::MapFolder folder;
-  // 4 x 4 m of cells of 0.1 m, free but for unknown ones from x = 0 on.
+  // 4 x 4 m of cells of 0.1 m: free for x < 0, unknown from x = 0 on.
   std::string image = "P5 40 40 255\n";
   for (int row = 0; row < 40; ++row) image += std::string(20, '\xfe') + std::string(20, '\xcd');
   write_file(folder / "map.pgm", image);
@@ -266,7 +266,7 @@ TEST_CASE(
   CHECK_THROWS_WITH(load("", "[-2, -2, 0]"), ContainsSubstring("goal of robot 0"));
   CHECK_THROWS_WITH(load("unknown: blocked\n", "[-2, -2, 0]"), ContainsSubstring("goal of robot 0"));
   CHECK(load("unknown: free\n", "[-2, -2, 0]").map->notice() ==
-        "map map.yaml: nobody knows whether 800 of 1600 cells are free; they count as free");
+        "map map.yaml: 800 of 1600 cells are unknown; they count as free");
   CHECK_THAT(load("unknown: free\n", "[-2, 2, -1.5707963267948966]").map->notice(),
              ContainsSubstring("map map.yaml is turned by -1.5708 rad"));
   CHECK_THROWS_WITH(load("unknown: perhaps\n", "[-2, -2, 0]"),
@@ -308,7 +308,7 @@ TEST_CASE("text that is not a single YAML document is rejected with its line") {
   check_rejected(kRobot + "---\n" + kRobot, 2, "a second YAML document");
   check_rejected("\x01\x02\xff", 1, "");
   check_rejected("# , endless in yaml-cpp's LoadAll\n, x_# y\nfield: {length_m: 3}\n", 2, "");
-  check_rejected(std::string(100000, '['), 1, "expected at most 500 brackets within each other");
+  check_rejected(std::string(100000, '['), 1, "expected at most 500 nested brackets");
 }
 
 TEST_CASE("a file with more values than permitted is rejected, even if anchors multiply them") {

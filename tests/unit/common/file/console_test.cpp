@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-/// Runs it in a process of its own, and returns that one's exit code; -1 if it died.
+/// Runs the function in a separate process, and returns the exit code; -1 if the process died.
 template <typename Work>
 int exit_code_of(Work work) {
   const pid_t pid = fork();

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-TEST_CASE("a file is opened to be replaced or continued, and not inherited") {
+TEST_CASE("a file is opened for replacing or appending, and is not inherited") {
   const TemporaryFolder folder;
   const std::string path = folder.file("file");
   std::fputs("one", open_output(path).get());

@@ -33,7 +33,7 @@ double distance_m(const Circle& obstacle, const msg::DetectionFrame& frame) {
   return min_distance - obstacle.radius_m;
 }
 
-TEST_CASE("a frame lists every obstacle nearer to one of its robots than it claims to be complete") {
+TEST_CASE("a frame lists every obstacle that is nearer to one of its robots than its claimed completeness") {
   const std::uint64_t seed = GENERATE(range(1u, 40u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -61,7 +61,7 @@ TEST_CASE("a frame lists every obstacle nearer to one of its robots than it clai
   if (crowd.size() > msg::MAX_OBSTACLES) CHECK(complete_within_m == Approx(farthest_m));
 }
 
-TEST_CASE("a frame without robots claims nothing if it is too small for all obstacles") {
+TEST_CASE("a frame without robots claims no completeness if it cannot hold all obstacles") {
   msg::DetectionFrame frame;
   std::vector<Circle> detected(msg::MAX_OBSTACLES, {{1, 1}, 0.1});
   set_obstacles(detected, frame);

@@ -17,7 +17,7 @@ constexpr Duration kCycle = 16ms;
 // Incarnations of different processes.
 constexpr std::uint64_t kOne = 1'000'000, kTwo = 2'000'000, kThree = 3'000'000;
 
-TEST_CASE("all messages of one process count, also after breaks") {
+TEST_CASE("all messages of a single process are used, also after breaks") {
   SoleSender sender;
   for (const Duration at : {0ms, 16ms, 500ms, 3000ms, 20000ms})
     CHECK(sender.receive(7, kBegin + at) == Outcome::kCounts);
@@ -42,7 +42,8 @@ TEST_CASE("a single message from another process has no effect") {
   }
 }
 
-TEST_CASE("if two processes both continue, nothing counts from their second cycle on, until one is gone") {
+TEST_CASE(
+    "if two processes both keep sending, no message is used from their second cycle on, until one is gone") {
   const std::uint64_t first = GENERATE(kOne, kThree);
   SoleSender sender;
   Time now = kBegin;
@@ -104,8 +105,7 @@ TEST_CASE("a process that starts while two are sending trusts neither, whichever
   CHECK(reported == 1);
 }
 
-TEST_CASE(
-    "after the receiver's clock was set back, senders are believed and followed as if nothing had been") {
+TEST_CASE("after the receiver's clock was set back, senders are trusted and followed as before") {
   const Duration listening = GENERATE(Duration{0}, SoleSender::kListening);
   CAPTURE(to_seconds(listening));
   const Duration ahead = 436s;
@@ -129,7 +129,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("with three or more processes nothing counts either") {
+TEST_CASE("with three or more processes no message is used either") {
   const auto seed = GENERATE(range(1u, 51u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -166,7 +166,7 @@ TEST_CASE("a reader of a single-writer topic gets nothing from two writers, and 
   reader.watch_contests([&](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
     ++contests;
     CHECK(describe_contest(topic, robot, header) ==
-          "two processes send 'feedback/3' as robot 3; nothing that either sends there counts until one of "
+          "two processes send 'feedback/3' as robot 3; the messages of both are ignored there until one of "
           "them has ended");
   });
   msg::Feedback feedback;
@@ -209,7 +209,8 @@ struct Part {
   }
 };
 
-TEST_CASE("processes with one id that must run alone find each other, once, and not by a single message") {
+TEST_CASE(
+    "processes that share an id but must run alone detect each other once, and not by a single message") {
   const auto id = static_cast<std::uint32_t>(
       GENERATE(Sender::kSimulator, Sender::kVision, Sender::kReferee, Sender::kCoordinator));
   SimNetwork network(1, kBegin, {});

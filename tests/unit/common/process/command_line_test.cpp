@@ -137,8 +137,8 @@ TEST_CASE("an unknown command is named, and the commands are listed") {
   line.root().add_subcommand("other", "Has none");
   outer.require_subcommand();
   outer.add_subcommand("inner", "Works");
-  CHECK_THROWS_WITH(line.parse({"oter"}), "\"oter\" is no command, expected one of: outer, other");
-  CHECK_THROWS_WITH(line.parse({"outer", "iner"}), "\"iner\" is no command, expected one of: inner");
+  CHECK_THROWS_WITH(line.parse({"oter"}), "\"oter\" is not a command, expected one of: outer, other");
+  CHECK_THROWS_WITH(line.parse({"outer", "iner"}), "\"iner\" is not a command, expected one of: inner");
   CHECK_THROWS_WITH(line.parse({"outer"}), ContainsSubstring("subcommand is required"));
 }
 

@@ -99,7 +99,7 @@ TEST_CASE("books that hear the same orders agree with each other and with the ru
   }
 }
 
-TEST_CASE("only its owner or an operator lifts a hold, also for one robot of all") {
+TEST_CASE("only its owner or an operator can lift a hold, even if only for one robot of a hold of all") {
   OrderBook book;
   book.merge(hold(kAllRobots, kAnna, 10));
   book.merge(resume(kAllRobots, kBert, 11));

@@ -324,7 +324,7 @@ TEST_CASE(
   CHECK(facts.executing->start_ns == now_ns + 1'000'000);
   CHECK(facts.executing->number >= 102 + RobotSide<double>::kOwnNumberGap);
   CHECK(facts.executing->vx_mps == estimate.velocity_mps.x);
-  // By its new clock that version would be in time, but it was granted by the old one.
+  // By the new clock that version would be in time, but it was granted for times of the old one.
   (void)side.on_command(command(100, 1, &pending), now_ns + 2'000'000, memory);
   CHECK_FALSE(side.switch_next(before_ns + 20'000'000));
 }

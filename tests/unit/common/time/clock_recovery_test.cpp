@@ -81,7 +81,7 @@ TEST_CASE("a process whose host's clock has not been set, or that is in use, kee
   CHECK_FALSE(scene.adopts(0s, 1ms, 20));
 }
 
-TEST_CASE("a process that agrees with others neither by its own clock nor by its host's keeps its own") {
+TEST_CASE("a process keeps its own clock if neither that nor its host's clock agrees with others") {
   Scene scene;
   scene.own_ahead = -24h;
   scene.host_ahead = -12h;

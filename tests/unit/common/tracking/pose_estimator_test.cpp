@@ -69,7 +69,7 @@ TEST_CASE("a fix is compared with the estimate at its capture time, not with the
   for (int i = 0; i < 100; ++i) estimator.advance(now += kPeriod, {{2, 0}, 0}, {0, 0}, 0);
   REQUIRE(estimator.correct(kBegin + milliseconds(40), {0.08, 0}, 0));
   CHECK((estimator.position_m() - Vec2(0.2, 0)).norm() < 1e-9);
-  // The same for a time between two control periods.
+  // Likewise for a time between two control periods.
   REQUIRE(estimator.correct(kBegin + std::chrono::microseconds(60'250), {0.1205, 0}, 0));
   CHECK((estimator.position_m() - Vec2(0.2, 0)).norm() < 1e-9);
 }

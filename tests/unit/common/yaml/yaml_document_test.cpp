@@ -59,8 +59,8 @@ TEST_CASE("a wrong merge key is refused with its line") {
       {"a: 1\n<<: 3\n", 2, "expected a mapping, or a list of mappings, to merge"},
       {"a: 1\n<<: [{b: 1}, 2]\n", 2, "expected a mapping, or a list of mappings, to merge"},
       {"<<: {a: 1}\n<<: {b: 1}\n", 2, "duplicate key \"<<\""},
-      {"a: &a\n  <<: *a\n", 2, "an anchor is used within what it stands for"},
-      {"a: &a [*a]\n", 1, "an anchor is used within what it stands for"},
+      {"a: &a\n  <<: *a\n", 2, "an anchor is used inside its own value"},
+      {"a: &a [*a]\n", 1, "an anchor is used inside its own value"},
       {"a: 1\n<<: *b\n", 2, "not YAML"},
   }));
   CAPTURE(text);

@@ -97,7 +97,7 @@ TEST_CASE("the closest approach has its time, and is not sought before the given
   }
 }
 
-TEST_CASE("paths that do not come near each other are found so from the ends of both") {
+TEST_CASE("for paths that never come near each other, the distance is found at the later start") {
   // Both drive away from each other for a second, and then rest.
   const auto away = [](double from_m, double speed_mps) {
     Trajectory trajectory(time_from_ns(1'000'000'000), {{from_m, 0}, {speed_mps, 0}});

@@ -50,7 +50,7 @@ TEST_CASE("an audit that covers 95 % judges, one that covers 94.9 % does not") {
   }
 }
 
-TEST_CASE("every part below the minimum leaves a run not judged, with its reason") {
+TEST_CASE("every share of the coverage below the minimum leaves a run not judged, with its reason") {
   AuditTotals totals = covered();
   std::string reason;
   SECTION("messages") {
@@ -110,7 +110,7 @@ TEST_CASE("every part below the minimum leaves a run not judged, with its reason
   CHECK(totals.verdict() == AuditVerdict::kFailed);
 }
 
-TEST_CASE("the coverage is its smallest part, for any parts") {
+TEST_CASE("the coverage is the smallest of its shares") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -125,7 +125,7 @@ TEST_CASE("the coverage is its smallest part, for any parts") {
   }
 }
 
-TEST_CASE("a share of nothing is whole") {
+TEST_CASE("a share of nothing counts as complete") {
   CHECK(share_of(0, 0) == 1);
   CHECK(share_of(0, 1) == 0);
   CHECK(share_of(0, 4) == 0);

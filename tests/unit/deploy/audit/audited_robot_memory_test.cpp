@@ -93,7 +93,7 @@ struct SlowVersions {
   VersionNumber max_evicted = 0;
 };
 
-TEST_CASE("a robot's versions agree with a slow memory of them") {
+TEST_CASE("a robot's versions agree with a slow reference") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -211,7 +211,7 @@ Exclusion slow_exclusion(const AuditedRobot::Fact& fact, const KnownVersion& v) 
   return Exclusion::kNone;
 }
 
-TEST_CASE("a fact excludes what its robot executes no more") {
+TEST_CASE("a fact excludes the versions that its robot no longer executes") {
   std::map<Exclusion, int> found;
   for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
     CAPTURE(seed);
@@ -310,7 +310,7 @@ TEST_CASE("a robot whose clock was set back forgets all times of that clock") {
   for (const KnownVersion& known : robot.versions) CHECK(known.executed_until_ns == kAlways);
 }
 
-TEST_CASE("a robot on a new floor keeps its id and the epochs of the former one only") {
+TEST_CASE("a robot on a new floor keeps only its id and the epochs of the former floor") {
   AuditedRobot robot;
   robot.id = 7;
   robot.registered.emplace().epoch = 5;

@@ -158,7 +158,7 @@ TEST_CASE("executed versions are counted by what was received of them, even afte
   CHECK(robot.forgotten_in == 7);
 }
 
-TEST_CASE("the rest in which a robot was switched on is no version of an agent, version 1 is") {
+TEST_CASE("a robot's initial rest does not count as an agent's version, version 1 does") {
   for (const VersionNumber number : {0u, 1u}) {
     AuditedRobot robot;
     robot.traceable_from_ns = 100;

@@ -119,7 +119,8 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
   CHECK(shown.count(AuditRule::kContact) == 1 - undecided);
 }
 
-TEST_CASE("robots in contact may appear a millimetre apart, and then push each other no more") {
+TEST_CASE(
+    "robots in contact may appear up to a millimetre apart, and no longer push each other beyond that") {
   const double apart_m = GENERATE(0.1805, 0.1815);
   Shown shown;
   shown.run(50ms);

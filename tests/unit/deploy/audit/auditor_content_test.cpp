@@ -165,7 +165,7 @@ TEST_CASE("a robot outside the field may return in steps, but not leave farther"
   Stage stage(scenario);
   stage.begin();
   msg::Version version = stage.next(stage.rest(0), 1);
-  // Half the way each in half a second.
+  // Accelerates over half of the way and brakes over the other half, half a second each.
   const double a_mps2 = (to_m - 3.05) / 0.25;
   append(version, 0.5, {a_mps2, 0});
   append(version, 0.5, {-a_mps2, 0});
@@ -238,7 +238,7 @@ TEST_CASE("an obstacle at the end of a fast straight path is found") {
   scenario.obstacles.push_back(Circle{{-1, 1.5}, 0.2});
   Stage stage(scenario);
   stage.begin();
-  // At full speed at once, which is not continuous, so that the path is no shorter than its speed allows.
+  // Starts at full speed, which is not continuous, so that the path is as long as its speed allows.
   msg::Version version = stage.next(stage.rest(0), 1);
   version.vy_mps(1);
   append(version, 1.3 - separation_m(scenario) + closer_m - 0.125, {0, 0});

@@ -119,7 +119,8 @@ TEST_CASE("an audit that hears no coordinator does not pass") {
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE("agents' messages without any effect need not be heard, as those of a host that is cut off") {
+TEST_CASE(
+    "agents' messages without any effect need not be heard, for example those of a host that is cut off") {
   History history = crossing();
   history.remove_if<msg::Command>([](const msg::Command& command) { return !command.has_version(); });
   const AuditTotals totals = audit_of(history, {});

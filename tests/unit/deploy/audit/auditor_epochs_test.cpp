@@ -181,8 +181,7 @@ TEST_CASE("a robot that obeys an older agent has not acknowledged the one that r
   CHECK(stage.count(AuditRule::kAcknowledged) == 1);
 }
 
-TEST_CASE(
-    "if messages may be missed, a fact is later than a registration only by a command that was sent later") {
+TEST_CASE("if messages may be missed, only a command sent after a registration proves that a fact is later") {
   Registering stage(kIncomplete);
   stage.register_versions(0, {stage.rest(0)});
   const std::int64_t registered_ns = to_ns(stage.now);
@@ -208,7 +207,7 @@ TEST_CASE(
   check_only(stage, AuditRule::kRegistration, expected);
 }
 
-TEST_CASE("facts of a robot's earlier life are ignored, until it has been silent for a second") {
+TEST_CASE("facts of a robot's earlier incarnation are ignored, until it has been silent for a second") {
   const bool is_near = GENERATE(true, false);
   const bool was_silent = GENERATE(true, false);
   CAPTURE(is_near, was_silent);

@@ -160,7 +160,7 @@ TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule
   CHECK(count(totals, AuditRule::kTracking) == 0);
 }
 
-TEST_CASE("a late fact of a robot's former life changes nothing") {
+TEST_CASE("a late fact of a robot's former incarnation changes nothing") {
   const auto totals_with = [](bool is_delivered_late) {
     History history = crossing();
     const Time set_back = history.messages.front().at + 1500ms;
@@ -189,7 +189,7 @@ TEST_CASE("a late fact of a robot's former life changes nothing") {
   CHECK(with.coverage.versions == without.coverage.versions);
 }
 
-TEST_CASE("ground truth that contradicts the promise is reported under its rule") {
+TEST_CASE("ground truth that contradicts the guarantee is reported under its rule") {
   SECTION("a displaced robot") {
     const double shift_m = GENERATE(0.007, 0.02);
     CAPTURE(shift_m);

@@ -32,7 +32,7 @@ TEST_CASE("an auditor that is so overloaded that all facts reach it late raises 
   require_no_violation(audit_delayed<msg::Feedback>(crossing(), delay));
 }
 
-TEST_CASE("nor does one that all messages of another kind reach late") {
+TEST_CASE("an auditor that all messages of any one kind reach late raises no false alarm") {
   SECTION("verdicts") { require_no_violation(audit_delayed<msg::Verdict>(crossing(), 150ms)); }
   SECTION("pages of the ledger") { require_no_violation(audit_delayed<msg::LedgerPage>(crossing(), 150ms)); }
   SECTION("proposals") { require_no_violation(audit_delayed<msg::Proposal>(crossing(), 150ms)); }
@@ -93,7 +93,7 @@ TEST_CASE("two agents may give their proposals one number, and an auditor may he
 }
 
 TEST_CASE(
-    "a robot that starts beside an obstacle may drive away, also if the versions before are not received") {
+    "a robot that starts beside an obstacle may drive away, even if its earlier versions were not received") {
   History history = crossing();
   // Until the first of the others passes there.
   const Time end = history.messages.front().at + 1500ms;
@@ -198,8 +198,7 @@ TEST_CASE("a contact before an auditor joined is not judged") {
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE(
-    "a contact of a disturbed robot of which messages were missed since is not judged, another one is") {
+TEST_CASE("a contact of a disturbed robot is not judged if messages were missed since, another contact is") {
   const bool is_of_disturbed = GENERATE(true, false);
   CAPTURE(is_of_disturbed);
   History history = crossing();

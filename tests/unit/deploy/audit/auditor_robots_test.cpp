@@ -101,14 +101,15 @@ TEST_CASE("a robot switches only along bases") {
   stage.report(0);
   stage.advance(55ms);
   std::uint64_t expected = 0;
-  SECTION("to the next one") { stage.facts[0].executing(second); }
-  SECTION("over several, of which no fact told") { stage.facts[0].executing(third); }
+  SECTION("to the next version") { stage.facts[0].executing(second); }
+  SECTION("across several versions that no fact reported") { stage.facts[0].executing(third); }
   SECTION("from another one") {
-    // At rest on base 0: the robot may have been lifted and put down, if facts may have been missed.
+    // A version at rest on base 0: if facts may have been missed, the robot may have been lifted and put
+    // down.
     stage.facts[0].executing(other);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("from another one into motion, which no robot does that is put down") {
+  SECTION("from an unrelated version into motion, which a robot that is put down never does") {
     stage.advance(10ms);
     stage.facts[0].executing(moved);
     expected = 1;
@@ -137,7 +138,7 @@ TEST_CASE("a robot switches only along bases") {
   check_only(stage, AuditRule::kSwitch, expected);
 }
 
-TEST_CASE("each reason that excludes a version has its rule") {
+TEST_CASE("each reason that excludes a version is checked by its own rule") {
   Stage stage;
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1, 50ms);

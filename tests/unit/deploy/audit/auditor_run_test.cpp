@@ -33,7 +33,7 @@ TEST_CASE("a run lasts until the latest message, of whatever kind and however in
   CHECK(auditor.totals().run_s == Approx(before_s + 2));
 }
 
-TEST_CASE("the first message of which none before it was missed is covered, nothing is not") {
+TEST_CASE("message coverage is zero without messages, and complete after a first one that follows no gap") {
   Stage stage;
   CHECK(stage.auditor.totals().coverage.messages == 0);
   stage.report(0);

@@ -143,7 +143,7 @@ TEST_CASE("only uninterrupted displacements count") {
   CHECK(seen.position() == expected);
 }
 
-TEST_CASE("who joins a run does not know what displaced a robot before") {
+TEST_CASE("an auditor that joins a run does not know what displaced a robot earlier") {
   const bool is_complete = GENERATE(true, false);
   Seen seen(is_complete ? kComplete : kIncomplete);
   seen.place(0, {-1.3, 0});
@@ -278,7 +278,7 @@ TEST_CASE("robots that touch since one of them was out of place are undecided if
   seen.run(2s);
   seen.place(0, {1 - 0.17, 0});
   seen.run(100ms);
-  // It came back into place while the two touched, or before anybody looked.
+  // It came back into place while the two touched, or before it was observed.
   CHECK(seen.contact() == (is_complete ? 1 : 0));
   CHECK(seen.auditor.totals().undecided_contacts == (is_complete ? 0 : 1));
 }
@@ -315,7 +315,7 @@ TEST_CASE("an observation with NaN or infinity, or of an unknown robot, is not u
   CHECK(seen.violations.empty());
 }
 
-TEST_CASE("an older sight does not replace a newer one") {
+TEST_CASE("an older observation does not replace a newer one") {
   Seen seen;
   seen.run(2s);
   msg::WorldState late = seen.world;

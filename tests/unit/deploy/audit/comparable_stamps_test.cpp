@@ -17,7 +17,7 @@ msg::Header header(std::uint64_t number, std::int64_t stamp_ns, Incarnation inca
   return header;
 }
 
-TEST_CASE("stamps that grow with the numbers of one channel tell the order, in whichever order they arrive") {
+TEST_CASE("stamps that grow with the numbers of one channel show the order, in whichever order they arrive") {
   ComparableStamps stamps;
   CHECK_FALSE(stamps.tell_order(kSender, 1));
   for (const auto& [number, stamp_ns] : {std::pair(3, 300), {1, 100}, {2, 100}, {4, 300}, {4, 300}, {3, 300}})
@@ -28,7 +28,7 @@ TEST_CASE("stamps that grow with the numbers of one channel tell the order, in w
   CHECK_FALSE(stamps.tell_order(kSender + 1, 1));
 }
 
-TEST_CASE("a clock that was set back tells no order any more, until the process is started again") {
+TEST_CASE("stamps of a clock that was set back no longer show the order, until the process is restarted") {
   const bool arrives_in_order = GENERATE(true, false);
   ComparableStamps stamps;
   stamps.record(0, arrives_in_order ? header(1, 200) : header(2, 100));

@@ -154,7 +154,7 @@ TEST_CASE("no excuse lasts for ever") {
   CHECK_FALSE(floor.contact(0, std::nullopt));
 }
 
-TEST_CASE("an excuse is limited to a minute and a bit, whatever end or clock is reported") {
+TEST_CASE("an excuse lasts little longer than a minute, whatever end or clock is reported") {
   Floor floor;
   floor.push(0, 1h);
   SECTION("an end in an hour") {}

@@ -63,7 +63,7 @@ class HistoryRecorder {
 
 /// The messages of a simulated run of this duration; the same seed gives the same history.
 History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration);
-/// Those of a run that `act` lets go on, in which it gives orders and kills processes.
+/// The messages of a run during which `act` gives orders and kills processes.
 History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act);
 
 AuditTotals audit_of(const History& history, const AuditInput& input);

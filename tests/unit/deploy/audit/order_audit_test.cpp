@@ -235,7 +235,7 @@ TEST_CASE("an order that an agent remembers, and a new coordinator does not, bre
   for (const auto kind : {msg::OrderKind::ORDER_HOLD, msg::OrderKind::ORDER_GO}) {
     CAPTURE(static_cast<int>(kind));
     CHECK(violations_after_takeover([&](History& h) { forget(h, kind); }) == 1);
-    // Nobody is known to have told it: the agents have restarted.
+    // Nobody is known to have announced the order to it, because the agents have restarted.
     CHECK(violations_after_takeover([&](History& h) {
             forget(h, kind);
             h.remove_if<msg::OrderStatus>([](const msg::OrderStatus&) { return true; });

@@ -14,13 +14,15 @@ TEST_CASE("a grant between two memories with one hold of its robot is reported o
   run.remember(kFirst, {hold(4, 100)});
   CHECK(run.found == std::vector<Found>{{AuditRule::kHeld, 4, 31, 7}});
   CHECK(run.details.front() ==
-        "was granted 0.001 s after the coordinator had told hold 100 of client 1000001, which still stands");
+        "was granted 0.001 s after the coordinator had announced hold 100 of client 1000001, which is still "
+        "in force");
   run.grant(kFirst, 4, 33, 8);
   run.remember(kFirst, {hold(4, 100)});
   CHECK(run.found.back() == Found{AuditRule::kHeld, 4, 33, 8});
 }
 
-TEST_CASE("a single message tells a hold, too, but only a whole memory shows that it still stands") {
+TEST_CASE(
+    "a single message announces a hold, too, but only a complete memory shows that it is still in force") {
   Run run;
   run.audit.on_memory(run.page(kFirst, {hold(4, 100)}, 0, 0));
   run.grant(kFirst, 4, 31);
@@ -81,7 +83,8 @@ TEST_CASE("a grant at the time of the second memory may follow it") {
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
-TEST_CASE("a hold that was told after a memory without it still stands, though the memory arrives last") {
+TEST_CASE(
+    "a hold that was announced after a memory without it is in force, even if the memory arrives last") {
   Run run;
   const msg::OrderMemory first = run.page(kFirst, {}, 0, 2), second = run.page(kFirst, {}, 1, 2),
                          told = run.page(kFirst, {hold(4, 100)}, 0, 0);
@@ -222,7 +225,9 @@ TEST_CASE("of two orders with the same number, the one of the client with the hi
   CHECK(run.count(AuditRule::kForgottenOrder) == 1);
 }
 
-TEST_CASE("a coordinator with many resumes may lack holds, and one with many zone removals may lack zones") {
+TEST_CASE(
+    "a coordinator that remembers many resumes may have dropped holds, and one with many zone removals, "
+    "zones") {
   const bool are_many = GENERATE(true, false);
   CAPTURE(are_many);
   Run run;

@@ -140,7 +140,9 @@ TEST_CASE("an agent that follows an order to drive remembers it") {
   }
 }
 
-TEST_CASE("an agent that reports being held remembers the only hold that was sent to it since it was not") {
+TEST_CASE(
+    "an agent that reports being held remembers the only hold that was sent to it since it was last not "
+    "held") {
   const bool is_complete = GENERATE(true, false);
   Succession run(is_complete);
   run.status(4, false);
@@ -227,7 +229,7 @@ TEST_CASE("the time at which a restarted agent learned an order counts") {
   CHECK(run.forgotten() == 1);
 }
 
-TEST_CASE("an agent knows an order from when it told it first") {
+TEST_CASE("an agent knows an order from the time at which it first announced it") {
   Succession run;
   run.begin();
   run.learn();

@@ -26,7 +26,7 @@ struct Base {
 
 }  // namespace
 
-TEST_CASE("a base first moves after its latency, and brakes when commands stay out") {
+TEST_CASE("a base first moves after its latency, and brakes when no more commands arrive") {
   BaseSettings settings;
   settings.latency = 80ms;
   Base base(settings);

@@ -45,7 +45,8 @@ TEST_CASE("teams are filled up with opponents that the scenario does not know") 
   CHECK(truth.robots()[0].reference_error_m() < 0);
 }
 
-TEST_CASE("contacts of the scenario's robots are counted, and apart from them crashes with opponents") {
+TEST_CASE(
+    "contacts of the scenario's robots are counted, and crashes with opponents are counted separately") {
   BaseWorld world(two_blue(), 2, {}, kBegin);
   const std::size_t opponent = *world.find(Team::kYellow, 0);
   world.place(opponent, {-1, 1}, 0);

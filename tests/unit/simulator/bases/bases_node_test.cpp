@@ -46,7 +46,7 @@ TEST_CASE("cameras see a floor of bases after their delay, and ground truth says
   CHECK(truths.back().robots()[0].x_m() > 0.5);
 }
 
-TEST_CASE("a slow simulation moves slowly, and dates its frames by the clock") {
+TEST_CASE("a slow simulation moves slowly, and timestamps its frames by the clock") {
   SimNetwork network(1, kBegin, {});
   SimBus bus(network), observer(network);
   std::vector<Duration> delays;

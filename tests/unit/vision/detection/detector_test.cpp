@@ -78,7 +78,8 @@ TEST_CASE("a team is identified by a centre whose colour is just outside that te
   // Blue robots are in the roster, but not on the floor.
   std::erase_if(robots, [](const PlacedRobot& robot) { return robot.entry.team == Team::kBlue; });
   for (ColourBox& box : settings.boxes) {
-    if (box.colour == static_cast<std::uint32_t>(Colour::kYellow)) box.low.v = 168;  // yellow has 152 to 158
+    if (box.colour == static_cast<std::uint32_t>(Colour::kYellow))
+      box.low.v = 168;  // yellow spans 152 to 158
   }
   Detector detector(floor.camera, settings);
   msg::DetectionFrame frame;

@@ -94,7 +94,7 @@ TEST_CASE("a lost camera is known again only after several good images in a row"
   CHECK(watch.update(good.view()));
 }
 
-TEST_CASE("an image without the field's lines is of no known camera") {
+TEST_CASE("a camera whose image lacks the field's lines is not known") {
   LandmarkWatch watch(camera_over_field(), kField);
   const Image black(PixelFormat::kYuv422, 800, 600);
   CHECK_FALSE(watch.update(black.view()));

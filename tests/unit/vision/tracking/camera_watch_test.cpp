@@ -52,7 +52,7 @@ TEST_CASE("after a gap a camera has to send some frames again") {
   }
 }
 
-TEST_CASE("a camera that is silent for however long sees what nobody else sees, until it is back") {
+TEST_CASE("while a camera is silent, however long, there may be obstacles that only it can see") {
   Fixture f({3, 8});
   f.frames(3, CameraWatch::kFrames);
   f.frames(8, CameraWatch::kFrames);

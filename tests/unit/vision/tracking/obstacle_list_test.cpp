@@ -167,7 +167,8 @@ TEST_CASE("every obstacle nearer than the list claims to be complete is listed, 
 }
 
 TEST_CASE(
-    "of a resting crowd the nearest are listed, and the list is complete almost up to the farthest of them") {
+    "the nearest obstacles of a resting crowd are listed, and the list is complete almost up to the farthest "
+    "of them") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const auto camera_count = GENERATE(1u, 4u);
   CAPTURE(seed, camera_count);

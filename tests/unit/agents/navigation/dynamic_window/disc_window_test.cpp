@@ -130,7 +130,7 @@ TEST_CASE("a disc among random posts reaches most goals and touches nothing") {
       query.window_s = 0.1;
       const DiscWindowChoice& choice = window.choose(query);
       REQUIRE_FALSE(choice.is_touching);
-      // Without an admissible velocity the robot brakes straight ahead, as each velocity was chosen for.
+      // Without an admissible velocity the robot brakes in a straight line, as each chosen velocity permits.
       const double speed = velocity.norm();
       const double after = std::max(0.0, speed - kLimits.deceleration_mps2 * kCycle_s);
       if (!choice.admissible.empty())

@@ -49,7 +49,7 @@ TEST_CASE("stored times are never later than true ones") {
   }
 }
 
-TEST_CASE("numbers compare like times") {
+TEST_CASE("level numbers compare like the times that they represent") {
   Rng rng(3);
   const std::vector<float> times = random_times(rng, 2000);
   const Quantiser quantiser = Quantiser::lloyd_max(times, kHorizon_s);

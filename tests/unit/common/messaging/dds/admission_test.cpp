@@ -43,7 +43,7 @@ struct Fixture {
   const std::vector<std::uint8_t>& announced(const ParticipantId& id, const Certificate& certificate,
                                              const std::string& version = kVersion,
                                              std::optional<Time> given_start = std::nullopt) {
-    // Of two participants the one with the higher number has started earlier, unless the test says otherwise.
+    // Of two participants, the one with the higher number started earlier, unless the test says otherwise.
     const Time started = given_start.value_or(kBegin - Duration((id[10] << 8 | id[11]) * 1'000));
     const std::string serial = certificate.serial();
     auto& result = announcements[{id, serial, version, started}];
@@ -233,7 +233,7 @@ TEST_CASE("unauthenticated participants are admitted at a low rate, and genuine 
   for (int second = 0; second < 60 * kMinutes; ++second) {
     f.now += 1s;
     for (int i = 0; i < 10; ++i) admitted += f.announce(id_with(thief, strangers++), thief) == Refusal::kNone;
-    // Commands of an operator, say, each of which is gone again soon.
+    // For example an operator's commands, each of which ends soon.
     const ParticipantId command = id_with(other, genuine++);
     REQUIRE(f.announce(command, other) == Refusal::kNone);
     f.admission.on_authenticated(command);
@@ -279,11 +279,11 @@ TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
     static_cast<void>(f.admission.newly_refused(f.now));
   }
   INFO("waited " << waited_s << " s");
-  // With a wrong clock, in the worst case each stranger has had a turn meanwhile, one every kUnprovenPeriod.
+  // With a wrong clock, in the worst case every stranger is admitted first, one per kUnprovenPeriod.
   CHECK(waited_s <= (is_clock_right ? 0 : strangers <= 40 ? 20 : 5 * strangers));
 }
 
-TEST_CASE("a process that was not heard for a while waits for none that was announced again") {
+TEST_CASE("a process that was not heard for a while does not wait behind replayed announcements") {
   Fixture f;
   const Certificate robot = f.issue("agent 3", 24h);
   const ParticipantId genuine = id_with(robot, 50'000);
@@ -317,7 +317,7 @@ TEST_CASE("when many processes with one key start at once, the latest ones have 
   }
 }
 
-TEST_CASE("a start that a wrong clock dates ahead is not the latest") {
+TEST_CASE("a start time that a wrong clock puts far ahead does not count as the latest") {
   Fixture f;
   const Certificate robot = f.issue("agent 3", 24h);
   REQUIRE(f.announce(id_with(robot, 1), robot, kVersion, kBegin + 365 * 24h) == Refusal::kNone);

@@ -207,7 +207,7 @@ TEST_CASE("submessages whose numbers contradict each other are dropped") {
   CHECK_FALSE(passes(datagram({})));
 }
 
-TEST_CASE("numbers are as small as those of discovery") {
+TEST_CASE("sequence numbers larger than discovery uses are refused") {
   for (const std::uint8_t kind : {0x06, 0x07, 0x08, 0x15}) {
     CAPTURE(int{kind});
     CHECK(passes(datagram({numbered(kind, (1 << 15) - 1, 0)})));

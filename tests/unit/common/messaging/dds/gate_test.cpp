@@ -93,12 +93,12 @@ TEST_CASE("the list of revoked keys is read again when it changes, and a broken 
   CHECK(f.gate.newly_refused() == std::vector{agent});
   change([&] { write_file(file, "nonsense"); });
   CHECK(f.gate.newly_refused().empty());
-  CHECK(log.has("the former list still counts"));
+  CHECK(log.has("the former list remains in force"));
   CHECK_FALSE(f.gate.passes(agent, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
   CHECK(f.gate.passes(viewer, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
 }
 
-TEST_CASE("a list that is older than the last one takes no revocation back, and a pipe does not block") {
+TEST_CASE("a list that is older than the last one undoes no revocation, and a pipe does not block") {
   Fixture f;
   const CaptureStderr log;
   const ParticipantId agent = f.announce("agent 3");
@@ -114,10 +114,10 @@ TEST_CASE("a list that is older than the last one takes no revocation back, and 
   std::filesystem::remove(file);
   REQUIRE(mkfifo(file.c_str(), 0600) == 0);
   CHECK(f.gate.newly_refused().empty());
-  CHECK(log.has("the former list still counts"));
+  CHECK(log.has("the former list remains in force"));
 }
 
-TEST_CASE("whom the library refuses is named") {
+TEST_CASE("a participant that the library refuses is named") {
   Fixture f;
   const CaptureStderr log;
   f.gate.on_authentication(f.announce("agent 3"), false);

@@ -62,7 +62,7 @@ Bytes message(const std::vector<Property>& properties, Payload payload = head())
   return payload.bytes;
 }
 
-TEST_CASE("messages of handshakes pass in either byte order") {
+TEST_CASE("handshake messages pass in either byte order") {
   CHECK(is_handshake_message(message(request())));
   CHECK(is_handshake_message(message({{"hash_c2", Bytes(32)}, {"signature", Bytes(71)}})));
   // Without properties in the other order: all numbers are swapped by hand.
@@ -87,7 +87,7 @@ TEST_CASE("messages of handshakes pass in either byte order") {
   CHECK(is_handshake_message(big));
 }
 
-TEST_CASE("a message of a handshake with other tokens, names or sizes is refused") {
+TEST_CASE("a handshake message with other tokens, names or sizes is refused") {
   const auto with = [](std::size_t index, const Property& property) {
     std::vector<Property> result = request();
     result[index] = property;
@@ -109,7 +109,7 @@ TEST_CASE("a message of a handshake with other tokens, names or sizes is refused
   CHECK_FALSE(is_handshake_message(message(std::vector<Property>(14, {"dh1", Bytes(4)}))));
 }
 
-TEST_CASE("whatever size a message of a handshake states, none beyond its end passes") {
+TEST_CASE("a handshake message never passes if it states a size beyond its end") {
   const Bytes whole = message(request());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     CAPTURE(size);
@@ -137,7 +137,7 @@ TEST_CASE("whatever size a message of a handshake states, none beyond its end pa
   CHECK(passed < static_cast<int>(5 * whole.size() / 4));
 }
 
-TEST_CASE("only whole messages of handshakes are passed on, with any number") {
+TEST_CASE("only complete handshake messages are passed on, with any sequence number") {
   const auto datagram_with = [](const Bytes& payload, std::uint32_t high) {
     Bytes result{'R', 'T', 'P', 'S', 2, 2, 1, 15};
     result.resize(20);

@@ -20,7 +20,7 @@
 namespace sidestep::images_test {
 
 constexpr std::size_t kUsualBytes = 780 * 580 * 2;
-// Without shared memory, a reader with a sanitizer is too slow for larger bursts of datagrams.
+// Without shared memory, a reader built with a sanitizer is too slow for larger bursts of datagrams.
 constexpr std::size_t kLargestBytes = kIsSanitized ? 2 * kUsualBytes : 2448 * 2048 * 3;
 
 /// An image in which every byte depends on its number.

@@ -428,7 +428,7 @@ TEST_CASE("counters of ever new processes, incarnations and robots take a limite
   CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 5000);
 }
 
-TEST_CASE("a process that has been restarted very often is counted on, and nothing of it twice") {
+TEST_CASE("a process that has been restarted very often is still counted, and nothing of it twice") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);

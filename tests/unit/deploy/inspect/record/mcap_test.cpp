@@ -257,7 +257,7 @@ TEST_CASE("a file that is not an MCAP file is refused with its name") {
   CHECK_THROWS_WITH(full.close(), "/dev/full: No space left on device");
 }
 
-TEST_CASE("a recording that cannot be written says so once, as soon as it is known") {
+TEST_CASE("a recording that cannot be written is reported once, as soon as that is known") {
   McapWriter full("/dev/full");
   std::vector<std::string> failures;
   full.on_failure([&](const std::string& failure) { failures.push_back(failure); });

@@ -218,7 +218,7 @@ TEST_CASE("a recording shows the robots to 3-D panels of other programs") {
   CHECK(scenes >= 7);
 }
 
-TEST_CASE("events that no message tells are recorded, and played back in order") {
+TEST_CASE("events that no message describes are recorded, and played back in order") {
   const TemporaryFolder folder;
   {
     RecordingWriter writer(folder.file("a.mcap"), {"one", "robots: []\n", nullptr, true});

@@ -87,7 +87,7 @@ TEST_CASE("several identities are revoked at once, whether or not some of them a
   const std::vector<Identity> all{
       {Role::kAgent, 0, 0}, {Role::kAgent, 2, 2}, {Role::kAgent, 3, 3}, {Role::kVision}};
   CHECK(keys.revoke(all[1]) == 1);
-  // What a process that was killed has left, and something that is no certificate.
+  // What a killed process has left, and something that is not a certificate.
   write_file(keys.folder() + "/public/issued/ab.pem.4711.tmp", "half");
   write_file(keys.folder() + "/public/issued/77.pem", "none");
   const auto done = keys.store().revoke(all, keys.now());
@@ -199,11 +199,12 @@ void interleave(int rounds, std::uint64_t seed) {
 }
 
 TEST_CASE(
-    "what was reported as revoked stays revoked, whoever issues, revokes, lists or is killed meanwhile") {
+    "a key reported as revoked stays revoked, whatever other processes issue, revoke or list, and however "
+    "they die") {
   interleave(200, 71);
 }
 
-TEST_CASE("what was reported as revoked stays revoked, for ten thousand rounds", "[.long][slow]") {
+TEST_CASE("a key reported as revoked stays revoked, for ten thousand rounds", "[.long][slow]") {
   interleave(10'000, 72);
 }
 

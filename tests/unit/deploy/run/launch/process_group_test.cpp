@@ -273,7 +273,7 @@ TEST_CASE("children inherit no descriptors, and a group waits only for its own c
     ProcessGroup group(log_path());
     group.start(shell("lister", "echo /proc/self/fd/*"));
     CHECK(next_event(group).name == "lister");
-    // The shell's own glob opens the folder while it reads it.
+    // Descriptor 3 is the folder itself, which the shell opens to expand the glob.
     CHECK(group.last_lines("lister")[0] == "/proc/self/fd/0 /proc/self/fd/1 /proc/self/fd/2 /proc/self/fd/3");
   }
   close(inheritable);

@@ -30,10 +30,10 @@ TEST_CASE("orders on the command line are checked before anything is sent") {
   CHECK_THAT(usage_error({"go"}), ContainsSubstring("--file"));
   CHECK_THAT(usage_error({"go", "3", "1,2", "--file", "x"}), ContainsSubstring("either"));
   CHECK_THAT(usage_error({"go", "all", "1,2"}), ContainsSubstring("one robot"));
-  CHECK_THAT(usage_error({"go", "3", "1;2"}), ContainsSubstring("\"1;2\" is no goal"));
+  CHECK_THAT(usage_error({"go", "3", "1;2"}), ContainsSubstring("\"1;2\" is not a goal"));
   CHECK_THAT(usage_error({"go", "3", "1,2", "--speed", "0"}), ContainsSubstring("--speed"));
   CHECK_THAT(usage_error({"cancel", "all"}), ContainsSubstring("one robot"));
-  CHECK_THAT(usage_error({"hold", "5000"}), ContainsSubstring("\"5000\" is no robot"));
+  CHECK_THAT(usage_error({"hold", "5000"}), ContainsSubstring("\"5000\" is not a robot"));
   CHECK_THAT(usage_error({"hold"}), ContainsSubstring("ROBOT"));
   std::vector<std::string> many{"go", "3"};
   many.resize(70, "1,2");

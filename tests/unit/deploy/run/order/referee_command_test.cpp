@@ -22,10 +22,11 @@ TEST_CASE("commands of the referee are checked before anything is sent") {
   CHECK(usage_error({"referee", "HALT"}).empty());
   CHECK(usage_error({"referee", "BALL_PLACEMENT_BLUE", "--place", "-1,0.5"}).empty());
   CHECK_THAT(usage_error({"referee"}), ContainsSubstring("COMMAND"));
-  CHECK_THAT(usage_error({"referee", "PAUSE"}), ContainsSubstring("\"PAUSE\" is no command of the referee") &&
-                                                    ContainsSubstring("HALT, STOP, "));
+  CHECK_THAT(
+      usage_error({"referee", "PAUSE"}),
+      ContainsSubstring("\"PAUSE\" is not a command of the referee") && ContainsSubstring("HALT, STOP, "));
   CHECK_THAT(usage_error({"referee", "STOP", "--place", "1"}),
-             ContainsSubstring("\"1\" is no place for the ball, expected X,Y in metres"));
+             ContainsSubstring("\"1\" is not a place for the ball, expected X,Y in metres"));
   CHECK_THAT(usage_error({"referee", "STOP", "--place", "101,0"}), ContainsSubstring("from -100 to 100 m"));
 }
 

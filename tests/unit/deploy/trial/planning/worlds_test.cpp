@@ -27,7 +27,7 @@ TEST_CASE("worlds come from their seed and all queries are solvable") {
   }
 }
 
-TEST_CASE("a world with another name is refused") {
+TEST_CASE("an unknown world name is refused") {
   CHECK_THROWS_WITH(make_world("ocean", 1, 1), ContainsSubstring("ocean") && ContainsSubstring("maze"));
 }
 

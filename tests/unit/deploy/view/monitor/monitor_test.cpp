@@ -131,7 +131,7 @@ TEST_CASE("a viewer whose JSON is nested deeply is disconnected") {
   CHECK_FALSE(run.send(R"({"op":)" + nested + "}"));
 }
 
-TEST_CASE("the lamp says that the promise is kept, and names the smallest clearance") {
+TEST_CASE("the lamp shows that the guarantee has held, and states the smallest clearance") {
   MonitoredRun run;
   run.system.run_for(6s);
   CHECK(run.promise().at("state") == "kept");
@@ -149,7 +149,7 @@ TEST_CASE("without the scenario nothing is judged, and robots are found by their
   CHECK(std::isfinite(*run.viewer.value(run.scenario.robots[0].id, "executing_start")));
 }
 
-TEST_CASE("a run that breaks the promise is an event and turns the lamp") {
+TEST_CASE("a run that breaks the guarantee is an event and changes the lamp") {
   MonitoredRun run;
   run.system.run_for(1s);
   // Somebody carries a robot into another one: reported by the simulator as a contact.

@@ -65,7 +65,7 @@ class TestServer {
   std::uint16_t port() const { return port_ ? port_ : port_ = server->access().port; }
 
   std::function<void(WebSocket&)> on_tick;  ///< set it before viewers connect
-  std::set<WebSocket*> sockets;             ///< of the server's thread
+  std::set<WebSocket*> sockets;             ///< used only in the server's thread
   std::set<std::string> protocols;
   std::atomic<int> opened = 0, closed = 0, closed_while_sending = 0;
   bool is_sending = false;

@@ -47,7 +47,7 @@ TEST_CASE("both byte orders and both versions of the encoding are decoded") {
   CHECK(decode(idl, {0, 6, 0, 0, 5, 0, 0, 0, 0x3f, 0xf8, 0, 0, 0, 0, 0, 0}) == expected);
 }
 
-TEST_CASE("the sizes that version 2 announces are passed over") {
+TEST_CASE("the sizes that version 2 states are skipped") {
   // An appendable struct, and a list of structs; not a list of numbers.
   const std::string idl =
       "@final struct P { octet x; }; @appendable struct T { sequence<P> parts; octet raw[2]; };";
@@ -55,7 +55,7 @@ TEST_CASE("the sizes that version 2 announces are passed over") {
         Json{{"parts", {{{"x", 7}}, {{"x", 8}}}}, {"raw", {1, 2}}});
 }
 
-TEST_CASE("texts, enumerators and nested arrays") {
+TEST_CASE("texts, enumerators and nested arrays are decoded") {
   const std::string idl =
       "enum E { ONE, TWO }; @final struct T { string s; E known, unknown; octet a[2][2]; char c; };";
   CHECK(decode(idl, {0, 1, 0, 0, 3, 0, 0, 0, 'h', 'i', 0, 0, 1, 0, 0, 0, 9, 0, 0, 0, 1, 2, 3, 4, 'c'}) ==

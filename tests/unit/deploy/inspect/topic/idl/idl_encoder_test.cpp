@@ -61,11 +61,11 @@ TEST_CASE("the key is that of the key members, big-endian and aligned") {
   CHECK_THROWS_WITH(key_by_idl(*long_key.at("T"), Json::object()), ContainsSubstring("more than 16 bytes"));
 }
 
-TEST_CASE("bytes that are no UTF-8 in a refused value do not keep the reason back") {
+TEST_CASE("bytes that are not UTF-8 in a refused value do not suppress the reason") {
   CHECK_THROWS_AS(encode_by_idl(*kTypes.at("T"), {{"b", "\xff"}}), IdlEncodingError);
 }
 
-TEST_CASE("JSON that is no message of the type is refused with the member's name") {
+TEST_CASE("JSON that is not a message of the type is refused with the member's name") {
   const auto check = [](const Json& json, const std::string& reason) {
     CHECK_THROWS_WITH(encode_by_idl(*kTypes.at("T"), json), ContainsSubstring(reason));
   };

@@ -20,7 +20,7 @@ struct Trial {
     order.goals = std::move(goals);
     clients.give(order);
   }
-  /// An operator of whom the judge does not know.
+  /// An operator that the judge does not know.
   void resume_secretly() {
     system.send(
         {msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator, static_cast<OrderNumber>(to_ns(system.now()))});
@@ -85,7 +85,7 @@ TEST_CASE("an order that a coordinator does not remember fails a trial, until it
   CHECK(trial.clients.failures().empty());
 }
 
-TEST_CASE("a coordinator that was started again and hears nobody fails no trial by what it knew before") {
+TEST_CASE("a restarted coordinator that hears nobody does not fail a trial because of what it knew before") {
   Scenario scenario = waiting_robots(2);
   scenario.coordinators = 2;
   SimSystem system{scenario, 1};
@@ -107,7 +107,9 @@ TEST_CASE("a coordinator that was started again and hears nobody fails no trial 
   CHECK(clients.failures().empty());
 }
 
-TEST_CASE("a coordinator that hears nobody for good fails no trial by an order that it could not hear") {
+TEST_CASE(
+    "a coordinator that permanently hears nobody does not fail a trial because of an order that it could not "
+    "hear") {
   Scenario scenario = waiting_robots(2);
   scenario.coordinators = 2;
   SimSystem system{scenario, 1};

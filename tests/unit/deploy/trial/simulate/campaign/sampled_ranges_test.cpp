@@ -38,7 +38,7 @@ class Extremes {
   void add(const std::string& name, Duration value) { add(name, to_seconds(value)); }
   /// The values lie between both limits, and come as near to them as a hundredth to a thirtieth of the range.
   void check(const std::string& name, double low, double high) const { check(name, low, high, high - low); }
-  /// The same of values of which each order of magnitude is as likely as any other.
+  /// Like the above, for values whose orders of magnitude are equally likely.
   void check_log(const std::string& name, double low, double high) const {
     const auto& [min, max] = found_.at(name);
     CAPTURE(name, min, max);

@@ -113,7 +113,7 @@ TEST_CASE("faults that cannot be applied fail the test with the reason") {
       "  - {at_s: 2, attest_absence: 2}\nexpect: [{no_contact: all}]\n");
   const std::vector<std::string> failures = result.failures();
   REQUIRE(failures.size() == 2);
-  CHECK(failures[0] == "at 1.500 s: could not pause agent 1: agent 1 does not run");
+  CHECK(failures[0] == "at 1.500 s: could not pause agent 1: agent 1 is not running");
   CHECK(failures[1] ==
         "at 2.000 s: could not attest the absence of robot 2: the coordinator does not wait for the robot");
 }
