@@ -19,11 +19,11 @@ bool is_malformed(const Registration& registration) {
 }  // namespace
 
 Coordinator::Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch,
-                         Duration max_clock_difference, Duration fact_period)
+                         Duration max_clock_difference, Duration report_period)
     : ledger_(rules, std::move(roster), max_clock_difference),
       displaced_(rules.margin_m),
       max_clock_difference_(max_clock_difference),
-      max_silence_(std::max(kMaxSilence, kMissedFacts * fact_period)),
+      max_silence_(std::max(kMaxSilence, kMissedReports * report_period)),
       epoch_(epoch),
       unregistered_count_(ledger_.roster().size()),
       records_(kMaxRobots),
@@ -102,39 +102,41 @@ bool Coordinator::ends_quarantine(const Registration& registration, const Record
          ledger_.lists_reported(registration.robot, registration.versions->versions());
 }
 
-bool Coordinator::on_feedback(const Feedback& feedback, Time now) {
+bool Coordinator::on_robot_report(const RobotReport& robot_report, Time now) {
   if (!is_active()) return true;
-  if (!ledger_.has_robot(feedback.robot) || !ends_at_rest(feedback.executing)) {
-    drops_.count(DropReason::kMalformedFeedback, feedback.robot);
+  if (!ledger_.has_robot(robot_report.robot) || !ends_at_rest(robot_report.executing)) {
+    drops_.count(DropReason::kMalformedFeedback, robot_report.robot);
     return true;
   }
-  Record& record = record_of(feedback.robot);
+  Record& record = record_of(robot_report.robot);
   // The weight of older gaps decays.
   if (record.heard_at) record.longest_gap = std::max(now - *record.heard_at, record.longest_gap * 15 / 16);
   record.heard_at = now;
   if (!record.registered && !record.attested) return true;
-  if (feedback.is_absent()) {
-    ledger_.on_lifted(feedback.robot, feedback.valid_at, feedback.robot_incarnation);
+  if (robot_report.is_absent()) {
+    ledger_.on_lifted(robot_report.robot, robot_report.valid_at, robot_report.robot_incarnation);
     return true;
   }
-  const bool is_of_higher_epoch = feedback.obeyed_epoch > epoch_;
-  if (is_of_higher_epoch && ledger_.judge(feedback.executing, feedback.valid_at, feedback.is_off_reference,
-                                          feedback.robot_incarnation) == FactOutcome::kContradiction) {
-    drops_.count(DropReason::kFactOfHigherEpoch, feedback.robot);
+  const bool is_of_higher_epoch = robot_report.obeyed_epoch > epoch_;
+  if (is_of_higher_epoch &&
+      ledger_.judge(robot_report.executing, robot_report.valid_at, robot_report.is_off_reference,
+                    robot_report.robot_incarnation) == ReportOutcome::kContradiction) {
+    drops_.count(DropReason::kFactOfHigherEpoch, robot_report.robot);
     return true;
   }
-  const bool was_quarantined = ledger_.is_quarantined(feedback.robot);
-  const FactOutcome outcome = ledger_.on_executing(feedback.executing, feedback.valid_at,
-                                                   feedback.is_off_reference, feedback.robot_incarnation);
-  if (outcome == FactOutcome::kStale) drops_.count(DropReason::kLateFact, feedback.robot);
-  if (outcome != FactOutcome::kContradiction) return true;
-  drops_.count(DropReason::kContradictoryFact, feedback.robot);
+  const bool was_quarantined = ledger_.is_quarantined(robot_report.robot);
+  const ReportOutcome outcome =
+      ledger_.on_executing(robot_report.executing, robot_report.valid_at, robot_report.is_off_reference,
+                           robot_report.robot_incarnation);
+  if (outcome == ReportOutcome::kStale) drops_.count(DropReason::kLateFact, robot_report.robot);
+  if (outcome != ReportOutcome::kContradiction) return true;
+  drops_.count(DropReason::kContradictoryFact, robot_report.robot);
   record.contradicted_under =
-      std::max(was_quarantined ? record.contradicted_under : Incarnation{0}, feedback.obeyed_incarnation);
+      std::max(was_quarantined ? record.contradicted_under : Incarnation{0}, robot_report.obeyed_incarnation);
   return false;
 }
 
-void Coordinator::on_world(std::span<const RobotObservation> robots, Time now, bool is_whole) {
+void Coordinator::on_world_state(std::span<const RobotObservation> robots, Time now, bool is_whole) {
   if (!is_active()) return;
   find_silent(now);
   Time latest{};

@@ -19,11 +19,11 @@ namespace sidestep {
 class Coordinator {
  public:
   /// In epoch 0 the coordinator stands by and answers no messages. `max_clock_difference` is the maximum
-  /// difference between any two clocks of robots, cameras and this coordinator. `fact_period` is the period
+  /// difference between any two clocks of robots, cameras and this coordinator. `report_period` is the period
   /// at which robots report facts.
   Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch,
               Duration max_clock_difference = sidestep::max_clock_difference(SafetyBudget{}.clock_bound_s),
-              Duration fact_period = {});
+              Duration report_period = {});
 
   /// Clears all state and begins an epoch, or stands by if `epoch` is 0.
   void begin_epoch(Epoch epoch);
@@ -35,11 +35,11 @@ class Coordinator {
   std::optional<Verdict> on_registration(const Registration& registration);
   /// Processes a fact from a robot. Returns false if it contradicts the ledger; the robot is then
   /// quarantined, that is, nothing is granted to it until it is lifted or a new agent registers it.
-  bool on_feedback(const Feedback& feedback, Time now);
+  bool on_robot_report(const RobotReport& robot_report, Time now);
   /// Processes where vision sees the robots. Nothing is granted to displaced robots. `is_whole` means that no
   /// observation of the world state was dropped. A world state with an observation that was dropped or cannot
   /// be compared does not count as supervision.
-  void on_world(std::span<const RobotObservation> robots, Time now, bool is_whole = true);
+  void on_world_state(std::span<const RobotObservation> robots, Time now, bool is_whole = true);
   /// The operator attests that a robot is not on the floor, for this epoch. Returns false unless the
   /// coordinator is awaiting the robot's registration.
   bool on_attestation(RobotId robot);
@@ -58,12 +58,12 @@ class Coordinator {
   Epoch epoch() const { return epoch_; }
   const Ledger& ledger() const { return ledger_; }
   const DisplacedRobots& displaced() const { return displaced_; }
-  /// Whether a robot that should be moving is silent: no fact has arrived for kMaxSilence, for kMissedFacts
+  /// Whether a robot that should be moving is silent: no fact has arrived for kMaxSilence, for kMissedReports
   /// periods, or for twice the longest recent gap, so that a slow network does not make robots silent. A
   /// robot is also silent if all its versions start later than that.
   bool is_silent(RobotId robot) const { return records_[robot].silent; }
   static constexpr Duration kMaxSilence{50'000'000};
-  static constexpr int kMissedFacts = 3;
+  static constexpr int kMissedReports = 3;
   /// Whether any robot is displaced or silent.
   bool has_uncontrolled_robots() const { return displaced_.any() || silent_count_ > 0; }
 

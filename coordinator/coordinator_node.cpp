@@ -31,7 +31,7 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
       failover_(self, is_standby, bus.now(), {roster_of(scenario), scenario.cycle}),
       coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_,
                    scenario.cycle),
-      order_desk_(bus, scenario, self, coordinator_, events_, [this] { publish_state(); }),
+      order_service_(bus, scenario, self, coordinator_, events_, [this] { publish_state(); }),
       counters_(bus, process_of(self.number), self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
@@ -39,34 +39,34 @@ CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const Coord
   for (const RobotSpec& robot : scenario.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
     bus_.subscribe(topics::kFeedback, robot.id, [this, id = robot.id](const msg::Feedback& message) {
-      take(decode(message, id, bus_.now()), DropReason::kMalformedFeedback, id);
+      handle_or_count(decode(message, id, bus_.now()), DropReason::kMalformedFeedback, id);
     });
   }
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& message) {
-    take(decode(message, bus_.now()), DropReason::kMalformedCoordinatorState);
+    handle_or_count(decode(message, bus_.now()), DropReason::kMalformedCoordinatorState);
   });
   bus_.subscribe(topics::kRegistration, [this](const msg::Registration& message) {
-    take(decode(message, bus_.now()), DropReason::kMalformedRegistration);
+    handle_or_count(decode(message, bus_.now()), DropReason::kMalformedRegistration);
   });
   bus_.subscribe(topics::kProposal, [this](const msg::Proposal& message) {
-    take(decode(message, bus_.now()), DropReason::kMalformedProposal);
+    handle_or_count(decode(message, bus_.now()), DropReason::kMalformedProposal);
   });
-  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& message) { on_world(message); });
+  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& message) { on_world_state(message); });
   bus_.subscribe(topics::kAttestation,
                  [this](const msg::AbsenceAttestation& message) { on_attestation(message); });
-  bus_.subscribe(topics::kOrder, [this](const msg::Order& message) { order_desk_.on_order(message); });
+  bus_.subscribe(topics::kOrder, [this](const msg::Order& message) { order_service_.on_order(message); });
   for (const auto& memory : {topics::kOrderMemory, topics::kAgentOrders}) {
     bus_.subscribe(memory, [this](const msg::OrderMemory& message) {
-      take(decode(message, bus_.now()), DropReason::kMalformedOrder);
+      handle_or_count(decode(message, bus_.now()), DropReason::kMalformedOrder);
     });
   }
   bus_.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& message) {
-    take(decode(message), DropReason::kMalformedOrder);
+    handle_or_count(decode(message), DropReason::kMalformedOrder);
   });
   update_failover();
   publish_state_periodically();
   publish_ledger();
-  order_desk_.announce_periodically();
+  order_service_.announce_periodically();
 }
 
 void CoordinatorNode::on_event(LogLevel min_level, OnLogEvent callback) {
@@ -83,8 +83,8 @@ void CoordinatorNode::report_role() {
 }
 
 template <typename Decoded>
-void CoordinatorNode::take(const std::optional<Decoded>& decoded, DropReason reason,
-                           std::optional<RobotId> robot) {
+void CoordinatorNode::handle_or_count(const std::optional<Decoded>& decoded, DropReason reason,
+                                      std::optional<RobotId> robot) {
   if (decoded)
     handle(*decoded);
   else
@@ -94,7 +94,7 @@ void CoordinatorNode::take(const std::optional<Decoded>& decoded, DropReason rea
 void CoordinatorNode::count_drops(DropCounters& drops) const {
   drops.add(drops_);
   drops.add(coordinator_.drops());
-  drops.add(order_desk_.drops());
+  drops.add(order_service_.drops());
   drops.count(DropReason::kImplausibleEpoch, std::nullopt, failover_.invalid());
   drops.count(DropReason::kFrequentEpoch, std::nullopt, failover_.too_frequent());
 }
@@ -102,7 +102,7 @@ void CoordinatorNode::count_drops(DropCounters& drops) const {
 void CoordinatorNode::handle(const CoordinatorHeartbeat& heartbeat) {
   failover_.on_heartbeat(heartbeat, bus_.now());
   apply_epoch();
-  if (!heartbeat.remembers_orders) order_desk_.repeat();
+  if (!heartbeat.remembers_orders) order_service_.repeat();
 }
 
 void CoordinatorNode::handle(const Registration& registration) {
@@ -110,15 +110,15 @@ void CoordinatorNode::handle(const Registration& registration) {
     failover_.reception().on_registration(registration.robot, bus_.now());
   if (registration.epoch == 0) return;  // epoch 0: the agent knows no coordinator
   observe_epoch(registration.robot, registration.epoch, EpochHolder::kAgent);
-  if (registration.asks_for_orders) return order_desk_.repeat();
+  if (registration.asks_for_orders) return order_service_.repeat();
   const bool was_granting = coordinator_.is_granting();
   if (const auto verdict = coordinator_.on_registration(registration)) {
     answer(*verdict);
     report_registration(registration, *verdict);
-    if (verdict->reasons.front() == msg::Reason::REASON_GRANTED) order_desk_.on_registered(registration);
+    if (verdict->reasons.front() == msg::Reason::REASON_GRANTED) order_service_.on_registered(registration);
   }
   if (coordinator_.is_granting() != was_granting) {
-    order_desk_.update_memory();
+    order_service_.update_memory();
     publish_state();
   }
 }
@@ -134,22 +134,23 @@ void CoordinatorNode::report_registration(const Registration& registration, cons
                    registration.incarnation, to_text(verdict.reasons.front()));
 }
 
-void CoordinatorNode::handle(const Feedback& feedback) {
-  observe_epoch(feedback.robot, feedback.obeyed_epoch, EpochHolder::kRobot);
-  if (!feedback.is_absent()) heard_at_[feedback.robot] = bus_.now();
-  const bool is_granted = !feedback.is_off_reference && !feedback.is_absent();
-  if (coordinator_.ledger().has_robot(feedback.robot))
-    failover_.reception().on_fact(feedback.robot, feedback.executing.number, is_granted, bus_.now());
-  if (feedback.obeyed_epoch == coordinator_.epoch()) order_desk_.on_obeyed(feedback.robot);
-  const bool was_quarantined = coordinator_.ledger().is_quarantined(feedback.robot);
-  if (coordinator_.on_feedback(feedback, bus_.now()) || was_quarantined) return;
-  events_.report(LogLevel::kWarning, feedback.robot,
-                 "robot {} executes version {}, which it was never granted", feedback.robot,
-                 feedback.executing.number);
+void CoordinatorNode::handle(const RobotReport& robot_report) {
+  observe_epoch(robot_report.robot, robot_report.obeyed_epoch, EpochHolder::kRobot);
+  if (!robot_report.is_absent()) heard_at_[robot_report.robot] = bus_.now();
+  const bool is_granted = !robot_report.is_off_reference && !robot_report.is_absent();
+  if (coordinator_.ledger().has_robot(robot_report.robot))
+    failover_.reception().on_robot_report(robot_report.robot, robot_report.executing.number, is_granted,
+                                          bus_.now());
+  if (robot_report.obeyed_epoch == coordinator_.epoch()) order_service_.on_obeyed(robot_report.robot);
+  const bool was_quarantined = coordinator_.ledger().is_quarantined(robot_report.robot);
+  if (coordinator_.on_robot_report(robot_report, bus_.now()) || was_quarantined) return;
+  events_.report(LogLevel::kWarning, robot_report.robot,
+                 "robot {} executes version {}, which it was never granted", robot_report.robot,
+                 robot_report.executing.number);
   publish_state();
 }
 
-void CoordinatorNode::on_world(const msg::WorldState& message) {
+void CoordinatorNode::on_world_state(const msg::WorldState& message) {
   const Time valid_at = time_from_ns(message.valid_at_ns());
   // The farther ahead a world state is timestamped, the less certain its positions are.
   if (valid_at > bus_.now() + max_vision_lead(max_clock_difference_))
@@ -166,7 +167,7 @@ void CoordinatorNode::on_world(const msg::WorldState& message) {
     }
   }
   const bool was_uncontrolled = coordinator_.has_uncontrolled_robots();
-  coordinator_.on_world(observations_, bus_.now(), is_whole);
+  coordinator_.on_world_state(observations_, bus_.now(), is_whole);
   // Agents need the latest places immediately.
   if (was_uncontrolled || coordinator_.has_uncontrolled_robots()) publish_state();
 }
@@ -193,12 +194,12 @@ void CoordinatorNode::on_attestation(const msg::AbsenceAttestation& message) {
 
 void CoordinatorNode::handle(const OrderPage& page) {
   if (coordinator_.ledger().has_robot(page.process)) failover_.reception().on_agent(page.process, bus_.now());
-  order_desk_.on_page(page);
+  order_service_.on_page(page);
 }
 
 void CoordinatorNode::handle(const OrderReport& report) {
   if (coordinator_.ledger().has_robot(report.robot)) failover_.reception().on_agent(report.robot, bus_.now());
-  order_desk_.on_report(report);
+  order_service_.on_report(report);
 }
 
 void CoordinatorNode::handle(const Proposal& proposal) {
@@ -222,12 +223,12 @@ void CoordinatorNode::answer(const Verdict& verdict) {
 void CoordinatorNode::apply_epoch() {
   if (failover_.epoch() == coordinator_.epoch()) return;
   coordinator_.begin_epoch(failover_.epoch());
-  order_desk_.begin_epoch();
-  changes_.reset();
+  order_service_.begin_epoch();
+  event_logger_.reset();
   report_role();
   publish_state();
   // Orders that arrived while this one was a standby were announced by another coordinator, if at all.
-  if (coordinator_.is_active()) order_desk_.announce_all();
+  if (coordinator_.is_active()) order_service_.announce_all();
 }
 
 void CoordinatorNode::update_failover() {
@@ -240,22 +241,22 @@ void CoordinatorNode::update_failover() {
 
 void CoordinatorNode::forget_times() {
   heard_at_.clear();
-  order_desk_.forget_times();
+  order_service_.forget_times();
   coordinator_.forget_times();
 }
 
 void CoordinatorNode::publish_state() {
   auto state = coordinator_.state();
   state.coordinator(self_.number);
-  state.remembers_orders(order_desk_.orders().is_complete());
+  state.remembers_orders(order_service_.orders().is_complete());
   encode(failover_.cause(), state);
   publish(self_, state_writer_, state, bus_.now());
-  changes_.update(state, coordinator_.ledger().conflicts(), bus_.now());
+  event_logger_.update(state, coordinator_.ledger().conflicts(), bus_.now());
 }
 
 void CoordinatorNode::publish_state_periodically() {
   bus_.at(bus_.now() + Failover::kHeartbeatPeriod, [this] { publish_state_periodically(); });
-  order_desk_.update();
+  order_service_.update();
   if (coordinator_.is_active() || standby_periods_++ % kStandbyAnnouncePeriod == 0) publish_state();
 }
 

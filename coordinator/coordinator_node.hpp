@@ -10,9 +10,9 @@
 #include "common/messaging/bus.hpp"
 #include "common/messaging/counter_publisher.hpp"
 #include "coordinator/coordinator.hpp"
+#include "coordinator/coordinator_event_logger.hpp"
 #include "coordinator/failover.hpp"
-#include "coordinator/order_desk.hpp"
-#include "coordinator/state_changes.hpp"
+#include "coordinator/order_service.hpp"
 
 namespace sidestep {
 
@@ -30,18 +30,19 @@ class CoordinatorNode {
   void on_event(LogLevel min_level, OnLogEvent callback);
 
   const Coordinator& coordinator() const { return coordinator_; }
-  const OrderKeeper& orders() const { return order_desk_.orders(); }
+  const OrderKeeper& orders() const { return order_service_.orders(); }
   void count_drops(DropCounters& drops) const;
 
  private:
   /// Handles a decoded message; counts it if decoding failed.
   template <typename Decoded>
-  void take(const std::optional<Decoded>& decoded, DropReason reason, std::optional<RobotId> robot = {});
+  void handle_or_count(const std::optional<Decoded>& decoded, DropReason reason,
+                       std::optional<RobotId> robot = {});
   void handle(const CoordinatorHeartbeat& heartbeat);
   void handle(const Registration& registration);
-  void handle(const Feedback& feedback);
+  void handle(const RobotReport& robot_report);
   void handle(const Proposal& proposal);
-  void on_world(const msg::WorldState& message);
+  void on_world_state(const msg::WorldState& message);
   void on_attestation(const msg::AbsenceAttestation& message);
   void handle(const OrderPage& page);
   void handle(const OrderReport& report);
@@ -70,8 +71,8 @@ class CoordinatorNode {
   Writer<msg::LedgerPage> ledger_writer_;
   std::map<RobotId, Writer<msg::Verdict>> verdict_writers_;
   EventReporter events_;
-  OrderDesk order_desk_;
-  StateChanges changes_{events_};
+  OrderService order_service_;
+  CoordinatorEventLogger event_logger_{events_};
   std::map<RobotId, Time> heard_at_;            // arrival time of each robot's last fact
   Time updated_at_{};                           // when update_failover() last ran
   std::vector<RobotObservation> observations_;  // observations of the last world state

@@ -44,7 +44,7 @@ constexpr Epoch kEpochSpread = 1'000'003;
 Failover::Failover(const CoordinatorIdentity& self, bool is_standby, Time now, const FleetSpec& fleet)
     : self_(self),
       roster_(fleet.roster),
-      reception_(fleet.fact_period),
+      reception_(fleet.report_period),
       unheard_at_(now),
       last_heartbeat_(now),
       last_update_(now),

@@ -34,7 +34,7 @@ enum class EpochHolder { kRobot, kAgent };
 /// The fleet that coordinators serve.
 struct FleetSpec {
   std::vector<RobotId> roster{};
-  Duration fact_period{16'666'667};  ///< period at which robots report facts
+  Duration report_period{16'666'667};  ///< period at which robots report facts
 };
 
 /// Decides whether this coordinator is active. It stands by while it receives heartbeats of another one,

@@ -15,10 +15,10 @@ constexpr Duration kMaxVisionSilence{600'000'000};
 
 }  // namespace
 
-void FleetReception::on_fact(RobotId robot, VersionNumber executing, bool is_granted, Time now) {
+void FleetReception::on_robot_report(RobotId robot, VersionNumber executing, bool is_granted, Time now) {
   Robot& known = robots_[robot];
-  if (is_granted && known.fact_at && executing > known.executing) served_at_ = now;
-  known.fact_at = now;
+  if (is_granted && known.report_at && executing > known.executing) served_at_ = now;
+  known.report_at = now;
   known.executing = std::max(known.executing, executing);
 }
 
@@ -34,7 +34,7 @@ void FleetReception::on_registration(RobotId robot, Time now) {
 bool FleetReception::hears_robots(Time now) const {
   const auto count_since = [&](Duration age) {
     return std::ranges::count_if(
-        robots_, [&](const auto& r) { return r.second.fact_at && now - *r.second.fact_at <= age; });
+        robots_, [&](const auto& r) { return r.second.report_at && now - *r.second.report_at <= age; });
   };
   const auto heard = count_since(max_silence_);
   return heard > 0 && 2 * heard >= count_since(kForgetAfter);

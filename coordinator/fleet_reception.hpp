@@ -15,16 +15,16 @@ namespace sidestep {
 class FleetReception {
  public:
   /// Number of periods without facts after which a robot counts as not heard.
-  static constexpr int kMissedFacts = 5;
+  static constexpr int kMissedReports = 5;
   /// An agent counts as asking for a coordinator if it repeats its registration at least this often.
   static constexpr Duration kMaxRequestGap{350'000'000};
 
-  /// `fact_period` is the period at which robots report facts.
-  explicit FleetReception(Duration fact_period) : max_silence_(kMissedFacts * fact_period) {}
+  /// `report_period` is the period at which robots report facts.
+  explicit FleetReception(Duration report_period) : max_silence_(kMissedReports * report_period) {}
 
   /// The robot executes this version. `is_granted` is false if that is an own stop or the robot executes
   /// nothing.
-  void on_fact(RobotId robot, VersionNumber executing, bool is_granted, Time now);
+  void on_robot_report(RobotId robot, VersionNumber executing, bool is_granted, Time now);
   /// Records that a message of the robot's agent has arrived.
   void on_agent(RobotId robot, Time now);
   void on_vision(Time now) { vision_at_ = now; }
@@ -55,7 +55,7 @@ class FleetReception {
 
  private:
   struct Robot {
-    std::optional<Time> fact_at, agent_at, requested_at, requested_since;
+    std::optional<Time> report_at, agent_at, requested_at, requested_since;
     VersionNumber executing = 0;
   };
   /// The robot, if its agent is asking for a coordinator; otherwise nullptr.

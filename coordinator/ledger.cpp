@@ -91,7 +91,7 @@ void Ledger::Entry::quarantine(const Version& reported) {
 
 bool Ledger::Entry::count_agreement() {
   if (quarantined.empty()) return true;
-  if (++agreeing < kFactsUntilReleased) return false;
+  if (++agreeing < kReportsUntilReleased) return false;
   release();
   return true;
 }
@@ -134,23 +134,25 @@ msg::Reason Ledger::refusal_reason(const Version& candidate, const Version* base
   return reason_of(check_workspace_with_escape(candidate, base->trajectory, rules_));
 }
 
-FactOutcome Ledger::judge(const Version& executing, Time at, bool is_off_reference, Incarnation life) const {
+ReportOutcome Ledger::judge(const Version& executing, Time at, bool is_off_reference,
+                            Incarnation robot_incarnation) const {
   const Entry& entry = entries_[index_of(executing.robot)];
-  if (life == entry.lifted_life && at <= entry.lifted_at) return FactOutcome::kStale;
+  if (robot_incarnation == entry.lifted_incarnation && at <= entry.lifted_at) return ReportOutcome::kStale;
   const auto is_older = [&](const Version& held) { return held.number < executing.number; };
   const auto versions = entry.set.versions();
   if (const Version* held = entry.set.find(executing.number))
-    return is_same(*held, executing) ? FactOutcome::kApplied : FactOutcome::kContradiction;
-  if (!versions.empty() && std::ranges::none_of(versions, is_older)) return FactOutcome::kStale;
+    return is_same(*held, executing) ? ReportOutcome::kApplied : ReportOutcome::kContradiction;
+  if (!versions.empty() && std::ranges::none_of(versions, is_older)) return ReportOutcome::kStale;
   const bool is_own_stop = is_off_reference && std::ranges::all_of(versions, is_older);
-  return is_own_stop ? FactOutcome::kApplied : FactOutcome::kContradiction;
+  return is_own_stop ? ReportOutcome::kApplied : ReportOutcome::kContradiction;
 }
 
-FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference, Incarnation life) {
-  const FactOutcome outcome = judge(executing, at, is_off_reference, life);
-  if (outcome == FactOutcome::kStale) return outcome;
+ReportOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_reference,
+                                   Incarnation robot_incarnation) {
+  const ReportOutcome outcome = judge(executing, at, is_off_reference, robot_incarnation);
+  if (outcome == ReportOutcome::kStale) return outcome;
   Entry& entry = entry_of(executing.robot);
-  if (outcome == FactOutcome::kContradiction) {
+  if (outcome == ReportOutcome::kContradiction) {
     entry.quarantine(executing);
     update_bounds(index_of(executing.robot));
     find_conflicts(executing.robot);
@@ -163,7 +165,7 @@ FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_
       update_bounds(index_of(executing.robot));
       find_conflicts(executing.robot);
     }
-    return FactOutcome::kApplied;
+    return ReportOutcome::kApplied;
   }
   const auto store_former = [&](const Version& version) { entry.former.add(version, at); };
   if (is_own_stop) {
@@ -178,13 +180,13 @@ FactOutcome Ledger::on_executing(const Version& executing, Time at, bool is_off_
     find_conflicts(executing.robot);
   else
     end_conflicts(executing.robot);
-  return FactOutcome::kApplied;
+  return ReportOutcome::kApplied;
 }
 
-void Ledger::on_lifted(RobotId robot, Time at, Incarnation life) {
+void Ledger::on_lifted(RobotId robot, Time at, Incarnation robot_incarnation) {
   Entry& entry = entry_of(robot);
-  entry.lifted_at = life == entry.lifted_life ? std::max(entry.lifted_at, at) : at;
-  entry.lifted_life = life;
+  entry.lifted_at = robot_incarnation == entry.lifted_incarnation ? std::max(entry.lifted_at, at) : at;
+  entry.lifted_incarnation = robot_incarnation;
   entry.set.forget_started(at, [&](const Version& version) { entry.former.add(version, at); });
   if (!entry.quarantined.empty()) {
     const Version reported = entry.quarantined.back();

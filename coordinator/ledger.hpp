@@ -26,7 +26,7 @@ struct Ruling {
 };
 
 /// Effect of a fact reported by a robot.
-enum class FactOutcome {
+enum class ReportOutcome {
   kApplied,
   kStale,          ///< overtaken by a later fact
   kContradiction,  ///< contradicts the ledger; the robot is quarantined
@@ -39,12 +39,12 @@ using Conflict = std::pair<RobotId, RobotId>;
 /// ledger". Invariant: every version of one robot is clear of every version of every other robot, except for
 /// the pairs in conflicts(), which external events have brought too close; no grant brings those closer. A
 /// robot without versions is not on the floor. A robot that has reported a version that it was never granted
-/// is quarantined: the ledger keeps all its versions and the reported one, until kFactsUntilReleased
+/// is quarantined: the ledger keeps all its versions and the reported one, until kReportsUntilReleased
 /// consecutive facts agree with the ledger.
 class Ledger {
  public:
   /// About one second at 60 Hz.
-  static constexpr int kFactsUntilReleased = 60;
+  static constexpr int kReportsUntilReleased = 60;
 
   /// `roster` lists the robots that the ledger covers. `max_clock_difference` is the maximum difference
   /// between the cameras' clock and a robot's.
@@ -69,15 +69,16 @@ class Ledger {
   [[nodiscard]] Ruling grant(const Version& candidate);
 
   /// Rules 2, 3 and 6, for the fact "executing f at time t". A robot off its reference executes an own stop,
-  /// which replaces all older versions without checks. `life` is the robot's incarnation.
-  [[nodiscard]] FactOutcome on_executing(const Version& executing, Time at, bool is_off_reference,
-                                         Incarnation life = 0);
+  /// which replaces all older versions without checks. `robot_incarnation` is that of the process that
+  /// speaks for the robot.
+  [[nodiscard]] ReportOutcome on_executing(const Version& executing, Time at, bool is_off_reference,
+                                           Incarnation robot_incarnation = 0);
   /// The outcome that on_executing() would return, without applying the fact.
-  [[nodiscard]] FactOutcome judge(const Version& executing, Time at, bool is_off_reference,
-                                  Incarnation life) const;
+  [[nodiscard]] ReportOutcome judge(const Version& executing, Time at, bool is_off_reference,
+                                    Incarnation robot_incarnation) const;
   /// Rule 5, for the fact "off the floor at time t, executing nothing": drops all versions that start at or
   /// before t.
-  void on_lifted(RobotId robot, Time at, Incarnation life = 0);
+  void on_lifted(RobotId robot, Time at, Incarnation robot_incarnation = 0);
 
   /// All conflicts, in no particular order.
   std::span<const Conflict> conflicts() const { return conflicts_; }
@@ -106,7 +107,7 @@ class Ledger {
     // Latest time at which the robot was reported off the floor, and its incarnation then. After a restart
     // its clock may be behind that time.
     Time lifted_at{};
-    Incarnation lifted_life = 0;
+    Incarnation lifted_incarnation = 0;
 
     std::span<const Version> versions() const { return quarantined.empty() ? set.versions() : quarantined; }
     void quarantine(const Version& reported);

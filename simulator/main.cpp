@@ -64,7 +64,7 @@ struct LeagueRobots {
       bus.watch(descriptor, std::move(readable));
     });
   }
-  BasesNode bases;
+  VelocityRobotSimNode bases;
   LeagueServer server;
   LeagueOutput vision;
 };
@@ -75,7 +75,7 @@ struct VelocityRobots {
       : bases(bus, scenario, 0, settings_of(options.bases), options.bases.speed, incarnation, options.seed),
         velocity_bus(bases_bus(bus, options.bases.velocity)),
         server(*velocity_bus, bases, options.bases.velocity.topic_prefix, options.bases.odometry_drift) {}
-  BasesNode bases;
+  VelocityRobotSimNode bases;
   std::shared_ptr<Bus> velocity_bus;
   VelocityServer server;
 };

@@ -26,7 +26,7 @@ BodyVelocity CommandedMotion::mean(Time from, Time to) const {
   BodyVelocity mean;
   Time until = end;
   for (std::size_t age = 0; age < std::min(count_, kRemembered) && until > begin; ++age) {
-    const Sent& sent = back(age);
+    const SentVelocity& sent = back(age);
     if (sent.at >= until) continue;
     const double share = to_seconds(until - std::max(sent.at, begin)) / to_seconds(end - begin);
     mean.linear_mps += share * sent.velocity.linear_mps;

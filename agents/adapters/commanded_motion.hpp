@@ -30,14 +30,14 @@ class CommandedMotion {
   static constexpr std::size_t kRemembered = 256;
 
  private:
-  struct Sent {
+  struct SentVelocity {
     Time at{};
     BodyVelocity velocity;
   };
-  const Sent& back(std::size_t age) const { return sent_[(count_ - 1 - age) % kRemembered]; }
+  const SentVelocity& back(std::size_t age) const { return sent_[(count_ - 1 - age) % kRemembered]; }
 
   Duration latency_;
-  std::array<Sent, kRemembered> sent_{};  ///< ring buffer
+  std::array<SentVelocity, kRemembered> sent_{};  ///< ring buffer
   std::size_t count_ = 0;
 };
 

@@ -252,15 +252,15 @@ bool DrivenRobot::is_at_rest(Time now) const {
   return !side_.has_pending() && to_ns(now - settings_.latency) >= side_.executing().end_ns();
 }
 
-Feedback DrivenRobot::feedback(Time now) {
-  Feedback facts = from_plain(side_.facts(to_ns(now)), robot_);
+RobotReport DrivenRobot::robot_report(Time now) {
+  RobotReport robot_report = from_plain(side_.robot_report(to_ns(now)), robot_);
   const Pose pose = predicted(now);
-  const Vec2 reference_m = facts.executing.trajectory.state_at(now).position_m;
-  facts.estimate = {pose.position_m, commanded(now - kPeriod, now, pose.heading_rad).velocity_mps};
-  facts.heading_rad = wrapped_rad(pose.heading_rad);
-  facts.tracking_error_m = (pose.position_m - reference_m).norm();
-  facts.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
-  return facts;
+  const Vec2 reference_m = robot_report.executing.trajectory.state_at(now).position_m;
+  robot_report.estimate = {pose.position_m, commanded(now - kPeriod, now, pose.heading_rad).velocity_mps};
+  robot_report.heading_rad = wrapped_rad(pose.heading_rad);
+  robot_report.tracking_error_m = (pose.position_m - reference_m).norm();
+  robot_report.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
+  return robot_report;
 }
 
 }  // namespace sidestep

@@ -61,7 +61,7 @@ class DrivenRobot {
   /// Whether the robot can report: it knows its pose.
   bool may_report() const { return side_.may_report() && estimator_.is_finite(); }
   /// The facts, except robot_incarnation. Precondition: may_report().
-  Feedback feedback(Time now);
+  RobotReport robot_report(Time now);
 
   /// Whether the base is at rest, and stays at rest unless it receives further versions.
   bool is_at_rest(Time now) const;

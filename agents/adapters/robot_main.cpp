@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "agents/adapters/league/league_driver.hpp"
+#include "agents/adapters/robot_driver_node.hpp"
 #include "agents/adapters/robot_list.hpp"
-#include "agents/adapters/robots_node.hpp"
 #include "agents/adapters/velocity/velocity_driver.hpp"
 #include "common/log/log.hpp"
 #include "common/process/bases_bus.hpp"
@@ -68,7 +68,7 @@ struct Nodes {
   std::vector<RobotId> robots;
   std::shared_ptr<Bus> bases;
   std::unique_ptr<Driver> driver;
-  RobotsNode node;
+  RobotDriverNode node;
 };
 
 }  // namespace

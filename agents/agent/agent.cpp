@@ -22,17 +22,18 @@ Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
       search_(*scratch_),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)) {}
 
-bool Agent::on_feedback(const Feedback& feedback) {
-  negotiation_.on_feedback(feedback);
-  observations_.on_feedback(feedback);
-  if (negotiation_.is_fenced()) update_goal(feedback);
+bool Agent::on_robot_report(const RobotReport& robot_report) {
+  negotiation_.on_robot_report(robot_report);
+  observations_.on_robot_report(robot_report);
+  if (negotiation_.is_fenced()) update_goal(robot_report);
   return negotiation_.is_contradicted();
 }
 
-void Agent::update_goal(const Feedback& feedback) {
+void Agent::update_goal(const RobotReport& robot_report) {
   if (negotiation_.is_absent()) return orders_.on_absence();
-  if (!feedback.is_lifted) placement_m_.reset();  // the robot has been put down
-  if (orders_.on_execution(negotiation_.executing().trajectory, feedback.valid_at)) planner_.on_new_goal();
+  if (!robot_report.is_lifted) placement_m_.reset();  // the robot has been put down
+  if (orders_.on_execution(negotiation_.executing().trajectory, robot_report.valid_at))
+    planner_.on_new_goal();
 }
 
 void Agent::on_orders(std::shared_ptr<const OrderPage> page) {
@@ -171,7 +172,7 @@ void Agent::count_drops(DropCounters& drops) const {
   const Negotiation::Counts& counts = negotiation_.counts();
   drops.count(DropReason::kUnproposedGrant, std::nullopt, counts.unproposed_grants);
   drops.count(DropReason::kUnexpectedVerdict, std::nullopt, counts.unexpected_verdicts);
-  drops.count(DropReason::kLateFact, std::nullopt, counts.late_facts);
+  drops.count(DropReason::kLateFact, std::nullopt, counts.late_reports);
   drops.count(DropReason::kOldEpoch, std::nullopt, counts.old_epochs);
   observations_.count_drops(drops);
 }

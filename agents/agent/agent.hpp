@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "agents/agent/agent_changes.hpp"
+#include "agents/agent/agent_event_logger.hpp"
 #include "agents/agent/motion_planner.hpp"
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/observations.hpp"
@@ -34,13 +34,13 @@ class Agent {
   Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
         std::shared_ptr<PlanningScratch> scratch);
 
-  /// Processes feedback. Returns whether the agent should propose again immediately, because the robot does
-  /// not execute the version that the last proposal was based on.
-  bool on_feedback(const Feedback& feedback);
+  /// Processes a report of the robot. Returns whether the agent should propose again immediately, because the
+  /// robot does not execute the version that the last proposal was based on.
+  bool on_robot_report(const RobotReport& robot_report);
   /// Processes a world state; see Observations. Here and below, `now` is an upper bound of the time by the
   /// robot's clock.
-  void on_world(const WorldObservations& world, Time now, bool is_robot_clock_known = true) {
-    observations_.on_world(world, now, is_robot_clock_known);
+  void on_world_state(const WorldObservations& world, Time now, bool is_robot_clock_known = true) {
+    observations_.on_world_state(world, now, is_robot_clock_known);
   }
   void on_obstacles(const ObstacleObservations& list, Time now) { observations_.on_obstacles(list, now); }
   /// Precondition: the robot has a laser.
@@ -121,8 +121,8 @@ class Agent {
   msg::AgentStatus status(Time now) const;
 
  private:
-  /// Learns from feedback what the robot has reached. Precondition: the robot is fenced.
-  void update_goal(const Feedback& feedback);
+  /// Learns from a report what the robot has reached. Precondition: the robot is fenced.
+  void update_goal(const RobotReport& robot_report);
   msg::AgentState state(Time now) const;
 
   const RobotSpec robot_;

@@ -49,7 +49,7 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       agent_(scenario, robot, incarnation, std::move(scratch)),
       clocks_(budget_of(scenario), scenario.margin_m),
       world_(robot),
-      changes_(events_, robot),
+      event_logger_(events_, robot),
       command_writer_(bus.advertise(topics::kCommand, robot)),
       registration_writer_(bus.advertise(topics::kRegistration)),
       proposal_writer_(bus.advertise(topics::kProposal)),
@@ -65,9 +65,9 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
 }
 
 void AgentNode::subscribe() {
-  bus_.subscribe(topics::kFeedback, robot_, [this](const msg::Feedback& m) { on_feedback(m); });
+  bus_.subscribe(topics::kFeedback, robot_, [this](const msg::Feedback& m) { on_robot_report(m); });
   bus_.subscribe(topics::kVerdict, robot_, [this](const msg::Verdict& m) { on_verdict(m); });
-  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& m) { on_world(m); });
+  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& m) { on_world_state(m); });
   bus_.subscribe(topics::kObstacles, [this](const msg::ObstacleList& m) { on_obstacles(m); });
   if (scans_) bus_.subscribe(topics::kScan, robot_, [this](const msg::LaserScan& m) { on_scan(m); });
   bus_.subscribe(topics::kDisturbance, [this](const msg::Disturbance& m) { on_disturbance(m); });
@@ -76,19 +76,19 @@ void AgentNode::subscribe() {
   bus_.subscribe(topics::kOrderMemory, [this](const msg::OrderMemory& m) { on_orders(m); });
 }
 
-void AgentNode::on_feedback(const msg::Feedback& message) {
-  const auto feedback = decode(message, robot_, bus_.now());
-  if (!accept(feedback, DropReason::kMalformedFeedback)) return;
-  measure_robot_clock(*feedback);
+void AgentNode::on_robot_report(const msg::Feedback& message) {
+  const auto robot_report = decode(message, robot_, bus_.now());
+  if (!accept(robot_report, DropReason::kMalformedFeedback)) return;
+  measure_robot_clock(*robot_report);
   const Epoch last_epoch = agent_.epoch();
   const bool was_fenced = agent_.is_fenced();
-  const bool is_contradicted = agent_.on_feedback(*feedback);
+  const bool is_contradicted = agent_.on_robot_report(*robot_report);
   // Responds to the robot's first acknowledgement immediately by sending the epoch: nothing moves before the
   // robot obeys it.
   if (!was_fenced && agent_.is_fenced() && agent_.epoch() != 0) publish_command(agent_.command(robot_now()));
   orders_.publish_status(agent_);
-  changes_.on_feedback(*feedback);
-  if (agent_.epoch() != last_epoch) changes_.on_epoch(agent_.epoch(), std::nullopt);
+  event_logger_.on_robot_report(*robot_report);
+  if (agent_.epoch() != last_epoch) event_logger_.on_epoch(agent_.epoch(), std::nullopt);
   register_if_due();
   if (is_contradicted) negotiate_if_time();
 }
@@ -100,17 +100,17 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
   clocks_.on_verdict(*verdict, bus_.now());
   const auto result = agent_.on_verdict(*verdict, robot_now());
   if (result.round_trip) negotiation_durations_.add(*result.round_trip);
-  if (result.round_trip && verdict->granted_version == 0) changes_.on_denial(*verdict);
+  if (result.round_trip && verdict->granted_version == 0) event_logger_.on_denial(*verdict);
   if (!result.command) return;
   commanded_ = true;
   publish_command(*result.command);
 }
 
-void AgentNode::on_world(const msg::WorldState& message) {
+void AgentNode::on_world_state(const msg::WorldState& message) {
   WorldObservations world = world_.decode(message);
   // With a clock beyond the bound, the robot would take this position for its position at another time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
-  agent_.on_world(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
+  agent_.on_world_state(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
 }
 
 void AgentNode::on_obstacles(const msg::ObstacleList& message) {
@@ -136,7 +136,7 @@ void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
   const Epoch last_epoch = agent_.epoch();
   const bool could_propose = agent_.may_propose(robot_now());
   agent_.on_coordinator_state(*heartbeat, robot_now());
-  if (agent_.epoch() != last_epoch) changes_.on_epoch(agent_.epoch(), heartbeat->sender);
+  if (agent_.epoch() != last_epoch) event_logger_.on_epoch(agent_.epoch(), heartbeat->sender);
   if (agent_.is_superseded()) return;
   // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
   if (agent_.epoch() != last_epoch) publish_command(agent_.command(robot_now()));
@@ -206,7 +206,7 @@ void AgentNode::report_changes() {
   const auto offset = clocks_.robot_coordinator_offset(bus_.now());
   if (activity.waits_for == WaitReason::kNone && !clocks_.allows_motion(bus_.now()))
     activity.waits_for = offset ? WaitReason::kClockOutOfBound : WaitReason::kClockNotMeasured;
-  changes_.update(activity, {speed_limit_mps(), max_speed_mps_, offset}, bus_.now());
+  event_logger_.update(activity, {speed_limit_mps(), max_speed_mps_, offset}, bus_.now());
 }
 
 Time AgentNode::robot_now() const { return bus_.now() + clocks_.robot_offset(); }
@@ -221,8 +221,8 @@ Time AgentNode::cycle_after(Time now) const {
   return now - elapsed + (elapsed < Duration{0} ? Duration{0} : cycle_);
 }
 
-void AgentNode::measure_robot_clock(const Feedback& feedback) {
-  clocks_.on_feedback(feedback, agent_.incarnation(), bus_.now());
+void AgentNode::measure_robot_clock(const RobotReport& robot_report) {
+  clocks_.on_robot_report(robot_report, agent_.incarnation(), bus_.now());
   // The robot's clock estimate jumped: reschedule the next cycle.
   const Duration until_cycle = next_cycle_ - robot_now();
   if (until_cycle > 2 * cycle_ || until_cycle < -2 * cycle_) next_cycle_ = cycle_after(robot_now());

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "agents/agent/agent.hpp"
-#include "agents/agent/agent_changes.hpp"
+#include "agents/agent/agent_event_logger.hpp"
 #include "agents/agent/clock_monitor.hpp"
-#include "agents/agent/obstacle_view.hpp"
+#include "agents/agent/laser_scan_decoder.hpp"
+#include "agents/agent/obstacle_list_decoder.hpp"
 #include "agents/agent/order_publisher.hpp"
-#include "agents/agent/scan_view.hpp"
-#include "agents/agent/world_view.hpp"
+#include "agents/agent/world_state_decoder.hpp"
 #include "common/log/log_event.hpp"
 #include "common/messaging/bus.hpp"
 #include "common/messaging/counter_publisher.hpp"
@@ -40,9 +40,9 @@ class AgentNode {
 
  private:
   void subscribe();
-  void on_feedback(const msg::Feedback& message);
+  void on_robot_report(const msg::Feedback& message);
   void on_verdict(const msg::Verdict& message);
-  void on_world(const msg::WorldState& message);
+  void on_world_state(const msg::WorldState& message);
   void on_obstacles(const msg::ObstacleList& message);
   void on_scan(const msg::LaserScan& message);
   void on_page(const msg::LedgerPage& message);
@@ -64,7 +64,7 @@ class AgentNode {
   void measure_coordinator_clock(Duration since_last);
   /// Requests a measurement of the clocks if one is due. Returns whether the clocks allow proposals.
   bool update_clocks();
-  void measure_robot_clock(const Feedback& feedback);
+  void measure_robot_clock(const RobotReport& robot_report);
   /// The speed that the clocks allow, but at most the robot's limit.
   double speed_limit_mps() const;
   void report_changes();
@@ -89,12 +89,12 @@ class AgentNode {
   double max_speed_mps_;  // of the scenario's robots
   Agent agent_;
   ClockMonitor clocks_;
-  WorldView world_;
-  ObstacleView obstacles_;
-  std::optional<ScanView> scans_;  // nullopt: the robot has no laser
-  DropCounters drops_;             // messages that could not be decoded
+  WorldStateDecoder world_;
+  ObstacleListDecoder obstacles_;
+  std::optional<LaserScanDecoder> scans_;  // nullopt: the robot has no laser
+  DropCounters drops_;                     // messages that could not be decoded
   EventReporter events_;
-  AgentChanges changes_;
+  AgentEventLogger event_logger_;
   Time next_cycle_;            // by the robot's clock, like all times that are passed to the agent
   bool commanded_ = false;     // a command has been published in this cycle
   int registration_wait_ = 0;  // number of cycles until the next registration

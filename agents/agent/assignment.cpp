@@ -144,7 +144,7 @@ OrderReport Assignment::report() const {
   return report;
 }
 
-bool Assignment::yields_to(const Passer& other, Time t, Duration period) const {
+bool Assignment::yields_to(const PassageContender& other, Time t, Duration period) const {
   return may_pass_first(other, {robot_, number_}, t, period);
 }
 

@@ -60,7 +60,7 @@ class Assignment {
   /// What is known about another robot's orders.
   OtherAssignment other(RobotId robot) const;
   /// Whether the other robot goes first where the two cannot pass each other; see may_pass_first().
-  bool yields_to(const Passer& other, Time t, Duration period) const;
+  bool yields_to(const PassageContender& other, Time t, Duration period) const;
 
   /// All orders, including those of other robots, whose agents may have restarted together with all
   /// coordinators. An order that a coordinator's memory lacks is not forgotten, because that coordinator may

@@ -22,15 +22,15 @@ void ClockMonitor::arrived(Time received) {
   latest_ = received;
 }
 
-void ClockMonitor::on_feedback(const Feedback& feedback, Incarnation own, Time received) {
+void ClockMonitor::on_robot_report(const RobotReport& robot_report, Incarnation own, Time received) {
   arrived(received);
-  const auto& command = feedback.command;
-  if (feedback.obeyed_incarnation != own || !command) return;
-  if (feedback.robot_incarnation != robot_incarnation_) {
-    robot_incarnation_ = feedback.robot_incarnation;
+  const auto& command = robot_report.command;
+  if (robot_report.obeyed_incarnation != own || !command) return;
+  if (robot_report.robot_incarnation != robot_incarnation_) {
+    robot_incarnation_ = robot_report.robot_incarnation;
     robot_.reset();
   }
-  invalid_ += !robot_.add({command->sent_at, command->received_at, feedback.valid_at, received});
+  invalid_ += !robot_.add({command->sent_at, command->received_at, robot_report.valid_at, received});
   const auto known = robot_.at(received);
   knows_robot_ |= known.has_value();
   if (known) robot_offset_ = known->nearest_to_zero();

@@ -28,7 +28,7 @@ class ClockMonitor {
 
   /// Uses the time stamp of a command that the robot echoes. A robot echoes commands of the agent that it
   /// obeys, so the echo is ignored unless that agent's incarnation is `own`.
-  void on_feedback(const Feedback& feedback, Incarnation own, Time received);
+  void on_robot_report(const RobotReport& robot_report, Incarnation own, Time received);
   /// Records the send time of a request that the coordinator will answer.
   void on_request_sent(Time sent);
   /// A new epoch may belong to another coordinator with another clock. The first verdict of the epoch shows

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-void CompletenessMonitor::on_world(const WorldObservations& world) {
+void CompletenessMonitor::on_world_state(const WorldObservations& world) {
   if (!world.self) return;
   positions_[position_count_++ % positions_.size()] = {world.vision, world.valid_at, world.self_m};
   combine();

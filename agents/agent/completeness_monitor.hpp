@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "agents/agent/obstacle_view.hpp"
-#include "agents/agent/world_view.hpp"
+#include "agents/agent/obstacle_list_decoder.hpp"
+#include "agents/agent/world_state_decoder.hpp"
 #include "agents/safety/seen_region.hpp"
 
 namespace sidestep {
@@ -23,7 +23,7 @@ class CompletenessMonitor {
     seen_.radius_m = 0;
   }
 
-  void on_world(const WorldObservations& world);
+  void on_world_state(const WorldObservations& world);
   /// Precondition: all obstacles of the list were stored.
   void on_list(const ObstacleObservations& list);
   /// Until a given time, obstacles outside this region are no longer known.

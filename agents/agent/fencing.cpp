@@ -14,46 +14,46 @@ constexpr Incarnation kIncarnationSpread = 1'000'003;
 
 // A later incarnation's clock may be behind. A single false report must not exclude all true ones
 // permanently.
-void Fencing::update_incarnation(const Feedback& feedback, ReportUse& use) {
-  const bool is_earlier = feedback.robot_incarnation < robot_incarnation_;
+void Fencing::update_incarnation(const RobotReport& robot_report, ReportUse& use) {
+  const bool is_earlier = robot_report.robot_incarnation < robot_incarnation_;
   if (is_earlier && ++reports_of_earlier_incarnation_ < kReportsOfOneIncarnation) return;
   reports_of_earlier_incarnation_ = 0;
   use.is_current = true;
-  if (feedback.robot_incarnation == robot_incarnation_) return;
+  if (robot_report.robot_incarnation == robot_incarnation_) return;
   use.is_new_incarnation = true;
-  robot_incarnation_ = feedback.robot_incarnation;
+  robot_incarnation_ = robot_report.robot_incarnation;
   if (superseded_at_) superseded_at_ = Time::min();
 }
 
 // An agent that the robot has obeyed yields to a later one. Until then, a higher incarnation means that this
 // agent's clock is behind an earlier agent's.
-void Fencing::on_later_agent(const Feedback& feedback, bool is_current) {
-  const Time at = is_current ? feedback.valid_at : Time::min();
+void Fencing::on_later_agent(const RobotReport& robot_report, bool is_current) {
+  const Time at = is_current ? robot_report.valid_at : Time::min();
   if (is_fenced())
     superseded_at_ = std::max(superseded_at_.value_or(at), at);
   else
-    incarnation_ = feedback.obeyed_incarnation + 1 + incarnation_ % kIncarnationSpread;
+    incarnation_ = robot_report.obeyed_incarnation + 1 + incarnation_ % kIncarnationSpread;
 }
 
-Fencing::ReportUse Fencing::on_feedback(const Feedback& feedback) {
+Fencing::ReportUse Fencing::on_robot_report(const RobotReport& robot_report) {
   unheard_cycles_ = 0;
   ReportUse use;
-  update_incarnation(feedback, use);
-  if (feedback.obeyed_incarnation > incarnation_) {
-    on_later_agent(feedback, use.is_current);
+  update_incarnation(robot_report, use);
+  if (robot_report.obeyed_incarnation > incarnation_) {
+    on_later_agent(robot_report, use.is_current);
     return use;
   }
-  if (feedback.obeyed_incarnation < incarnation_) return use;
+  if (robot_report.obeyed_incarnation < incarnation_) return use;
   use.is_acknowledged = true;
   // A robot never returns to an earlier agent, so a later report that acknowledges this agent proves that the
   // report about another agent was false.
-  if (superseded_at_ && use.is_current && feedback.valid_at > *superseded_at_) superseded_at_.reset();
+  if (superseded_at_ && use.is_current && robot_report.valid_at > *superseded_at_) superseded_at_.reset();
   silent_cycles_ = 0;
-  robot_epoch_ = std::max(robot_epoch_, feedback.obeyed_epoch);
+  robot_epoch_ = std::max(robot_epoch_, robot_report.obeyed_epoch);
   use.is_first = !is_fenced() && use.is_current;
   if (use.is_first) {
-    fenced_at_ = feedback.valid_at;
-    former_epoch_ = feedback.obeyed_epoch;
+    fenced_at_ = robot_report.valid_at;
+    former_epoch_ = robot_report.obeyed_epoch;
   }
   return use;
 }

@@ -22,7 +22,7 @@ class Fencing {
 
   explicit Fencing(Incarnation incarnation) : incarnation_(incarnation) {}
 
-  ReportUse on_feedback(const Feedback& feedback);
+  ReportUse on_robot_report(const RobotReport& robot_report);
   void close_cycle();
 
   /// The incarnation sent with commands. It changes only before the robot has acknowledged this agent.
@@ -43,8 +43,8 @@ class Fencing {
   int silent_cycles() const { return silent_cycles_; }
 
  private:
-  void update_incarnation(const Feedback& feedback, ReportUse& use);
-  void on_later_agent(const Feedback& feedback, bool is_current);
+  void update_incarnation(const RobotReport& robot_report, ReportUse& use);
+  void on_later_agent(const RobotReport& robot_report, bool is_current);
 
   Incarnation incarnation_;
   std::optional<Time> fenced_at_;

@@ -5,13 +5,13 @@
 
 namespace sidestep {
 
-void HeldVersions::begin(const Feedback& feedback) {
+void HeldVersions::begin(const RobotReport& robot_report) {
   versions_.clear();
-  if (!feedback.is_absent()) versions_.add(feedback.executing);
-  executing_ = feedback.executing.number;
-  latest_report_ = feedback.valid_at;
-  next_number_ = std::max(next_number_, feedback.obeyed_incarnation);
-  number_above(feedback.executing);
+  if (!robot_report.is_absent()) versions_.add(robot_report.executing);
+  executing_ = robot_report.executing.number;
+  latest_report_ = robot_report.valid_at;
+  next_number_ = std::max(next_number_, robot_report.obeyed_incarnation);
+  number_above(robot_report.executing);
 }
 
 // A robot off the floor reports its last version as the base, because the stop that it made before it was
@@ -20,13 +20,13 @@ void HeldVersions::number_above(const Version& executing) {
   next_number_ = std::max({next_number_, executing.number + 1, executing.base + 1});
 }
 
-HeldVersions::ReportEffect HeldVersions::apply(const Feedback& feedback, bool is_current) {
-  const Version& executing = feedback.executing;
-  const Time at = feedback.valid_at;
+HeldVersions::ReportEffect HeldVersions::apply(const RobotReport& robot_report, bool is_current) {
+  const Version& executing = robot_report.executing;
+  const Time at = robot_report.valid_at;
   const std::size_t before = versions_.versions().size();
   const bool has_advanced = executing.number != executing_;
   ReportEffect effect;
-  if (feedback.is_absent()) {
+  if (robot_report.is_absent()) {
     effect.is_late = !is_current || at < latest_report_;
     if (effect.is_late) return effect;
     versions_.forget_started(at);

@@ -24,9 +24,9 @@ class HeldVersions {
   explicit HeldVersions(VersionNumber next_number) : next_number_(next_number) {}
 
   /// Begins with what the robot executes when it first acknowledges the agent.
-  void begin(const Feedback& feedback);
+  void begin(const RobotReport& robot_report);
   /// Applies a later report. `is_current`: it belongs to the robot's current incarnation.
-  ReportEffect apply(const Feedback& feedback, bool is_current);
+  ReportEffect apply(const RobotReport& robot_report, bool is_current);
   /// Accepts reports of any time, because the robot's clock is another one.
   void forget_report_times() { latest_report_ = Time::min(); }
   /// Adds a granted version. Precondition: not is_full().

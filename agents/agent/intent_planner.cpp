@@ -68,7 +68,7 @@ Intent IntentPlanner::steer(const Query& query, const RouteToTarget& routes, Nei
   const bool is_open = !rules_.map && std::ranges::all_of(rules_.obstacles, [](const Shape& obstacle) {
     return std::holds_alternative<Circle>(obstacle);
   });
-  return steering_.choose(query.at_start, route.waypoint_m, is_open ? route.end_m : route.following_m,
+  return steering_.choose(query.at_start, route.waypoint_m, is_open ? route.end_m : route.next_waypoint_m,
                           elapsed_s, last_choice_);
 }
 

@@ -20,21 +20,21 @@ constexpr int kMaxSilentCycles = 1;
 Negotiation::Negotiation(RobotId robot, Incarnation incarnation, Duration cycle)
     : robot_(robot), cycle_(cycle), fencing_(incarnation), held_(incarnation), pacing_(cycle) {}
 
-void Negotiation::on_feedback(const Feedback& feedback) {
-  const Fencing::ReportUse use = fencing_.on_feedback(feedback);
+void Negotiation::on_robot_report(const RobotReport& robot_report) {
+  const Fencing::ReportUse use = fencing_.on_robot_report(robot_report);
   if (use.is_new_incarnation) held_.forget_report_times();
   if (!use.is_acknowledged) return;
-  pacing_.set_robot_lead(feedback.lead);
+  pacing_.set_robot_lead(robot_report.lead);
   if (fencing_.robot_epoch() > epoch_) adopt_epoch(fencing_.robot_epoch());
   if (use.is_first)
-    held_.begin(feedback);
+    held_.begin(robot_report);
   else if (is_fenced())
-    apply_report(feedback, use.is_current);
+    apply_report(robot_report, use.is_current);
 }
 
-void Negotiation::apply_report(const Feedback& feedback, bool is_current) {
-  const HeldVersions::ReportEffect effect = held_.apply(feedback, is_current);
-  counts_.late_facts += effect.is_late;
+void Negotiation::apply_report(const RobotReport& robot_report, bool is_current) {
+  const HeldVersions::ReportEffect effect = held_.apply(robot_report, is_current);
+  counts_.late_reports += effect.is_late;
   if (effect.is_late) return;
   if (effect.is_unknown) {
     proposals_.close();

@@ -33,13 +33,13 @@ class Negotiation {
     std::uint64_t missed = 0;  ///< number of cycles without a verdict in time
     std::uint64_t lost = 0;    ///< number of forwarded versions that the robot did not activate
     // Counts of messages that were not used.
-    std::uint64_t unproposed_grants = 0, unexpected_verdicts = 0, late_facts = 0, old_epochs = 0;
+    std::uint64_t unproposed_grants = 0, unexpected_verdicts = 0, late_reports = 0, old_epochs = 0;
   };
 
   Negotiation(RobotId robot, Incarnation incarnation, Duration cycle);
 
   /// Handles a fact from the robot. The first one that acknowledges this incarnation ends the fencing.
-  void on_feedback(const Feedback& feedback);
+  void on_robot_report(const RobotReport& robot_report);
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
 
@@ -85,7 +85,7 @@ class Negotiation {
   /// Number of cycles to propose ahead, and upper bound of the number of cycles for which an acceleration is
   /// held.
   int lead() const { return pacing_.lead(); }
-  /// Whether feedback since the last proposal shows that the robot does not execute the version that was
+  /// Whether a report since the last proposal shows that the robot does not execute the version that was
   /// assumed.
   bool is_contradicted() const { return contradicted_; }
 
@@ -120,7 +120,7 @@ class Negotiation {
  private:
   /// Whether the robot obeys this agent in the highest known epoch.
   bool is_epoch_obeyed() const { return is_fenced() && epoch_ != 0 && fencing_.robot_epoch() == epoch_; }
-  void apply_report(const Feedback& feedback, bool is_current);
+  void apply_report(const RobotReport& robot_report, bool is_current);
   void check_assumptions();
   void adopt_epoch(Epoch epoch);
   /// Forwards the granted candidate if it is in time.

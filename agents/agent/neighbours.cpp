@@ -56,10 +56,10 @@ void Neighbours::on_page(const ReceivedPage& received) {
 void Neighbours::store(const ReceivedPage& received, Page& page) {
   page.nearby.clear();
   if (is_far(received.bounds_m(), centre_m_, horizon_m_)) return;
-  received.update(page.view);
-  const auto& entries = page.view->entries;
+  received.update(page.decoded);
+  const auto& entries = page.decoded->entries;
   for (std::uint32_t i = 0; i < entries.size(); ++i) {
-    const LedgerView::Entry& entry = entries[i];
+    const DecodedLedgerPage::Entry& entry = entries[i];
     if (entry.robot == self_ || (entry.position_m - centre_m_).squaredNorm() > horizon_m_ * horizon_m_)
       continue;
     if (entry.is_valid)
@@ -73,9 +73,9 @@ void Neighbours::collect(const Vec2& centre, double horizon, TrajectoryIndex& in
   index.clear();
   for (const Page& page : pages_) {
     for (const std::uint32_t i : page.nearby) {
-      const LedgerView& view = *page.view;
-      if ((view.entries[i].position_m - centre).squaredNorm() <= horizon * horizon)
-        index.add(view.versions[i], view.bounds[i]);
+      const DecodedLedgerPage& decoded = *page.decoded;
+      if ((decoded.entries[i].position_m - centre).squaredNorm() <= horizon * horizon)
+        index.add(decoded.versions[i], decoded.bounds[i]);
     }
   }
 }
@@ -84,8 +84,8 @@ std::span<const Version* const> Neighbours::newest(const Vec2& centre, double ho
   newest_.clear();
   for (const Page& page : pages_) {
     for (const std::uint32_t i : page.nearby) {
-      if ((page.view->entries[i].position_m - centre).squaredNorm() > horizon * horizon) continue;
-      const Version& version = page.view->versions[i];
+      if ((page.decoded->entries[i].position_m - centre).squaredNorm() > horizon * horizon) continue;
+      const Version& version = page.decoded->versions[i];
       // Versions of one robot are adjacent on a page.
       const bool is_new_robot = newest_.empty() || newest_.back()->robot != version.robot;
       if (is_new_robot)
@@ -102,8 +102,8 @@ std::span<const Neighbours::Stationary> Neighbours::find_stationary(Time since, 
   stationary_.clear();
   for (const Page& page : pages_) {
     for (const std::uint32_t i : page.nearby) {
-      const Version& version = page.view->versions[i];
-      if (page.view->ends[i] > since || is_moving(version.robot, since)) continue;
+      const Version& version = page.decoded->versions[i];
+      if (page.decoded->ends[i] > since || is_moving(version.robot, since)) continue;
       stationary_.push_back(
           {version.robot, version.trajectory.rest_position_m(), version.intent ? &*version.intent : nullptr});
     }
@@ -118,7 +118,7 @@ std::span<const Neighbours::Stationary> Neighbours::find_stationary(Time since, 
 bool Neighbours::is_moving(RobotId robot, Time since) const {
   return std::ranges::any_of(pages_, [=](const Page& page) {
     return std::ranges::any_of(page.nearby, [&](std::uint32_t i) {
-      return page.view->entries[i].robot == robot && page.view->ends[i] > since;
+      return page.decoded->entries[i].robot == robot && page.decoded->ends[i] > since;
     });
   });
 }

@@ -48,7 +48,7 @@ class Neighbours {
   struct Page {
     Epoch epoch = 0;
     std::uint64_t number = 0;
-    std::shared_ptr<LedgerView> view;
+    std::shared_ptr<DecodedLedgerPage> decoded;
     std::vector<std::uint32_t> nearby;  // indices of the versions within the horizon, as stored in the view
   };
   void store(const ReceivedPage& received, Page& page);

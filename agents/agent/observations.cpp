@@ -33,12 +33,12 @@ Observations::Observations(const Scenario& scenario, const RobotSpec& robot, con
   if (scenario.laser) laser_.emplace(scenario, rules);
 }
 
-void Observations::on_feedback(const Feedback& feedback) {
-  own_.on_feedback(feedback);
+void Observations::on_robot_report(const RobotReport& robot_report) {
+  own_.on_robot_report(robot_report);
   neighbours_.set_horizon(own_.estimate().position_m, page_horizon_m_);
 }
 
-void Observations::on_world(const WorldObservations& world, Time now, bool is_robot_clock_known) {
+void Observations::on_world_state(const WorldObservations& world, Time now, bool is_robot_clock_known) {
   // The robot's clock was ahead when the last fix was accepted.
   if (is_robot_clock_known && last_fix_ > now + max_clock_difference_) last_fix_ = {};
   if (!world.self) return;
@@ -49,7 +49,7 @@ void Observations::on_world(const WorldObservations& world, Time now, bool is_ro
     ++invalid_;
     return;
   }
-  obstacles_.on_world(world);
+  obstacles_.on_world_state(world);
   if (captured_at <= last_fix_) return;
   fix_ = world.self;
   if (!is_robot_clock_known) return;

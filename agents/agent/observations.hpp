@@ -15,7 +15,7 @@
 
 namespace sidestep {
 
-/// Everything that an agent knows about its robot and what is around it. Inputs: feedback from the robot,
+/// Everything that an agent knows about its robot and what is around it. Inputs: reports of the robot,
 /// world states and lists of obstacles from vision, scans of the robot's laser, and ledger pages and
 /// heartbeats from the coordinator. Outputs: the latest state of each of these, and which of them is too old
 /// to drive by. All times are by the robot's clock; `now` is an upper bound of the time.
@@ -24,10 +24,10 @@ class Observations {
   /// `rules` must outlive this object.
   Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules);
 
-  void on_feedback(const Feedback& feedback);
+  void on_robot_report(const RobotReport& robot_report);
   /// Processes a world state. If the robot's clock has not been measured yet, the observation is only
   /// forwarded, because a robot that has lost its pose reports nothing until it gets one.
-  void on_world(const WorldObservations& world, Time now, bool is_robot_clock_known);
+  void on_world_state(const WorldObservations& world, Time now, bool is_robot_clock_known);
   void on_obstacles(const ObstacleObservations& list, Time now) {
     obstacles_.on_list(list, own_.estimate().position_m, now);
   }

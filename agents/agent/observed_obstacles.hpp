@@ -25,7 +25,7 @@ class ObservedObstacles {
   /// the difference between the cameras' clock and the robot's.
   ObservedObstacles(double max_speed_mps, Duration max_clock_difference);
 
-  void on_world(const WorldObservations& world) { completeness_.on_world(world); }
+  void on_world_state(const WorldObservations& world) { completeness_.on_world_state(world); }
   /// Stores observations whose times are not in the future. If the capacity is exceeded, forgets the
   /// obstacles that are farthest from the robot. `robot_m` is the robot's position.
   void on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now);

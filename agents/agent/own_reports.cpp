@@ -7,12 +7,12 @@
 
 namespace sidestep {
 
-void OwnReports::on_feedback(const Feedback& feedback) {
-  estimate_ = feedback.estimate;
-  max_dead_reckoning_m_ = max_dead_reckoning_m(feedback.uncertainty, drift_bound_m_);
-  const VersionNumber stop = feedback.is_off_reference ? feedback.executing.number : 0;
+void OwnReports::on_robot_report(const RobotReport& robot_report) {
+  estimate_ = robot_report.estimate;
+  max_dead_reckoning_m_ = max_dead_reckoning_m(robot_report.uncertainty, drift_bound_m_);
+  const VersionNumber stop = robot_report.is_off_reference ? robot_report.executing.number : 0;
   reference_losses_ += stop > last_own_stop_;
-  has_moved_ |= feedback.has_moved;
+  has_moved_ |= robot_report.has_moved;
   last_own_stop_ = std::max(last_own_stop_, stop);
 }
 

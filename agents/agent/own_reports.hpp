@@ -8,14 +8,14 @@
 namespace sidestep {
 
 /// What a robot reports about itself: its estimate of its own state, how far it may rely on that estimate,
-/// and how often it has stopped because it was off its reference. Input: the robot's feedback.
+/// and how often it has stopped because it was off its reference. Input: the robot's reports.
 class OwnReports {
  public:
   /// `start` is the robot's state before its first report. `drift_bound_m` is the largest difference between
   /// its estimate and its true position that is allowed (drift_bound_m() of the scenario).
   OwnReports(const State& start, double drift_bound_m) : drift_bound_m_(drift_bound_m), estimate_(start) {}
 
-  void on_feedback(const Feedback& feedback);
+  void on_robot_report(const RobotReport& robot_report);
 
   /// The robot's own estimate of its state.
   const State& estimate() const { return estimate_; }

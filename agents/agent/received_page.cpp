@@ -23,16 +23,16 @@ std::optional<ReceivedPage> ReceivedPage::decode(const msg::LedgerPage& message,
   return ReceivedPage(message, attachment);
 }
 
-void ReceivedPage::update(std::shared_ptr<LedgerView>& view) const {
+void ReceivedPage::update(std::shared_ptr<DecodedLedgerPage>& decoded) const {
   if (attachment_) {
-    if (auto shared = attachment_->get<LedgerView>()) {
-      view = std::move(shared);
+    if (auto shared = attachment_->get<DecodedLedgerPage>()) {
+      decoded = std::move(shared);
       return;
     }
   }
-  if (!view || view.use_count() > 1) view = std::make_shared<LedgerView>();
-  view->assign(*message_);
-  if (attachment_) attachment_->set(view);
+  if (!decoded || decoded.use_count() > 1) decoded = std::make_shared<DecodedLedgerPage>();
+  decoded->assign(*message_);
+  if (attachment_) attachment_->set(decoded);
 }
 
 }  // namespace sidestep

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "agents/agent/ledger_view.hpp"
+#include "agents/agent/decoded_ledger_page.hpp"
 #include "common/geometry/box.hpp"
 #include "common/messaging/attachment.hpp"
 
@@ -31,7 +31,7 @@ class ReceivedPage {
 
   /// Replaces a view with this page's view: the shared one if it exists. Otherwise decodes the page, reusing
   /// the old view's memory if it has no other readers.
-  void update(std::shared_ptr<LedgerView>& view) const;
+  void update(std::shared_ptr<DecodedLedgerPage>& decoded) const;
 
  private:
   ReceivedPage(const msg::LedgerPage& message, MessageAttachment* attachment);

@@ -14,7 +14,7 @@ namespace sidestep {
 
 /// A robot that wants to pass, with the number of its order. The number is a clock reading, so older orders
 /// have smaller numbers.
-struct Passer {
+struct PassageContender {
   RobotId robot = 0;
   OrderNumber order = 0;
 };
@@ -23,6 +23,7 @@ struct Passer {
 /// The older order goes first: no robot waits for more orders than were given before its own. Robots with the
 /// same number, and in every fourth period all robots, go in a random order that is drawn again in each
 /// period, because the robot with the oldest order may be unable to drive.
-[[nodiscard]] bool may_pass_first(const Passer& other, const Passer& self, Time t, Duration period);
+[[nodiscard]] bool may_pass_first(const PassageContender& other, const PassageContender& self, Time t,
+                                  Duration period);
 
 }  // namespace sidestep

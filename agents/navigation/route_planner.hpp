@@ -16,9 +16,9 @@ namespace sidestep {
 /// The next waypoint of a route.
 struct Route {
   Vec2 waypoint_m{0, 0};
-  Vec2 following_m{0, 0};  ///< where the route continues after the waypoint
-  double length_m = 0;     ///< length of the remaining route
-  Vec2 end_m{0, 0};        ///< the goal, or the nearest place that can be reached
+  Vec2 next_waypoint_m{0, 0};  ///< where the route continues after the waypoint
+  double length_m = 0;         ///< length of the remaining route
+  Vec2 end_m{0, 0};            ///< the goal, or the nearest place that can be reached
   bool reaches_goal = true;
   /// Leads straight out of several overlapping obstacles, regardless of what is in between.
   bool is_way_out = false;

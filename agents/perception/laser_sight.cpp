@@ -31,7 +31,7 @@ LaserSight::LaserSight(const LaserSpec& laser, const FloorRules& rules, const La
     : settings_(settings),
       explained_within_m_(explained_within_m(laser, rules, settings.position_error_m)),
       shapes_(rules.obstacles),
-      floor_{rules.map ? &rules.map->cells() : nullptr, rules.obstacles.empty() ? nullptr : &shapes_},
+      prior_map_{rules.map ? &rules.map->cells() : nullptr, rules.obstacles.empty() ? nullptr : &shapes_},
       beams_(laser.settings),
       visibility_(visibility_settings(laser, rules, settings)) {
   unknown_.reserve(settings.max_unknown);
@@ -41,10 +41,11 @@ bool LaserSight::update(const LaserScan& scan, std::span<const Circle> robots) {
   if (scan.captured_at <= captured_at_) return false;
   captured_at_ = scan.captured_at;
   beams_.read(scan, robots);
-  tracks_.update(beams_, grid_, floor_);
+  tracks_.update(beams_, grid_, prior_map_);
   const bool is_grid_due = captured_at_ - grid_.updated_at() >= kGridPeriod;
   if (is_grid_due) grid_.update(beams_);
-  visibility_.update(beams_, [&](const Vec2& p, double within_m) { return floor_.nearest_m(p, within_m); });
+  visibility_.update(beams_,
+                     [&](const Vec2& p, double within_m) { return prior_map_.nearest_m(p, within_m); });
   if (is_grid_due) find_unknown();
   return true;
 }
@@ -57,7 +58,7 @@ void LaserSight::find_unknown() {
     if (grid_.occupied_for(cell) < kUnknownAfter) return;
     const Box box = grid_.box_of(cell);
     const Vec2 centre = (box.min_m + box.max_m) / 2;
-    if (floor_.is_near(centre, explained_within_m_)) return;
+    if (prior_map_.is_near(centre, explained_within_m_)) return;
     squares_.push_back({static_cast<int>(std::floor(centre.x() / kUnknownCell_m)),
                         static_cast<int>(std::floor(centre.y() / kUnknownCell_m))});
   });

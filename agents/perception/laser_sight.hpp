@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "agents/perception/known_floor.hpp"
 #include "agents/perception/laser_tracks.hpp"
+#include "agents/perception/prior_map.hpp"
 #include "agents/perception/visibility.hpp"
 #include "common/config/scenario.hpp"
 
@@ -53,7 +53,7 @@ class LaserSight {
   LaserSightSettings settings_;
   double explained_within_m_;  // maximum distance of a hit from the known obstacle that explains it
   ObstacleWorld shapes_;
-  KnownFloor floor_;
+  PriorMap prior_map_;
   LaserBeams beams_;
   LocalGrid grid_;
   LaserTracks tracks_;

@@ -43,7 +43,7 @@ LaserTracks::LaserTracks() : clusters_(kJoin_m) {
   listed_.reserve(kMaxTracks);
 }
 
-bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor) {
+bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const PriorMap& floor) {
   if (beams.captured_at() <= now_) return false;
   now_ = beams.captured_at();
   std::erase_if(entries_, [&](const Entry& entry) { return now_ - entry.seen_at > kDropAfter; });
@@ -56,7 +56,7 @@ bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const K
   return true;
 }
 
-void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor) {
+void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const PriorMap& floor) {
   kinds_.assign(beams.all().size(), kOther);
   is_loose_.assign(beams.all().size(), 0);
   for (std::size_t i = 0; i < kinds_.size(); ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "agents/perception/known_floor.hpp"
 #include "agents/perception/local_grid.hpp"
+#include "agents/perception/prior_map.hpp"
 #include "agents/perception/scan_clusters.hpp"
 #include "common/tracking/kalman.hpp"
 
@@ -37,7 +37,7 @@ class LaserTracks {
 
   /// Processes a scan, which the grid must not have processed yet. Returns false and changes nothing if the
   /// scan is not newer than the last one. Does not allocate once warm.
-  bool update(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor = {});
+  bool update(const LaserBeams& beams, const LocalGrid& grid, const PriorMap& floor = {});
 
   /// The confirmed tracks.
   std::span<const LaserTrack> tracks() const { return listed_; }
@@ -63,7 +63,7 @@ class LaserTracks {
     std::size_t entry = 0, cluster = 0;
   };
 
-  void classify(const LaserBeams& beams, const LocalGrid& grid, const KnownFloor& floor);
+  void classify(const LaserBeams& beams, const LocalGrid& grid, const PriorMap& floor);
   bool is_explained(const Vec2& hit_m, const LocalGrid& grid) const;
   bool is_of_mover(const Vec2& hit_m, Time occupied_since) const;
   Vec2 predicted_m(const Entry& entry) const;

@@ -9,12 +9,12 @@
 #include <stdexcept>
 
 #include "agents/planning/anytime.hpp"
+#include "agents/planning/fallback_goal.hpp"
 #include "agents/planning/grids/grid_planner.hpp"
 #include "agents/planning/grids/navigation/navigation_planner.hpp"
 #include "agents/planning/grids/quad_tree.hpp"
 #include "agents/planning/grids/trapezoidal_decomposition.hpp"
 #include "agents/planning/roadmaps/prm.hpp"
-#include "agents/planning/robust.hpp"
 #include "agents/planning/trees/bidirectional_errt.hpp"
 #include "agents/planning/trees/errt.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
@@ -101,7 +101,7 @@ Factory factory(DomainSettings domain_settings, Arguments... arguments) {
     NamedPlanner named;
     named.plan = [planner](const DiscDomain& domain, const Vec2& start, const Budget& budget,
                            Rng& rng) -> const Plan<Vec2>& {
-      return plan_robustly(*planner, domain, start, budget, rng);
+      return plan_with_fallback_goal(*planner, domain, start, budget, rng);
     };
     named.draw = [planner] { return drawing_of(*planner); };
     named.domain_settings = domain_settings;

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "agents/batch/batch_clearance.hpp"
 #include "agents/batch/dispatch.hpp"
-#include "agents/batch/lanes.hpp"
 #include "common/motion/limits.hpp"
 #include "common/random/rng.hpp"
 

@@ -39,7 +39,7 @@ void KeepOut::find(std::span<const Shape> zones, const Vec2& start, const std::o
 
 bool KeepOut::allows(const Trajectory& candidate) const {
   if (way_out_m_ && (*way_out_m_ - candidate.rest_position_m()).norm() < start_to_way_out_m_) return true;
-  return std::ranges::all_of(nearby_, [&](const Nearby& nearby) {
+  return std::ranges::all_of(nearby_, [&](const NearbyZone& nearby) {
     if (nearby.start_distance_m > radius_m_) return !touches(candidate, *nearby.zone, radius_m_);
     const double depth_m = radius_m_ - signed_distance(candidate.rest_position_m(), *nearby.zone);
     return depth_m <= start_depth_m_ + kRounding_m;

@@ -23,11 +23,11 @@ class KeepOut {
   [[nodiscard]] bool allows(const Trajectory& candidate) const;
 
  private:
-  struct Nearby {
+  struct NearbyZone {
     const Shape* zone;
     double start_distance_m;  // negative inside
   };
-  std::vector<Nearby> nearby_;
+  std::vector<NearbyZone> nearby_;
   double radius_m_ = 0;
   std::optional<Vec2> way_out_m_;
   double start_to_way_out_m_ = 0;

@@ -49,7 +49,7 @@ bool SafetySearch::Other::is_clear(const Trajectory& candidate) const {
 }
 
 SafetySearch::SafetySearch(const FloorRules& rules, const batch::Kernels& kernels)
-    : rules_(rules), candidates_(kSamples, rules.limits, kernels), lanes_(kernels) {
+    : rules_(rules), candidates_(kSamples, rules.limits, kernels), clearance_(kernels) {
   for (const Shape& obstacle : rules.obstacles)
     obstacles_.push_back(trajectory_bounds(Trajectory::resting(Time{}, centre_m(obstacle))));
   constexpr std::size_t kTypicalCount = 64;
@@ -112,7 +112,7 @@ SearchResult SafetySearch::search(const SearchQuery& query, TrajectoryIndex& oth
 }
 
 void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, TrajectoryIndex& others) {
-  lanes_.restart(query.start);
+  clearance_.reset(query.start);
   others_.clear();
   const double separation = rules_.min_separation_m();
   // Covers the tolerance of computed clearances.
@@ -122,7 +122,7 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
   for (const std::uint32_t index : found_indices_) {
     const Version& version = others.version(index);
     if (query.robot == version.robot) continue;
-    lanes_.add(others.bounds(index), separation + version.inflation_m);
+    clearance_.add(others.bounds(index), separation + version.inflation_m);
     others_.push_back({&version.trajectory, nullptr, separation + version.inflation_m});
   }
   edges_.clear();
@@ -140,7 +140,7 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
     if ((circle->centre_m - disc.centre_m).squaredNorm() > max_distance * max_distance) continue;
     TrajectoryBounds bounds = obstacles_[i];
     bounds.start = query.start;
-    lanes_.add(bounds, from_centre);
+    clearance_.add(bounds, from_centre);
     others_.push_back({nullptr, &obstacle, clearance});
   }
   find_cells({disc.centre_m, disc.radius_m + clearance + kRounding_m});
@@ -207,21 +207,21 @@ void SafetySearch::compare(const SearchQuery& query, const TrajectoryBounds& des
   exact_.clear();
   nearby_.clear();
   if (others_.empty()) return;
-  lanes_.sample(query.start, seconds);
-  lanes_.compare(batch::track_of(desired, query.start, lanes_.step_s()), desired.acceleration_mps2,
-                 extra_clearance_m);
-  checks += static_cast<int>(lanes_.size());
-  if (lanes_.are_all_clear()) return;
+  clearance_.sample(query.start, seconds);
+  clearance_.compare(batch::track_of(desired, query.start, clearance_.step_s()), desired.acceleration_mps2,
+                     extra_clearance_m);
+  checks += static_cast<int>(clearance_.size());
+  if (clearance_.are_all_clear()) return;
   bool is_sampled = false;
-  for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
-    if (lanes_.needs_exact(lane)) {
+  for (std::size_t lane = 0; lane < clearance_.size(); ++lane) {
+    if (clearance_.needs_exact(lane)) {
       exact_.push_back(others_[lane]);
       nearby_.push_back(others_[lane]);
-    } else if (!lanes_.is_clear(lane)) {
-      if (!is_sampled) candidates_.sample_motions(query.at_start, hold_s, lanes_.step_s());
+    } else if (!clearance_.is_clear(lane)) {
+      if (!is_sampled) candidates_.sample_motions(query.at_start, hold_s, clearance_.step_s());
       is_sampled = true;
-      candidates_.compare(lanes_.track(lane), lanes_.start_s(lane), lanes_.min_separation_m(lane),
-                          lanes_.acceleration_mps2(lane));
+      candidates_.compare(clearance_.track(lane), clearance_.start_s(lane), clearance_.min_separation_m(lane),
+                          clearance_.acceleration_mps2(lane));
       checks += static_cast<int>(candidates_.size());
       nearby_.push_back(others_[lane]);
     }

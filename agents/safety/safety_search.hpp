@@ -98,9 +98,9 @@ class SafetySearch {
   std::vector<TrajectoryBounds> obstacles_;
   CandidateSet candidates_;
   std::vector<std::uint32_t> found_indices_;
-  batch::Lanes lanes_;         // lane i corresponds to others_[i]
-  std::vector<Other> others_;  // all trajectories and circles that may be near
-  std::vector<Other> edges_;   // all other obstacles that may be near
+  batch::BatchClearance clearance_;  // lane i corresponds to others_[i]
+  std::vector<Other> others_;        // all trajectories and circles that may be near
+  std::vector<Other> edges_;         // all other obstacles that may be near
   std::vector<Shape> cells_;   // blocked cells of the map that may be near, as a few boxes; also in edges_
   std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons

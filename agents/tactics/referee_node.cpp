@@ -28,7 +28,7 @@ RefereeNode::RefereeNode(Bus& bus, const Scenario& scenario, const RefereeSettin
     if (sent.phase == OrderPhase::kReplaced && sent.order.kind == msg::OrderKind::ORDER_ZONE)
       warn(bus_.now(), "another referee has replaced a zone");
   });
-  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& world) { on_world(world); });
+  bus_.subscribe(topics::kWorld, [this](const msg::WorldState& world) { on_world_state(world); });
   update_periodically();
 }
 
@@ -57,7 +57,7 @@ void RefereeNode::on_datagram(std::span<const std::byte> bytes, const league::En
   if (command == league::RefereeCommand::kHalt) update();
 }
 
-void RefereeNode::on_world(const msg::WorldState& world) {
+void RefereeNode::on_world_state(const msg::WorldState& world) {
   const BallState ball{{world.ball().x_m(), world.ball().y_m()},
                        {world.ball().vx_mps(), world.ball().vy_mps()}};
   const bool is_seen = world.ball().is_visible() && is_plausible(ball.position_m, kMaxCoordinate_m) &&

@@ -40,7 +40,7 @@ class RefereeNode {
   static constexpr Duration kSilenceTimeout{2'000'000'000};
 
  private:
-  void on_world(const msg::WorldState& world);
+  void on_world_state(const msg::WorldState& world);
   void update_periodically();
   void report_silence();
   /// Orders the differences from what was last ordered.

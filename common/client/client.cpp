@@ -49,7 +49,7 @@ struct Client::Impl {
     });
     bus.subscribe(topics::kWorld, [this](const msg::WorldState& world) {
       const std::lock_guard lock(mutex);
-      table.on_world(world, bus.now());
+      table.on_world_state(world, bus.now());
     });
     thread = std::thread([this] { bus.run(); });
   }

@@ -17,7 +17,7 @@ bool stops(const Order& order) { return order.kind == msg::OrderKind::ORDER_HOLD
 
 /// Whether an order of this kind stays in force after it was accepted, so that coordinators must not forget
 /// it.
-bool lasts(const Order& order) {
+bool is_persistent(const Order& order) {
   return drives(order) || stops(order) || order.kind == msg::OrderKind::ORDER_ZONE;
 }
 
@@ -49,7 +49,7 @@ bool is_refused(msg::OrderResult result) {
 
 /// Whether no further news about an order can arrive.
 bool is_closed(const SentOrder& sent) {
-  return is_final(sent.phase) || (!lasts(sent.order) && sent.phase == OrderPhase::kAccepted);
+  return is_final(sent.phase) || (!is_persistent(sent.order) && sent.phase == OrderPhase::kAccepted);
 }
 
 }  // namespace
@@ -245,7 +245,7 @@ void OrderClient::compare(std::uint32_t coordinator, const OrderBook& remembered
   }
   std::vector<OrderHandle> open;
   for (const auto& [handle, sent] : sent_) {
-    if (lasts(sent.order) && !is_closed(sent)) open.push_back(handle);
+    if (is_persistent(sent.order) && !is_closed(sent)) open.push_back(handle);
   }
   for (const OrderHandle handle : open) {
     const auto sent = sent_.find(handle);

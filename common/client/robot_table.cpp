@@ -44,7 +44,7 @@ void RobotTable::on_status(const msg::OrderStatus& status, Time now) {
   row.robot.remaining_s = report->remaining_s;
 }
 
-void RobotTable::on_world(const msg::WorldState& world, Time now) {
+void RobotTable::on_world_state(const msg::WorldState& world, Time now) {
   if (world.header().sender() != static_cast<std::uint32_t>(Sender::kVision)) return;
   for (const msg::TrackedRobot& tracked : world.robots()) {
     const auto observation = decode(tracked, now);

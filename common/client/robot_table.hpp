@@ -24,7 +24,7 @@ class RobotTable {
   explicit RobotTable(ClientId self) : self_(self) {}
 
   void on_status(const msg::OrderStatus& status, Time now);
-  void on_world(const msg::WorldState& world, Time now);
+  void on_world_state(const msg::WorldState& world, Time now);
   /// All robots, sorted by number.
   std::vector<Robot> robots(Time now) const;
 

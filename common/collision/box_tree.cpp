@@ -34,10 +34,9 @@ bool equal(const FloatBox& a, const FloatBox& b) {
 
 }  // namespace
 
-BoxTree::BoxTree(const Bodies& bodies) : origin_m_(bodies.origin_m()), locations_(bodies.end()) {
+BoxTree::BoxTree(const ShapeStore& store) : origin_m_(store.origin_m()), locations_(store.end()) {
   std::vector<Item> slots;
-  for (const Slot slot : bodies.slots())
-    slots.push_back({rounded_outwards(bounds(bodies.shape(slot))), slot});
+  for (const Slot slot : store.slots()) slots.push_back({rounded_outwards(bounds(store.shape(slot))), slot});
   root_ = build(slots);
 }
 
@@ -220,13 +219,13 @@ void BoxTree::replace(Slot slot, const Shape& shape) {
   }
 }
 
-NearestSlot BoxTree::nearest(const Vec2& at, const Bodies& bodies) const {
+NearestSlot BoxTree::nearest(const Vec2& at, const ShapeStore& store) const {
   NearestSlot nearest;
-  find_nearest(root_, at, bodies, nearest);
+  find_nearest(root_, at, store, nearest);
   return nearest;
 }
 
-void BoxTree::find_nearest(NodeId id, const Vec2& at, const Bodies& bodies, NearestSlot& nearest) const {
+void BoxTree::find_nearest(NodeId id, const Vec2& at, const ShapeStore& store, NearestSlot& nearest) const {
   const TreeNode& node = nodes_[id];
   const double x = at.x() - origin_m_.x(), y = at.y() - origin_m_.y();
   // Lower bounds of signed distances: inside a box, no shape is penetrated deeper than the box itself. Empty
@@ -256,9 +255,9 @@ void BoxTree::find_nearest(NodeId id, const Vec2& at, const Bodies& bodies, Near
     if (remaining == 0) return;
     remaining &= ~(1u << nearest_lane);
     if (node.is_leaf)
-      bodies.compare(node.children[nearest_lane], at, nearest);
+      store.compare(node.children[nearest_lane], at, nearest);
     else
-      find_nearest(node.children[nearest_lane], at, bodies, nearest);
+      find_nearest(node.children[nearest_lane], at, store, nearest);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "common/collision/bodies.hpp"
+#include "common/collision/shape_store.hpp"
 
 namespace sidestep {
 
@@ -18,7 +18,7 @@ struct FloatBox {
 /// like an R-tree (Guttman 1984), with the same heuristic for splitting full nodes.
 class BoxTree {
  public:
-  explicit BoxTree(const Bodies& bodies);
+  explicit BoxTree(const ShapeStore& store);
 
   void add(Slot slot, const Shape& shape);
   void replace(Slot slot, const Shape& shape);
@@ -29,7 +29,7 @@ class BoxTree {
   void each_overlapping(const Box& box, const Call& call) const {
     each_overlapping(root_, rounded_outwards(box), call);
   }
-  NearestSlot nearest(const Vec2& at_m, const Bodies& bodies) const;
+  NearestSlot nearest(const Vec2& at_m, const ShapeStore& store) const;
 
   collision::TreeView view() const { return {nodes_.data(), root_}; }
 
@@ -59,7 +59,7 @@ class BoxTree {
         each_overlapping(node.children[lane], box, call);
     }
   }
-  void find_nearest(NodeId id, const Vec2& at_m, const Bodies& bodies, NearestSlot& nearest) const;
+  void find_nearest(NodeId id, const Vec2& at_m, const ShapeStore& store, NearestSlot& nearest) const;
 
   NodeId new_node(bool is_leaf);
   NodeId build(std::span<Item> slots);

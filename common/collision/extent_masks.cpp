@@ -14,10 +14,10 @@ constexpr std::size_t kBits = 64;
 
 }  // namespace
 
-ExtentMasks::ExtentMasks(const Bodies& bodies)
-    : words_(std::max<std::size_t>(1, (bodies.end() + kBits - 1) / kBits)), origin_m_(bodies.origin_m()) {
+ExtentMasks::ExtentMasks(const ShapeStore& store)
+    : words_(std::max<std::size_t>(1, (store.end() + kBits - 1) / kBits)), origin_m_(store.origin_m()) {
   Box box{origin_m_, origin_m_};
-  for (const Slot slot : bodies.slots()) box = united(box, bounds(bodies.shape(slot)));
+  for (const Slot slot : store.slots()) box = united(box, bounds(store.shape(slot)));
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto row = static_cast<Eigen::Index>(axis);
     const double range_m = box.max_m[row] - box.min_m[row], per_m = range_m > 1e-15 ? kBuckets / range_m : 0;
@@ -26,7 +26,7 @@ ExtentMasks::ExtentMasks(const Bodies& bodies)
     shift_[axis] = shift_[axis + 2] = static_cast<float>(per_m * (origin_m_[row] - box.min_m[row]));
   }
   rows_.assign(kTables * kBuckets * words_, 0);
-  for (const Slot slot : bodies.slots()) add(slot, bodies.shape(slot));
+  for (const Slot slot : store.slots()) add(slot, store.shape(slot));
 }
 
 void ExtentMasks::add(Slot slot, const Shape& shape) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <bit>
 
-#include "common/collision/bodies.hpp"
+#include "common/collision/shape_store.hpp"
 
 namespace sidestep {
 
@@ -16,7 +16,7 @@ namespace sidestep {
 /// initial obstacles fall into the outermost buckets.
 class ExtentMasks {
  public:
-  explicit ExtentMasks(const Bodies& bodies);
+  explicit ExtentMasks(const ShapeStore& store);
 
   void add(Slot slot, const Shape& shape);
   void replace(Slot slot, const Shape& shape);

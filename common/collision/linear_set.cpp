@@ -29,8 +29,8 @@ void copy_lane(const BoxBlock& from, std::size_t from_lane, BoxBlock& to, std::s
 
 }  // namespace
 
-LinearSet::LinearSet(const Bodies& bodies) : origin_m_(bodies.origin_m()) {
-  for (const Slot slot : bodies.slots()) add(slot, bodies.shape(slot));
+LinearSet::LinearSet(const ShapeStore& store) : origin_m_(store.origin_m()) {
+  for (const Slot slot : store.slots()) add(slot, store.shape(slot));
 }
 
 void LinearSet::add(Slot slot, const Shape& shape) {

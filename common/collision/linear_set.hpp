@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/collision/bodies.hpp"
+#include "common/collision/shape_store.hpp"
 
 namespace sidestep {
 
 /// All obstacles in arrays, compared in vector lanes: circles exactly, other shapes by their boxes first.
 class LinearSet {
  public:
-  explicit LinearSet(const Bodies& bodies);
+  explicit LinearSet(const ShapeStore& store);
 
   void add(Slot slot, const Shape& shape);
   void replace(Slot slot, const Shape& shape);

@@ -64,11 +64,11 @@ class ObstacleWorld {
   void move(ObstacleId obstacle, const Vec2& by_m);
   void remove(ObstacleId obstacle);
 
-  std::size_t size() const { return parts_.bodies.slots().size(); }
-  bool has(ObstacleId obstacle) const { return parts_.bodies.has(static_cast<Slot>(obstacle)); }
+  std::size_t size() const { return parts_.store.slots().size(); }
+  bool has(ObstacleId obstacle) const { return parts_.store.has(static_cast<Slot>(obstacle)); }
   const Shape& shape(ObstacleId obstacle) const;
   /// The i-th of size() obstacles, in no particular order; changes when obstacles are added or removed.
-  ObstacleId obstacle(std::size_t i) const { return ObstacleId{parts_.bodies.slots()[i]}; }
+  ObstacleId obstacle(std::size_t i) const { return ObstacleId{parts_.store.slots()[i]}; }
   /// The ids of all obstacles, in no particular order.
   std::vector<ObstacleId> obstacles() const;
 
@@ -77,7 +77,7 @@ class ObstacleWorld {
   struct Parts {
     const collision::Kernels* kernels;
     Structure structure;
-    Bodies bodies;
+    ShapeStore store;
     std::variant<LinearSet, ExtentMasks, BoxTree> set;
     std::size_t size_when_built;
   };

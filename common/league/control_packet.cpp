@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "common/league/checks.hpp"
+#include "common/league/packet_validator.hpp"
 #include "common/league/wire.hpp"
 
 #include "league/control.pb.h"
@@ -18,13 +18,13 @@ constexpr int kYellow = 1, kBlue = 2;
 
 float single(double value) { return static_cast<float>(value); }
 
-std::uint32_t read_number(std::uint32_t id, Checks& checks) {
-  checks.require(id < kRobotNumbers, DecodeError::kRobot);
+std::uint32_t read_number(std::uint32_t id, PacketValidator& validator) {
+  validator.require(id < kRobotNumbers, DecodeError::kRobot);
   return id;
 }
 
-Vec2 read_velocity(double x, double y, Checks& checks) {
-  return {checks.within(x, kMaxSpeed_mps), checks.within(y, kMaxSpeed_mps)};
+Vec2 read_velocity(double x, double y, PacketValidator& validator) {
+  return {validator.within(x, kMaxSpeed_mps), validator.within(y, kMaxSpeed_mps)};
 }
 
 void write(const RobotMove& move, wire::control::Move& to) {
@@ -42,23 +42,23 @@ void write(const RobotMove& move, wire::control::Move& to) {
   }
 }
 
-std::optional<RobotMove> read(const wire::control::Move& from, Checks& checks) {
+std::optional<RobotMove> read(const wire::control::Move& from, PacketValidator& validator) {
   RobotMove move;
   if (from.has_local_velocity()) {
     const auto& local = from.local_velocity();
-    move.linear_mps = read_velocity(local.forward(), local.left(), checks);
-    move.turn_radps = checks.within(local.angular(), kMaxTurn_radps);
+    move.linear_mps = read_velocity(local.forward(), local.left(), validator);
+    move.turn_radps = validator.within(local.angular(), kMaxTurn_radps);
   } else if (from.has_global_velocity()) {
     const auto& global = from.global_velocity();
     move.kind = RobotMove::Kind::kGlobal;
-    move.linear_mps = read_velocity(global.x(), global.y(), checks);
-    move.turn_radps = checks.within(global.angular(), kMaxTurn_radps);
+    move.linear_mps = read_velocity(global.x(), global.y(), validator);
+    move.turn_radps = validator.within(global.angular(), kMaxTurn_radps);
   } else if (from.has_wheel_velocity()) {
     const auto& wheels = from.wheel_velocity();
     move.kind = RobotMove::Kind::kWheels;
     for (const float speed :
          {wheels.front_right(), wheels.back_right(), wheels.back_left(), wheels.front_left()})
-      checks.within(speed, kMaxWheel_mps);
+      validator.within(speed, kMaxWheel_mps);
   } else {
     return std::nullopt;
   }
@@ -75,11 +75,12 @@ void write_errors(const Errors& errors, List& to) {
 }
 
 template <typename List>
-std::vector<SimulatorError> read_errors(const List& from, Checks& checks) {
+std::vector<SimulatorError> read_errors(const List& from, PacketValidator& validator) {
   std::vector<SimulatorError> errors;
-  checks.at_most(from, kMaxErrors);
-  if (!checks.is_valid()) return errors;
-  for (const auto& error : from) errors.push_back({checks.text(error.code()), checks.text(error.message())});
+  validator.at_most(from, kMaxErrors);
+  if (!validator.is_valid()) return errors;
+  for (const auto& error : from)
+    errors.push_back({validator.text(error.code()), validator.text(error.message())});
   return errors;
 }
 
@@ -95,27 +96,28 @@ void write(const RobotTeleport& teleport, wire::control::TeleportRobot& to) {
   if (teleport.is_present) to.set_present(*teleport.is_present);
 }
 
-RobotTeleport read(const wire::control::TeleportRobot& from, Checks& checks) {
+RobotTeleport read(const wire::control::TeleportRobot& from, PacketValidator& validator) {
   RobotTeleport teleport;
-  checks.require(from.id().team() == kYellow || from.id().team() == kBlue, DecodeError::kRobot);
+  validator.require(from.id().team() == kYellow || from.id().team() == kBlue, DecodeError::kRobot);
   teleport.team = from.id().team() == kYellow ? Team::kYellow : Team::kBlue;
-  checks.require(from.id().has_id(), DecodeError::kRobot);
-  teleport.number = read_number(static_cast<std::uint32_t>(from.id().id()), checks);
-  if (from.has_x()) teleport.x_m = checks.within(from.x(), kMaxPosition_m);
-  if (from.has_y()) teleport.y_m = checks.within(from.y(), kMaxPosition_m);
+  validator.require(from.id().has_id(), DecodeError::kRobot);
+  teleport.number = read_number(static_cast<std::uint32_t>(from.id().id()), validator);
+  if (from.has_x()) teleport.x_m = validator.within(from.x(), kMaxPosition_m);
+  if (from.has_y()) teleport.y_m = validator.within(from.y(), kMaxPosition_m);
   if (from.has_orientation())
-    teleport.heading_rad = wrapped_rad(checks.within(from.orientation(), kMaxHeading_rad));
-  teleport.velocity_mps = read_velocity(from.v_x(), from.v_y(), checks);
-  teleport.turn_radps = checks.within(from.v_angular(), kMaxTurn_radps);
+    teleport.heading_rad = wrapped_rad(validator.within(from.orientation(), kMaxHeading_rad));
+  teleport.velocity_mps = read_velocity(from.v_x(), from.v_y(), validator);
+  teleport.turn_radps = validator.within(from.v_angular(), kMaxTurn_radps);
   if (from.has_present()) teleport.is_present = from.present();
   return teleport;
 }
 
-BallTeleport read(const wire::control::TeleportBall& from, Checks& checks) {
+BallTeleport read(const wire::control::TeleportBall& from, PacketValidator& validator) {
   BallTeleport ball;
   if (from.has_x() && from.has_y())
-    ball.position_m = Vec2(checks.within(from.x(), kMaxPosition_m), checks.within(from.y(), kMaxPosition_m));
-  if (from.has_vx() || from.has_vy()) ball.velocity_mps = read_velocity(from.vx(), from.vy(), checks);
+    ball.position_m =
+        Vec2(validator.within(from.x(), kMaxPosition_m), validator.within(from.y(), kMaxPosition_m));
+  if (from.has_vx() || from.has_vy()) ball.velocity_mps = read_velocity(from.vx(), from.vy(), validator);
   return ball;
 }
 
@@ -126,8 +128,8 @@ DecodeError parse_answer(std::span<const std::byte> bytes, Message& message) {
 }
 
 template <typename Packet>
-Decoded<Packet> checked(Packet packet, const Checks& checks) {
-  if (!checks.is_valid()) return {{}, checks.error()};
+Decoded<Packet> checked(Packet packet, const PacketValidator& validator) {
+  if (!validator.is_valid()) return {{}, validator.error()};
   return {std::move(packet), DecodeError::kNone};
 }
 
@@ -148,19 +150,19 @@ std::vector<std::byte> encode(const TeamCommands& packet) {
 Decoded<TeamCommands> decode_team_commands(std::span<const std::byte> bytes) {
   wire::control::TeamCommands message;
   if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
-  Checks checks;
-  checks.at_most(message.robots(), kMaxRobots);
-  if (!checks.is_valid()) return {{}, checks.error()};
+  PacketValidator validator;
+  validator.at_most(message.robots(), kMaxRobots);
+  if (!validator.is_valid()) return {{}, validator.error()};
   TeamCommands packet;
   for (const auto& from : message.robots()) {
     RobotCommand robot;
-    robot.number = read_number(from.id(), checks);
-    if (from.has_move()) robot.move = read(from.move(), checks);
-    robot.kick_mps = checks.within(from.kick_speed(), 0, kMaxSpeed_mps);
-    robot.kick_angle_rad = kRadPerDegree * checks.within(from.kick_angle(), 360);
+    robot.number = read_number(from.id(), validator);
+    if (from.has_move()) robot.move = read(from.move(), validator);
+    robot.kick_mps = validator.within(from.kick_speed(), 0, kMaxSpeed_mps);
+    robot.kick_angle_rad = kRadPerDegree * validator.within(from.kick_angle(), 360);
     packet.robots.push_back(robot);
   }
-  return checked(std::move(packet), checks);
+  return checked(std::move(packet), validator);
 }
 
 std::vector<std::byte> encode(const TeamResponse& packet) {
@@ -177,14 +179,14 @@ std::vector<std::byte> encode(const TeamResponse& packet) {
 Decoded<TeamResponse> decode_team_response(std::span<const std::byte> bytes) {
   wire::control::TeamResponse message;
   if (const DecodeError error = parse_answer(bytes, message); error != DecodeError::kNone) return {{}, error};
-  Checks checks;
+  PacketValidator validator;
   TeamResponse packet;
-  packet.errors = read_errors(message.errors(), checks);
-  checks.at_most(message.feedback(), kMaxRobots);
-  if (!checks.is_valid()) return {{}, checks.error()};
+  packet.errors = read_errors(message.errors(), validator);
+  validator.at_most(message.feedback(), kMaxRobots);
+  if (!validator.is_valid()) return {{}, validator.error()};
   for (const auto& from : message.feedback())
-    packet.feedback.push_back({read_number(from.id(), checks), from.dribbler_ball_contact()});
-  return checked(std::move(packet), checks);
+    packet.feedback.push_back({read_number(from.id(), validator), from.dribbler_ball_contact()});
+  return checked(std::move(packet), validator);
 }
 
 std::vector<std::byte> encode(const SimulatorCommand& packet) {
@@ -211,19 +213,19 @@ Decoded<SimulatorCommand> decode_simulator_command(std::span<const std::byte> by
   wire::control::SimulatorCommand message;
   if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
   const auto& control = message.control();
-  Checks checks;
-  checks.at_most(control.teleport_robots(), kMaxRobots);
-  if (!checks.is_valid()) return {{}, checks.error()};
+  PacketValidator validator;
+  validator.at_most(control.teleport_robots(), kMaxRobots);
+  if (!validator.is_valid()) return {{}, validator.error()};
   SimulatorCommand packet;
-  if (control.has_teleport_ball()) packet.ball = read(control.teleport_ball(), checks);
-  for (const auto& teleport : control.teleport_robots()) packet.robots.push_back(read(teleport, checks));
+  if (control.has_teleport_ball()) packet.ball = read(control.teleport_ball(), validator);
+  for (const auto& teleport : control.teleport_robots()) packet.robots.push_back(read(teleport, validator));
   if (control.has_simulation_speed())
-    packet.speed = checks.within(control.simulation_speed(), 0, kMaxSimulationSpeed);
+    packet.speed = validator.within(control.simulation_speed(), 0, kMaxSimulationSpeed);
   packet.has_geometry = message.config().has_geometry();
   packet.has_robot_specs = message.config().robot_specs_size() > 0;
   packet.has_realism = message.config().has_realism();
   if (message.config().has_vision_port()) packet.vision_port = message.config().vision_port();
-  return checked(std::move(packet), checks);
+  return checked(std::move(packet), validator);
 }
 
 std::vector<std::byte> encode(const SimulatorResponse& packet) {
@@ -235,10 +237,10 @@ std::vector<std::byte> encode(const SimulatorResponse& packet) {
 Decoded<SimulatorResponse> decode_simulator_response(std::span<const std::byte> bytes) {
   wire::control::SimulatorResponse message;
   if (const DecodeError error = parse_answer(bytes, message); error != DecodeError::kNone) return {{}, error};
-  Checks checks;
+  PacketValidator validator;
   SimulatorResponse packet;
-  packet.errors = read_errors(message.errors(), checks);
-  return checked(std::move(packet), checks);
+  packet.errors = read_errors(message.errors(), validator);
+  return checked(std::move(packet), validator);
 }
 
 }  // namespace sidestep::league

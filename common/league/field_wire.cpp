@@ -11,15 +11,17 @@ constexpr std::uint32_t kMaxImageSide_px = 1 << 16;
 std::int32_t in_mm(double length_m) { return static_cast<std::int32_t>(std::lround(length_m * 1e3)); }
 float in_float_mm(double length_m) { return static_cast<float>(length_m * 1e3); }
 
-double length(double value_mm, Checks& checks) { return checks.within(value_mm * 1e-3, 0, kMaxLength_m); }
+double length(double value_mm, PacketValidator& validator) {
+  return validator.within(value_mm * 1e-3, 0, kMaxLength_m);
+}
 
 void write(const Vec2& point_m, wire::vision::Point& to) {
   to.set_x(in_float_mm(point_m.x()));
   to.set_y(in_float_mm(point_m.y()));
 }
 
-Vec2 read(const wire::vision::Point& from, Checks& checks) {
-  return {checks.within(from.x() * 1e-3, kMaxLength_m), checks.within(from.y() * 1e-3, kMaxLength_m)};
+Vec2 read(const wire::vision::Point& from, PacketValidator& validator) {
+  return {validator.within(from.x() * 1e-3, kMaxLength_m), validator.within(from.y() * 1e-3, kMaxLength_m)};
 }
 
 void write(const LineMarking& line, wire::vision::Line& to) {
@@ -30,9 +32,9 @@ void write(const LineMarking& line, wire::vision::Line& to) {
   if (line.type) to.set_type(*line.type);
 }
 
-LineMarking read(const wire::vision::Line& from, Checks& checks) {
-  LineMarking line{checks.text(from.name()), read(from.p1(), checks), read(from.p2(), checks),
-                   length(from.thickness(), checks)};
+LineMarking read(const wire::vision::Line& from, PacketValidator& validator) {
+  LineMarking line{validator.text(from.name()), read(from.p1(), validator), read(from.p2(), validator),
+                   length(from.thickness(), validator)};
   if (from.has_type()) line.type = from.type();
   return line;
 }
@@ -47,13 +49,13 @@ void write(const ArcMarking& arc, wire::vision::Arc& to) {
   if (arc.type) to.set_type(*arc.type);
 }
 
-ArcMarking read(const wire::vision::Arc& from, Checks& checks) {
-  ArcMarking arc{checks.text(from.name()),
-                 read(from.center(), checks),
-                 length(from.radius(), checks),
-                 checks.within(from.a1(), kMaxHeading_rad),
-                 checks.within(from.a2(), kMaxHeading_rad),
-                 length(from.thickness(), checks)};
+ArcMarking read(const wire::vision::Arc& from, PacketValidator& validator) {
+  ArcMarking arc{validator.text(from.name()),
+                 read(from.center(), validator),
+                 length(from.radius(), validator),
+                 validator.within(from.a1(), kMaxHeading_rad),
+                 validator.within(from.a2(), kMaxHeading_rad),
+                 length(from.thickness(), validator)};
   if (from.has_type()) arc.type = from.type();
   return arc;
 }
@@ -78,21 +80,21 @@ void write(const FieldSize& field, wire::vision::Field& to) {
   if (field.max_robot_radius_m) to.set_max_robot_radius(in_float_mm(*field.max_robot_radius_m));
 }
 
-FieldSize read(const wire::vision::Field& from, Checks& checks) {
+FieldSize read(const wire::vision::Field& from, PacketValidator& validator) {
   FieldSize field;
-  checks.at_most(from.field_lines(), kMaxMarkings);
-  checks.at_most(from.field_arcs(), kMaxMarkings);
-  if (!checks.is_valid()) return field;
-  checks.require(from.field_length() > 0 && from.field_width() > 0, DecodeError::kNumber);
-  field.length_m = length(from.field_length(), checks);
-  field.width_m = length(from.field_width(), checks);
-  field.goal_width_m = length(from.goal_width(), checks);
-  field.goal_depth_m = length(from.goal_depth(), checks);
-  field.boundary_width_m = length(from.boundary_width(), checks);
-  for (const auto& line : from.field_lines()) field.lines.push_back(read(line, checks));
-  for (const auto& arc : from.field_arcs()) field.arcs.push_back(read(arc, checks));
+  validator.at_most(from.field_lines(), kMaxMarkings);
+  validator.at_most(from.field_arcs(), kMaxMarkings);
+  if (!validator.is_valid()) return field;
+  validator.require(from.field_length() > 0 && from.field_width() > 0, DecodeError::kNumber);
+  field.length_m = length(from.field_length(), validator);
+  field.width_m = length(from.field_width(), validator);
+  field.goal_width_m = length(from.goal_width(), validator);
+  field.goal_depth_m = length(from.goal_depth(), validator);
+  field.boundary_width_m = length(from.boundary_width(), validator);
+  for (const auto& line : from.field_lines()) field.lines.push_back(read(line, validator));
+  for (const auto& arc : from.field_arcs()) field.arcs.push_back(read(arc, validator));
   const auto optional = [&](bool is_present, double value_mm, std::optional<double>& into) {
-    if (is_present) into = length(value_mm, checks);
+    if (is_present) into = length(value_mm, validator);
   };
   optional(from.has_penalty_area_depth(), from.penalty_area_depth(), field.penalty_area_depth_m);
   optional(from.has_penalty_area_width(), from.penalty_area_width(), field.penalty_area_width_m);
@@ -128,21 +130,21 @@ void write(const CameraCalibration& camera, wire::vision::Calibration& to) {
   if (camera.image_height_px) to.set_pixel_image_height(*camera.image_height_px);
 }
 
-CameraCalibration read(const wire::vision::Calibration& from, Checks& checks) {
+CameraCalibration read(const wire::vision::Calibration& from, PacketValidator& validator) {
   constexpr double kMaxFocalLength_px = 1e6, kMaxPrincipalPoint_px = 1e5, kMaxDistortion = 100;
   const auto position = [&](double x_mm, double y_mm, double z_mm) {
-    return Vec3(checks.within(x_mm * 1e-3, kMaxLength_m), checks.within(y_mm * 1e-3, kMaxLength_m),
-                checks.within(z_mm * 1e-3, kMaxLength_m));
+    return Vec3(validator.within(x_mm * 1e-3, kMaxLength_m), validator.within(y_mm * 1e-3, kMaxLength_m),
+                validator.within(z_mm * 1e-3, kMaxLength_m));
   };
   CameraCalibration camera;
-  checks.require(from.camera_id() < kMaxCameras, DecodeError::kCamera);
+  validator.require(from.camera_id() < kMaxCameras, DecodeError::kCamera);
   camera.camera = from.camera_id();
-  camera.focal_length_px = checks.within(from.focal_length(), 0, kMaxFocalLength_px);
-  camera.principal_point_px = {checks.within(from.principal_point_x(), kMaxPrincipalPoint_px),
-                               checks.within(from.principal_point_y(), kMaxPrincipalPoint_px)};
-  camera.distortion = checks.within(from.distortion(), kMaxDistortion);
-  camera.rotation = {checks.within(from.q0(), 2), checks.within(from.q1(), 2), checks.within(from.q2(), 2),
-                     checks.within(from.q3(), 2)};
+  camera.focal_length_px = validator.within(from.focal_length(), 0, kMaxFocalLength_px);
+  camera.principal_point_px = {validator.within(from.principal_point_x(), kMaxPrincipalPoint_px),
+                               validator.within(from.principal_point_y(), kMaxPrincipalPoint_px)};
+  camera.distortion = validator.within(from.distortion(), kMaxDistortion);
+  camera.rotation = {validator.within(from.q0(), 2), validator.within(from.q1(), 2),
+                     validator.within(from.q2(), 2), validator.within(from.q3(), 2)};
   camera.translation_m = position(from.tx(), from.ty(), from.tz());
   if (from.has_derived_camera_world_tx() && from.has_derived_camera_world_ty() &&
       from.has_derived_camera_world_tz()) {
@@ -150,7 +152,7 @@ CameraCalibration read(const wire::vision::Calibration& from, Checks& checks) {
                                  from.derived_camera_world_tz());
   }
   const auto side = [&](bool is_present, std::uint32_t value_px, std::optional<std::uint32_t>& into) {
-    checks.require(!is_present || value_px <= kMaxImageSide_px, DecodeError::kNumber);
+    validator.require(!is_present || value_px <= kMaxImageSide_px, DecodeError::kNumber);
     if (is_present) into = value_px;
   };
   side(from.has_pixel_image_width(), from.pixel_image_width(), camera.image_width_px);
@@ -165,12 +167,12 @@ void write(const Geometry& geometry, wire::vision::Geometry& to) {
   for (const CameraCalibration& camera : geometry.cameras) write(camera, *to.add_calib());
 }
 
-Geometry read(const wire::vision::Geometry& from, Checks& checks) {
+Geometry read(const wire::vision::Geometry& from, PacketValidator& validator) {
   Geometry geometry;
-  checks.at_most(from.calib(), static_cast<int>(kMaxCameras));
-  if (!checks.is_valid()) return geometry;
-  geometry.field = read(from.field(), checks);
-  for (const auto& camera : from.calib()) geometry.cameras.push_back(read(camera, checks));
+  validator.at_most(from.calib(), static_cast<int>(kMaxCameras));
+  if (!validator.is_valid()) return geometry;
+  geometry.field = read(from.field(), validator);
+  for (const auto& camera : from.calib()) geometry.cameras.push_back(read(camera, validator));
   return geometry;
 }
 

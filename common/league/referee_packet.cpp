@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "common/league/checks.hpp"
+#include "common/league/packet_validator.hpp"
 #include "common/league/wire.hpp"
 
 #include "league/referee.pb.h"
@@ -38,9 +38,9 @@ std::uint64_t microseconds(Duration time) {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::microseconds>(time).count());
 }
 
-RefereeCommand command_of(std::int32_t number, Checks& checks) {
+RefereeCommand command_of(std::int32_t number, PacketValidator& validator) {
   const bool is_known = number >= 0 && static_cast<std::size_t>(number) < kRefereeCommands;
-  checks.require(is_known, DecodeError::kCommand);
+  validator.require(is_known, DecodeError::kCommand);
   return is_known ? static_cast<RefereeCommand>(number) : RefereeCommand::kHalt;
 }
 
@@ -83,18 +83,18 @@ std::vector<std::byte> encode(const RefereePacket& packet) {
 Decoded<RefereePacket> decode_referee(std::span<const std::byte> bytes) {
   wire::referee::Packet message;
   if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
-  Checks checks;
+  PacketValidator validator;
   RefereePacket packet;
-  packet.sent = checks.time(kSeconds * static_cast<double>(message.packet_timestamp()));
-  packet.command = command_of(message.command(), checks);
+  packet.sent = validator.time(kSeconds * static_cast<double>(message.packet_timestamp()));
+  packet.command = command_of(message.command(), validator);
   packet.command_counter = message.command_counter();
-  packet.commanded = checks.time(kSeconds * static_cast<double>(message.command_timestamp()));
+  packet.commanded = validator.time(kSeconds * static_cast<double>(message.command_timestamp()));
   if (message.has_designated_position()) {
     const auto& point = message.designated_position();
-    packet.designated_position_m = Vec2(checks.within(kMetres * point.x(), kMaxPosition_m),
-                                        checks.within(kMetres * point.y(), kMaxPosition_m));
+    packet.designated_position_m = Vec2(validator.within(kMetres * point.x(), kMaxPosition_m),
+                                        validator.within(kMetres * point.y(), kMaxPosition_m));
   }
-  if (!checks.is_valid()) return {{}, checks.error()};
+  if (!validator.is_valid()) return {{}, validator.error()};
   return {packet, DecodeError::kNone};
 }
 

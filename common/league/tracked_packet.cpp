@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/league/tracked_packet.hpp"
 
-#include "common/league/checks.hpp"
+#include "common/league/packet_validator.hpp"
 #include "common/league/wire.hpp"
 
 #include "league/tracked.pb.h"
@@ -26,12 +26,13 @@ void write(const Vec3& vector, wire::tracked::Vector3& to) {
   to.set_z(static_cast<float>(vector.z()));
 }
 
-Vec2 read(const wire::tracked::Vector2& from, double bound, Checks& checks) {
-  return {checks.within(from.x(), bound), checks.within(from.y(), bound)};
+Vec2 read(const wire::tracked::Vector2& from, double bound, PacketValidator& validator) {
+  return {validator.within(from.x(), bound), validator.within(from.y(), bound)};
 }
 
-Vec3 read(const wire::tracked::Vector3& from, double bound, Checks& checks) {
-  return {checks.within(from.x(), bound), checks.within(from.y(), bound), checks.within(from.z(), bound)};
+Vec3 read(const wire::tracked::Vector3& from, double bound, PacketValidator& validator) {
+  return {validator.within(from.x(), bound), validator.within(from.y(), bound),
+          validator.within(from.z(), bound)};
 }
 
 void write(const TrackedBall& ball, wire::tracked::Ball& to) {
@@ -40,11 +41,11 @@ void write(const TrackedBall& ball, wire::tracked::Ball& to) {
   if (ball.visibility) to.set_visibility(static_cast<float>(*ball.visibility));
 }
 
-TrackedBall read(const wire::tracked::Ball& from, Checks& checks) {
+TrackedBall read(const wire::tracked::Ball& from, PacketValidator& validator) {
   TrackedBall ball;
-  ball.position_m = read(from.pos(), kMaxPosition_m, checks);
-  if (from.has_vel()) ball.velocity_mps = read(from.vel(), kMaxSpeed_mps, checks);
-  if (from.has_visibility()) ball.visibility = checks.probability(from.visibility());
+  ball.position_m = read(from.pos(), kMaxPosition_m, validator);
+  if (from.has_vel()) ball.velocity_mps = read(from.vel(), kMaxSpeed_mps, validator);
+  if (from.has_visibility()) ball.visibility = validator.probability(from.visibility());
   return ball;
 }
 
@@ -53,8 +54,8 @@ std::uint32_t colour_of(const std::optional<Team>& team) {
   return *team == Team::kYellow ? kYellow : kBlue;
 }
 
-std::optional<Team> team_of(std::uint32_t colour, Checks& checks) {
-  checks.require(colour <= kBlue, DecodeError::kRobot);
+std::optional<Team> team_of(std::uint32_t colour, PacketValidator& validator) {
+  validator.require(colour <= kBlue, DecodeError::kRobot);
   if (colour == kYellow) return Team::kYellow;
   if (colour == kBlue) return Team::kBlue;
   return std::nullopt;
@@ -70,16 +71,17 @@ void write(const TrackedRobot& robot, wire::tracked::Robot& to) {
   if (robot.visibility) to.set_visibility(static_cast<float>(*robot.visibility));
 }
 
-TrackedRobot read(const wire::tracked::Robot& from, Checks& checks) {
+TrackedRobot read(const wire::tracked::Robot& from, PacketValidator& validator) {
   TrackedRobot robot;
-  checks.require(from.robot_id().id() < kRobotNumbers, DecodeError::kRobot);
+  validator.require(from.robot_id().id() < kRobotNumbers, DecodeError::kRobot);
   robot.number = from.robot_id().id();
-  robot.team = team_of(from.robot_id().team_color(), checks);
-  robot.position_m = read(from.pos(), kMaxPosition_m, checks);
-  robot.heading_rad = wrapped_rad(checks.within(from.orientation(), kMaxHeading_rad));
-  if (from.has_vel()) robot.velocity_mps = read(from.vel(), kMaxSpeed_mps, checks);
-  if (from.has_vel_angular()) robot.angular_radps = checks.within(from.vel_angular(), kMaxAngularSpeed_radps);
-  if (from.has_visibility()) robot.visibility = checks.probability(from.visibility());
+  robot.team = team_of(from.robot_id().team_color(), validator);
+  robot.position_m = read(from.pos(), kMaxPosition_m, validator);
+  robot.heading_rad = wrapped_rad(validator.within(from.orientation(), kMaxHeading_rad));
+  if (from.has_vel()) robot.velocity_mps = read(from.vel(), kMaxSpeed_mps, validator);
+  if (from.has_vel_angular())
+    robot.angular_radps = validator.within(from.vel_angular(), kMaxAngularSpeed_radps);
+  if (from.has_visibility()) robot.visibility = validator.probability(from.visibility());
   return robot;
 }
 
@@ -90,15 +92,15 @@ void write(const TrackedFrame& frame, wire::tracked::Frame& to) {
   for (const TrackedRobot& robot : frame.robots) write(robot, *to.add_robots());
 }
 
-TrackedFrame read(const wire::tracked::Frame& from, Checks& checks) {
+TrackedFrame read(const wire::tracked::Frame& from, PacketValidator& validator) {
   TrackedFrame frame;
-  checks.at_most(from.balls(), kMaxBalls);
-  checks.at_most(from.robots(), kMaxRobotsPerTeam);
-  if (!checks.is_valid()) return frame;
+  validator.at_most(from.balls(), kMaxBalls);
+  validator.at_most(from.robots(), kMaxRobotsPerTeam);
+  if (!validator.is_valid()) return frame;
   frame.frame_number = from.frame_number();
-  frame.at = checks.time(from.timestamp());
-  for (const auto& ball : from.balls()) frame.balls.push_back(read(ball, checks));
-  for (const auto& robot : from.robots()) frame.robots.push_back(read(robot, checks));
+  frame.at = validator.time(from.timestamp());
+  for (const auto& ball : from.balls()) frame.balls.push_back(read(ball, validator));
+  for (const auto& robot : from.robots()) frame.robots.push_back(read(robot, validator));
   return frame;
 }
 
@@ -115,12 +117,12 @@ std::vector<std::byte> encode(const TrackedPacket& packet) {
 Decoded<TrackedPacket> decode_tracked(std::span<const std::byte> bytes) {
   wire::tracked::Packet message;
   if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
-  Checks checks;
+  PacketValidator validator;
   TrackedPacket packet;
-  packet.uuid = checks.text(message.uuid());
-  if (message.has_source_name()) packet.source_name = checks.text(message.source_name());
-  if (message.has_tracked_frame()) packet.frame = read(message.tracked_frame(), checks);
-  if (!checks.is_valid()) return {{}, checks.error()};
+  packet.uuid = validator.text(message.uuid());
+  if (message.has_source_name()) packet.source_name = validator.text(message.source_name());
+  if (message.has_tracked_frame()) packet.frame = read(message.tracked_frame(), validator);
+  if (!validator.is_valid()) return {{}, validator.error()};
   return {std::move(packet), DecodeError::kNone};
 }
 

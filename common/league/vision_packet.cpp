@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/league/vision_packet.hpp"
 
-#include "common/league/checks.hpp"
 #include "common/league/field_wire.hpp"
+#include "common/league/packet_validator.hpp"
 #include "common/league/wire.hpp"
 
 #include "league/vision.pb.h"
@@ -27,14 +27,14 @@ void write(const DetectedBall& ball, wire::vision::Ball& to) {
   to.set_pixel_y(static_cast<float>(ball.pixel.y()));
 }
 
-DetectedBall read(const wire::vision::Ball& from, Checks& checks) {
+DetectedBall read(const wire::vision::Ball& from, PacketValidator& validator) {
   DetectedBall ball;
-  ball.confidence = checks.probability(from.confidence());
+  ball.confidence = validator.probability(from.confidence());
   if (from.has_area()) ball.area = from.area();
-  ball.position_m = {checks.within(from.x() * 1e-3, kMaxPosition_m),
-                     checks.within(from.y() * 1e-3, kMaxPosition_m)};
-  if (from.has_z()) ball.height_m = checks.within(from.z() * 1e-3, kMaxPosition_m);
-  ball.pixel = {checks.within(from.pixel_x(), kMaxPixel), checks.within(from.pixel_y(), kMaxPixel)};
+  ball.position_m = {validator.within(from.x() * 1e-3, kMaxPosition_m),
+                     validator.within(from.y() * 1e-3, kMaxPosition_m)};
+  if (from.has_z()) ball.height_m = validator.within(from.z() * 1e-3, kMaxPosition_m);
+  ball.pixel = {validator.within(from.pixel_x(), kMaxPixel), validator.within(from.pixel_y(), kMaxPixel)};
   return ball;
 }
 
@@ -49,18 +49,18 @@ void write(const DetectedRobot& robot, wire::vision::Robot& to) {
   if (robot.height_m) to.set_height(in_mm(*robot.height_m));
 }
 
-DetectedRobot read(const wire::vision::Robot& from, Checks& checks) {
+DetectedRobot read(const wire::vision::Robot& from, PacketValidator& validator) {
   DetectedRobot robot;
-  robot.confidence = checks.probability(from.confidence());
-  checks.require(!from.has_robot_id() || from.robot_id() < kRobotNumbers, DecodeError::kRobot);
+  robot.confidence = validator.probability(from.confidence());
+  validator.require(!from.has_robot_id() || from.robot_id() < kRobotNumbers, DecodeError::kRobot);
   if (from.has_robot_id()) robot.number = from.robot_id();
-  robot.position_m = {checks.within(from.x() * 1e-3, kMaxPosition_m),
-                      checks.within(from.y() * 1e-3, kMaxPosition_m)};
+  robot.position_m = {validator.within(from.x() * 1e-3, kMaxPosition_m),
+                      validator.within(from.y() * 1e-3, kMaxPosition_m)};
   if (from.has_orientation()) {
-    robot.heading_rad = wrapped_rad(checks.within(from.orientation(), kMaxHeading_rad));
+    robot.heading_rad = wrapped_rad(validator.within(from.orientation(), kMaxHeading_rad));
   }
-  robot.pixel = {checks.within(from.pixel_x(), kMaxPixel), checks.within(from.pixel_y(), kMaxPixel)};
-  if (from.has_height()) robot.height_m = checks.within(from.height() * 1e-3, 0, kMaxRobotHeight_m);
+  robot.pixel = {validator.within(from.pixel_x(), kMaxPixel), validator.within(from.pixel_y(), kMaxPixel)};
+  if (from.has_height()) robot.height_m = validator.within(from.height() * 1e-3, 0, kMaxRobotHeight_m);
   return robot;
 }
 
@@ -75,21 +75,21 @@ void write(const DetectionFrame& detection, wire::vision::DetectionFrame& to) {
   if (detection.captured_by_camera) to.set_t_capture_camera(to_seconds(*detection.captured_by_camera));
 }
 
-DetectionFrame read(const wire::vision::DetectionFrame& from, Checks& checks) {
+DetectionFrame read(const wire::vision::DetectionFrame& from, PacketValidator& validator) {
   DetectionFrame detection;
-  checks.at_most(from.balls(), kMaxBalls);
-  checks.at_most(from.robots_yellow(), kMaxRobotsPerTeam);
-  checks.at_most(from.robots_blue(), kMaxRobotsPerTeam);
-  checks.require(from.camera_id() < kMaxCameras, DecodeError::kCamera);
-  if (!checks.is_valid()) return detection;
+  validator.at_most(from.balls(), kMaxBalls);
+  validator.at_most(from.robots_yellow(), kMaxRobotsPerTeam);
+  validator.at_most(from.robots_blue(), kMaxRobotsPerTeam);
+  validator.require(from.camera_id() < kMaxCameras, DecodeError::kCamera);
+  if (!validator.is_valid()) return detection;
   detection.frame_number = from.frame_number();
   detection.camera = from.camera_id();
-  detection.captured = checks.time(from.t_capture());
-  detection.sent = checks.time(from.t_sent());
-  if (from.has_t_capture_camera()) detection.captured_by_camera = checks.time(from.t_capture_camera());
-  for (const auto& ball : from.balls()) detection.balls.push_back(read(ball, checks));
-  for (const auto& robot : from.robots_yellow()) detection.yellow.push_back(read(robot, checks));
-  for (const auto& robot : from.robots_blue()) detection.blue.push_back(read(robot, checks));
+  detection.captured = validator.time(from.t_capture());
+  detection.sent = validator.time(from.t_sent());
+  if (from.has_t_capture_camera()) detection.captured_by_camera = validator.time(from.t_capture_camera());
+  for (const auto& ball : from.balls()) detection.balls.push_back(read(ball, validator));
+  for (const auto& robot : from.robots_yellow()) detection.yellow.push_back(read(robot, validator));
+  for (const auto& robot : from.robots_blue()) detection.blue.push_back(read(robot, validator));
   return detection;
 }
 
@@ -107,12 +107,12 @@ Decoded<VisionPacket> decode_vision(std::span<const std::byte> bytes) {
   wire::vision::Packet message;
   if (const DecodeError error = parse(bytes, message); error != DecodeError::kNone) return {{}, error};
   if (!message.has_detection() && !message.has_geometry()) return {{}, DecodeError::kEmpty};
-  Checks checks;
+  PacketValidator validator;
   VisionPacket packet;
-  if (message.has_detection()) packet.detection = read(message.detection(), checks);
-  if (message.has_geometry()) packet.geometry = read(message.geometry(), checks);
+  if (message.has_detection()) packet.detection = read(message.detection(), validator);
+  if (message.has_geometry()) packet.geometry = read(message.geometry(), validator);
   if (message.has_source()) packet.source = message.source();
-  if (!checks.is_valid()) return {{}, checks.error()};
+  if (!validator.is_valid()) return {{}, validator.error()};
   return {std::move(packet), DecodeError::kNone};
 }
 

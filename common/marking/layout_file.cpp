@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/marking/colour_from.hpp"
+#include "common/marking/parse_colour.hpp"
 #include "common/yaml/yaml_document.hpp"
 #include "common/yaml/yaml_map.hpp"
 
@@ -30,8 +30,8 @@ using Locations = std::vector<YamlLocation>;
 void read_centre(YamlMap& map, MarkerLayout& layout) {
   YamlMap centre(map.require("centre"), map.location_of("centre"));
   layout.centre = read_dot(centre);
-  layout.blue_team = colour_from(centre.require("blue"), centre.location_of("blue"));
-  layout.yellow_team = colour_from(centre.require("yellow"), centre.location_of("yellow"));
+  layout.blue_team = parse_colour(centre.require("blue"), centre.location_of("blue"));
+  layout.yellow_team = parse_colour(centre.require("yellow"), centre.location_of("yellow"));
   centre.finish();
 }
 
@@ -54,7 +54,7 @@ Locations read_patterns(YamlMap& map, MarkerLayout& layout) {
         integer_from(inner.require("id"), inner.location_of("id"), {0, kMaxRobots - 1.0}));
     const YamlLocation colours = inner.location_of("colours");
     for (const YAML::Node& colour : list_from(inner.require("colours"), colours, kMaxDots))
-      pattern.colours.push_back(colour_from(colour, colours.of(colour, colours.what)));
+      pattern.colours.push_back(parse_colour(colour, colours.of(colour, colours.what)));
     layout.patterns.push_back(pattern);
   });
   return locations;

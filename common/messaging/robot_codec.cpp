@@ -56,7 +56,7 @@ std::optional<Command> decode(const msg::Command& message, RobotId robot, Time n
   return command;
 }
 
-std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time now) {
+std::optional<RobotReport> decode(const msg::Feedback& message, RobotId robot, Time now) {
   const State estimate{{message.x_m(), message.y_m()}, {message.vx_mps(), message.vy_mps()}};
   const LocalisationUncertainty uncertainty{message.position_error_rms_m(), message.odometry_scale_stddev()};
   const bool is_valid =
@@ -72,27 +72,27 @@ std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time
   if (!is_valid) return std::nullopt;
   auto executing = decode(message.executing(), now);
   if (!executing || executing->robot != robot) return std::nullopt;
-  Feedback feedback;
-  feedback.robot = robot;
-  feedback.robot_incarnation = message.header().incarnation();
-  feedback.obeyed_incarnation = message.obeyed_incarnation();
-  feedback.obeyed_epoch = message.obeyed_epoch();
-  feedback.valid_at = time_from_ns(message.valid_at_ns());
-  feedback.executing = *executing;
-  feedback.is_off_reference = message.is_off_reference();
-  feedback.is_lifted = message.is_lifted();
+  RobotReport robot_report;
+  robot_report.robot = robot;
+  robot_report.robot_incarnation = message.header().incarnation();
+  robot_report.obeyed_incarnation = message.obeyed_incarnation();
+  robot_report.obeyed_epoch = message.obeyed_epoch();
+  robot_report.valid_at = time_from_ns(message.valid_at_ns());
+  robot_report.executing = *executing;
+  robot_report.is_off_reference = message.is_off_reference();
+  robot_report.is_lifted = message.is_lifted();
   if (message.command_stamp_ns() != 0) {
-    feedback.command = {time_from_ns(message.command_stamp_ns()),
-                        time_from_ns(message.command_received_at_ns())};
+    robot_report.command = {time_from_ns(message.command_stamp_ns()),
+                            time_from_ns(message.command_received_at_ns())};
   }
-  feedback.estimate = estimate;
-  feedback.heading_rad = message.heading_rad();
-  feedback.tracking_error_m = message.tracking_error_m();
-  feedback.uncertainty = uncertainty;
-  feedback.has_moved = message.has_moved();
-  feedback.activated = message.activated();
-  feedback.lead = Duration{message.lead_ns()};
-  return feedback;
+  robot_report.estimate = estimate;
+  robot_report.heading_rad = message.heading_rad();
+  robot_report.tracking_error_m = message.tracking_error_m();
+  robot_report.uncertainty = uncertainty;
+  robot_report.has_moved = message.has_moved();
+  robot_report.activated = message.activated();
+  robot_report.lead = Duration{message.lead_ns()};
+  return robot_report;
 }
 
 msg::Command encode(const Command& command) {
@@ -109,32 +109,32 @@ msg::Command encode(const Command& command) {
   return message;
 }
 
-msg::Feedback encode(const Feedback& feedback) {
+msg::Feedback encode(const RobotReport& robot_report) {
   msg::Feedback message;
-  message.robot(feedback.robot);
-  message.header().sender(feedback.robot);
-  message.header().incarnation(feedback.robot_incarnation);
-  message.obeyed_incarnation(feedback.obeyed_incarnation);
-  message.obeyed_epoch(feedback.obeyed_epoch);
-  message.valid_at_ns(to_ns(feedback.valid_at));
-  message.executing(encode(feedback.executing));
-  message.is_off_reference(feedback.is_off_reference);
-  message.is_lifted(feedback.is_lifted);
-  if (feedback.command) {
-    message.command_stamp_ns(to_ns(feedback.command->sent_at));
-    message.command_received_at_ns(to_ns(feedback.command->received_at));
+  message.robot(robot_report.robot);
+  message.header().sender(robot_report.robot);
+  message.header().incarnation(robot_report.robot_incarnation);
+  message.obeyed_incarnation(robot_report.obeyed_incarnation);
+  message.obeyed_epoch(robot_report.obeyed_epoch);
+  message.valid_at_ns(to_ns(robot_report.valid_at));
+  message.executing(encode(robot_report.executing));
+  message.is_off_reference(robot_report.is_off_reference);
+  message.is_lifted(robot_report.is_lifted);
+  if (robot_report.command) {
+    message.command_stamp_ns(to_ns(robot_report.command->sent_at));
+    message.command_received_at_ns(to_ns(robot_report.command->received_at));
   }
-  message.x_m(feedback.estimate.position_m.x());
-  message.y_m(feedback.estimate.position_m.y());
-  message.vx_mps(feedback.estimate.velocity_mps.x());
-  message.vy_mps(feedback.estimate.velocity_mps.y());
-  message.heading_rad(feedback.heading_rad);
-  message.tracking_error_m(feedback.tracking_error_m);
-  message.position_error_rms_m(feedback.uncertainty.position_error_rms_m);
-  message.odometry_scale_stddev(feedback.uncertainty.odometry_scale_stddev);
-  message.has_moved(feedback.has_moved);
-  message.activated(feedback.activated);
-  message.lead_ns(feedback.lead.count());
+  message.x_m(robot_report.estimate.position_m.x());
+  message.y_m(robot_report.estimate.position_m.y());
+  message.vx_mps(robot_report.estimate.velocity_mps.x());
+  message.vy_mps(robot_report.estimate.velocity_mps.y());
+  message.heading_rad(robot_report.heading_rad);
+  message.tracking_error_m(robot_report.tracking_error_m);
+  message.position_error_rms_m(robot_report.uncertainty.position_error_rms_m);
+  message.odometry_scale_stddev(robot_report.uncertainty.odometry_scale_stddev);
+  message.has_moved(robot_report.has_moved);
+  message.activated(robot_report.activated);
+  message.lead_ns(robot_report.lead.count());
   return message;
 }
 

@@ -14,11 +14,11 @@ namespace sidestep {
 [[nodiscard]] std::optional<Command> decode(const msg::Command& message, RobotId robot, Time now);
 /// Decodes untrusted facts. Returns nullopt unless `robot` sent them about itself, all numbers are finite,
 /// and version, incarnations, epoch and times are valid and plausible at `now` (by the local clock).
-[[nodiscard]] std::optional<Feedback> decode(const msg::Feedback& message, RobotId robot, Time now);
+[[nodiscard]] std::optional<RobotReport> decode(const msg::Feedback& message, RobotId robot, Time now);
 
 /// Encodes a command without the header's message_number and stamp_ns, which Writer::publish() sets.
 msg::Command encode(const Command& command);
 /// Encodes facts without the header's message_number and stamp_ns.
-msg::Feedback encode(const Feedback& feedback);
+msg::Feedback encode(const RobotReport& robot_report);
 
 }  // namespace sidestep

@@ -22,12 +22,12 @@ std::string budget_line(const SafetyBudget& budget, double margin_m) {
   if (spare_m >= 0.00005) line += fmt::format(" + {:.1f} mm to spare", spare_m * 1e3);
   // Cameras and robots date observations with clocks that may differ by twice the clock bound.
   const double shift_m = 2 * budget.clock_bound_s * budget.speed_mps;
-  const double sight_m = sight_error_bound_m(budget.tracking_bound_m);
+  const double sight_m = vision_error_bound_m(budget.tracking_bound_m);
   if (shift_m > sight_m + 1e-9) {
     line += fmt::format(
         "; warning: errors of the cameras' clocks may shift robots by {:.1f} mm, of which tracking covers "
         "{:.1f} mm: expect own stops, or set tracking_bound_m to {:.1f} mm or more",
-        shift_m * 1e3, sight_m * 1e3, shift_m / sight_error_bound_m(1) * 1e3);
+        shift_m * 1e3, sight_m * 1e3, shift_m / vision_error_bound_m(1) * 1e3);
   }
   const double measured_mps = budget.max_speed_mps(margin_m, kMeasuredOffset_s);
   if (measured_mps < (1 - 1e-9) * budget.speed_mps) {

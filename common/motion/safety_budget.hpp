@@ -12,7 +12,7 @@ constexpr double drift_bound_m(double tracking_bound_m) { return 0.6 * tracking_
 
 /// Maximum persistent offset between a robot's place and where vision shows it, for example due to a badly
 /// calibrated camera. It is the part of the tracking bound that drift does not use up.
-constexpr double sight_error_bound_m(double tracking_bound_m) {
+constexpr double vision_error_bound_m(double tracking_bound_m) {
   return tracking_bound_m - drift_bound_m(tracking_bound_m);
 }
 

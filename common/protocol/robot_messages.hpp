@@ -31,9 +31,9 @@ struct LocalisationUncertainty {
   double odometry_scale_stddev = 0;  ///< standard deviation of its odometry's relative error
 };
 
-/// Facts from a robot: at `valid_at` it executed `executing`. See Feedback in idl/robot.idl. All times are by
-/// the robot's clock, except CommandEcho::sent_at.
-struct Feedback {
+/// The facts that a robot reports: at `valid_at` it executed `executing`. See Feedback in idl/robot.idl. All
+/// times are by the robot's clock, except CommandEcho::sent_at.
+struct RobotReport {
   /// The last command of the agent that the robot obeys.
   struct CommandEcho {
     Time sent_at{};  ///< by the agent's clock

@@ -61,21 +61,22 @@ Version from_plain(const robot::Version& plain, RobotId robot) {
   return version;
 }
 
-Feedback from_plain(const robot::Facts& facts, RobotId robot) {
-  Feedback feedback;
-  feedback.robot = robot;
-  feedback.obeyed_incarnation = facts.obeyed_incarnation;
-  feedback.obeyed_epoch = facts.obeyed_epoch;
-  feedback.valid_at = time_from_ns(facts.valid_at_ns);
-  feedback.executing = from_plain(*facts.executing, robot);
-  feedback.is_off_reference = facts.is_off_reference;
-  feedback.is_lifted = facts.is_lifted;
-  if (facts.has_command)
-    feedback.command = {time_from_ns(facts.command_sent_at_ns), time_from_ns(facts.command_received_at_ns)};
-  feedback.has_moved = facts.has_moved;
-  feedback.activated = facts.activated;
-  feedback.lead = Duration{facts.lead_ns};
-  return feedback;
+RobotReport from_plain(const robot::RobotReport& plain, RobotId robot) {
+  RobotReport robot_report;
+  robot_report.robot = robot;
+  robot_report.obeyed_incarnation = plain.obeyed_incarnation;
+  robot_report.obeyed_epoch = plain.obeyed_epoch;
+  robot_report.valid_at = time_from_ns(plain.valid_at_ns);
+  robot_report.executing = from_plain(*plain.executing, robot);
+  robot_report.is_off_reference = plain.is_off_reference;
+  robot_report.is_lifted = plain.is_lifted;
+  if (plain.has_command)
+    robot_report.command = {time_from_ns(plain.command_sent_at_ns),
+                            time_from_ns(plain.command_received_at_ns)};
+  robot_report.has_moved = plain.has_moved;
+  robot_report.activated = plain.activated;
+  robot_report.lead = Duration{plain.lead_ns};
+  return robot_report;
 }
 
 }  // namespace sidestep

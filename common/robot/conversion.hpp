@@ -12,8 +12,9 @@ namespace sidestep {
 robot::Version to_plain(const Version& version);
 Version from_plain(const robot::Version& version, RobotId robot);
 
-/// Converts the protocol's part of a fact. The caller sets the robot's estimate and robot_incarnation.
-Feedback from_plain(const robot::Facts& facts, RobotId robot);
+/// Converts the protocol's part of a robot's report. The caller sets the robot's estimate and
+/// robot_incarnation.
+RobotReport from_plain(const robot::RobotReport& plain, RobotId robot);
 
 /// Passes the protocol's part of a command to the robot side. Returns whether it is from an agent that the
 /// robot obeys.

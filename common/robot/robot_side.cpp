@@ -86,7 +86,7 @@ template <typename Real>
 void RobotSide<Real>::set_clock_back(std::int64_t now_ns) {
   pending_count_ = 0;
   has_command_ = false;
-  last_fact_ns_ = INT64_MIN;
+  last_report_ns_ = INT64_MIN;
   drifted_since_ns_ = kNever_ns;
   if (is_lifted_)
     lift(now_ns, executing_.x_m, executing_.y_m);
@@ -419,26 +419,26 @@ void RobotSide<Real>::restart() {
 }
 
 template <typename Real>
-Facts RobotSide<Real>::facts(std::int64_t now_ns) {
+RobotReport RobotSide<Real>::robot_report(std::int64_t now_ns) {
   while (switch_next(now_ns)) {
   }
   acknowledge();
-  last_fact_ns_ = larger(last_fact_ns_, now_ns);
-  Facts facts;
-  facts.obeyed_incarnation = acknowledged_incarnation_;
-  facts.obeyed_epoch = durable_.epoch;
-  facts.valid_at_ns = now_ns;
-  facts.executing = &executing_;
-  facts.is_off_reference = is_off_reference_;
-  facts.is_lifted = is_lifted_;
-  facts.has_moved = has_moved_;
+  last_report_ns_ = larger(last_report_ns_, now_ns);
+  RobotReport robot_report;
+  robot_report.obeyed_incarnation = acknowledged_incarnation_;
+  robot_report.obeyed_epoch = durable_.epoch;
+  robot_report.valid_at_ns = now_ns;
+  robot_report.executing = &executing_;
+  robot_report.is_off_reference = is_off_reference_;
+  robot_report.is_lifted = is_lifted_;
+  robot_report.has_moved = has_moved_;
   // Otherwise the acknowledged agent would mistake another agent's command for its own.
-  facts.has_command = has_command_ && acknowledged_incarnation_ == durable_.incarnation;
-  facts.command_sent_at_ns = command_sent_at_ns_;
-  facts.command_received_at_ns = command_received_at_ns_;
-  facts.activated = counts_.activated;
-  facts.lead_ns = settings_.actuation_lead_ns;
-  return facts;
+  robot_report.has_command = has_command_ && acknowledged_incarnation_ == durable_.incarnation;
+  robot_report.command_sent_at_ns = command_sent_at_ns_;
+  robot_report.command_received_at_ns = command_received_at_ns_;
+  robot_report.activated = counts_.activated;
+  robot_report.lead_ns = settings_.actuation_lead_ns;
+  return robot_report;
 }
 
 template class RobotSide<float>;

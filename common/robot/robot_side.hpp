@@ -69,8 +69,8 @@ struct Estimate {
   MotionUnderWay<Real> under_way;  ///< only read if there is an actuation lead and is_stop_due() returns true
 };
 
-/// The protocol's part of a fact (see Feedback in idl/robot.idl).
-struct Facts {
+/// The protocol's part of a robot's report (see Feedback in idl/robot.idl).
+struct RobotReport {
   std::uint64_t obeyed_incarnation = 0;  ///< acknowledged: no version of an earlier agent can still start
   std::uint64_t obeyed_epoch = 0;
   std::int64_t valid_at_ns = 0;
@@ -165,7 +165,7 @@ class RobotSide {
   void put_down() { is_lifted_ = false; }
 
   /// The facts at this time. Precondition: may_report().
-  Facts facts(std::int64_t now_ns);
+  RobotReport robot_report(std::int64_t now_ns);
   /// Whether the robot executes a version that begins where it is, and has stored everything that its facts
   /// would acknowledge.
   bool may_report() const {
@@ -208,7 +208,7 @@ class RobotSide {
   bool is_within(Real bound_m, Real error_m, const Estimate<Real>& estimate) const;
   Real error_m(std::int64_t now_ns, const Vec<Real>& position_m) const;
   bool may_stop(std::int64_t now_ns) const {
-    const bool is_new = now_ns > last_fact_ns_ && now_ns > executing_.start_ns;
+    const bool is_new = now_ns > last_report_ns_ && now_ns > executing_.start_ns;
     return !is_lifted_ && has_pose_ && (is_clock_set_back_ || is_new);
   }
   std::int64_t drifted_since_ns(std::int64_t now_ns, const Estimate<Real>& estimate) const;
@@ -237,7 +237,7 @@ class RobotSide {
   bool is_memory_broken_ = false;
   bool has_command_ = false;
   std::int64_t command_sent_at_ns_ = 0, command_received_at_ns_ = 0;
-  std::int64_t last_fact_ns_ = INT64_MIN;
+  std::int64_t last_report_ns_ = INT64_MIN;
   std::int64_t drifted_since_ns_ = kNever_ns;  ///< kNever_ns while within the drift bound
   Version pending_[kMaxPending];               ///< sorted by start, then number, ascending
   int pending_count_ = 0;

@@ -21,7 +21,7 @@ class RateLimit {
     return true;
   }
   /// Takes back an admitted event, so that it does not count.
-  constexpr void give_back() { due_ -= period_; }
+  constexpr void refund() { due_ -= period_; }
 
  private:
   Duration period_, tolerance_;

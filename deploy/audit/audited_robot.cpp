@@ -162,7 +162,7 @@ void AuditedRobot::reset() {
 }
 
 void AuditedRobot::forget_times() {
-  if (fact) fact->at_ns = kAlways;
+  if (last_report) last_report->at_ns = kAlways;
   drifted_since_ns = beyond_bound_since_ns = kNever;
   for (KnownVersion& version : versions) {
     version.executed_until_ns = kAlways;
@@ -175,22 +175,22 @@ void AuditedRobot::forget_times() {
   first_recent = 0;
 }
 
-Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version) {
-  if (fact.is_lifted && fact.executing == 0) {
+Exclusion exclusion_by(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& version) {
+  if (robot_report.is_lifted && robot_report.executing == 0) {
     // Only a rest version that was granted and not yet executed remains possible for a lifted robot, and what
     // continues it after the robot has been put down.
     const bool is_later =
-        version.has_content && !version.was_executed && version.path.start_ns() > fact.at_ns;
+        version.has_content && !version.was_executed && version.path.start_ns() > robot_report.at_ns;
     const bool is_rest_version =
         is_later && version.version.base() == 0 && version.number != 0 && version.path.reach_m() == 0;
-    const bool continues_later = is_later && version.version.base() > fact.last_executed;
+    const bool continues_later = is_later && version.version.base() > robot_report.last_executed;
     return is_rest_version || continues_later ? Exclusion::kNone : Exclusion::kLifted;
   }
-  if (version.number < fact.executing) return Exclusion::kOlder;
-  if (version.number == fact.executing || !version.has_content) return Exclusion::kNone;
-  if (version.path.start_ns() <= fact.at_ns) return Exclusion::kLate;
+  if (version.number < robot_report.executing) return Exclusion::kOlder;
+  if (version.number == robot_report.executing || !version.has_content) return Exclusion::kNone;
+  if (version.path.start_ns() <= robot_report.at_ns) return Exclusion::kLate;
   // The firmware drops the versions of agents that it no longer obeys.
-  if (version.version.incarnation() < fact.obeyed_incarnation) return Exclusion::kFenced;
+  if (version.version.incarnation() < robot_report.obeyed_incarnation) return Exclusion::kFenced;
   return Exclusion::kNone;
 }
 

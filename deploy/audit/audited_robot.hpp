@@ -126,8 +126,8 @@ class AuditedRobot {
   std::size_t first_recent = 0;  ///< versions before this index were excluded long ago
 
   /// The latest fact.
-  struct Fact {
-    std::uint64_t life = 0;  ///< incarnation of the robot
+  struct ReceivedReport {
+    std::uint64_t robot_incarnation = 0;  ///< incarnation of the robot
     std::int64_t at_ns = 0;
     std::int64_t earliest_ns = kAlways, latest_ns = kAlways;  ///< bounds of its sending time
     VersionNumber executing = 0;
@@ -139,7 +139,7 @@ class AuditedRobot {
     bool is_off_reference = false;
     bool is_lifted = false;
   };
-  std::optional<Fact> fact;
+  std::optional<ReceivedReport> last_report;
   Time heard_at{};  ///< when it arrived
   /// Since these times, all facts have reported an error beyond the drift bound, or beyond the tracking
   /// bound.
@@ -218,7 +218,8 @@ class AuditedRobot {
 };
 
 /// Whether and why the fact proves that the version is not executed from then on.
-[[nodiscard]] Exclusion exclusion_by(const AuditedRobot::Fact& fact, const KnownVersion& version);
+[[nodiscard]] Exclusion exclusion_by(const AuditedRobot::ReceivedReport& robot_report,
+                                     const KnownVersion& version);
 
 /// The part of a version that decides whether it must be compared with another robot's version; compact in
 /// memory.

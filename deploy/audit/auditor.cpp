@@ -39,7 +39,7 @@ Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
       sight_allowance_m_(sight_allowance_m(scenario)),
       trace_(input.is_complete ? Duration{0} : input.min_latency_bound),
       agent_trace_(input.is_complete ? Duration{0} : input.min_latency_bound),
-      facts_time_(scenario.robots.size()),
+      report_coverage_(scenario.robots.size()),
       sights_(scenario.robots.size()),
       seen_displacements_(scenario.robots.size()),
       observed_(scenario.robots.size()),
@@ -125,7 +125,7 @@ KnownVersion* Auditor::store(AuditedRobot& robot, const msg::Version& version) {
     known.is_content_checked = known.is_pair_checked = input_.is_complete;
     max_inflation_m_ = std::max(max_inflation_m_, version.inflation_m());
     // An earlier fact may exclude the version.
-    if (robot.fact) known.exclusion = exclusion_by(*robot.fact, known);
+    if (robot.last_report) known.exclusion = exclusion_by(*robot.last_report, known);
     known.excluded_ns = known.exclusion == Exclusion::kNone ? kNever : to_ns(now_);
     robot.make_recent(known.number);
   } else if (!(known.version == version)) {
@@ -234,8 +234,8 @@ void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
   const std::vector<RobotId> missing = missing_robots(state);
   if (missing.empty()) return;
   const std::int64_t sent_ns = input_.is_complete ? reception.earliest_ns : state.header().stamp_ns();
-  if (known->second.granter_life != state.header().incarnation() || sent_ns <= known->second.first_grant_ns ||
-      !are_times_comparable(state.header()))
+  if (known->second.granter_incarnation != state.header().incarnation() ||
+      sent_ns <= known->second.first_grant_ns || !are_times_comparable(state.header()))
     return;
   known->second.is_reported = true;
   report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),
@@ -317,7 +317,7 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
   subscribe(topics::kCoordinator, &Auditor::on_coordinator);
   subscribe(topics::kLedger, &Auditor::on_ledger);
   subscribe(topics::kTruth, &Auditor::on_truth);
-  subscribe(topics::kWorld, &Auditor::on_world);
+  subscribe(topics::kWorld, &Auditor::on_world_state);
   subscribe(topics::kDisturbance, &Auditor::on_disturbance);
   subscribe(topics::kAttestation, &Auditor::on_attestation);
   subscribe(topics::kOrder, &Auditor::on_order);
@@ -328,7 +328,7 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
   for (const RobotSpec& robot : scenario.robots) {
     subscribe(topics::kVerdict, &Auditor::on_verdict, robot.id);
     subscribe(topics::kCommand, &Auditor::on_command, robot.id);
-    subscribe(topics::kFeedback, &Auditor::on_feedback, robot.id);
+    subscribe(topics::kFeedback, &Auditor::on_robot_report, robot.id);
   }
   // Advances also when no message arrives.
   call_periodically(bus, kAdvancePeriod, [&bus, &auditor] { auditor.advance(bus.now()); });

@@ -19,8 +19,8 @@
 #include "deploy/audit/audited_robot.hpp"
 #include "deploy/audit/comparable_stamps.hpp"
 #include "deploy/audit/disturbances.hpp"
-#include "deploy/audit/heard_time.hpp"
 #include "deploy/audit/order_audit.hpp"
+#include "deploy/audit/reception_coverage.hpp"
 #include "deploy/audit/seen_contacts.hpp"
 #include "deploy/inspect/senders/message_trace.hpp"
 
@@ -53,11 +53,11 @@ class Auditor {
   void on_coordinator(const msg::CoordinatorState& state, Time now);
   void on_ledger(const msg::LedgerPage& page, Time now);
   void on_command(const msg::Command& command, Time now);
-  void on_feedback(const msg::Feedback& feedback, Time now);
+  void on_robot_report(const msg::Feedback& feedback, Time now);
   /// Ground truth is the reference for positions and contacts, and shows which robots were disturbed.
   void on_truth(const msg::GroundTruth& truth, Time now);
   /// The world state is the reference if no ground truth is received.
-  void on_world(const msg::WorldState& world, Time now);
+  void on_world_state(const msg::WorldState& world, Time now);
   /// Names the cause of a disturbance. Without ground truth it is also the evidence that there was one.
   void on_disturbance(const msg::Disturbance& disturbance, Time now);
   /// The operator attests that a silent robot is not on the floor.
@@ -80,10 +80,10 @@ class Auditor {
   /// What is known about one epoch.
   struct EpochRecord {
     std::uint32_t granter = 0;
-    Incarnation granter_life = 0;
+    Incarnation granter_incarnation = 0;
     std::int64_t first_grant_ns = kNever;  ///< upper bound
     bool is_reported = false;
-    Incarnation page_life = 0;  ///< incarnation of the coordinator whose pages count
+    Incarnation page_incarnation = 0;  ///< incarnation of the coordinator whose pages count
   };
   /// What had been proven about a version before the current message.
   struct Evidence {
@@ -120,7 +120,7 @@ class Auditor {
     kCoordinatorKind,
     kLedgerKind,
     kCommandKind,
-    kFeedbackKind,
+    kRobotReportKind,
     kTruthKind,
     kWorldKind,
     kOrderAnswerKind,
@@ -150,7 +150,7 @@ class Auditor {
   /// Something shows that robots may move. From then on, silence counts once every robot has been heard, but
   /// at the latest after a second.
   void begin_run();
-  void hear_fact(const AuditedRobot& robot, VersionNumber executing, const Reception& reception);
+  void hear_robot_report(const AuditedRobot& robot, VersionNumber executing, const Reception& reception);
   void use_reference(AuditReference reference);
   bool has_ground_truth() const;
   Coverage coverage() const;
@@ -188,7 +188,8 @@ class Auditor {
   ProposalRecord* answered_proposal(AuditedRobot& robot, const msg::Verdict& verdict) const;
 
   // Facts.
-  void check_fact_order(const AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
+  void check_report_order(const AuditedRobot& robot, const msg::Feedback& feedback,
+                          const Reception& reception);
   void check_switch(const AuditedRobot& robot, const KnownVersion& to, const msg::Feedback& feedback);
   void check_sent(AuditedRobot& robot, KnownVersion& executing);
   void check_tracking(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
@@ -201,8 +202,8 @@ class Auditor {
   bool is_after_registration(const AuditedRobot& robot, const msg::Feedback& feedback,
                              const Reception& reception) const;
   bool is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const;
-  void exclude(AuditedRobot& robot, const AuditedRobot::Fact& fact, const Reception& reception,
-               std::int64_t now_ns);
+  void exclude(AuditedRobot& robot, const AuditedRobot::ReceivedReport& robot_report,
+               const Reception& reception, std::int64_t now_ns);
 
   // Positions and contacts.
   void check_position(AuditedRobot& robot, const msg::Feedback& feedback, const Reception& reception);
@@ -274,8 +275,8 @@ class Auditor {
   MessageTrace agent_trace_;  ///< messages of agents
   Time now_{};
   std::optional<Time> motion_sign_at_, begun_at_;  ///< when something first showed that robots may move
-  HeardTime facts_time_;                           ///< facts of all robots
-  std::optional<HeardTime> reference_time_;
+  ReceptionCoverage report_coverage_;              ///< facts of all robots
+  std::optional<ReceptionCoverage> reference_coverage_;
   std::optional<Time> first_sight_at_;
   std::vector<AuditedRobot> robots_;                     ///< sorted by id
   std::vector<BoundingDisc> bounds_;                     ///< parallel to robots_

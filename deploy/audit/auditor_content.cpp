@@ -158,8 +158,8 @@ void Auditor::check_base(const AuditedRobot& robot, const KnownVersion& known) {
            fmt::format("its base, version {}, has no lower number", known.version.base()));
   }
   const bool is_rest_version = known.version.base() == 0 && known.path.reach_m() == 0;
-  const bool is_absent =
-      (robot.fact && robot.fact->is_lifted) || (robot.registered && robot.registered->is_absent);
+  const bool is_absent = (robot.last_report && robot.last_report->is_lifted) ||
+                         (robot.registered && robot.registered->is_absent);
   if (is_rest_version && is_absent) return;
   const bool is_evicted = robot.was_evicted(known.version.base());
   if (input_.is_complete && !is_evicted &&

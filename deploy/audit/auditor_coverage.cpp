@@ -18,20 +18,21 @@ constexpr Duration kMaxJoinTime = std::chrono::seconds(1);
 void Auditor::begin_run() {
   if (begun_at_) return;
   if (!motion_sign_at_) motion_sign_at_ = now_;
-  const auto is_heard = [](const AuditedRobot& robot) { return robot.fact.has_value(); };
+  const auto is_heard = [](const AuditedRobot& robot) { return robot.last_report.has_value(); };
   if (!std::ranges::all_of(robots_, is_heard) && now_ - *motion_sign_at_ < kMaxJoinTime) return;
   begun_at_ = now_;
-  facts_time_.begin(now_);
-  if (reference_time_) reference_time_->begin(now_);
+  report_coverage_.begin(now_);
+  if (reference_coverage_) reference_coverage_->begin(now_);
 }
 
-void Auditor::hear_fact(const AuditedRobot& robot, VersionNumber executing, const Reception& reception) {
+void Auditor::hear_robot_report(const AuditedRobot& robot, VersionNumber executing,
+                                const Reception& reception) {
   if (executing != 0) begin_run();
   // A running robot sends at least one fact per cycle, so this many missed facts span at most as many cycles.
   // They leave no doubt if all versions that the robot executed in between are known.
-  const bool is_known = robot.fact && robot.continues(robot.fact->executing, executing);
+  const bool is_known = robot.last_report && robot.continues(robot.last_report->executing, executing);
   const auto missed = static_cast<std::int64_t>(std::min(reception.missed, kMaxMissed));
-  facts_time_.hear(index_of(robot), now_, is_known ? Duration{0} : missed * scenario_.cycle);
+  report_coverage_.hear(index_of(robot), now_, is_known ? Duration{0} : missed * scenario_.cycle);
 }
 
 void Auditor::on_attestation(const msg::AbsenceAttestation& attestation, Time now) {
@@ -41,7 +42,7 @@ void Auditor::on_attestation(const msg::AbsenceAttestation& attestation, Time no
     ++totals_.invalid;
     return;
   }
-  facts_time_.expect_silence(*index);
+  report_coverage_.expect_silence(*index);
   robots_[*index].attested_until = std::numeric_limits<Epoch>::max();
   robots_[*index].attested_in = newest_epoch_;
 }
@@ -55,8 +56,8 @@ void Auditor::use_reference(AuditReference reference) {
   const bool is_vision = reference == AuditReference::kVision;
   const bool was_vision = totals_.reference == AuditReference::kVision;
   totals_.reference = was_vision ? AuditReference::kVisionThenGroundTruth : reference;
-  reference_time_.emplace(is_vision ? robots_.size() : 1);
-  if (begun_at_) reference_time_->begin(now_);
+  reference_coverage_.emplace(is_vision ? robots_.size() : 1);
+  if (begun_at_) reference_coverage_->begin(now_);
   std::ranges::fill(observations_, Observation());
 }
 
@@ -74,9 +75,9 @@ Coverage Auditor::coverage() const {
   coverage.versions = share_of(versions.traced, versions.all);
   coverage.pairs = share_of(totals_.compared_pairs - totals_.undecided_pairs, totals_.compared_pairs);
   // An auditor that receives every message knows that a silent robot has sent nothing.
-  coverage.time = facts_time_.share(now_, !input_.is_complete);
+  coverage.time = report_coverage_.share(now_, !input_.is_complete);
   const bool counts_silence = !input_.is_complete || !has_ground_truth();
-  if (reference_time_) coverage.reference = reference_time_->share(now_, counts_silence);
+  if (reference_coverage_) coverage.reference = reference_coverage_->share(now_, counts_silence);
   return coverage;
 }
 

@@ -130,10 +130,10 @@ void Auditor::check_grant(AuditedRobot& robot, KnownVersion& known, const msg::V
 void Auditor::check_granting_epoch(const AuditedRobot& robot, const KnownVersion& known,
                                    const msg::Verdict& verdict) {
   EpochRecord& record = epoch_record(verdict.epoch());
-  const Incarnation life = verdict.header().incarnation();
+  const Incarnation incarnation = verdict.header().incarnation();
   if (record.first_grant_ns == kNever) {
     record.granter = verdict.header().sender();
-    record.granter_life = life;
+    record.granter_incarnation = incarnation;
     for (const AuditedRobot& other : robots_) {
       if (!input_.is_complete || other.registered_in.may_have_held(verdict.epoch()) ||
           verdict.epoch() <= other.attested_until)
@@ -143,10 +143,10 @@ void Auditor::check_granting_epoch(const AuditedRobot& robot, const KnownVersion
           AuditRule::kAllRegistered, other.id, nullptr, verdict.epoch(),
           fmt::format("had not registered when version {} of robot {} was granted", known.number, robot.id));
     }
-  } else if (record.granter_life != life || record.granter != verdict.header().sender()) {
+  } else if (record.granter_incarnation != incarnation || record.granter != verdict.header().sender()) {
     report(AuditRule::kSingleCoordinator, robot.id, &known, verdict.epoch(),
            fmt::format("coordinator {} (incarnation {}) grants after coordinator {} (incarnation {})",
-                       verdict.header().sender(), life, record.granter, record.granter_life));
+                       verdict.header().sender(), incarnation, record.granter, record.granter_incarnation));
   }
   record.first_grant_ns = std::min(record.first_grant_ns, known.granted_by_ns);
 }
@@ -161,7 +161,7 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
   begin_run();
   const auto granter = epochs_.find(page.epoch());
   const bool is_of_epoch =
-      granter == epochs_.end() || granter->second.granter_life == page.header().incarnation();
+      granter == epochs_.end() || granter->second.granter_incarnation == page.header().incarnation();
   for (const msg::Version& version : page.versions()) {
     if (version.robot() >= index_.size() || index_[version.robot()] == robots_.size()) {
       ++totals_.invalid;
@@ -204,10 +204,10 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
 void Auditor::use_ledger_page(const msg::LedgerPage& page) {
   if (!are_times_comparable(page.header())) return;
   EpochRecord& record = epoch_record(page.epoch());
-  if (record.page_life == 0) record.page_life = page.header().incarnation();
+  if (record.page_incarnation == 0) record.page_incarnation = page.header().incarnation();
   const bool is_of_granter =
-      record.first_grant_ns == kNever || record.granter_life == page.header().incarnation();
-  if (record.page_life != page.header().incarnation() || !is_of_granter) return;
+      record.first_grant_ns == kNever || record.granter_incarnation == page.header().incarnation();
+  if (record.page_incarnation != page.header().incarnation() || !is_of_granter) return;
   const auto& versions = page.versions();
   const std::int64_t at_ns = page.header().stamp_ns();
   std::size_t begin = 0;

@@ -60,15 +60,16 @@ bool Auditor::was_checked_against(const KnownVersion& granted, const KnownVersio
 bool Auditor::are_clocks_comparable(std::size_t a, std::size_t b) const {
   if (!has_sound_clock_[a] || !has_sound_clock_[b]) return false;
   return input_.is_complete ||
-         (robots_[a].fact && robots_[b].fact && robots_[a].fact->life == robots_[b].fact->life);
+         (robots_[a].last_report && robots_[b].last_report &&
+          robots_[a].last_report->robot_incarnation == robots_[b].last_report->robot_incarnation);
 }
 
 bool Auditor::may_conflict(const LiveVersion& mine, const Evidence& before, const LiveVersion& theirs) const {
   const bool by_grant = before.alive_until_ns < std::max(mine.granted_by_ns, theirs.granted_by_ns);
   const std::int64_t from_ns = std::max(mine.start_ns, theirs.start_ns) + 2 * clock_bound_ns_;
-  const bool by_facts = std::min(before.executed_until_ns, theirs.executed_until_ns) <= from_ns + 1000 &&
-                        std::min(mine.executed_until_ns, theirs.executed_until_ns) > from_ns;
-  if (!by_grant && !by_facts) return false;
+  const bool by_reports = std::min(before.executed_until_ns, theirs.executed_until_ns) <= from_ns + 1000 &&
+                          std::min(mine.executed_until_ns, theirs.executed_until_ns) > from_ns;
+  if (!by_grant && !by_reports) return false;
   const double dx = mine.x - theirs.x, dy = mine.y - theirs.y;
   const double max_distance_m =
       mine.reach_m + theirs.reach_m + 2 * scenario_.radius_m + scenario_.margin_m + 2 * max_inflation_m_;

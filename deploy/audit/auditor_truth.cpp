@@ -43,8 +43,8 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     seen_displacements_[index] = {};
     return;
   }
-  const bool is_off = feedback.is_off_reference() || feedback.is_lifted() || !robot.fact ||
-                      robot.fact->is_off_reference || robot.fact->is_lifted ||
+  const bool is_off = feedback.is_off_reference() || feedback.is_lifted() || !robot.last_report ||
+                      robot.last_report->is_off_reference || robot.last_report->is_lifted ||
                       (is_by_bound && !has_sound_clock_[index]);
   const KnownVersion* executed = executed_at(robot, feedback.executing().version_number(), at_ns);
   // An own stop may have been made, and left, between the two facts.
@@ -59,9 +59,9 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
     error_m = std::hypot(observation.x - reference.x, observation.y - reference.y);
   } else {
     // Ground truth that arrives late may be older than both facts.
-    if (robot.fact->at_ns > at_ns) return;
+    if (robot.last_report->at_ns > at_ns) return;
     // The times of live messages are not exact enough to say which of the two versions was executed.
-    const KnownVersion* const before = robot.find(robot.fact->executing);
+    const KnownVersion* const before = robot.find(robot.last_report->executing);
     if (before) inflation_m = std::max(inflation_m, before->version.inflation_m());
   }
   totals_.max_position_error_m = std::max(totals_.max_position_error_m, error_m);
@@ -184,7 +184,7 @@ void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
   if (!reception.is_newest) return;
   if (!has_ground_truth()) use_reference(AuditReference::kGroundTruth);
   // The ground truth's counters report contacts even if they happened while no ground truth was received.
-  reference_time_->hear(0, now_, Duration{0});
+  reference_coverage_->hear(0, now_, Duration{0});
   if (truths_.size() >= kMaxSimulatorLives && !truths_.contains(truth.header().incarnation()))
     truths_.erase(truths_.begin());
   record_positions(truth);
@@ -229,8 +229,8 @@ ObservedRobot Auditor::observed_robot(std::size_t index, const Vec2& position_m,
                                       double error_m, double allowance_m) const {
   const AuditedRobot& robot = robots_[index];
   ObservedRobot observed{position_m, speed_mps, 0, false};
-  const bool is_executing = robot.fact && !robot.fact->is_lifted;
-  const KnownVersion* const version = is_executing ? robot.find(robot.fact->executing) : nullptr;
+  const bool is_executing = robot.last_report && !robot.last_report->is_lifted;
+  const KnownVersion* const version = is_executing ? robot.find(robot.last_report->executing) : nullptr;
   if (!version || !version->has_content) return observed;
   observed.inflation_m = version->version.inflation_m();
   // By now the robot may execute another version.

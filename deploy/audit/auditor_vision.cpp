@@ -33,7 +33,7 @@ void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
     ++totals_.invalid;
     return;
   }
-  if (kind == msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF) facts_time_.expect_silence(*index);
+  if (kind == msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF) report_coverage_.expect_silence(*index);
   const auto cause = cause_of(kind);
   if (!cause) return;
   disturbances_.announce(*index, *cause);
@@ -46,7 +46,7 @@ void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
   disturbances_.disturb(*index, now + Duration{duration_ns}, now);
 }
 
-void Auditor::on_world(const msg::WorldState& world, Time now) {
+void Auditor::on_world_state(const msg::WorldState& world, Time now) {
   now_ = now;
   if (has_ground_truth()) return;
   const Reception reception = trace(kWorldKind, world.vision(), world.header());
@@ -116,16 +116,16 @@ void Auditor::check_sights(const msg::WorldState& world) {
   }
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     // Vision does not see a robot that is not on the floor.
-    const bool is_lifted = robots_[i].fact && robots_[i].fact->is_lifted;
+    const bool is_lifted = robots_[i].last_report && robots_[i].last_report->is_lifted;
     if (is_lifted || sights_[i].is_new)
-      reference_time_->hear(i, now_, is_lifted ? Duration{0} : Duration::max());
+      reference_coverage_->hear(i, now_, is_lifted ? Duration{0} : Duration::max());
   }
 }
 
 double Auditor::seen_error_m(std::size_t index, const Vec2& position_m, std::int64_t at_ns) const {
   const AuditedRobot& robot = robots_[index];
   const KnownVersion* const executed =
-      robot.fact ? executed_at(robot, robot.fact->executing, at_ns) : nullptr;
+      robot.last_report ? executed_at(robot, robot.last_report->executing, at_ns) : nullptr;
   if (!executed) return INFINITY;
   const AuditPath::Node place = executed->path.at_ns(at_ns);
   return std::hypot(position_m.x() - place.x, position_m.y() - place.y);

@@ -3,7 +3,8 @@
 
 namespace sidestep {
 
-LeagueServer::LeagueServer(BasesNode& node, const LeagueServerPorts& ports, bool accepts_global, double loss)
+LeagueServer::LeagueServer(VelocityRobotSimNode& node, const LeagueServerPorts& ports, bool accepts_global,
+                           double loss)
     : node_(node),
       accepts_global_(accepts_global),
       control_(ports.control),

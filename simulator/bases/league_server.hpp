@@ -3,8 +3,8 @@
 
 #include "common/league/unicast.hpp"
 #include "common/random/rng.hpp"
-#include "simulator/bases/bases_node.hpp"
 #include "simulator/bases/league_commands.hpp"
+#include "simulator/bases/velocity_robot_sim_node.hpp"
 
 namespace sidestep {
 
@@ -19,7 +19,8 @@ struct LeagueServerPorts {
 class LeagueServer {
  public:
   /// `loss` is the probability that a packet of commands is lost.
-  LeagueServer(BasesNode& node, const LeagueServerPorts& ports, bool accepts_global, double loss = 0);
+  LeagueServer(VelocityRobotSimNode& node, const LeagueServerPorts& ports, bool accepts_global,
+               double loss = 0);
 
   /// `watch` calls back whenever a descriptor is readable.
   void start(const std::function<void(int descriptor, std::function<void()> readable)>& watch);
@@ -30,7 +31,7 @@ class LeagueServer {
   template <typename Packet>
   bool accept(const league::Decoded<Packet>& decoded, const league::Endpoint& from);
 
-  BasesNode& node_;
+  VelocityRobotSimNode& node_;
   bool accepts_global_;
   league::UnicastSocket control_, blue_, yellow_;
   double loss_;

@@ -12,7 +12,7 @@ constexpr double kMaxSpeed_mps = 100, kMaxTurn_radps = 1000;
 
 }  // namespace
 
-VelocityServer::VelocityServer(Bus& bus, BasesNode& node, const std::string& prefix, double drift)
+VelocityServer::VelocityServer(Bus& bus, VelocityRobotSimNode& node, const std::string& prefix, double drift)
     : bus_(bus), node_(node) {
   const BaseWorld& world = node.world_now();
   bases_.reserve(world.bodies().size());

@@ -7,7 +7,7 @@
 
 #include "common/messaging/bus.hpp"
 #include "common/messaging/ros/ros_messages.hpp"
-#include "simulator/bases/bases_node.hpp"
+#include "simulator/bases/velocity_robot_sim_node.hpp"
 
 namespace sidestep {
 
@@ -17,7 +17,7 @@ class VelocityServer {
  public:
   /// A base's odometry overestimates its motion by the fraction `drift`; for every second base it
   /// underestimates the motion by the same fraction.
-  VelocityServer(Bus& bus, BasesNode& node, const std::string& prefix, double drift);
+  VelocityServer(Bus& bus, VelocityRobotSimNode& node, const std::string& prefix, double drift);
   VelocityServer(const VelocityServer&) = delete;
   VelocityServer& operator=(const VelocityServer&) = delete;
 
@@ -35,7 +35,7 @@ class VelocityServer {
   void publish();
 
   Bus& bus_;
-  BasesNode& node_;
+  VelocityRobotSimNode& node_;
   std::vector<Base> bases_;
   std::uint64_t malformed_ = 0;
 };

@@ -50,7 +50,7 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
   frame.captured_at_ns(to_ns(now));
   frame.robots().clear();
   for (std::size_t i = 0; i < robots.size(); ++i)
-    detect_robot(i, robots[i], objects.sight_errors.empty() ? SightError() : objects.sight_errors[i], view,
+    detect_robot(i, robots[i], objects.vision_faults.empty() ? VisionFault() : objects.vision_faults[i], view,
                  frame);
   if (rng_.chance(spec_.ghost_probability) && frame.robots().size() < topics::kDetections.type.max_elements) {
     add_ghost(view, frame);
@@ -67,10 +67,10 @@ void Cameras::capture(Time now, const VisibleObjects& objects, msg::DetectionFra
   detect_opponents(view, objects.opponents, frame);
 }
 
-void Cameras::detect_robot(std::size_t robot, const Body& body, const SightError& error,
+void Cameras::detect_robot(std::size_t robot, const Body& body, const VisionFault& error,
                            const CameraView& view, msg::DetectionFrame& frame) {
   if (!body.is_on_floor()) return;
-  SightError::Pose pose = error.frozen.value_or(SightError::Pose{body.position_m(), body.heading_rad()});
+  VisionFault::Pose pose = error.frozen.value_or(VisionFault::Pose{body.position_m(), body.heading_rad()});
   pose.position_m += error.offset_m;
   if (!view.sees(pose.position_m) || rng_.chance(spec_.miss_probability)) return;
   msg::RobotDetection seen;

@@ -9,7 +9,7 @@
 #include "common/random/rng.hpp"
 #include "idl/vision.hpp"
 #include "simulator/world/body.hpp"
-#include "simulator/world/sight_error.hpp"
+#include "simulator/world/vision_fault.hpp"
 
 namespace sidestep {
 
@@ -27,7 +27,7 @@ struct VisibleObjects {
   std::span<const Body> robots;  ///< in the scenario's order
   const Vec2* ball_m = nullptr;
   std::span<const Circle> opponents{};
-  std::span<const SightError> sight_errors{};  ///< errors in seeing the robots; empty: none
+  std::span<const VisionFault> vision_faults{};  ///< errors in seeing the robots; empty: none
 };
 
 /// The cameras over the field. They capture in turn, each once per period, and detect robots, ball and
@@ -46,7 +46,7 @@ class Cameras {
   std::span<const CameraView> views() const { return views_; }
 
  private:
-  void detect_robot(std::size_t robot, const Body& body, const SightError& error, const CameraView& view,
+  void detect_robot(std::size_t robot, const Body& body, const VisionFault& error, const CameraView& view,
                     msg::DetectionFrame& frame);
   void detect_opponents(const CameraView& view, std::span<const Circle> opponents,
                         msg::DetectionFrame& frame);

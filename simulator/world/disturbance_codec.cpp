@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMaxPush_mps = 10;
 constexpr double kMaxAngle_rad = 100;
-constexpr double kMaxSightError_m = 10;
+constexpr double kMaxVisionOffset_m = 10;
 constexpr Duration kMaxDuration = std::chrono::hours(1);
 
 // False for NaN.
@@ -37,8 +37,8 @@ bool is_valid(const RobotDisturbance& disturbance, const Field& field, double ro
       return has_valid_duration(disturbance) && disturbance.duration > Duration{0} &&
              disturbance.place_m.allFinite() && field.contains(disturbance.place_m, robot_radius_m);
     case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
-      return has_valid_duration(disturbance) && is_within(disturbance.place_m.x(), kMaxSightError_m) &&
-             is_within(disturbance.place_m.y(), kMaxSightError_m);
+      return has_valid_duration(disturbance) && is_within(disturbance.place_m.x(), kMaxVisionOffset_m) &&
+             is_within(disturbance.place_m.y(), kMaxVisionOffset_m);
     case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
     case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
       return has_valid_duration(disturbance);

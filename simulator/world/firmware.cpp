@@ -194,17 +194,17 @@ void Firmware::find_pose(const PoseFix& fix, Time now) {
   side_.find_pose();
 }
 
-Feedback Firmware::feedback(Time now) {
-  Feedback facts = from_plain(side_.facts(to_ns(now)), robot_);
+RobotReport Firmware::robot_report(Time now) {
+  RobotReport robot_report = from_plain(side_.robot_report(to_ns(now)), robot_);
   update_executing();
   const Vec2 position =
       estimator_.position_m() + estimator_.velocity_mps() * to_seconds(now - estimator_.time());
   const Vec2 reference = executing_.trajectory.state_at(now).position_m;
-  facts.estimate = {position, estimator_.velocity_mps()};
-  facts.heading_rad = wrapped_rad(estimator_.heading_rad());
-  facts.tracking_error_m = (position - reference).norm();
-  facts.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
-  return facts;
+  robot_report.estimate = {position, estimator_.velocity_mps()};
+  robot_report.heading_rad = wrapped_rad(estimator_.heading_rad());
+  robot_report.tracking_error_m = (position - reference).norm();
+  robot_report.uncertainty = {estimator_.position_error_rms_m(), estimator_.odometry_scale_stddev()};
+  return robot_report;
 }
 
 }  // namespace sidestep

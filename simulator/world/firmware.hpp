@@ -81,7 +81,7 @@ class Firmware {
 
   /// The facts at this time, without robot_incarnation. Precondition: time only goes back through
   /// set_clock_back().
-  Feedback feedback(Time now);
+  RobotReport robot_report(Time now);
 
   const Version& executing() const { return executing_; }
   /// Whether it executes an own stop.

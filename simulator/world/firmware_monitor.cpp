@@ -40,7 +40,7 @@ void FirmwareMonitor::switched(const Version& to) {
   check_rule(to.number > highest_executed_);
   check_rule(arrived_in_time({to.number, to.base, to.incarnation, to.trajectory.start()}));
   check_rule(to.incarnation >= executing_.incarnation && to.incarnation >= acknowledged_);
-  check_rule(to.trajectory.start() > last_fact_);
+  check_rule(to.trajectory.start() > last_report_);
   const State& begin = to.trajectory.at_start();
   if (is_lifted_) {
     // Only a rest version is allowed, at the place where the robot will be put down.
@@ -73,7 +73,7 @@ void FirmwareMonitor::started_own_stop(const Version& to) {
   check_rule(to.base == executing_.number);
   check_rule(to.number > highest_executed_ && to.number > highest_seen_);
   check_rule(to.incarnation >= acknowledged_ && to.incarnation <= highest_seen_);
-  check_rule(to.trajectory.start() > last_fact_);
+  check_rule(to.trajectory.start() > last_report_);
   check_rule(expects_clock_stop_ || to.trajectory.start() > executing_.trajectory.start());
   check_rule(is_own_stop(to.trajectory));
   check_rule(to.inflation_m >= 0 && to.inflation_m <= kMaxInflation_m);
@@ -89,7 +89,7 @@ void FirmwareMonitor::started_own_stop(const Version& to) {
 }
 
 void FirmwareMonitor::clock_went_back() {
-  last_fact_ = Time::min();
+  last_report_ = Time::min();
   arrival_count_ = 0;
   highest_arrived_ = 0;
   if (is_lifted_)
@@ -109,16 +109,17 @@ void FirmwareMonitor::put_down() {
   is_lifted_ = false;
 }
 
-void FirmwareMonitor::reported(const Feedback& fact) {
+void FirmwareMonitor::reported(const RobotReport& robot_report) {
   check_rule(!expects_clock_stop_);
-  check_rule(fact.executing.number == executing_.number);
-  check_rule(fact.is_off_reference == is_own_ && fact.is_lifted == is_lifted_);
-  check_rule(fact.obeyed_incarnation >= acknowledged_ && fact.obeyed_epoch >= acknowledged_epoch_);
-  check_rule(is_lifted_ || executing_.trajectory.start() <= fact.valid_at);
-  check_rule(!fact.command || fact.command->received_at <= fact.valid_at);
-  acknowledged_ = std::max(acknowledged_, fact.obeyed_incarnation);
-  acknowledged_epoch_ = std::max(acknowledged_epoch_, fact.obeyed_epoch);
-  last_fact_ = std::max(last_fact_, fact.valid_at);
+  check_rule(robot_report.executing.number == executing_.number);
+  check_rule(robot_report.is_off_reference == is_own_ && robot_report.is_lifted == is_lifted_);
+  check_rule(robot_report.obeyed_incarnation >= acknowledged_ &&
+             robot_report.obeyed_epoch >= acknowledged_epoch_);
+  check_rule(is_lifted_ || executing_.trajectory.start() <= robot_report.valid_at);
+  check_rule(!robot_report.command || robot_report.command->received_at <= robot_report.valid_at);
+  acknowledged_ = std::max(acknowledged_, robot_report.obeyed_incarnation);
+  acknowledged_epoch_ = std::max(acknowledged_epoch_, robot_report.obeyed_epoch);
+  last_report_ = std::max(last_report_, robot_report.valid_at);
 }
 
 }  // namespace sidestep

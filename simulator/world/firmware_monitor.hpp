@@ -23,7 +23,7 @@ class FirmwareMonitor {
   void switched(const Version& to);
   /// The firmware starts an own stop.
   void started_own_stop(const Version& to);
-  void reported(const Feedback& fact);
+  void reported(const RobotReport& robot_report);
   /// Disturbances of the robot.
   void lifted();
   void put_down();
@@ -57,7 +57,7 @@ class FirmwareMonitor {
   std::uint64_t highest_seen_ = 0;  ///< highest version number or incarnation received
   Incarnation acknowledged_ = 0;    ///< highest incarnation reported in a fact
   Epoch acknowledged_epoch_ = 0;
-  Time last_fact_ = Time::min();
+  Time last_report_ = Time::min();
   std::array<Arrival, 64> arrivals_{};  ///< ring buffer of versions that arrived before their start
   std::uint64_t arrival_count_ = 0;
   VersionNumber highest_arrived_ = 0;

@@ -46,8 +46,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
     robot_index_[world_.id(i)] = i;
     watched_start_.push_back(begin);
     feedback_.push_back(bus.advertise(topics::kFeedback, world_.id(i)));
-    feedback_due_.push_back(begin +
-                            cycle_ * static_cast<Duration::rep>(i) / static_cast<Duration::rep>(count));
+    report_due_.push_back(begin + cycle_ * static_cast<Duration::rep>(i) / static_cast<Duration::rep>(count));
     bus.subscribe<msg::Command>(topics::kCommand, world_.id(i),
                                 [this, i](const msg::Command& command) { on_command(i, command); });
   }
@@ -75,7 +74,7 @@ void SimulatorNode::wake() {
   const Time now = clock();
   advance(now);
   for (std::size_t i = 0; i < feedback_.size(); ++i) {
-    if (feedback_due_[i] <= now) publish_feedback(i, now);
+    if (report_due_[i] <= now) publish_robot_report(i, now);
   }
   if (truth_due_ <= now) publish_truth(now);
   publish_frames();
@@ -98,8 +97,8 @@ void SimulatorNode::advance(Time now) {
       capture_frame(now);
   }
   world_.advance(now);
-  changes_.update();
-  publish_pending_feedback(now);
+  event_logger_.update();
+  publish_pending_reports(now);
 }
 
 void SimulatorNode::on_command(std::size_t robot, const msg::Command& message) {
@@ -113,7 +112,7 @@ void SimulatorNode::on_command(std::size_t robot, const msg::Command& message) {
     world_.on_command(robot, *command, now);
   else
     world_.on_malformed_command(robot, now);
-  publish_pending_feedback(now);
+  publish_pending_reports(now);
   watch_start(robot, now);
 }
 
@@ -125,11 +124,11 @@ void SimulatorNode::on_disturbance(const msg::Disturbance& message) {
   if (robot == robot_index_.end() || !disturbance || !world_.disturb(robot->second, *disturbance, now)) {
     drops_.count(DropReason::kRefusedDisturbance,
                  robot == robot_index_.end() ? std::nullopt : std::optional(robot->first));
-    changes_.on_refused_disturbance(message.robot());
+    event_logger_.on_refused_disturbance(message.robot());
     return;
   }
-  changes_.on_disturbance(*disturbance);
-  publish_pending_feedback(now);
+  event_logger_.on_disturbance(*disturbance);
+  publish_pending_reports(now);
   watch_start(robot->second, now);
 }
 
@@ -157,28 +156,28 @@ void SimulatorNode::on_start(std::size_t robot) {
   const Time now = clock();
   advance(now);
   if (world_.next_start(robot) > now) return;
-  publish_feedback(robot, now);
+  publish_robot_report(robot, now);
 }
 
-void SimulatorNode::publish_feedback(std::size_t robot, Time now) {
+void SimulatorNode::publish_robot_report(std::size_t robot, Time now) {
   // If its clock was set back, the robot reports nothing until it has made its own stop.
   (void)world_.robot_time(robot, now);
   if (!world_.may_report(robot)) {
-    feedback_due_[robot] = now + cycle_;
-    world_.clear_pending_feedback(robot);
+    report_due_[robot] = now + cycle_;
+    world_.clear_pending_report(robot);
     return;
   }
-  Feedback facts = world_.feedback(robot, now);
-  facts.robot_incarnation += incarnation_;
-  msg::Feedback message = encode(facts);
+  RobotReport robot_report = world_.robot_report(robot, now);
+  robot_report.robot_incarnation += incarnation_;
+  msg::Feedback message = encode(robot_report);
   feedback_[robot].publish(message, bus_.now());
-  feedback_due_[robot] = now + cycle_;
-  world_.clear_pending_feedback(robot);
+  report_due_[robot] = now + cycle_;
+  world_.clear_pending_report(robot);
   watch_start(robot, now);
 }
 
-void SimulatorNode::publish_pending_feedback(Time now) {
-  while (!world_.pending_feedback().empty()) publish_feedback(world_.pending_feedback().back(), now);
+void SimulatorNode::publish_pending_reports(Time now) {
+  while (!world_.pending_reports().empty()) publish_robot_report(world_.pending_reports().back(), now);
 }
 
 void SimulatorNode::publish_truth(Time now) {
@@ -198,7 +197,7 @@ void SimulatorNode::capture_frame(Time now) {
   const Vec2* ball = world_.ball() ? &world_.ball()->state().position_m : nullptr;
   // Robots with lasers must see opponents themselves.
   const auto opponents = lasers_ ? std::span<const Circle>() : world_.opponents().discs();
-  cameras_.capture(captured_at, {world_.bodies(), ball, opponents, world_.sight_errors()}, slot->message);
+  cameras_.capture(captured_at, {world_.bodies(), ball, opponents, world_.vision_faults()}, slot->message);
   slot->message.captured_at_ns(to_ns(world_.host_time(captured_at)));
   slot->publish_at = captured_at + delay_;
   if (slot->publish_at + kFrameExpiry < now) return;

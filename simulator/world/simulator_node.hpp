@@ -14,12 +14,12 @@
 #include "simulator/world/cameras.hpp"
 #include "simulator/world/lasers.hpp"
 #include "simulator/world/world.hpp"
-#include "simulator/world/world_changes.hpp"
+#include "simulator/world/world_event_logger.hpp"
 
 namespace sidestep {
 
 /// The simulator on a bus. It receives commands over a lossy radio and disturbances, advances the world to
-/// the bus's time, and publishes robots' feedback, ground truth for metrics and audit, and detections unless
+/// the bus's time, and publishes robots' reports, ground truth for metrics and audit, and detections unless
 /// the scenario asks for images. The bus must make no callback after the node's destruction.
 class SimulatorNode {
  public:
@@ -70,8 +70,8 @@ class SimulatorNode {
   void on_disturbance(const msg::Disturbance& message);
   void watch_start(std::size_t robot, Time now);
   void on_start(std::size_t robot);
-  void publish_feedback(std::size_t robot, Time now);
-  void publish_pending_feedback(Time now);
+  void publish_robot_report(std::size_t robot, Time now);
+  void publish_pending_reports(Time now);
   void publish_truth(Time now);
   void capture_frame(Time now);
   void publish_frames();
@@ -88,7 +88,7 @@ class SimulatorNode {
   Time clock_;
   World world_;
   EventReporter events_;
-  WorldChanges changes_{events_, world_};
+  WorldEventLogger event_logger_{events_, world_};
   Cameras cameras_;
   std::optional<Lasers> lasers_;
   std::vector<Writer<msg::LaserScan>> scans_;  // for the robots with lasers
@@ -99,7 +99,7 @@ class SimulatorNode {
 
   std::unordered_map<RobotId, std::size_t> robot_index_;
   std::vector<Writer<msg::Feedback>> feedback_;
-  std::vector<Time> feedback_due_;
+  std::vector<Time> report_due_;
   std::vector<Time> watched_start_;  ///< for each robot, the version start for which a timer is set
   Writer<msg::DetectionFrame> detections_;
   std::vector<PendingFrame> frames_;

@@ -58,9 +58,9 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
   Rng rng(seed);
   const FirmwareSettings settings = firmware_settings(scenario);
   bodies_.reserve(scenario.robots.size());
-  sight_errors_.resize(scenario.robots.size());
+  vision_faults_.resize(scenario.robots.size());
   robots_.reserve(scenario.robots.size());
-  pending_feedback_.reserve(scenario.robots.size());
+  pending_reports_.reserve(scenario.robots.size());
   for (const RobotSpec& spec : scenario.robots) {
     bodies_.emplace_back(spec.start_m, spec.start_heading_rad, settings.body);
     const ClockError clock_error{spec.clock_offset, spec.clock_drift_ppm, begin};
@@ -107,7 +107,7 @@ void World::step() {
     if (robot.firmware.is_off_reference() && robot.firmware.executing().number != robot.last_own_stop) {
       robot.last_own_stop = robot.firmware.executing().number;
       robot.monitor.started_own_stop(robot.firmware.executing());
-      request_feedback(i);
+      request_report(i);
     }
   }
 }
@@ -161,20 +161,20 @@ void World::switch_versions(std::size_t index, Time now) {
   if (robot.firmware.next_start() > now) return;
   while (robot.firmware.switch_next(now)) {
     robot.monitor.switched(robot.firmware.executing());
-    request_feedback(index);
+    request_report(index);
   }
 }
 
-void World::request_feedback(std::size_t index) {
-  if (robots_[index].has_pending_feedback) return;
-  robots_[index].has_pending_feedback = true;
-  pending_feedback_.push_back(static_cast<std::uint32_t>(index));
+void World::request_report(std::size_t index) {
+  if (robots_[index].has_pending_report) return;
+  robots_[index].has_pending_report = true;
+  pending_reports_.push_back(static_cast<std::uint32_t>(index));
 }
 
-void World::clear_pending_feedback(std::size_t index) {
-  if (!robots_[index].has_pending_feedback) return;
-  robots_[index].has_pending_feedback = false;
-  std::erase(pending_feedback_, static_cast<std::uint32_t>(index));
+void World::clear_pending_report(std::size_t index) {
+  if (!robots_[index].has_pending_report) return;
+  robots_[index].has_pending_report = false;
+  std::erase(pending_reports_, static_cast<std::uint32_t>(index));
 }
 
 void World::on_command(std::size_t index, const Command& command, Time now) {
@@ -187,7 +187,7 @@ void World::on_command(std::size_t index, const Command& command, Time now) {
   const Epoch epoch = robot.firmware.obeyed_epoch();
   robot.firmware.on_command(command, clock);
   if (robot.firmware.obeyed_incarnation() != obeyed || robot.firmware.obeyed_epoch() != epoch)
-    request_feedback(index);
+    request_report(index);
 }
 
 void World::on_malformed_command(std::size_t index, Time now) {
@@ -197,13 +197,13 @@ void World::on_malformed_command(std::size_t index, Time now) {
   robots_[index].firmware.on_malformed_command(clock);
 }
 
-Feedback World::feedback(std::size_t index, Time now) {
+RobotReport World::robot_report(std::size_t index, Time now) {
   const Time clock = robot_time(index, now);
   switch_versions(index, clock);
-  Feedback facts = robots_[index].firmware.feedback(clock);
-  facts.robot_incarnation = robots_[index].clock_setbacks;
-  robots_[index].monitor.reported(facts);
-  return facts;
+  RobotReport robot_report = robots_[index].firmware.robot_report(clock);
+  robot_report.robot_incarnation = robots_[index].clock_setbacks;
+  robots_[index].monitor.reported(robot_report);
+  return robot_report;
 }
 
 std::uint64_t World::firmware_violations() const {

@@ -18,7 +18,7 @@
 #include "simulator/world/firmware.hpp"
 #include "simulator/world/firmware_monitor.hpp"
 #include "simulator/world/opponents.hpp"
-#include "simulator/world/sight_error.hpp"
+#include "simulator/world/vision_fault.hpp"
 
 namespace sidestep {
 
@@ -47,7 +47,7 @@ class World {
   /// The robot's clock. If it has gone back by more than the clock bound, the robot begins a new incarnation.
   Time robot_time(std::size_t robot, Time now);
   /// The robot's facts; robot_incarnation is the number of times that the robot has started a new one.
-  Feedback feedback(std::size_t robot, Time now);
+  RobotReport robot_report(std::size_t robot, Time now);
   /// The host's clock, and with it the clocks of all robots, was set back by this duration. The time of this
   /// world continues.
   void on_host_clock_set_back(Duration by);
@@ -57,9 +57,9 @@ class World {
   Time world_time(Time shown) const { return shown + host_behind_; }
 
   /// Robots that have changed version, agent or epoch, or have been lifted or put down, since their last
-  /// clear_pending_feedback(); each listed once.
-  std::span<const std::uint32_t> pending_feedback() const { return pending_feedback_; }
-  void clear_pending_feedback(std::size_t robot);
+  /// clear_pending_report(); each listed once.
+  std::span<const std::uint32_t> pending_reports() const { return pending_reports_; }
+  void clear_pending_report(std::size_t robot);
 
   std::size_t robot_count() const { return robots_.size(); }
   RobotId id(std::size_t robot) const { return robots_[robot].id; }
@@ -72,7 +72,7 @@ class World {
   Time next_start(std::size_t robot) const;
   std::span<const Body> bodies() const { return bodies_; }
   /// Errors in how cameras see the robots.
-  std::span<const SightError> sight_errors() const { return sight_errors_; }
+  std::span<const VisionFault> vision_faults() const { return vision_faults_; }
   const std::optional<Ball>& ball() const { return ball_; }
   const ContactTotals& contacts() const { return contacts_.totals(); }
   const Opponents& opponents() const { return opponents_; }
@@ -102,7 +102,7 @@ class World {
     VersionNumber last_own_stop = 0;
     /// Last disturbance of the body; active ones may end later.
     std::optional<Time> last_disturbance = std::nullopt;
-    bool has_pending_feedback = false;
+    bool has_pending_report = false;
     bool is_powered = true;
   };
   /// A disturbance with a duration, or a placement that waits for its rest version.
@@ -135,7 +135,7 @@ class World {
   bool affects_body(const ActiveDisturbance& disturbance) const;
   void carry(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void switch_versions(std::size_t robot, Time now);
-  void request_feedback(std::size_t robot);
+  void request_report(std::size_t robot);
   Odometry measure(std::size_t robot);
 
   Field field_;
@@ -148,12 +148,12 @@ class World {
   Time time_;
   Duration host_behind_{0};  ///< how far the host's clock has been set back
   std::vector<Body> bodies_;
-  std::vector<SightError> sight_errors_;
+  std::vector<VisionFault> vision_faults_;
   std::vector<Robot> robots_;
   std::optional<Ball> ball_;
   Contacts contacts_;
   Opponents opponents_;
-  std::vector<std::uint32_t> pending_feedback_;
+  std::vector<std::uint32_t> pending_reports_;
   std::vector<ActiveDisturbance> active_disturbances_;
 };
 

@@ -94,7 +94,7 @@ void World::lift(std::size_t index, Time now) {
   contacts_.invalidate_near_pairs();
   opponents_.invalidate_near_pairs();
   record_disturbance(index, now);
-  request_feedback(index);
+  request_report(index);
 }
 
 void World::switch_off(std::size_t index, Time now) {
@@ -115,7 +115,7 @@ void World::switch_on(std::size_t index, Time now) {
   robot.firmware.switch_on(robot_time(index, now));
   if (!robot.firmware.is_lifted()) robot.monitor.rebooted();
   record_disturbance(index, now);
-  request_feedback(index);
+  request_report(index);
 }
 
 // A jump beyond the bound displaces a reference that is moving or about to move.
@@ -138,7 +138,7 @@ void World::carry(std::size_t index, const RobotDisturbance& disturbance, Time n
 }
 
 void World::see_beside(std::size_t index, const RobotDisturbance& disturbance, Time now) {
-  sight_errors_[index].offset_m = disturbance.place_m;
+  vision_faults_[index].offset_m = disturbance.place_m;
   start_disturbance({index, disturbance.kind, now + disturbance.duration, disturbance.place_m, 0});
 }
 
@@ -146,17 +146,17 @@ bool World::see_as(std::size_t index, const RobotDisturbance& disturbance, Time 
   const auto other = std::ranges::find(robots_, disturbance.other_robot, &Robot::id);
   if (other == robots_.end()) return false;
   const auto other_index = static_cast<std::size_t>(other - robots_.begin());
-  if (other_index == index || sight_errors_[index].shown_as || sight_errors_[other_index].shown_as)
+  if (other_index == index || vision_faults_[index].shown_as || vision_faults_[other_index].shown_as)
     return false;
-  sight_errors_[index].shown_as = other_index;
-  sight_errors_[other_index].shown_as = index;
+  vision_faults_[index].shown_as = other_index;
+  vision_faults_[other_index].shown_as = index;
   for (const std::size_t confused : {index, other_index})
     start_disturbance({confused, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
   return true;
 }
 
 void World::see_frozen(std::size_t index, const RobotDisturbance& disturbance, Time now) {
-  sight_errors_[index].frozen = {bodies_[index].position_m(), bodies_[index].heading_rad()};
+  vision_faults_[index].frozen = {bodies_[index].position_m(), bodies_[index].heading_rad()};
   start_disturbance({index, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
 }
 
@@ -165,7 +165,7 @@ void World::see_frozen(std::size_t index, const RobotDisturbance& disturbance, T
 bool World::affects_body(const ActiveDisturbance& disturbance) const {
   if (disturbance.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return false;
   return disturbance.kind != msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE ||
-         disturbance.place_m.norm() > sight_error_bound_m(tracking_bound_m_);
+         disturbance.place_m.norm() > vision_error_bound_m(tracking_bound_m_);
 }
 
 void World::record_disturbance(std::size_t index, Time at) {
@@ -211,12 +211,12 @@ bool World::is_still_misled(const ActiveDisturbance& disturbance) const {
                           disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_AS ||
                           disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN;
   return has_misled && affects_body(disturbance) && robot.is_powered && body.is_on_floor() &&
-         (robot.firmware.position_m() - body.position_m()).norm() > sight_error_bound_m(tracking_bound_m_);
+         (robot.firmware.position_m() - body.position_m()).norm() > vision_error_bound_m(tracking_bound_m_);
 }
 
 void World::end(const ActiveDisturbance& disturbance) {
   Body& body = bodies_[disturbance.robot];
-  SightError& sight_error = sight_errors_[disturbance.robot];
+  VisionFault& vision_fault = vision_faults_[disturbance.robot];
   switch (disturbance.kind) {
     case msg::DisturbanceKind::DISTURBANCE_SLIP:
       return body.set_grip(1);
@@ -225,12 +225,12 @@ void World::end(const ActiveDisturbance& disturbance) {
     case msg::DisturbanceKind::DISTURBANCE_CARRY:
       return body.carry(std::nullopt);
     case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
-      sight_error.offset_m = Vec2(0, 0);
+      vision_fault.offset_m = Vec2(0, 0);
       return;
     case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
-      return sight_error.shown_as.reset();
+      return vision_fault.shown_as.reset();
     case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
-      return sight_error.frozen.reset();
+      return vision_fault.frozen.reset();
     default:
       return;
   }
@@ -249,7 +249,7 @@ bool World::try_put_down(const ActiveDisturbance& request) {
   robot.last_heading_rad = request.heading_rad;
   contacts_.invalidate_near_pairs();
   opponents_.invalidate_near_pairs();
-  request_feedback(request.robot);
+  request_report(request.robot);
   return true;
 }
 

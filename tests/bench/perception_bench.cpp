@@ -60,7 +60,7 @@ int run() {
   LocalGrid grid;
   LaserTracks tracks, tracks_with_map;
   Visibility visibility;
-  const KnownFloor walls{&scene.map()};
+  const PriorMap walls{&scene.map()};
   Series reading{"LaserBeams::read", {}}, tracking{"LaserTracks::update", {}},
       tracking_map{"LaserTracks::update, map", {}}, mapping{"LocalGrid::update", {}},
       seeing{"Visibility::update", {}};

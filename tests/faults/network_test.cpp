@@ -88,19 +88,19 @@ TEST_CASE(
     "robots that slip, are blocked, rebooted, lifted and placed, or get a wrong clock, drive on and arrive",
     "[slow]") {
   LaunchedRun run(shuttles(5, ""));
-  std::map<RobotId, msg::Feedback> facts;
+  std::map<RobotId, msg::Feedback> robot_reports;
   std::map<RobotId, bool> was_off;
   std::map<RobotId, msg::AgentState> states;
   for (RobotId robot = 0; robot < 8; ++robot) {
     run.bus().subscribe(topics::kFeedback, robot, std::function([&](const msg::Feedback& feedback) {
-                          facts[feedback.robot()] = feedback;
+                          robot_reports[feedback.robot()] = feedback;
                           was_off[feedback.robot()] |= feedback.is_off_reference();
                         }));
   }
   run.bus().subscribe(topics::kStatus, std::function([&](const msg::AgentStatus& status) {
                         states[status.robot()] = status.agent_state();
                       }));
-  REQUIRE(run.wait_until([&] { return facts.size() == 8; }));
+  REQUIRE(run.wait_until([&] { return robot_reports.size() == 8; }));
   // Robots are disturbed only where no other robot crosses their lane, because a disturbance may cause a
   // contact.
   const auto is_leaving = [&](RobotId robot) {
@@ -129,9 +129,10 @@ TEST_CASE(
   CHECK(run.wait_until([&] { return run.speed_mps(3) > 0.5; }));
 
   apply({"lift", "5"});
-  CHECK(run.wait_until([&] { return facts[5].is_lifted(); }));
+  CHECK(run.wait_until([&] { return robot_reports[5].is_lifted(); }));
   apply({"place", "5", "--at", "4,2.6"});
-  CHECK(run.wait_until([&] { return !facts[5].is_lifted() && facts[5].executing().version_number() != 0; }));
+  CHECK(run.wait_until(
+      [&] { return !robot_reports[5].is_lifted() && robot_reports[5].executing().version_number() != 0; }));
   CHECK(run.wait_until([&] { return run.speed_mps(5) > 0.5; }));
 
   const std::string ended = run.wait_for_end();

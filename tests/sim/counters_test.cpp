@@ -378,7 +378,8 @@ const std::set<DropReason> kElsewhere{
     DropReason::kUnreadable,          // dds/robustness_test
     DropReason::kMalformedDatagram,   // dds/robustness_test
     DropReason::kForgottenPeer,       // dds/presence_test, of processes that sleep for seconds
-    DropReason::kUnknownParticipant,  // dds/gate_test, of processes with keys, like the next one
+    DropReason::kUnknownParticipant,  // dds/participant_filter_test, of processes with keys, like the next
+                                      // one
     DropReason::kRefusedParticipant,
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
     DropReason::kMalformedLeaguePacket,  // league/league_source_test, like the next three
@@ -386,9 +387,9 @@ const std::set<DropReason> kElsewhere{
     DropReason::kUndatedLeagueFrame,
     DropReason::kUnusedLeagueDetection,
     DropReason::kUnsentLeaguePacket,  // needs a network that does not work
-    DropReason::kUnstoredCommand,     // adapters/robots_node_test
+    DropReason::kUnstoredCommand,     // adapters/robot_driver_node_test
     DropReason::kMalformedOdometry,   // adapters/velocity_driver_test
-    DropReason::kMisdatedOdometry,    // adapters/robots_node_test
+    DropReason::kMisdatedOdometry,    // adapters/robot_driver_node_test
     DropReason::kRejectedByBase,      // adapters/league_driver_test
     DropReason::kImplausibleEpoch,    // failover_test: codecs refuse such messages before it
 };

@@ -41,15 +41,15 @@ class DrivenFloor {
                 memory_.path()) {}
 
   BaseWorld& world() { return bases_.world_now(); }
-  RobotsNode& robots() { return robots_; }
+  RobotDriverNode& robots() { return robots_; }
 
  private:
   TemporaryFolder memory_;
   SimBus floor_bus_;
   DefectiveBus robots_bus_;
-  BasesNode bases_;
+  VelocityRobotSimNode bases_;
   DirectDriver driver_;
-  RobotsNode robots_;
+  RobotDriverNode robots_;
 };
 
 }  // namespace sidestep

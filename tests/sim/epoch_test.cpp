@@ -25,7 +25,7 @@ struct Robot {
   Firmware firmware;
   Robot(RobotId robot, Vec2 position) : firmware(robot, position, 0, time_from_ns(1'000'000'000), {}) {}
 
-  Feedback fact(Time now) { return firmware.feedback(now); }
+  RobotReport robot_report(Time now) { return firmware.robot_report(now); }
   double rest_x() const { return firmware.executing().trajectory.rest_position_m().x(); }
   double speed_at(Time t) const { return firmware.executing().trajectory.state_at(t).velocity_mps.norm(); }
 };
@@ -43,10 +43,10 @@ struct Driver {
     command.epoch = negotiation.epoch();
     return command;
   }
-  /// Sends the robot a command without a version, and processes its feedback.
+  /// Sends the robot a command without a version, and processes its report.
   void fence(Robot& robot, Time now) {
     robot.firmware.on_command(command(), now);
-    negotiation.on_feedback(robot.fact(now));
+    negotiation.on_robot_report(robot.robot_report(now));
   }
   void receive_heartbeat(const Coordinator& coordinator, Time now) {
     msg::CoordinatorState state = coordinator.state();
@@ -63,7 +63,7 @@ struct Driver {
   void drive(Coordinator& coordinator, Robot& robot, double direction, int cycles, Time& now) {
     for (int i = 0; i < cycles; ++i) {
       now += kCycle;
-      coordinator.on_feedback(robot.fact(now), now);
+      coordinator.on_robot_report(robot.robot_report(now), now);
       fence(robot, now);
       receive_heartbeat(coordinator, now);
       if (!negotiation.may_propose(now)) continue;
@@ -84,7 +84,7 @@ struct Driver {
   void rest(Coordinator& coordinator, Robot& robot, Time& now) {
     for (int i = 0; i < 60; ++i) {
       now += kCycle;
-      coordinator.on_feedback(robot.fact(now), now);
+      coordinator.on_robot_report(robot.robot_report(now), now);
       fence(robot, now);
     }
   }
@@ -143,7 +143,7 @@ TEST_CASE("a restarted agent does not return to a coordinator that its robot has
 
 TEST_CASE("an agent whose robot obeys a later one cannot register in a new epoch") {
   Floor floor;
-  Driver fenced_agent = floor.left_driver;  // receives no feedback from here on
+  Driver fenced_agent = floor.left_driver;  // receives no report from here on
   Driver successor(0, 2000);
   successor.fence(floor.left, floor.now);
   successor.receive_heartbeat(floor.first, floor.now);

@@ -60,8 +60,9 @@ class FencedFloor {
     observer_.subscribe(topics::kTruth,
                         [this](const msg::GroundTruth& truth) { outcome_.contacts = truth.contacts(); });
     for (const RobotSpec& robot : scenario_.robots) {
-      observer_.subscribe(topics::kFeedback, robot.id,
-                          [this, id = robot.id](const msg::Feedback& fact) { on_fact(id, fact); });
+      observer_.subscribe(
+          topics::kFeedback, robot.id,
+          [this, id = robot.id](const msg::Feedback& robot_report) { on_robot_report(id, robot_report); });
       start(robot.id);
     }
   }
@@ -101,14 +102,14 @@ class FencedFloor {
     Agent(Agent&&) = default;
     Agent& operator=(Agent&&) = default;
   };
-  void on_fact(RobotId robot, const msg::Feedback& fact) {
-    if (network_.now() < kBegin + kWarmUp) last_[robot] = fact.executing().version_number();
-    const Vec2 place_m(fact.x_m(), fact.y_m());
+  void on_robot_report(RobotId robot, const msg::Feedback& robot_report) {
+    if (network_.now() < kBegin + kWarmUp) last_[robot] = robot_report.executing().version_number();
+    const Vec2 place_m(robot_report.x_m(), robot_report.y_m());
     const auto [seen, is_first] = places_m_.try_emplace(robot, place_m);
     outcome_.driven_m += (place_m - seen->second).norm();
     seen->second = place_m;
-    if (!fact.is_off_reference() || fact.executing().version_number() == last_[robot]) return;
-    last_[robot] = fact.executing().version_number();
+    if (!robot_report.is_off_reference() || robot_report.executing().version_number() == last_[robot]) return;
+    last_[robot] = robot_report.executing().version_number();
     const auto index = std::ranges::find(scenario_.robots, robot, &RobotSpec::id) - scenario_.robots.begin();
     const auto& side = floor_.robots().robot(static_cast<std::size_t>(index)).side();
     ++(side.own_stop_reason() == robot::OwnStopReason::kDrifted ? outcome_.drifts : outcome_.own_stops);

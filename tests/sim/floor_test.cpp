@@ -16,10 +16,10 @@ Scenario shipped(const std::string& name) {
 struct OffReference {
   OffReference(SimSystem& system, const Scenario& scenario) : bus(system.network()) {
     for (const RobotSpec& robot : scenario.robots) {
-      bus.subscribe<msg::Feedback>(topics::kFeedback, robot.id, [this](const msg::Feedback& facts) {
+      bus.subscribe<msg::Feedback>(topics::kFeedback, robot.id, [this](const msg::Feedback& robot_report) {
         ++heard;
-        count += facts.is_off_reference() ? 1 : 0;
-        if (facts.is_off_reference() && !first_at) first_at = bus.now();
+        count += robot_report.is_off_reference() ? 1 : 0;
+        if (robot_report.is_off_reference() && !first_at) first_at = bus.now();
       });
     }
   }

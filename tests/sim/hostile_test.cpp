@@ -27,7 +27,7 @@ TEST_CASE("one hostile message of any kind disturbs no robot for more than a mom
       const Report report = system.metrics().report();
       CHECK(report.arrived == 8);
       CHECK(report.contacts == 0);
-      if (!forgery.is_plausible_fact) CHECK(report.audit->violations == 0);
+      if (!forgery.is_plausible_report) CHECK(report.audit->violations == 0);
       CHECK(report.makespan_s.value_or(99) < 8);
     }
   }

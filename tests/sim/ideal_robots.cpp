@@ -149,18 +149,18 @@ void IdealRobots::advance(Robot& robot, Time now) {
 void IdealRobots::report(Robot& robot) {
   const Time now = bus_.now() + robot.clock_offset;
   advance(robot, now);
-  Feedback facts;
-  facts.robot = robot.id;
-  facts.obeyed_incarnation = robot.obeyed;
-  facts.obeyed_epoch = robot.obeyed_epoch;
-  facts.valid_at = now;
-  facts.command = robot.last_command;
-  facts.executing = robot.executing;
-  facts.is_off_reference = robot.is_off_reference;
-  facts.is_lifted = robot.is_lifted;
-  facts.has_moved = robot.has_moved;
-  facts.estimate = robot.executing.trajectory.state_at(now);
-  msg::Feedback message = encode(facts);
+  RobotReport robot_report;
+  robot_report.robot = robot.id;
+  robot_report.obeyed_incarnation = robot.obeyed;
+  robot_report.obeyed_epoch = robot.obeyed_epoch;
+  robot_report.valid_at = now;
+  robot_report.command = robot.last_command;
+  robot_report.executing = robot.executing;
+  robot_report.is_off_reference = robot.is_off_reference;
+  robot_report.is_lifted = robot.is_lifted;
+  robot_report.has_moved = robot.has_moved;
+  robot_report.estimate = robot.executing.trajectory.state_at(now);
+  msg::Feedback message = encode(robot_report);
   robot.writer.publish(message, bus_.now());
 }
 

@@ -45,7 +45,7 @@ class IdealRobots {
     Incarnation obeyed = 0;
     Epoch obeyed_epoch = 0;
     Duration clock_offset{0};
-    std::optional<Feedback::CommandEcho> last_command;
+    std::optional<RobotReport::CommandEcho> last_command;
     Version executing;
     VersionNumber highest = 0;  // of all version numbers and incarnations received
     bool is_off_reference = false, is_lifted = false, has_moved = false;

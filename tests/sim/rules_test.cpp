@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/scenario_loader.hpp"
 #include "common/protocol/process_names.hpp"
-#include "deploy/trial/simulate/campaign/other_rules.hpp"
+#include "deploy/trial/simulate/campaign/rule_mutations.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
@@ -60,7 +60,7 @@ TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and 
 }
 
 TEST_CASE("a standby with other rules is named within a second, and never takes over") {
-  const OtherRule& other = other_rules().at(GENERATE(range(std::size_t{0}, other_rules().size())));
+  const RuleMutation& other = rule_mutations().at(GENERATE(range(std::size_t{0}, rule_mutations().size())));
   CAPTURE(other.key);
   Scenario scenario = crossing();
   scenario.coordinators = 2;

@@ -9,7 +9,7 @@
 #include "tests/study/camera/camera_study.hpp"
 #include "tests/study/clutter/clutter_study.hpp"
 #include "tests/study/corners/corner_study.hpp"
-#include "tests/study/joint_planning/explicit_study.hpp"
+#include "tests/study/joint_planning/joint_planning_study.hpp"
 #include "tests/study/navigation/navigation_study.hpp"
 #include "tests/study/planning/planning_study.hpp"
 #include "tests/study/potential/potential_study.hpp"
@@ -102,7 +102,7 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
                   study_doorways, action);
   const CliCommand joint = add_study(
       study, "explicit", "Robots planned as one or by priority, against the safety search", *options);
-  joint.on_parsed([&action, options] { action = [options] { return study_explicit(*options); }; });
+  joint.on_parsed([&action, options] { action = [options] { return study_joint_planning(*options); }; });
   const CliCommand potential = add_study(
       study, "potential", "Potential fields: local minima and oscillation, against E* and NF1", *options);
   potential.on_parsed([&action, options] { action = [options] { return study_potential(*options); }; });

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "common/marking/colour_from.hpp"
+#include "common/marking/parse_colour.hpp"
 #include "common/yaml/yaml_document.hpp"
 #include "common/yaml/yaml_map.hpp"
 #include "vision/colours/colour_learner.hpp"
@@ -30,7 +30,7 @@ Yuv yuv_from(const YAML::Node& node, const YamlLocation& location) {
 
 std::uint32_t colour_number_from(const YAML::Node& node, const YamlLocation& location) {
   if (node.IsScalar() && node.Scalar() == name_of_colour(kOtherColour)) return kOtherColour;
-  return static_cast<std::uint32_t>(colour_from(node, location));
+  return static_cast<std::uint32_t>(parse_colour(node, location));
 }
 
 ColourBox read_box(YamlMap& map) {

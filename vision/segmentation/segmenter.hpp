@@ -9,9 +9,9 @@
 #include "common/image/image.hpp"
 #include "vision/segmentation/batch/kernels.hpp"
 #include "vision/segmentation/colour_classes.hpp"
-#include "vision/segmentation/merging.hpp"
 #include "vision/segmentation/region.hpp"
 #include "vision/segmentation/region_builder.hpp"
+#include "vision/segmentation/region_merging.hpp"
 
 namespace sidestep {
 

@@ -23,7 +23,7 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
       watch_(cameras),
       world_writer_(bus.advertise(topics::kWorld)),
       obstacle_writer_(bus.advertise(topics::kObstacles)),
-      changes_(events_, cameras),
+      event_logger_(events_, cameras),
       counters_(bus, static_cast<std::uint32_t>(Sender::kVision), incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   world_.vision(0);
@@ -43,11 +43,11 @@ VisionNode::VisionNode(Bus& bus, const Scenario& scenario, Incarnation incarnati
 void VisionNode::add_frame(const msg::DetectionFrame& message) {
   if (!watch_.has(message.camera())) {
     ++unknown_cameras_;
-    changes_.on_unknown_camera(message.camera());
+    event_logger_.on_unknown_camera(message.camera());
     return;
   }
   frame_.assign(message, bus_.now(), max_lead_);
-  changes_.on_frame(frame_, bus_.now());
+  event_logger_.on_frame(frame_, bus_.now());
   tracker_.update(frame_);
   if (frame_.is_usable()) watch_.on_frame(frame_.camera(), frame_.captured_at());
 }
@@ -72,7 +72,7 @@ void VisionNode::publish() {
   if (!watch_.is_complete(now)) obstacles_.complete_within_m(0);
   world_writer_.publish(world_, now);
   obstacle_writer_.publish(obstacles_, now);
-  changes_.update(world_, now);
+  event_logger_.update(world_, now);
   if (listener_) listener_(world_);
   next_ += period_;
   if (next_ < now) next_ = now + period_;

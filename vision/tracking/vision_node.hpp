@@ -10,7 +10,7 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "vision/tracking/camera_watch.hpp"
 #include "vision/tracking/tracker.hpp"
-#include "vision/tracking/vision_changes.hpp"
+#include "vision/tracking/vision_event_logger.hpp"
 
 namespace sidestep {
 
@@ -72,7 +72,7 @@ class VisionNode {
   Writer<msg::ObstacleList> obstacle_writer_;
   std::function<void(const msg::WorldState&)> listener_;
   EventReporter events_;
-  VisionChanges changes_;
+  VisionEventLogger event_logger_;
   std::uint64_t unknown_cameras_ = 0;  // number of frames from cameras that are not among the node's
   std::vector<std::function<void(DropCounters&)>> drop_sources_;
   CounterPublisher counters_;

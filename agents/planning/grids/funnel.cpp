@@ -4,10 +4,10 @@
 namespace sidestep {
 namespace {
 
-/// One side of the funnel: the end of a gate that the path may have to turn around.
+/// One side of the funnel: the end of a portal that the path may have to turn around.
 struct FunnelSide {
   Vec2 at_m;
-  std::size_t gate;
+  std::size_t portal;
 };
 
 /// Positive if c lies to the left of the line from a to b.
@@ -15,7 +15,7 @@ double side_of(const Vec2& a, const Vec2& b, const Vec2& c) { return cross(b - a
 
 }  // namespace
 
-void write_shortest_through(const Vec2& from, std::span<const Gate> gates, const Vec2& to,
+void write_shortest_through(const Vec2& from, std::span<const PortalEdge> portals, const Vec2& to,
                             std::vector<Vec2>& path) {
   path.assign(1, from);
   FunnelSide left{from, 0}, right{from, 0};
@@ -24,24 +24,24 @@ void write_shortest_through(const Vec2& from, std::span<const Gate> gates, const
     if (corner.at_m != path.back()) path.push_back(corner.at_m);
     const FunnelSide apex = corner;
     left = right = apex;
-    return apex.gate + 1;
+    return apex.portal + 1;
   };
-  for (std::size_t i = 0; i <= gates.size();) {
+  for (std::size_t i = 0; i <= portals.size();) {
     const Vec2& apex = path.back();
-    const Gate gate = i < gates.size() ? gates[i] : Gate{to, to};
-    if (side_of(apex, right.at_m, gate.right_m) >= 0) {
-      if (right.at_m != apex && left.at_m != apex && side_of(apex, left.at_m, gate.right_m) > 0) {
+    const PortalEdge portal = i < portals.size() ? portals[i] : PortalEdge{to, to};
+    if (side_of(apex, right.at_m, portal.right_m) >= 0) {
+      if (right.at_m != apex && left.at_m != apex && side_of(apex, left.at_m, portal.right_m) > 0) {
         i = turn_at(left);
         continue;
       }
-      right = {gate.right_m, i};
+      right = {portal.right_m, i};
     }
-    if (side_of(apex, left.at_m, gate.left_m) <= 0) {
-      if (left.at_m != apex && right.at_m != apex && side_of(apex, right.at_m, gate.left_m) < 0) {
+    if (side_of(apex, left.at_m, portal.left_m) <= 0) {
+      if (left.at_m != apex && right.at_m != apex && side_of(apex, right.at_m, portal.left_m) < 0) {
         i = turn_at(right);
         continue;
       }
-      left = {gate.left_m, i};
+      left = {portal.left_m, i};
     }
     ++i;
   }

@@ -8,15 +8,15 @@
 
 namespace sidestep {
 
-/// A border between two convex cells, as seen when passing through it.
-struct Gate {
+/// The edge shared by two convex cells, as seen when passing through the portal between them.
+struct PortalEdge {
   Vec2 left_m, right_m;
 };
 
-/// Writes the shortest path that leads through all gates in their order, using the funnel algorithm (Lee and
-/// Preparata 1984). The path is straight between gates. It starts with `from`, ends with `to`, and otherwise
-/// consists of ends of gates.
-void write_shortest_through(const Vec2& from_m, std::span<const Gate> gates, const Vec2& to_m,
+/// Writes the shortest path that leads through all portals in their order, using the funnel algorithm (Lee
+/// and Preparata 1984). The path is straight between portals. It starts with `from`, ends with `to`, and
+/// otherwise consists of ends of portals.
+void write_shortest_through(const Vec2& from_m, std::span<const PortalEdge> portals, const Vec2& to_m,
                             std::vector<Vec2>& path_m);
 
 }  // namespace sidestep

@@ -197,13 +197,14 @@ void TrapezoidalDecomposition::add_portals(Index i) {
 
 void TrapezoidalDecomposition::shorten(const DiscDomain& domain, const Vec2& start) {
   const CellPath& path = search_.path();
-  gates_.clear();
+  path_portals_.clear();
   for (const auto& [portal, cell] : path.steps) {
-    gates_.push_back(walls_[portal]);
+    path_portals_.push_back(walls_[portal]);
     // A portal's second cell is the one on its right.
-    if (cell != graph_.portals[portal].b) std::swap(gates_.back().left_m, gates_.back().right_m);
+    if (cell != graph_.portals[portal].b)
+      std::swap(path_portals_.back().left_m, path_portals_.back().right_m);
   }
-  write_shortest_through(path.from_m, gates_, path.to_m, shortened_);
+  write_shortest_through(path.from_m, path_portals_, path.to_m, shortened_);
   const Vec2 goal = plan_.states.back();
   plan_.states.assign(1, start);
   for (const Vec2& state : shortened_)

@@ -51,8 +51,8 @@ class TrapezoidalDecomposition {
   std::vector<TrapezoidalMap::Index> open_;
   std::vector<std::uint32_t> cell_of_;  // indexed by trapezoid
   CellGraph graph_;
-  std::vector<Gate> walls_;  // indexed by portal, as seen from left to right
-  std::vector<Gate> gates_;  // gates of the path
+  std::vector<PortalEdge> walls_;         // indexed by portal, as seen from left to right
+  std::vector<PortalEdge> path_portals_;  // portals of the path
   std::vector<Vec2> shortened_;
   CellSearch search_;
   Plan<Vec2> plan_;

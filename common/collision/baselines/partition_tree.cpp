@@ -24,11 +24,11 @@ std::array<Vec2, kCount> evenly_spaced_directions() {
 }  // namespace
 
 template <std::size_t kDirections>
-PartitionTree<kDirections>::PartitionTree(const Bodies& bodies) {
-  extents_.resize(bodies.end());
-  is_used_.resize(bodies.end(), false);
-  for (const Slot slot : bodies.slots()) {
-    extents_[slot] = extents_of(bodies.shape(slot));
+PartitionTree<kDirections>::PartitionTree(const ShapeStore& store) {
+  extents_.resize(store.end());
+  is_used_.resize(store.end(), false);
+  for (const Slot slot : store.slots()) {
+    extents_[slot] = extents_of(store.shape(slot));
     is_used_[slot] = true;
   }
   rebuild();

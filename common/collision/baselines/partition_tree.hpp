@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "common/collision/bodies.hpp"
+#include "common/collision/shape_store.hpp"
 
 namespace sidestep::baselines {
 
@@ -15,7 +15,7 @@ namespace sidestep::baselines {
 template <std::size_t kDirections>
 class PartitionTree {
  public:
-  explicit PartitionTree(const Bodies& bodies);
+  explicit PartitionTree(const ShapeStore& store);
 
   void add(Slot slot, const Shape& shape);
   void replace(Slot slot, const Shape& shape);

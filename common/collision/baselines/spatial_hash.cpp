@@ -15,14 +15,14 @@ const Box kUnusedBox{{kUnused_m, kUnused_m}, {kUnused_m, kUnused_m}};
 
 }  // namespace
 
-SpatialHash::SpatialHash(const Bodies& bodies) : origin_m_(bodies.origin_m()) {
-  const std::size_t size = bodies.slots().size();
+SpatialHash::SpatialHash(const ShapeStore& store) : origin_m_(store.origin_m()) {
+  const std::size_t size = store.slots().size();
   heads_.assign(std::bit_ceil(4 * size + 1), kNone);
   if (size == 0) return;
-  Box all = bounds(bodies.shape(bodies.slots().front()));
+  Box all = bounds(store.shape(store.slots().front()));
   double sum_m = 0;
-  for (const Slot slot : bodies.slots()) {
-    const Box box = bounds(bodies.shape(slot));
+  for (const Slot slot : store.slots()) {
+    const Box box = bounds(store.shape(slot));
     all = united(all, box);
     sum_m += (box.max_m - box.min_m).maxCoeff();
   }
@@ -30,7 +30,7 @@ SpatialHash::SpatialHash(const Bodies& bodies) : origin_m_(bodies.origin_m()) {
   const Vec2 range_m = all.max_m - all.min_m;
   const double width_m = std::max(sum_m / count, std::sqrt(range_m.x() * range_m.y() / count));
   if (width_m > 1e-12) cells_per_m_ = 1 / width_m;
-  for (const Slot slot : bodies.slots()) add(slot, bodies.shape(slot));
+  for (const Slot slot : store.slots()) add(slot, store.shape(slot));
 }
 
 /// Increases with the position. Cells far from the origin coincide.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/collision/bodies.hpp"
+#include "common/collision/shape_store.hpp"
 
 namespace sidestep::baselines {
 
@@ -10,7 +10,7 @@ namespace sidestep::baselines {
 /// Obstacles that overlap more than 64 cells are compared with every query.
 class SpatialHash {
  public:
-  explicit SpatialHash(const Bodies& bodies);
+  explicit SpatialHash(const ShapeStore& store);
 
   void add(Slot slot, const Shape& shape);
   void replace(Slot slot, const Shape& shape);

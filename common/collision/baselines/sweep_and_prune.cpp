@@ -3,21 +3,21 @@
 
 namespace sidestep::baselines {
 
-SweepAndPrune::SweepAndPrune(const Bodies& bodies) {
-  const auto count = static_cast<double>(bodies.slots().size());
+SweepAndPrune::SweepAndPrune(const ShapeStore& store) {
+  const auto count = static_cast<double>(store.slots().size());
   Vec2 sum(0, 0), sum2(0, 0);
-  for (const Slot slot : bodies.slots()) {
-    const Vec2 at = centre_m(bodies.shape(slot)) - bodies.origin_m();
+  for (const Slot slot : store.slots()) {
+    const Vec2 at = centre_m(store.shape(slot)) - store.origin_m();
     sum += at;
     sum2 += at.cwiseAbs2();
   }
   const Vec2 spread = count * sum2 - sum.cwiseAbs2();
   axis_ = spread.x() >= spread.y() ? 0 : 1;
-  std::vector<Slot> sorted = bodies.slots();
+  std::vector<Slot> sorted = store.slots();
   std::sort(sorted.begin(), sorted.end(), [&](Slot a, Slot b) {
-    return bounds(bodies.shape(a)).min_m[axis_] < bounds(bodies.shape(b)).min_m[axis_];
+    return bounds(store.shape(a)).min_m[axis_] < bounds(store.shape(b)).min_m[axis_];
   });
-  for (const Slot slot : sorted) add(slot, bodies.shape(slot));
+  for (const Slot slot : sorted) add(slot, store.shape(slot));
 }
 
 void SweepAndPrune::add(Slot slot, const Shape& shape) {

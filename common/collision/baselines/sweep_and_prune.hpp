@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "common/collision/bodies.hpp"
+#include "common/collision/shape_store.hpp"
 
 namespace sidestep::baselines {
 
@@ -13,7 +13,7 @@ namespace sidestep::baselines {
 /// exchanges with its neighbours, which are few if it moves little.
 class SweepAndPrune {
  public:
-  explicit SweepAndPrune(const Bodies& bodies);
+  explicit SweepAndPrune(const ShapeStore& store);
 
   void add(Slot slot, const Shape& shape);
   void replace(Slot slot, const Shape& shape);

@@ -13,7 +13,7 @@ inline constexpr std::size_t kBuckets = 256;  ///< buckets per axis in extent ma
 
 /// An obstacle, relative to the origin: a circle or, if `radius_m` is NaN, a shape with edges that begin at
 /// the block `edges`.
-struct alignas(16) BodyRecord {
+struct alignas(16) ShapeRecord {
   float x_m, y_m, radius_m;
   std::uint32_t edges;
 };
@@ -27,19 +27,19 @@ struct alignas(32) EdgeBlock {
 };
 
 /// All obstacles, indexed by slot, and single-precision error bounds for them.
-struct BodiesView {
+struct ShapesView {
   double origin_m[2];
   float limit_m;  ///< queries with a larger coordinate or radius remain undecided
   float error_m;  ///< upper bound of the error of a distance up to limit_m
   /// Bound of the error of a gap (a difference of squared distances) near 0: `gap_error_per_m` times the
   /// query's radius, plus `min_gap_error_m2`.
   float gap_error_per_m, min_gap_error_m2;
-  const BodyRecord* records;  ///< indexed by slot; kernels may read a few entries beyond the last slot
+  const ShapeRecord* records;  ///< indexed by slot; kernels may read a few entries beyond the last slot
   const EdgeBlock* edges;
   /// The exact comparison in double precision.
-  bool (*touches)(const void* bodies, std::uint32_t slot, const double* from_m, const double* to_m,
+  bool (*touches)(const void* store, std::uint32_t slot, const double* from_m, const double* to_m,
                   double radius_m);
-  const void* bodies;
+  const void* store;
 };
 
 /// Circles, relative to the origin.
@@ -92,7 +92,7 @@ enum class SweepResult : unsigned { kClear = 0, kTouches = 1, kUndecided = 2 };
 
 /// The obstacles of a world, and the view of the structure in use; the other views are unset.
 struct WorldView {
-  BodiesView bodies;
+  ShapesView shapes;
   LinearView linear;
   MasksView masks;
   TreeView tree;

@@ -24,9 +24,9 @@ struct SweptBox {
   float min_x_m, min_y_m, max_x_m, max_y_m;
 };
 
-inline SweptBox swept_box(const BodiesView& bodies, const MovingDisc& disc) {
+inline SweptBox swept_box(const ShapesView& shapes, const MovingDisc& disc) {
   const FourFloats from = disc.ends_m, to = __builtin_shufflevector(from, from, 2, 3, 0, 1);
-  const float reach = disc.radius_m + bodies.error_m;
+  const float reach = disc.radius_m + shapes.error_m;
   const FourFloats low = smaller(from, to) - reach, high = larger(from, to) + reach;
   return {low[0], low[1], high[0], high[1]};
 }
@@ -45,9 +45,9 @@ inline unsigned overlaps(const BoxBlock& boxes, const SweptBox& box) {
 }
 
 SweepResult linear(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
-  const BodiesView& bodies = world.bodies;
+  const ShapesView& shapes = world.shapes;
   const LinearView& view = world.linear;
-  const MovingDisc disc = moving_disc(bodies, from_m, to_m, radius_m);
+  const MovingDisc disc = moving_disc(shapes, from_m, to_m, radius_m);
   if (!disc.is_valid) [[unlikely]]
     return SweepResult::kUndecided;
   const Vector gap_error = all<Vector>(disc.gap_error_m2);
@@ -68,11 +68,11 @@ SweepResult linear(const WorldView& world, const double* from_m, const double* t
   const auto touched = static_cast<unsigned>(not_above(smallest, -gap_error) != 0);
   const unsigned result = touched | (static_cast<unsigned>(undecided != 0) & ~touched) << 1;
   if (view.box_blocks == 0 || result != 0) return static_cast<SweepResult>(result);
-  const SweptBox box = swept_box(bodies, disc);
+  const SweptBox box = swept_box(shapes, disc);
   for (std::size_t block = 0; block < view.box_blocks; ++block) {
     const std::uint32_t* slots = view.box_slots + block * kLanes;
     for (unsigned bits = overlaps(view.boxes[block], box); bits != 0; bits &= bits - 1) {
-      if (touches_undecided(bodies, disc, from_m, to_m, radius_m, slots[lowest(bits)]))
+      if (touches_undecided(shapes, disc, from_m, to_m, radius_m, slots[lowest(bits)]))
         return SweepResult::kTouches;
     }
   }
@@ -80,11 +80,11 @@ SweepResult linear(const WorldView& world, const double* from_m, const double* t
 }
 
 /// The buckets of the swept area's bounds: minimum x and y, maximum x and y.
-inline FourInts buckets(const MasksView& view, const BodiesView& bodies, const MovingDisc& disc) {
+inline FourInts buckets(const MasksView& view, const ShapesView& shapes, const MovingDisc& disc) {
   const FourFloats ends = disc.ends_m, turned = -ends;
   const FourFloats low = smaller(__builtin_shufflevector(ends, turned, 0, 1, 4, 5),
                                  __builtin_shufflevector(ends, turned, 2, 3, 6, 7)) -
-                         (disc.radius_m + bodies.error_m);
+                         (disc.radius_m + shapes.error_m);
   const FourFloats scaled = low * load<FourFloats>(view.per_m) + load<FourFloats>(view.shift);
   const FourInts bucket = __builtin_convertvector(smaller(scaled, all<FourFloats>(kBuckets - 1)), FourInts);
   return bucket > 0 ? bucket : FourInts{};
@@ -108,21 +108,21 @@ inline Rows rows(const MasksView& view, const FourInts& bucket, std::size_t word
 
 SweepResult one_word_masks(const WorldView& world, const double* from_m, const double* to_m,
                            double radius_m) {
-  const Query query{world.bodies, moving_disc(world.bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
+  const Query query{world.shapes, moving_disc(world.shapes, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_valid) [[unlikely]]
     return SweepResult::kUndecided;
   const std::uint64_t bits =
-      rows(world.masks, buckets(world.masks, world.bodies, query.disc), 1).candidates(0);
+      rows(world.masks, buckets(world.masks, world.shapes, query.disc), 1).candidates(0);
   if (bits == 0) return SweepResult::kClear;
   return static_cast<SweepResult>(touches_marked(query, bits, [](unsigned bit) { return bit; }));
 }
 
 SweepResult masks(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
   const MasksView& view = world.masks;
-  const Query query{world.bodies, moving_disc(world.bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
+  const Query query{world.shapes, moving_disc(world.shapes, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_valid) [[unlikely]]
     return SweepResult::kUndecided;
-  const Rows found = rows(view, buckets(view, world.bodies, query.disc), view.words);
+  const Rows found = rows(view, buckets(view, world.shapes, query.disc), view.words);
   for (std::size_t word = 0; word < view.words; ++word) {
     const std::uint64_t bits = found.candidates(word);
     const auto slot = [word](unsigned bit) { return static_cast<std::uint32_t>(word) * 64 + bit; };
@@ -132,11 +132,11 @@ SweepResult masks(const WorldView& world, const double* from_m, const double* to
 }
 
 SweepResult tree(const WorldView& world, const double* from_m, const double* to_m, double radius_m) {
-  const BodiesView& bodies = world.bodies;
-  const Query query{bodies, moving_disc(bodies, from_m, to_m, radius_m), from_m, to_m, radius_m};
+  const ShapesView& shapes = world.shapes;
+  const Query query{shapes, moving_disc(shapes, from_m, to_m, radius_m), from_m, to_m, radius_m};
   if (!query.disc.is_valid) [[unlikely]]
     return SweepResult::kUndecided;
-  const SweptBox box = swept_box(bodies, query.disc);
+  const SweptBox box = swept_box(shapes, query.disc);
   std::uint32_t open[kMaxDepth * kLanes];
   std::size_t count = 1;
   open[0] = world.tree.root;

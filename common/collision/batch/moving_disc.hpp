@@ -24,9 +24,9 @@ inline std::uint32_t bit_pattern(float value) {
   return bits;
 }
 
-inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, const double* to_m,
+inline MovingDisc moving_disc(const ShapesView& shapes, const double* from_m, const double* to_m,
                               double radius_m) {
-  const TwoDoubles origin = load_two(bodies.origin_m);
+  const TwoDoubles origin = load_two(shapes.origin_m);
   MovingDisc d{};
   d.ends_m = joined(load_two(from_m) - origin, load_two(to_m) - origin);
   const FourFloats path = __builtin_shufflevector(d.ends_m, d.ends_m, 2, 3, 2, 3) - d.ends_m;
@@ -38,10 +38,10 @@ inline MovingDisc moving_disc(const BodiesView& bodies, const double* from_m, co
   d.along_x_per_m = along[0];
   d.along_y_per_m = along[1];
   d.radius_m = static_cast<float>(radius_m);
-  d.gap_error_m2 = bodies.gap_error_per_m * d.radius_m + bodies.min_gap_error_m2;
+  d.gap_error_m2 = shapes.gap_error_per_m * d.radius_m + shapes.min_gap_error_m2;
   const FourFloats sizes = larger(d.ends_m, -d.ends_m);
-  const bool ends_are_valid = not_above(sizes, all<FourFloats>(bodies.limit_m)) == 0xf;
-  const bool radius_is_valid = bit_pattern(d.radius_m) <= bit_pattern(bodies.limit_m);
+  const bool ends_are_valid = not_above(sizes, all<FourFloats>(shapes.limit_m)) == 0xf;
+  const bool radius_is_valid = bit_pattern(d.radius_m) <= bit_pattern(shapes.limit_m);
   d.is_valid = ends_are_valid & radius_is_valid;
   return d;
 }
@@ -60,7 +60,7 @@ inline V gaps(const V& x_m, const V& y_m, const V& radius_m, const MovingDisc& d
 /// A query with its numbers in double precision, for the exact comparison where single precision is
 /// undecided.
 struct Query {
-  const BodiesView& bodies;
+  const ShapesView& shapes;
   MovingDisc disc;
   const double *from_m, *to_m;
   double radius_m;
@@ -72,7 +72,7 @@ struct Touched {
 };
 
 inline Touched touched(const Query& query, const std::uint32_t* slots) {
-  const BodyRecord* records = query.bodies.records;
+  const ShapeRecord* records = query.shapes.records;
   const FourFloats a = load<FourFloats>(&records[slots[0]].x_m), b = load<FourFloats>(&records[slots[1]].x_m);
   const FourFloats c = load<FourFloats>(&records[slots[2]].x_m), d = load<FourFloats>(&records[slots[3]].x_m);
   const FourFloats ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
@@ -100,9 +100,9 @@ inline V squared_distances(const V& off_x_m, const V& off_y_m, const V& along, c
 
 /// Whether a shape with edges is touched: an end of the path is near an edge, an edge's start point is near
 /// the path, the path crosses an edge, or the path starts inside all edges.
-inline SweepResult touches_edges(const BodiesView& bodies, const MovingDisc& d, std::uint32_t first) {
-  const EdgeBlock* block = bodies.edges + first;
-  const FourFloats error = all<FourFloats>(bodies.error_m);
+inline SweepResult touches_edges(const ShapesView& shapes, const MovingDisc& d, std::uint32_t first) {
+  const EdgeBlock* block = shapes.edges + first;
+  const FourFloats error = all<FourFloats>(shapes.error_m);
   bool undecided = false, inside = true;
   for (std::uint32_t following = block->following;; --following, ++block) {
     const FourFloats edge_x = load<FourFloats>(block->edge_x_m), edge_y = load<FourFloats>(block->edge_y_m);
@@ -139,24 +139,24 @@ inline SweepResult touches_edges(const BodiesView& bodies, const MovingDisc& d, 
 }
 
 /// Resolves an undecided obstacle: a shape with edges, or a circle in contact within rounding error.
-inline bool touches_undecided(const BodiesView& bodies, const MovingDisc& disc, const double* from_m,
+inline bool touches_undecided(const ShapesView& shapes, const MovingDisc& disc, const double* from_m,
                               const double* to_m, double radius_m, std::uint32_t slot) {
-  const BodyRecord& record = bodies.records[slot];
+  const ShapeRecord& record = shapes.records[slot];
   SweepResult result = SweepResult::kUndecided;
-  if (record.radius_m != record.radius_m) result = touches_edges(bodies, disc, record.edges);
+  if (record.radius_m != record.radius_m) result = touches_edges(shapes, disc, record.edges);
   if (result == SweepResult::kUndecided) [[unlikely]]
-    return bodies.touches(bodies.bodies, slot, from_m, to_m, radius_m);
+    return shapes.touches(shapes.store, slot, from_m, to_m, radius_m);
   return result == SweepResult::kTouches;
 }
 
 /// Whether any undecided obstacle among the first four set bits is touched.
 template <typename SlotOf>
-[[gnu::noinline]] bool touches_any_undecided(const BodiesView& bodies, const double* from_m,
+[[gnu::noinline]] bool touches_any_undecided(const ShapesView& shapes, const double* from_m,
                                              const double* to_m, double radius_m, std::uint64_t bits,
                                              unsigned undecided, SlotOf slot) {
-  const MovingDisc disc = moving_disc(bodies, from_m, to_m, radius_m);
+  const MovingDisc disc = moving_disc(shapes, from_m, to_m, radius_m);
   for (; undecided != 0; undecided >>= 1, bits &= bits - 1) {
-    if ((undecided & 1) != 0 && touches_undecided(bodies, disc, from_m, to_m, radius_m, slot(lowest(bits))))
+    if ((undecided & 1) != 0 && touches_undecided(shapes, disc, from_m, to_m, radius_m, slot(lowest(bits))))
       return true;
   }
   return false;
@@ -174,7 +174,7 @@ inline bool touches_marked(const Query& query, std::uint64_t bits, const SlotOf&
     const unsigned wanted = lowest_four(bits);
     bool touches = (found.surely & wanted) != 0;
     if (const unsigned undecided = found.undecided & wanted; undecided != 0) [[unlikely]]
-      touches = touches || touches_any_undecided(query.bodies, query.from_m, query.to_m, query.radius_m, bits,
+      touches = touches || touches_any_undecided(query.shapes, query.from_m, query.to_m, query.radius_m, bits,
                                                  undecided, slot);
     bits = bits3 & (bits3 - 1);
     if (bits == 0 || touches) return touches;

@@ -154,7 +154,7 @@ Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const
   const bool is_latest = start >= known.latest_start && start < now + kMaxAhead;
   if (!is_latest && !known.unproven.admit(now)) return Refusal::kTooMany;
   const auto refuse = [&](Refusal refusal) {
-    if (!is_latest) known.unproven.give_back();
+    if (!is_latest) known.unproven.refund();
     return refusal;
   };
   if (!checks_.admit(now)) return refuse(Refusal::kTooFast);
@@ -216,7 +216,7 @@ void Admission::on_authenticated(const ParticipantId& id) {
   if (found == participants_.end() || found->second.is_proven) return;
   found->second.is_proven = true;
   displaced_.erase(id);
-  if (!found->second.was_latest) found->second.known->unproven.give_back();
+  if (!found->second.was_latest) found->second.known->unproven.refund();
 }
 
 std::vector<Identity> Admission::newly_unproven(Time now) {

@@ -88,10 +88,10 @@ void DdsBus::add_drops(DropCounters& drops) const {
   drops.count(DropReason::kQueueFull, std::nullopt, transport.overflowed);
   drops.count(DropReason::kMalformedDatagram, std::nullopt, transport.malformed);
   drops.count(DropReason::kForgottenPeer, std::nullopt, transport.forgotten);
-  if (const Gate* const gate = impl_->session->participant.gate()) {
-    drops.count(DropReason::kUnknownParticipant, std::nullopt, gate->unknown());
-    drops.count(DropReason::kRefusedParticipant, std::nullopt, gate->refused());
-    drops.count(DropReason::kForgedSender, std::nullopt, gate->forged());
+  if (const ParticipantFilter* const filter = impl_->session->participant.filter()) {
+    drops.count(DropReason::kUnknownParticipant, std::nullopt, filter->unknown());
+    drops.count(DropReason::kRefusedParticipant, std::nullopt, filter->refused());
+    drops.count(DropReason::kForgedSender, std::nullopt, filter->forged());
   }
 }
 

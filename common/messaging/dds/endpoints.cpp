@@ -84,11 +84,11 @@ void DdsReader::on_requested_incompatible_qos(DataReader*, const RequestedIncomp
 }
 
 bool DdsReader::is_genuine(const SampleInfo& info) {
-  Gate* const gate = participant_->gate();
-  if (!gate || !topic_.type.sender) return true;
+  ParticipantFilter* const filter = participant_->filter();
+  if (!filter || !topic_.type.sender) return true;
   ParticipantId writer;
   std::ranges::copy(info.sample_identity.writer_guid().guidPrefix.value, writer.begin());
-  return gate->may_send(writer, topic_, robot_, topic_.type.sender(sample_->message));
+  return filter->may_send(writer, topic_, robot_, topic_.type.sender(sample_->message));
 }
 
 void DdsReader::count_refused() {

@@ -130,7 +130,8 @@ void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
 DomainParticipantQos participant_qos(const DdsSettings& settings,
                                      const std::shared_ptr<Impairment>& impairment,
                                      const std::shared_ptr<TransportCounts>& counts,
-                                     const std::optional<KeyFolder>& keys, const std::shared_ptr<Gate>& gate,
+                                     const std::optional<KeyFolder>& keys,
+                                     const std::shared_ptr<ParticipantFilter>& filter,
                                      std::uint32_t shared_memory_bytes) {
   DomainParticipantQos qos = PARTICIPANT_QOS_DEFAULT;
   qos.name(settings.participant);
@@ -145,7 +146,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
     memory->segment_size(shared_memory_bytes);
     qos.transport().user_transports.push_back(memory);
   }
-  qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts, gate));
+  qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts, filter));
   if (keys) use_keys(*keys, qos);
   // With keys, the keys determine who is an operator.
   if (settings.is_operator && !keys) qos.wire_protocol().prefix = operator_prefix();
@@ -203,10 +204,10 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   if (!settings.keys.empty()) {
     keys_ = load_key_folder(own_key_folder(settings.keys, settings.identity), EventLoop::now());
     warn_of_expiry(*keys_);
-    gate_ = std::make_shared<Gate>(*keys_, fast_dds_version());
-    listener_->on_authentication = [gate = gate_](const fast_dds::rtps::GuidPrefix_t& prefix,
-                                                  bool is_genuine) {
-      gate->on_authentication(id_of(prefix), is_genuine);
+    filter_ = std::make_shared<ParticipantFilter>(*keys_, fast_dds_version());
+    listener_->on_authentication = [filter = filter_](const fast_dds::rtps::GuidPrefix_t& prefix,
+                                                      bool is_genuine) {
+      filter->on_authentication(id_of(prefix), is_genuine);
     };
   } else if (!settings.is_local_bus) {
     require_safe_network(settings);
@@ -217,7 +218,7 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   (void)take_library_errors();  // discards errors of other participants
   participant_ = DomainParticipantFactory::get_instance()->create_participant(
       static_cast<DomainId_t>(settings.domain),
-      participant_qos(settings, impairment_, counts_, keys_, gate_, shared_memory_bytes), listener_,
+      participant_qos(settings, impairment_, counts_, keys_, filter_, shared_memory_bytes), listener_,
       StatusMask::none());
   if (participant_ == nullptr) {
     const std::string reason = take_library_errors();
@@ -226,7 +227,7 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
                     settings.interface, keys_ ? " with the keys in " + keys_->path : "",
                     reason.empty() ? "it does not say why" : "Fast DDS says: " + reason));
   }
-  if (gate_) gate_->set_self(id_of(participant_->guid().guidPrefix));
+  if (filter_) filter_->set_self(id_of(participant_->guid().guidPrefix));
   publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT);
   if (publisher_ == nullptr || subscriber_ == nullptr)

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/messaging/dds/bus.hpp"
-#include "common/messaging/dds/gate.hpp"
+#include "common/messaging/dds/participant_filter.hpp"
 #include "common/messaging/dds/transport_counts.hpp"
 #include "common/messaging/impairment.hpp"
 #include "fast_dds/discovery_listener.hpp"
@@ -46,7 +46,7 @@ class DdsParticipant {
   void impair(const LinkQuality& quality, std::uint64_t seed) { impairment_->set(quality, seed); }
   const TransportCounts& counts() const { return *counts_; }
   /// Null if the process has no keys.
-  Gate* gate() const { return gate_.get(); }
+  ParticipantFilter* filter() const { return filter_.get(); }
   /// The identity whose keys this process has; nullptr if it has none.
   const Identity* identity() const { return keys_ ? &keys_->identity : nullptr; }
 
@@ -59,7 +59,7 @@ class DdsParticipant {
   std::shared_ptr<TransportCounts> counts_ = std::make_shared<TransportCounts>();
   const bool keeps_all_;
   std::optional<KeyFolder> keys_;
-  std::shared_ptr<Gate> gate_;
+  std::shared_ptr<ParticipantFilter> filter_;
   std::shared_ptr<Impairment> impairment_;  ///< null without DdsSettings::faults
   fast_dds::dds::DomainParticipant* participant_ = nullptr;
   fast_dds::dds::Publisher* publisher_ = nullptr;

@@ -16,7 +16,7 @@
 #include "common/messaging/dds/delayed_datagrams.hpp"
 #include "common/messaging/dds/destinations.hpp"
 #include "common/messaging/dds/event_loop.hpp"
-#include "common/messaging/dds/gate.hpp"
+#include "common/messaging/dds/participant_filter.hpp"
 #include "common/messaging/dds/presence.hpp"
 #include "fast_dds/chained_transport.hpp"
 
@@ -43,11 +43,12 @@ bool has_operator_mark(const ParticipantId& id) {
 struct UdpDescriptor : transport::ChainingTransportDescriptor {
   UdpDescriptor(std::shared_ptr<transport::TransportDescriptorInterface> udp,
                 std::shared_ptr<Impairment> impairment_of_process,
-                std::shared_ptr<TransportCounts> counts_of_process, std::shared_ptr<Gate> gate_of_participant)
+                std::shared_ptr<TransportCounts> counts_of_process,
+                std::shared_ptr<ParticipantFilter> filter_of_participant)
       : ChainingTransportDescriptor(std::move(udp)),
         impairment(std::move(impairment_of_process)),
         counts(std::move(counts_of_process)),
-        gate(std::move(gate_of_participant)) {}
+        filter(std::move(filter_of_participant)) {}
 
   transport::TransportInterface* create_transport() const override;
   /// Fast DDS sends a heartbeat to all readers of a writer whenever the writer has sent this many bytes. For
@@ -58,7 +59,7 @@ struct UdpDescriptor : transport::ChainingTransportDescriptor {
 
   std::shared_ptr<Impairment> impairment;
   std::shared_ptr<TransportCounts> counts;
-  std::shared_ptr<Gate> gate;  ///< null without keys
+  std::shared_ptr<ParticipantFilter> filter;  ///< null without keys
 };
 
 class UdpTransport : public fast_dds::ChainedTransport {
@@ -84,7 +85,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
     const std::optional<ParticipantId> sender = sender_of(datagram);
     if (!sender) return;  // Fast DDS would refuse this datagram too
     if (!presence_notices(datagram)) {
-      datagram = descriptor_.gate ? checked_datagram(datagram) : without_statistics(datagram);
+      datagram = descriptor_.filter ? checked_datagram(datagram) : without_statistics(datagram);
       descriptor_.counts->malformed += datagram.empty();
       if (datagram.empty()) return;
     }
@@ -103,12 +104,12 @@ class UdpTransport : public fast_dds::ChainedTransport {
  private:
   bool passes_gate(const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
                    const rtps::Locator_t& remote) {
-    return !descriptor_.gate || descriptor_.gate->passes(sender, datagram, is_discovery(local),
-                                                         std::span(remote.address).last<4>());
+    return !descriptor_.filter || descriptor_.filter->passes(sender, datagram, is_discovery(local),
+                                                             std::span(remote.address).last<4>());
   }
 
   bool is_operator(const ParticipantId& id) const {
-    return descriptor_.gate ? descriptor_.gate->is_operator(id) : has_operator_mark(id);
+    return descriptor_.filter ? descriptor_.filter->is_operator(id) : has_operator_mark(id);
   }
 
   bool accept(const ParticipantId& sender) {
@@ -157,8 +158,8 @@ class UdpTransport : public fast_dds::ChainedTransport {
       checked_at_ = now;
       const std::vector<ParticipantId> silent = presence_.newly_silent(now);
       result.insert(result.end(), silent.begin(), silent.end());
-      if (descriptor_.gate) {
-        const std::vector<ParticipantId> refused = descriptor_.gate->newly_refused();
+      if (descriptor_.filter) {
+        const std::vector<ParticipantId> refused = descriptor_.filter->newly_refused();
         result.insert(result.end(), refused.begin(), refused.end());
       }
     }
@@ -168,7 +169,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
   void on_message(Receiver& next, const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
                   const rtps::Locator_t& remote) {
     static thread_local Datagram copy;
-    if (descriptor_.gate && copy_without_timestamp(datagram, copy)) datagram = copy;
+    if (descriptor_.filter && copy_without_timestamp(datagram, copy)) datagram = copy;
     if (!descriptor_.impairment || is_operator(sender)) return pass_on(next, datagram, local, remote);
     const MessageCopies copies = descriptor_.impairment->receive(sender);
     descriptor_.counts->impaired += copies.count == 0;
@@ -210,9 +211,9 @@ transport::TransportInterface* UdpDescriptor::create_transport() const { return 
 
 std::shared_ptr<transport::TransportDescriptorInterface> udp_transport(
     std::shared_ptr<transport::UDPv4TransportDescriptor> udp, std::shared_ptr<Impairment> impairment,
-    std::shared_ptr<TransportCounts> counts, std::shared_ptr<Gate> gate) {
+    std::shared_ptr<TransportCounts> counts, std::shared_ptr<ParticipantFilter> filter) {
   return std::make_shared<UdpDescriptor>(std::move(udp), std::move(impairment), std::move(counts),
-                                         std::move(gate));
+                                         std::move(filter));
 }
 
 rtps::GuidPrefix_t operator_prefix() {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/messaging/dds/gate.hpp"
+#include "common/messaging/dds/participant_filter.hpp"
 #include "common/messaging/dds/transport_counts.hpp"
 #include "common/messaging/impairment.hpp"
 #include "fast_dds/library.hpp"
@@ -15,12 +15,12 @@ namespace sidestep {
 ///
 /// Drops are counted in `counts`. With an impairment it also loses, duplicates, delays and thereby reorders
 /// arriving datagrams. Discovery is exempt, because otherwise processes would take seconds to find each
-/// other. An operator's messages are exempt, because otherwise a fault could not be ended. With a gate,
-/// datagrams that the gate rejects are dropped first.
+/// other. An operator's messages are exempt, because otherwise a fault could not be ended. With a filter,
+/// datagrams that the filter rejects are dropped first.
 std::shared_ptr<fast_dds::transport::TransportDescriptorInterface> udp_transport(
     std::shared_ptr<fast_dds::transport::UDPv4TransportDescriptor> udp,
     std::shared_ptr<Impairment> impairment, std::shared_ptr<TransportCounts> counts,
-    std::shared_ptr<Gate> gate);
+    std::shared_ptr<ParticipantFilter> filter);
 
 /// A GUID prefix, unique to this process, that marks it as an operator's.
 fast_dds::rtps::GuidPrefix_t operator_prefix();

@@ -21,23 +21,23 @@ namespace {
 /// robot from one at rest; agents can.
 constexpr double kSeenTolerance_m = 0.01, kSeenAtRest_mps = 1;
 /// More incarnations than a supervisor would ever start; any beyond are assumed to be forged.
-constexpr std::size_t kMaxLives = 1000;
+constexpr std::size_t kMaxIncarnations = 1000;
 /// Maximum number of incarnations of one process whose counters are kept separately.
-constexpr std::size_t kMaxCounterLives = 32;
+constexpr std::size_t kMaxCounterIncarnations = 32;
 /// An incarnation is assumed dead after this many statuses of other incarnations without one of its own.
 constexpr int kSilentAfter = 5;
 
 /// The slot for a message in the list of its sender's incarnations, which is sorted; nullptr if a newer
 /// message of that incarnation is stored already, or there are too many incarnations.
 template <typename Message>
-Message* slot_for(std::vector<Message>& lives, const msg::Header& header) {
-  const auto at =
-      std::lower_bound(lives.begin(), lives.end(), header.incarnation(),
-                       [](const Message& life, auto wanted) { return life.header().incarnation() < wanted; });
-  if (at != lives.end() && at->header().incarnation() == header.incarnation()) {
+Message* slot_for(std::vector<Message>& incarnations, const msg::Header& header) {
+  const auto at = std::lower_bound(
+      incarnations.begin(), incarnations.end(), header.incarnation(),
+      [](const Message& latest, auto wanted) { return latest.header().incarnation() < wanted; });
+  if (at != incarnations.end() && at->header().incarnation() == header.incarnation()) {
     return header.message_number() > at->header().message_number() ? &*at : nullptr;
   }
-  return lives.size() < kMaxLives ? &*lives.emplace(at) : nullptr;
+  return incarnations.size() < kMaxIncarnations ? &*incarnations.emplace(at) : nullptr;
 }
 
 bool is_sane(const msg::TrueRobotState& robot) {
@@ -78,9 +78,10 @@ RunMetrics::RobotRecord* RunMetrics::find(RobotId robot) {
 }
 
 const msg::AgentStatus* RunMetrics::RobotRecord::status() const {
-  const auto found = std::ranges::find(
-      lives, authoritative, [](const msg::AgentStatus& life) { return life.header().incarnation(); });
-  return found == lives.end() ? nullptr : &*found;
+  const auto found = std::ranges::find(incarnations, authoritative, [](const msg::AgentStatus& latest) {
+    return latest.header().incarnation();
+  });
+  return found == incarnations.end() ? nullptr : &*found;
 }
 
 double RunMetrics::distance_to_go_m(const RobotRecord& robot) const {
@@ -100,21 +101,21 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
                         std::isfinite(truth.max_crash_speed_mps()) &&
                         std::isfinite(truth.max_robot_crash_speed_mps()) &&
                         is_valid_time(truth.valid_at_ns());
-  msg::GroundTruth* life = is_sound ? slot_for(simulators_, truth.header()) : nullptr;
-  if (!life) {
+  msg::GroundTruth* latest = is_sound ? slot_for(simulators_, truth.header()) : nullptr;
+  if (!latest) {
     ++dropped_messages_;
     return;
   }
-  life->header(truth.header());
-  life->contacts(truth.contacts());
-  life->penetration_m_s(truth.penetration_m_s());
-  life->min_clearance_m(truth.min_clearance_m());
-  life->firmware_violations(truth.firmware_violations());
-  life->crashes(truth.crashes());
-  life->crashes_while_moving(truth.crashes_while_moving());
-  life->max_crash_speed_mps(truth.max_crash_speed_mps());
-  life->max_robot_crash_speed_mps(truth.max_robot_crash_speed_mps());
-  if (life != &simulators_.back()) return;
+  latest->header(truth.header());
+  latest->contacts(truth.contacts());
+  latest->penetration_m_s(truth.penetration_m_s());
+  latest->min_clearance_m(truth.min_clearance_m());
+  latest->firmware_violations(truth.firmware_violations());
+  latest->crashes(truth.crashes());
+  latest->crashes_while_moving(truth.crashes_while_moving());
+  latest->max_crash_speed_mps(truth.max_crash_speed_mps());
+  latest->max_robot_crash_speed_mps(truth.max_robot_crash_speed_mps());
+  if (latest != &simulators_.back()) return;
 
   const Time at = time_from_ns(truth.valid_at_ns());
   truth_at_ = at;
@@ -130,7 +131,7 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
   }
 }
 
-void RunMetrics::on_world(const msg::WorldState& world) {
+void RunMetrics::on_world_state(const msg::WorldState& world) {
   if (truth_at_) return;
   const bool is_newer =
       is_valid_time(world.valid_at_ns()) && time_from_ns(world.valid_at_ns()) > seen_at_.value_or(Time{});
@@ -168,12 +169,12 @@ void RunMetrics::place(RobotRecord& robot, const Vec2& position_m, double speed_
 void RunMetrics::on_status(const msg::AgentStatus& status) {
   RobotRecord* robot = find(status.robot());
   const bool is_state = is_enumerator(status.agent_state(), msg::AgentState::AGENT_WITHOUT_ORDER);
-  msg::AgentStatus* life = robot && is_state ? slot_for(robot->lives, status.header()) : nullptr;
-  if (!life) {
+  msg::AgentStatus* latest = robot && is_state ? slot_for(robot->incarnations, status.header()) : nullptr;
+  if (!latest) {
     ++dropped_messages_;
     return;
   }
-  *life = status;
+  *latest = status;
   // While another incarnation reports, one that is still fencing does not count.
   const bool is_fencing = status.agent_state() == msg::AgentState::AGENT_FENCING;
   if (is_fencing && robot->status() && robot->authoritative != status.header().incarnation() &&
@@ -196,12 +197,12 @@ void RunMetrics::on_coordinator(const msg::CoordinatorState& state) {
     ++dropped_messages_;
     return;
   }
-  const std::pair life(state.coordinator(), static_cast<Incarnation>(state.header().incarnation()));
-  if (coordinators_.size() >= kMaxLives && !coordinators_.count(life)) {
+  const std::pair key(state.coordinator(), static_cast<Incarnation>(state.header().incarnation()));
+  if (coordinators_.size() >= kMaxIncarnations && !coordinators_.count(key)) {
     const auto incarnation = [](const auto& known) { return known.first.second; };
     coordinators_.erase(std::ranges::min_element(coordinators_, {}, incarnation));
   }
-  std::uint64_t& last = coordinators_[life];
+  std::uint64_t& last = coordinators_[key];
   if (state.header().message_number() <= last) {
     ++dropped_messages_;
     return;
@@ -229,20 +230,22 @@ bool RunMetrics::has_process(std::uint32_t process) {
          process == static_cast<std::uint32_t>(Sender::kRobots);
 }
 
-RunMetrics::CounterLife* RunMetrics::counter_life(ProcessCounters& counters, Incarnation incarnation) {
-  std::vector<CounterLife>& lives = counters.lives;
+RunMetrics::IncarnationCounters* RunMetrics::counters_of(ProcessCounters& counters, Incarnation incarnation) {
+  std::vector<IncarnationCounters>& incarnations = counters.incarnations;
   const auto place = [&] {
-    return std::ranges::lower_bound(lives, incarnation, {}, &CounterLife::incarnation);
+    return std::ranges::lower_bound(incarnations, incarnation, {}, &IncarnationCounters::incarnation);
   };
-  if (const auto life = place(); life != lives.end() && life->incarnation == incarnation) return &*life;
-  if (lives.size() == kMaxCounterLives && incarnation > lives.front().incarnation) {
-    const CounterLife& oldest = lives.front();
+  if (const auto latest = place(); latest != incarnations.end() && latest->incarnation == incarnation)
+    return &*latest;
+  if (incarnations.size() == kMaxCounterIncarnations && incarnation > incarnations.front().incarnation) {
+    const IncarnationCounters& oldest = incarnations.front();
     for (std::size_t i = 0; i < kDropReasonCount; ++i) counters.earlier.counts[i] += oldest.counts[i];
     counters.earlier.incarnation = oldest.incarnation;
-    lives.erase(lives.begin());
+    incarnations.erase(incarnations.begin());
   }
-  if (lives.size() == kMaxCounterLives || incarnation <= counters.earlier.incarnation) return nullptr;
-  return &*lives.insert(place(), {incarnation, 0, {}});
+  if (incarnations.size() == kMaxCounterIncarnations || incarnation <= counters.earlier.incarnation)
+    return nullptr;
+  return &*incarnations.insert(place(), {incarnation, 0, {}});
 }
 
 void RunMetrics::on_counters(const msg::Counters& message) {
@@ -251,14 +254,15 @@ void RunMetrics::on_counters(const msg::Counters& message) {
     ++dropped_messages_;
     return;
   }
-  CounterLife* const life = counter_life(counters_[message.process()], message.header().incarnation());
-  if (!life || message.header().message_number() <= life->message_number) {
+  IncarnationCounters* const latest =
+      counters_of(counters_[message.process()], message.header().incarnation());
+  if (!latest || message.header().message_number() <= latest->message_number) {
     ++dropped_messages_;
     return;
   }
-  life->message_number = message.header().message_number();
-  life->counts.fill(0);
-  for (const DropCount& one : *counts) life->counts[static_cast<std::size_t>(one.reason)] += one.count;
+  latest->message_number = message.header().message_number();
+  latest->counts.fill(0);
+  for (const DropCount& one : *counts) latest->counts[static_cast<std::size_t>(one.reason)] += one.count;
 }
 
 void RunMetrics::record_epoch(const msg::CoordinatorState& state) {
@@ -302,7 +306,7 @@ bool RunMetrics::all_at_rest() const {
 std::vector<RobotId> RunMetrics::silent_agents() const {
   std::vector<RobotId> silent;
   for (const RobotRecord& robot : robots_) {
-    if (robot.lives.empty()) silent.push_back(robot.spec->id);
+    if (robot.incarnations.empty()) silent.push_back(robot.spec->id);
   }
   return silent;
 }
@@ -325,7 +329,8 @@ std::vector<RobotId> RunMetrics::unregistered_robots() const {
 
 void listen(Bus& bus, RunMetrics& metrics) {
   bus.subscribe<msg::GroundTruth>(topics::kTruth, [&metrics](const auto& truth) { metrics.on_truth(truth); });
-  bus.subscribe<msg::WorldState>(topics::kWorld, [&metrics](const auto& world) { metrics.on_world(world); });
+  bus.subscribe<msg::WorldState>(topics::kWorld,
+                                 [&metrics](const auto& world) { metrics.on_world_state(world); });
   bus.subscribe<msg::AgentStatus>(topics::kStatus,
                                   [&metrics](const auto& status) { metrics.on_status(status); });
   bus.subscribe<msg::OrderStatus>(topics::kOrderStatus,

@@ -48,7 +48,7 @@ class RunMetrics {
 
   void on_truth(const msg::GroundTruth& truth);
   /// Ignored once ground truth has been received.
-  void on_world(const msg::WorldState& world);
+  void on_world_state(const msg::WorldState& world);
   void on_status(const msg::AgentStatus& status);
   void on_order_status(const msg::OrderStatus& status);
   void on_coordinator(const msg::CoordinatorState& state);
@@ -106,11 +106,11 @@ class RunMetrics {
     Vec2 position_m{0, 0};
     double speed_mps = 0;
     bool is_at_rest = true;
-    std::optional<Time> settled_since;    ///< since when it has been at the last goal and nearly at rest
-    std::vector<msg::AgentStatus> lives;  ///< the last status of each incarnation of its agent, sorted
-    Incarnation authoritative = 0;        ///< the incarnation whose status is used
-    int fencing_statuses = 0;             ///< statuses from other incarnations since its last status
-    std::optional<Blockage> blockage;     ///< according to the latest status of its order
+    std::optional<Time> settled_since;  ///< since when it has been at the last goal and nearly at rest
+    std::vector<msg::AgentStatus> incarnations;  ///< the last status of each incarnation of its agent, sorted
+    Incarnation authoritative = 0;               ///< the incarnation whose status is used
+    int fencing_statuses = 0;                    ///< statuses from other incarnations since its last status
+    std::optional<Blockage> blockage;            ///< according to the latest status of its order
 
     /// The status to use; nullptr if there is none yet. It is the most recently received one, except that an
     /// incarnation that is still fencing is used only if no other one reports. Using the highest incarnation
@@ -149,17 +149,17 @@ class RunMetrics {
   std::map<std::pair<std::uint32_t, Incarnation>, std::uint64_t>
       coordinators_;  ///< the last message number, by coordinator number and incarnation
   /// The last counters of one incarnation of a process.
-  struct CounterLife {
+  struct IncarnationCounters {
     Incarnation incarnation = 0;
     std::uint64_t message_number = 0;
     std::array<std::uint64_t, kDropReasonCount> counts{};
   };
   struct ProcessCounters {
-    std::vector<CounterLife> lives;  // the latest incarnations, sorted
-    CounterLife earlier;             // the sum over all earlier incarnations, with the number of the last one
+    std::vector<IncarnationCounters> incarnations;  // the latest incarnations, sorted
+    IncarnationCounters earlier;  // the sum over all earlier incarnations, with the number of the last one
   };
   /// nullptr if the incarnation is one of the earlier ones.
-  static CounterLife* counter_life(ProcessCounters& counters, Incarnation incarnation);
+  static IncarnationCounters* counters_of(ProcessCounters& counters, Incarnation incarnation);
   std::map<std::uint32_t, ProcessCounters> counters_;  ///< indexed by process of the scenario
   std::optional<msg::CoordinatorState> active_;        ///< the latest state in the highest epoch
   std::set<std::pair<RobotId, RobotId>> conflicts_;

@@ -12,17 +12,17 @@
 namespace sidestep {
 namespace {
 
-DurationHistogram sum(const std::vector<msg::AgentStatus>& lives,
+DurationHistogram sum(const std::vector<msg::AgentStatus>& incarnations,
                       const msg::DurationCounts& (msg::AgentStatus::*counts)() const) {
   DurationHistogram total;
-  for (const auto& life : lives) total.merge(decode((life.*counts)()));
+  for (const auto& latest : incarnations) total.merge(decode((latest.*counts)()));
   return total;
 }
 
-std::uint64_t sum(const std::vector<msg::AgentStatus>& lives,
+std::uint64_t sum(const std::vector<msg::AgentStatus>& incarnations,
                   std::uint64_t (msg::AgentStatus::*count)() const) {
   std::uint64_t total = 0;
-  for (const auto& life : lives) total += (life.*count)();
+  for (const auto& latest : incarnations) total += (latest.*count)();
   return total;
 }
 
@@ -38,9 +38,9 @@ std::vector<RobotProgress> RunMetrics::progress() const {
     row.arrived = has_arrived(robot);
     row.distance_to_go_m = distance_to_go_m(robot);
     row.speed_mps = robot.speed_mps;
-    row.grants = sum(robot.lives, &msg::AgentStatus::grants);
-    row.denials = sum(robot.lives, &msg::AgentStatus::denials);
-    const DurationHistogram negotiation = sum(robot.lives, &msg::AgentStatus::negotiation);
+    row.grants = sum(robot.incarnations, &msg::AgentStatus::grants);
+    row.denials = sum(robot.incarnations, &msg::AgentStatus::denials);
+    const DurationHistogram negotiation = sum(robot.incarnations, &msg::AgentStatus::negotiation);
     row.negotiation_p50 = negotiation.quantile(0.5);
     row.negotiation_p99 = negotiation.quantile(0.99);
     rows.push_back(row);
@@ -49,18 +49,18 @@ std::vector<RobotProgress> RunMetrics::progress() const {
 }
 
 void RunMetrics::add_ground_truth(Report& report) const {
-  for (const auto& life : simulators_) {
-    report.contacts += life.contacts();
-    report.penetration_m_s += life.penetration_m_s();
-    report.firmware_violations += life.firmware_violations();
-    report.crashes += life.crashes();
-    report.crashes_while_moving += life.crashes_while_moving();
-    report.max_crash_speed_mps = std::max(report.max_crash_speed_mps, life.max_crash_speed_mps());
+  for (const auto& latest : simulators_) {
+    report.contacts += latest.contacts();
+    report.penetration_m_s += latest.penetration_m_s();
+    report.firmware_violations += latest.firmware_violations();
+    report.crashes += latest.crashes();
+    report.crashes_while_moving += latest.crashes_while_moving();
+    report.max_crash_speed_mps = std::max(report.max_crash_speed_mps, latest.max_crash_speed_mps());
     report.max_robot_crash_speed_mps =
-        std::max(report.max_robot_crash_speed_mps, life.max_robot_crash_speed_mps());
-    if (std::isfinite(life.min_clearance_m())) {
+        std::max(report.max_robot_crash_speed_mps, latest.max_robot_crash_speed_mps());
+    if (std::isfinite(latest.min_clearance_m())) {
       report.min_clearance_m =
-          std::min(report.min_clearance_m.value_or(life.min_clearance_m()), life.min_clearance_m());
+          std::min(report.min_clearance_m.value_or(latest.min_clearance_m()), latest.min_clearance_m());
     }
   }
   report.max_reference_error_m = max_reference_error_m_;
@@ -119,15 +119,15 @@ void RunMetrics::add_arrivals(Report& report) const {
 
 void RunMetrics::add_agents(Report& report) const {
   for (const RobotRecord& robot : robots_) {
-    report.proposals += sum(robot.lives, &msg::AgentStatus::proposals);
-    report.grants += sum(robot.lives, &msg::AgentStatus::grants);
-    report.denials += sum(robot.lives, &msg::AgentStatus::denials);
-    report.cycles += sum(robot.lives, &msg::AgentStatus::cycles);
-    report.missed_cycles += sum(robot.lives, &msg::AgentStatus::missed_cycles);
-    report.route_changes += sum(robot.lives, &msg::AgentStatus::route_changes);
-    report.negotiation.merge(sum(robot.lives, &msg::AgentStatus::negotiation));
-    report.plan.merge(sum(robot.lives, &msg::AgentStatus::plan));
-    report.search.merge(sum(robot.lives, &msg::AgentStatus::search));
+    report.proposals += sum(robot.incarnations, &msg::AgentStatus::proposals);
+    report.grants += sum(robot.incarnations, &msg::AgentStatus::grants);
+    report.denials += sum(robot.incarnations, &msg::AgentStatus::denials);
+    report.cycles += sum(robot.incarnations, &msg::AgentStatus::cycles);
+    report.missed_cycles += sum(robot.incarnations, &msg::AgentStatus::missed_cycles);
+    report.route_changes += sum(robot.incarnations, &msg::AgentStatus::route_changes);
+    report.negotiation.merge(sum(robot.incarnations, &msg::AgentStatus::negotiation));
+    report.plan.merge(sum(robot.incarnations, &msg::AgentStatus::plan));
+    report.search.merge(sum(robot.incarnations, &msg::AgentStatus::search));
   }
   const double planned_s = static_cast<double>(report.cycles) * to_seconds(scenario_.cycle);
   if (planned_s > 0) report.route_changes_per_s = static_cast<double>(report.route_changes) / planned_s;
@@ -150,12 +150,13 @@ void RunMetrics::add_counters(Report& report) const {
   const auto add = [&](const std::string& process, std::size_t reason, std::uint64_t count) {
     if (count > 0) report.counters[process][static_cast<DropReason>(reason)] += count;
   };
-  const auto add_life = [&](const std::string& process, const CounterLife& life) {
-    for (std::size_t i = 0; i < kDropReasonCount; ++i) add(process, i, life.counts[i]);
+  const auto add_incarnation = [&](const std::string& process, const IncarnationCounters& latest) {
+    for (std::size_t i = 0; i < kDropReasonCount; ++i) add(process, i, latest.counts[i]);
   };
   for (const auto& [process, counters] : counters_) {
-    add_life(process_name(process), counters.earlier);
-    for (const CounterLife& life : counters.lives) add_life(process_name(process), life);
+    add_incarnation(process_name(process), counters.earlier);
+    for (const IncarnationCounters& latest : counters.incarnations)
+      add_incarnation(process_name(process), latest);
   }
   DropCounters own;
   own.count(DropReason::kUnusedByMonitor, std::nullopt, dropped_messages_);

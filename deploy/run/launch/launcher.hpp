@@ -51,7 +51,7 @@ class Launcher {
            const NamespaceNetwork* network, Processes& processes, Predecessors before = {});
 
   /// From now on the director decides when the run is over, instead of arrivals, deaths and the time limit.
-  void follow(RunDirector director) { director_ = std::move(director); }
+  void set_director(RunDirector director) { director_ = std::move(director); }
 
   Report run();
 

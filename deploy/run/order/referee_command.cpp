@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "common/league/checks.hpp"
 #include "common/league/multicast.hpp"
+#include "common/league/packet_validator.hpp"
 #include "common/league/referee_packet.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/process/exit_code.hpp"

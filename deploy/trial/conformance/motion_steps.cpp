@@ -75,8 +75,8 @@ VersionStream::Policy drive_to(const Vec2& goal_m, const MotionLimits& limits, d
 }
 
 bool is_at(const ConformanceContext& context, const Vec2& goal_m) {
-  const Trajectory& trajectory = context.probe.fact()->executing.trajectory;
-  const State now = trajectory.state_at(context.probe.fact()->valid_at);
+  const Trajectory& trajectory = context.probe.robot_report()->executing.trajectory;
+  const State now = trajectory.state_at(context.probe.robot_report()->valid_at);
   return (now.position_m - goal_m).norm() < 0.05 && now.velocity_mps.norm() < 0.05;
 }
 
@@ -153,7 +153,7 @@ class LatencyStep final : public ConformanceStep {
     if (start_ && probe.robot_now() < start_->trajectory.end() + 2 * kSettlingTime) return;
     context.stream.forget();
     const Time at = probe.robot_now() + context.stream.notice() + 200ms;
-    const State from = probe.fact()->executing.trajectory.state_at(at);
+    const State from = probe.robot_report()->executing.trajectory.state_at(at);
     const Vec2 direction =
         rotated(Vec2(1, 0), std::numbers::pi * (starts_ % 2 + 0.25 * std::floor(starts_ / 2.0)));
     Trajectory trajectory(at, {from.position_m, Vec2(0, 0)});
@@ -199,7 +199,7 @@ class LatencyStep final : public ConformanceStep {
       return;
     }
     const double late_s = to_seconds(late());
-    const double lead_s = to_seconds(context.probe.fact()->lead);
+    const double lead_s = to_seconds(context.probe.robot_report()->lead);
     context.is_late =
         std::abs(late_s) * context.scenario.limits.speed_mps > context.scenario.tracking_bound_m;
     context.report.rows.push_back(
@@ -333,8 +333,9 @@ class TrackingStep final : public ConformanceStep {
   /// The filter has learned the odometry's error by the time of the highest speed.
   void keep_uncertainty(ConformanceContext& context) {
     if (level_ + 1 != levels_.size()) return;
-    const Feedback& fact = *context.probe.fact();
-    const double needed_m = bound_for_dead_reckoning_m(fact.uncertainty, context.scenario, fact.lead);
+    const RobotReport& robot_report = *context.probe.robot_report();
+    const double needed_m =
+        bound_for_dead_reckoning_m(robot_report.uncertainty, context.scenario, robot_report.lead);
     auto& bound_m = context.report.figures.tracking_bound_m;
     bound_m = std::max(bound_m.value_or(0), std::ceil(needed_m * 1e3) * 1e-3);
   }
@@ -491,16 +492,16 @@ class OwnStopStep final : public ConformanceStep {
 
   bool update(ConformanceContext& context) override {
     RobotProbe& probe = context.probe;
-    const Feedback& fact = *probe.fact();
+    const RobotReport& robot_report = *probe.robot_report();
     const Time now = probe.now();
     if (!since_) {
       since_ = now;
-      before_ = fact.executing.number;
+      before_ = robot_report.executing.number;
       context.stream.stop();
       probe.fix_error_m = Vec2(0.3, 0);
     }
-    if (!own_ && fact.is_off_reference && fact.executing.number != before_) {
-      own_ = fact;
+    if (!own_ && robot_report.is_off_reference && robot_report.executing.number != before_) {
+      own_ = robot_report;
       took_ = now - *since_;
     }
     if (!own_ && now - *since_ < 2s) return false;
@@ -525,7 +526,7 @@ class OwnStopStep final : public ConformanceStep {
  private:
   std::optional<Time> since_;
   VersionNumber before_ = 0;
-  std::optional<Feedback> own_;
+  std::optional<RobotReport> own_;
   Duration took_{0};
 };
 

@@ -19,7 +19,7 @@ constexpr Duration kReadyTimeout = 15s, kAnswerTimeout = 1s;
 // A process that misses one and a half cycles because of its scheduling is still on time.
 constexpr double kMaxGapCycles = 2.5;
 // After a version's start, a fact about it arrives within this time.
-constexpr Duration kFactTime = 100ms;
+constexpr Duration kReportTime = 100ms;
 // Pause between the robot's refusal and the next attempt.
 constexpr Duration kPause = 50ms;
 
@@ -44,12 +44,12 @@ class ReportsStep final : public ConformanceStep {
     RobotProbe& probe = context.probe;
     const Time now = probe.now();
     if (!since_) since_ = now;
-    const auto& fact = probe.fact();
-    const bool is_fenced =
-        fact && fact->obeyed_incarnation == probe.incarnation && fact->obeyed_epoch == probe.epoch;
+    const auto& robot_report = probe.robot_report();
+    const bool is_fenced = robot_report && robot_report->obeyed_incarnation == probe.incarnation &&
+                           robot_report->obeyed_epoch == probe.epoch;
     if (!heard_since_ && is_fenced) {
       heard_since_ = now;
-      first_fact_ = probe.facts();
+      first_report_count_ = probe.report_count();
       probe.reset_gap();
     }
     if (!heard_since_) {
@@ -58,26 +58,27 @@ class ReportsStep final : public ConformanceStep {
       return true;
     }
     if (now - *heard_since_ < 2s) return false;
-    const double rate_hz = static_cast<double>(probe.facts() - first_fact_) / to_seconds(now - *heard_since_);
+    const double rate_hz =
+        static_cast<double>(probe.report_count() - first_report_count_) / to_seconds(now - *heard_since_);
     const bool is_on_time = to_seconds(probe.longest_gap()) <= kMaxGapCycles * to_seconds(probe.cycle());
-    const bool is_passed = is_on_time && probe.malformed_facts() == 0 && !fact->is_lifted;
+    const bool is_passed = is_on_time && probe.malformed_reports() == 0 && !robot_report->is_lifted;
     context.report.rows.push_back(
         {"reports", passed_if(is_passed),
          fmt::format("{:.0f} facts a second, at most {:.1f} ms apart; {} malformed; lead {:.0f} ms", rate_hz,
-                     ms(probe.longest_gap()), probe.malformed_facts(), ms(fact->lead))});
+                     ms(probe.longest_gap()), probe.malformed_reports(), ms(robot_report->lead))});
     return true;
   }
 
  private:
   static std::string silence(const RobotProbe& probe) {
     if (!probe.seen()) return fmt::format("vision does not see robot {}", probe.robot());
-    if (probe.malformed_facts() > 0)
-      return fmt::format("{} malformed facts, no other", probe.malformed_facts());
-    if (!probe.fact()) return fmt::format("no fact of robot {}", probe.robot());
+    if (probe.malformed_reports() > 0)
+      return fmt::format("{} malformed facts, no other", probe.malformed_reports());
+    if (!probe.robot_report()) return fmt::format("no fact of robot {}", probe.robot());
     return "the robot does not acknowledge a new agent and epoch; does another agent drive it?";
   }
   std::optional<Time> since_, heard_since_;
-  std::uint64_t first_fact_ = 0;
+  std::uint64_t first_report_count_ = 0;
 };
 
 class ClockStep final : public ConformanceStep {
@@ -127,10 +128,10 @@ class RefusalStep : public ConformanceStep {
 
   bool update(ConformanceContext& context) override {
     RobotProbe& probe = context.probe;
-    const Feedback& fact = *probe.fact();
+    const RobotReport& robot_report = *probe.robot_report();
     if (!sent_) {
       sent_ = next_version(context);
-      before_ = fact;
+      before_ = robot_report;
     }
     if (probe.robot_now() < sent_->trajectory.start()) {
       // Each command is sent in at least two cycles, as an agent repeats its commands.
@@ -139,12 +140,12 @@ class RefusalStep : public ConformanceStep {
       probe.send(message);
       return false;
     }
-    if (fact.valid_at < sent_->trajectory.start() + kFactTime) return false;
-    const bool is_refused = fact.executing.number == before_.executing.number &&
-                            fact.obeyed_incarnation == before_.obeyed_incarnation &&
-                            fact.obeyed_epoch == before_.obeyed_epoch;
+    if (robot_report.valid_at < sent_->trajectory.start() + kReportTime) return false;
+    const bool is_refused = robot_report.executing.number == before_.executing.number &&
+                            robot_report.obeyed_incarnation == before_.obeyed_incarnation &&
+                            robot_report.obeyed_epoch == before_.obeyed_epoch;
     if (!is_refused) obeyed_.push_back(attempts_[index_].what);
-    if (fact.executing.number != before_.executing.number) context.stream.forget();
+    if (robot_report.executing.number != before_.executing.number) context.stream.forget();
     sent_.reset();
     const std::string& rule = attempts_[index_].rule;
     ++tried_;
@@ -155,7 +156,7 @@ class RefusalStep : public ConformanceStep {
 
  private:
   Version next_version(const ConformanceContext& context) const {
-    const Version& base = context.probe.fact()->executing;
+    const Version& base = context.probe.robot_report()->executing;
     const Time start = context.probe.robot_now() + context.stream.notice() + kPause;
     return context.stream.next(nudge(base.trajectory.state_at(start), start));
   }
@@ -179,7 +180,7 @@ class RefusalStep : public ConformanceStep {
   std::vector<Attempt> attempts_;
   std::size_t index_ = 0, tried_ = 0;
   std::optional<Version> sent_;
-  Feedback before_;
+  RobotReport before_;
   std::vector<std::string> obeyed_;
 };
 
@@ -195,8 +196,9 @@ class FenceStep final : public ConformanceStep {
       probe.incarnation += 1000;
       probe.epoch += 1000;
     }
-    const Feedback& fact = *probe.fact();
-    const bool is_fenced = fact.obeyed_incarnation == probe.incarnation && fact.obeyed_epoch == probe.epoch;
+    const RobotReport& robot_report = *probe.robot_report();
+    const bool is_fenced =
+        robot_report.obeyed_incarnation == probe.incarnation && robot_report.obeyed_epoch == probe.epoch;
     if (!is_fenced && probe.now() - *since_ < kAnswerTimeout) return false;
     context.report.rows.push_back(
         {"new agent and epoch", passed_if(is_fenced),
@@ -215,17 +217,17 @@ class SwitchStep final : public ConformanceStep {
 
   bool update(ConformanceContext& context) override {
     RobotProbe& probe = context.probe;
-    const Feedback& fact = *probe.fact();
+    const RobotReport& robot_report = *probe.robot_report();
     if (!sent_) {
       const Time start = probe.robot_now() + context.stream.notice() + kPause;
-      sent_ = context.stream.next(nudge(fact.executing.trajectory.state_at(start), start));
+      sent_ = context.stream.next(nudge(robot_report.executing.trajectory.state_at(start), start));
       probe.version = sent_;
       return false;
     }
-    if (fact.executing.number == sent_->number && !seen_) seen_ = probe.fact();
+    if (robot_report.executing.number == sent_->number && !seen_) seen_ = probe.robot_report();
     const bool is_early = seen_ && seen_->valid_at < sent_->trajectory.start();
-    if (!seen_ && fact.valid_at < sent_->trajectory.start() + kAnswerTimeout) return false;
-    if (seen_ && fact.valid_at < sent_->trajectory.end()) return false;
+    if (!seen_ && robot_report.valid_at < sent_->trajectory.start() + kAnswerTimeout) return false;
+    if (seen_ && robot_report.valid_at < sent_->trajectory.end()) return false;
     probe.version.reset();
     if (!seen_) {
       context.report.rows.push_back(
@@ -235,7 +237,7 @@ class SwitchStep final : public ConformanceStep {
     context.stream.forget();
     const bool is_same = encode(seen_->executing) == encode(*sent_);
     const Duration late = seen_->valid_at - sent_->trajectory.start();
-    context.report.rows.push_back({"switches", passed_if(is_same && !is_early && late <= kFactTime),
+    context.report.rows.push_back({"switches", passed_if(is_same && !is_early && late <= kReportTime),
                                    fmt::format("reported {:.1f} ms after the start, contents {}", ms(late),
                                                is_same ? "bit for bit" : "altered")});
     return true;
@@ -243,7 +245,7 @@ class SwitchStep final : public ConformanceStep {
 
  private:
   std::optional<Version> sent_;
-  std::optional<Feedback> seen_;
+  std::optional<RobotReport> seen_;
 };
 
 /// Starts a new agent while a version of the previous one is pending. Motors that respond late have already
@@ -254,27 +256,27 @@ class TakeoverStep final : public ConformanceStep {
 
   bool update(ConformanceContext& context) override {
     RobotProbe& probe = context.probe;
-    const Feedback& fact = *probe.fact();
+    const RobotReport& robot_report = *probe.robot_report();
     if (!sent_) {
       const Time start = probe.robot_now() + context.stream.notice() + kPause;
-      sent_ = context.stream.next(nudge(fact.executing.trajectory.state_at(start), start));
+      sent_ = context.stream.next(nudge(robot_report.executing.trajectory.state_at(start), start));
       probe.version = sent_;
       earlier_ = probe.incarnation;
       return false;
     }
     const Time start = sent_->trajectory.start();
     // Half a lead before the start, or early enough that the lead has not begun.
-    const Duration before = is_committed_ ? fact.lead / 2 : fact.lead + kPause / 2;
+    const Duration before = is_committed_ ? robot_report.lead / 2 : robot_report.lead + kPause / 2;
     if (probe.incarnation == earlier_ && probe.robot_now() >= start - before) {
       probe.version.reset();
       probe.incarnation += 1000;
     }
     const bool has_come = probe.incarnation != earlier_;
-    if (has_come && fact.obeyed_incarnation == probe.incarnation && !acknowledged_)
-      acknowledged_ = probe.fact();
-    if (fact.valid_at < start + kAnswerTimeout) return false;
-    const bool is_executed = fact.executing.number == sent_->number;
-    const bool is_stated = acknowledged_ && acknowledged_->executing.number == fact.executing.number;
+    if (has_come && robot_report.obeyed_incarnation == probe.incarnation && !acknowledged_)
+      acknowledged_ = probe.robot_report();
+    if (robot_report.valid_at < start + kAnswerTimeout) return false;
+    const bool is_executed = robot_report.executing.number == sent_->number;
+    const bool is_stated = acknowledged_ && acknowledged_->executing.number == robot_report.executing.number;
     if (is_executed != is_committed_)
       faults_ += is_committed_ ? "; a version that starts within the lead was discarded"
                                : "; a version that starts later was executed";
@@ -286,7 +288,7 @@ class TakeoverStep final : public ConformanceStep {
     sent_.reset();
     acknowledged_.reset();
     // A robot whose motors respond at once has no lead.
-    if (!is_committed_ && fact.lead > 2 * probe.cycle()) {
+    if (!is_committed_ && robot_report.lead > 2 * probe.cycle()) {
       is_committed_ = true;
       return false;
     }
@@ -301,7 +303,7 @@ class TakeoverStep final : public ConformanceStep {
   bool is_committed_ = false;  ///< the version starts within the lead when the new agent comes
   std::optional<Version> sent_;
   Incarnation earlier_ = 0;
-  std::optional<Feedback> acknowledged_;  ///< the first fact that acknowledges the new agent
+  std::optional<RobotReport> acknowledged_;  ///< the first fact that acknowledges the new agent
   std::string faults_;
 };
 
@@ -340,7 +342,7 @@ std::unique_ptr<ConformanceStep> make_versions_step() {
   const auto delayed = [](Message& m, const Context& context) {
     // When the version arrives, half of the robot's lead is left, or nothing if it has no lead.
     const Time now = context.probe.robot_now();
-    m.version().start_ns(to_ns(now + context.probe.fact()->lead / 2 - 1ms));
+    m.version().start_ns(to_ns(now + context.probe.robot_report()->lead / 2 - 1ms));
   };
   return std::make_unique<RefusalStep>(
       "versions",

@@ -22,17 +22,17 @@ RobotProbe::RobotProbe(Bus& bus, const Scenario& scenario, RobotId robot, Incarn
       cycle_(scenario.cycle),
       writer_(bus.advertise(topics::kCommand, robot)) {
   bus.subscribe<msg::Feedback>(topics::kFeedback, robot,
-                               [this](const msg::Feedback& message) { on_feedback(message); });
+                               [this](const msg::Feedback& message) { on_robot_report(message); });
   bus.subscribe<msg::WorldState>(topics::kWorld,
-                                 [this](const msg::WorldState& message) { on_world(message); });
+                                 [this](const msg::WorldState& message) { on_world_state(message); });
 }
 
-Duration RobotProbe::robot_ahead() const {
+Duration RobotProbe::robot_clock_offset() const {
   const auto offset = clock_offset();
   return offset ? offset->middle() : Duration{0};
 }
 
-Time RobotProbe::robot_now() const { return bus_.now() + robot_ahead(); }
+Time RobotProbe::robot_now() const { return bus_.now() + robot_clock_offset(); }
 
 void RobotProbe::send_command() {
   if (!sends_commands) return;
@@ -44,33 +44,34 @@ void RobotProbe::send_command() {
   // Uses the robot's clock, so that a wrong clock shows only in its own row.
   if (fix_)
     command.fix =
-        PoseFix{fix_->captured_at + robot_ahead(), fix_->position_m + fix_error_m, fix_->heading_rad};
+        PoseFix{fix_->captured_at + robot_clock_offset(), fix_->position_m + fix_error_m, fix_->heading_rad};
   fix_.reset();
-  if (fact_) command.desired_heading_rad = fact_->heading_rad;
+  if (robot_report_) command.desired_heading_rad = robot_report_->heading_rad;
   send(encode(command));
 }
 
 void RobotProbe::send(msg::Command message) { writer_.publish(message, bus_.now()); }
 
-void RobotProbe::on_feedback(const msg::Feedback& message) {
+void RobotProbe::on_robot_report(const msg::Feedback& message) {
   const Time now = bus_.now();
-  const auto fact = decode(message, robot_, now + std::chrono::hours(1));
-  if (!fact) {
-    ++malformed_facts_;
+  const auto robot_report = decode(message, robot_, now + std::chrono::hours(1));
+  if (!robot_report) {
+    ++malformed_reports_;
     return;
   }
-  if (facts_++ > 0) longest_gap_ = std::max(longest_gap_, now - fact_at_);
-  if (fact->command)
-    (void)clock_.add({fact->command->sent_at, fact->command->received_at, fact->valid_at, now});
-  fact_ = *fact;
-  fact_at_ = now;
-  const bool is_new = executed_.empty() || executed_.back().version.number != fact->executing.number;
-  if (is_new) executed_.push_back({fact->executing, fact->is_off_reference});
+  if (report_count_++ > 0) longest_gap_ = std::max(longest_gap_, now - report_at_);
+  if (robot_report->command)
+    (void)clock_.add(
+        {robot_report->command->sent_at, robot_report->command->received_at, robot_report->valid_at, now});
+  robot_report_ = *robot_report;
+  report_at_ = now;
+  const bool is_new = executed_.empty() || executed_.back().version.number != robot_report->executing.number;
+  if (is_new) executed_.push_back({robot_report->executing, robot_report->is_off_reference});
   if (executed_.size() > kMaxExecuted) executed_.pop_front();
   take_samples();
 }
 
-void RobotProbe::on_world(const msg::WorldState& message) {
+void RobotProbe::on_world_state(const msg::WorldState& message) {
   for (const msg::TrackedRobot& robot : message.robots()) {
     if (robot.robot() != robot_) continue;
     const auto seen = decode(robot, bus_.now());
@@ -92,10 +93,11 @@ const Version* RobotProbe::executed_at(Time robot_time) const {
 
 // A fact shows what was executed up to its time.
 void RobotProbe::take_samples() {
-  while (!unjudged_.empty() && unjudged_.front().observed_at + robot_ahead() < fact_->valid_at) {
+  while (!unjudged_.empty() &&
+         unjudged_.front().observed_at + robot_clock_offset() < robot_report_->valid_at) {
     const RobotObservation seen = unjudged_.front();
     unjudged_.pop_front();
-    const Time at = seen.observed_at + robot_ahead();
+    const Time at = seen.observed_at + robot_clock_offset();
     const auto executed = std::find_if(executed_.rbegin(), executed_.rend(), [&](const Executed& one) {
       return one.version.trajectory.start() <= at;
     });

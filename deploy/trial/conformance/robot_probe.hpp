@@ -45,11 +45,11 @@ class RobotProbe {
   /// Sends a message unchanged, whatever it contains.
   void send(msg::Command message);
 
-  const std::optional<Feedback>& fact() const { return fact_; }
+  const std::optional<RobotReport>& robot_report() const { return robot_report_; }
   /// When the last fact arrived.
-  Time fact_at() const { return fact_at_; }
-  std::uint64_t facts() const { return facts_; }
-  std::uint64_t malformed_facts() const { return malformed_facts_; }
+  Time report_at() const { return report_at_; }
+  std::uint64_t report_count() const { return report_count_; }
+  std::uint64_t malformed_reports() const { return malformed_reports_; }
   /// The longest interval between two facts since the last reset_gap().
   Duration longest_gap() const { return longest_gap_; }
   void reset_gap() { longest_gap_ = Duration{0}; }
@@ -68,20 +68,20 @@ class RobotProbe {
   Duration cycle() const { return cycle_; }
 
  private:
-  void on_feedback(const msg::Feedback& message);
-  void on_world(const msg::WorldState& message);
+  void on_robot_report(const msg::Feedback& message);
+  void on_world_state(const msg::WorldState& message);
   void take_samples();
   /// Best estimate of how far the robot's clock is ahead of this process's clock.
-  Duration robot_ahead() const;
+  Duration robot_clock_offset() const;
 
   Bus& bus_;
   RobotId robot_;
   Duration cycle_;
   Writer<msg::Command> writer_;
   ClockOffset clock_;
-  std::optional<Feedback> fact_;
-  Time fact_at_{};
-  std::uint64_t facts_ = 0, malformed_facts_ = 0;
+  std::optional<RobotReport> robot_report_;
+  Time report_at_{};
+  std::uint64_t report_count_ = 0, malformed_reports_ = 0;
   Duration longest_gap_{0};
   std::optional<RobotObservation> seen_;
   std::optional<PoseFix> fix_;  ///< not sent yet

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kHeldCycles = 3;
 // Facts show a version within this time after its start.
-constexpr Duration kFactTimeout = std::chrono::milliseconds(200);
+constexpr Duration kReportTimeout = std::chrono::milliseconds(200);
 
 }  // namespace
 
@@ -19,11 +19,11 @@ VersionStream::VersionStream(RobotProbe& probe, const Scenario& scenario)
     : probe_(probe), limits_(scenario.limits), field_(scenario.field), radius_m_(scenario.radius_m) {}
 
 Duration VersionStream::notice() const {
-  return (probe_.fact() ? probe_.fact()->lead : Duration{0}) + 3 * probe_.cycle();
+  return (probe_.robot_report() ? probe_.robot_report()->lead : Duration{0}) + 3 * probe_.cycle();
 }
 
 Version VersionStream::next(const Trajectory& trajectory) {
-  const Version& executing = probe_.fact()->executing;
+  const Version& executing = probe_.robot_report()->executing;
   number_ = std::max({number_, executing.number, probe_.incarnation}) + 1;
   Version version;
   version.robot = probe_.robot();
@@ -38,20 +38,20 @@ Version VersionStream::next(const Trajectory& trajectory) {
 
 void VersionStream::resynchronise() {
   if (!last_) return;
-  const Feedback& fact = *probe_.fact();
-  const bool is_late =
-      fact.valid_at > last_->trajectory.start() + kFactTimeout && fact.executing.number != last_->number;
+  const RobotReport& robot_report = *probe_.robot_report();
+  const bool is_late = robot_report.valid_at > last_->trajectory.start() + kReportTimeout &&
+                       robot_report.executing.number != last_->number;
   // The robot's own stop replaces all versions.
-  if (!is_late && !(fact.is_off_reference && fact.executing.number > last_->number)) return;
+  if (!is_late && !(robot_report.is_off_reference && robot_report.executing.number > last_->number)) return;
   ++broken_;
   last_.reset();
 }
 
 void VersionStream::extend(const Policy& policy) {
-  if (!probe_.fact()) return;
+  if (!probe_.robot_report()) return;
   resynchronise();
   const Time robot_now = probe_.robot_now();
-  const Version base = last_ ? *last_ : probe_.fact()->executing;
+  const Version base = last_ ? *last_ : probe_.robot_report()->executing;
   const Duration held = kHeldCycles * probe_.cycle();
   Time start = base.trajectory.start() + held;
   if (start - robot_now >= notice() + probe_.cycle()) return;
@@ -80,10 +80,10 @@ void VersionStream::forget() {
 }
 
 bool VersionStream::is_at_rest() const {
-  if (!probe_.fact()) return false;
-  const Version& executing = probe_.fact()->executing;
+  if (!probe_.robot_report()) return false;
+  const Version& executing = probe_.robot_report()->executing;
   const bool is_last = !last_ || executing.number >= last_->number;
-  return is_last && executing.trajectory.end() < probe_.fact()->valid_at;
+  return is_last && executing.trajectory.end() < probe_.robot_report()->valid_at;
 }
 
 }  // namespace sidestep

@@ -39,7 +39,7 @@ SightPicture::SightPicture(const Scenario& scenario, RobotId robot)
     : scenario_(scenario),
       robot_(robot),
       rules_(floor_rules(scenario)),
-      view_(robot, laser_of(scenario, robot).settings),
+      decoder_(robot, laser_of(scenario, robot).settings),
       sight_(*scenario.laser, rules_, {.position_error_m = scenario.tracking_bound_m}) {}
 
 void SightPicture::add(const msg::GroundTruth& truth) {
@@ -48,7 +48,7 @@ void SightPicture::add(const msg::GroundTruth& truth) {
 }
 
 void SightPicture::add(const msg::LaserScan& message) {
-  const auto scan = view_.decode(message, time_from_ns(message.header().stamp_ns()));
+  const auto scan = decoder_.decode(message, time_from_ns(message.header().stamp_ns()));
   if (!scan) return;
   std::vector<Circle> others;
   for (const auto& [robot, at_m] : robots_m_)

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "agents/agent/scan_view.hpp"
+#include "agents/agent/laser_scan_decoder.hpp"
 #include "agents/perception/laser_sight.hpp"
 #include "common/config/scenario.hpp"
 #include "idl/monitor.hpp"
@@ -32,7 +32,7 @@ class SightPicture {
   const Scenario& scenario_;
   RobotId robot_;
   FloorRules rules_;
-  ScanView view_;
+  LaserScanDecoder decoder_;
   LaserSight sight_;
   std::map<RobotId, Vec2> robots_m_;
 };

@@ -232,12 +232,12 @@ void EventWatch::watch_silence(std::uint32_t id, bool is_silent, const std::stri
 }
 
 void EventWatch::tick(const FloorState& floor, Time now) {
-  constexpr std::uint32_t kRobotFacts = 0x10000;  // keys of robots; agents use the robot's number
+  constexpr std::uint32_t kRobotReports = 0x10000;  // keys of robots; agents use the robot's number
   for (const auto& [id, robot] : floor.robots()) {
     if (robot.status) watch_silence(id, now - robot.status->at > kSilence, agent_process(id), true, now);
     if (robot.feedback)
-      watch_silence(kRobotFacts + id, now - robot.feedback->at > kSilence, fmt::format("robot {}", id), false,
-                    now);
+      watch_silence(kRobotReports + id, now - robot.feedback->at > kSilence, fmt::format("robot {}", id),
+                    false, now);
   }
   for (const auto& [number, state] : floor.coordinators())
     watch_silence(static_cast<std::uint32_t>(Sender::kCoordinator) + number, now - state.at > kSilence,

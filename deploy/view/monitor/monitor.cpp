@@ -72,11 +72,11 @@ Monitor::Monitor(Bus& bus, const MonitorSettings& settings)
     for (auto& [socket, viewer] : viewers_) socket->send_event({text, false});
   });
   if (settings_.scenario) {
-    judges_ = std::make_unique<RunJudges>(*settings_.scenario, settings_.audit);
-    judges_->auditor.on_violation([this](const Violation& v) { event_watch_.on_violation(v); });
+    assessment_ = std::make_unique<RunAssessment>(*settings_.scenario, settings_.audit);
+    assessment_->auditor.on_violation([this](const Violation& v) { event_watch_.on_violation(v); });
     bus_.use_rules(SharedRules(*settings_.scenario).fingerprint(),
                    [this](const TopicInfo&, const msg::Header& header) {
-                     judges_->auditor.on_refused();
+                     assessment_->auditor.on_refused();
                      event_watch_.on_refused(header.sender(), bus_.now());
                    });
   }
@@ -116,8 +116,8 @@ void Monitor::receive(const Channel& channel, const Message& message) {
   traffic_.add(channel.topic, channel.number, message.header(), channel.topic.type.cdr_size(&message), now);
   if constexpr (requires { floor_.on(message, now); }) floor_.on(message, now);
   if constexpr (requires { event_watch_.on(message, now); }) event_watch_.on(message, now);
-  if constexpr (requires { judges_->on(message, now); })
-    if (judges_) judges_->on(message, now);
+  if constexpr (requires { assessment_->on(message, now); })
+    if (assessment_) assessment_->on(message, now);
   if (on_any_message_)
     on_any_message_({channel.topic, channel.number, channel.name, message.header(), &message});
   if (!settings_.scenario) follow(message);
@@ -133,10 +133,10 @@ Json Monitor::panels() {
   const Time now = bus_.now();
   const bool is_heard = now - heard_at_ <= std::chrono::seconds(1);
   Json json{{"type", "panels"}, {"at_s", unix_seconds(now)}};
-  json["promise"] = promise_json(judges_.get(), is_heard, closest_, smallest_);
+  json["promise"] = promise_json(assessment_.get(), is_heard, closest_, smallest_);
   json["robots"] = robots_json(floor_, now);
   json["coordinators"] = coordinators_json(floor_, now);
-  json["epochs"] = epochs_json(judges_.get());
+  json["epochs"] = epochs_json(assessment_.get());
   json["zones"] = zones_json(floor_);
   json["topics"] = traffic_.take(now);
   json["history_bytes"] = history_.bytes();
@@ -149,7 +149,7 @@ double Monitor::radius_m() const {
 
 void Monitor::take_snapshot() {
   const Time now = bus_.now();
-  if (judges_) judges_->auditor.advance(now);
+  if (assessment_) assessment_->auditor.advance(now);
   closest_ = closest_pair(places_of(floor_, now), radius_m(), now);
   if (closest_ && (!smallest_ || closest_->clearance_m < smallest_->clearance_m)) smallest_ = closest_;
   const Duration period = floor_.robots().size() > kLargeFleet ? 4 * kPanelPeriod : kPanelPeriod;

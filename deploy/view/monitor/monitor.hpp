@@ -16,7 +16,7 @@
 #include "deploy/view/monitor/event_log.hpp"
 #include "deploy/view/monitor/event_watch.hpp"
 #include "deploy/view/monitor/history.hpp"
-#include "deploy/view/monitor/run_judges.hpp"
+#include "deploy/view/monitor/run_assessment.hpp"
 #include "deploy/view/monitor/topic_traffic.hpp"
 #include "deploy/view/monitor/viewer_time.hpp"
 #include "deploy/view/server/web_server.hpp"
@@ -111,7 +111,7 @@ class Monitor {
   EventLog events_;
   EventWatch event_watch_{events_};
   TopicTraffic traffic_;
-  std::unique_ptr<RunJudges> judges_;  ///< null if the scenario is unknown
+  std::unique_ptr<RunAssessment> assessment_;  ///< null if the scenario is unknown
   History history_;
   std::set<RobotId> followed_;
   std::set<std::string> channels_;

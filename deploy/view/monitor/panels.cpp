@@ -102,18 +102,18 @@ Json robot_json(RobotId id, const RobotView& robot, const OrderBook& orders, Tim
 
 }  // namespace
 
-Json promise_json(const RunJudges* judges, bool is_heard, const std::optional<ClosestPair>& closest,
+Json promise_json(const RunAssessment* assessment, bool is_heard, const std::optional<ClosestPair>& closest,
                   const std::optional<ClosestPair>& smallest) {
   Json promise{{"state", "not judged"},
                {"reason", ""},
                {"closest", pair_json(closest)},
                {"smallest", pair_json(smallest)}};
-  if (judges == nullptr) {
+  if (assessment == nullptr) {
     promise["reason"] = "the scenario is not known; name it on the command line";
     return promise;
   }
-  const Report report = judges->metrics.report();
-  const AuditTotals audit = judges->auditor.totals();
+  const Report report = assessment->metrics.report();
+  const AuditTotals audit = assessment->auditor.totals();
   const std::uint64_t violations = audit.violations + report.firmware_violations;
   promise["contacts"] = report.contacts;
   promise["excused_contacts"] = audit.excused_contacts;
@@ -184,10 +184,10 @@ Json zones_json(const FloorState& floor) {
   return zones;
 }
 
-Json epochs_json(const RunJudges* judges) {
+Json epochs_json(const RunAssessment* assessment) {
   Json rows = Json::array();
-  if (judges == nullptr) return rows;
-  for (const EpochRecord& epoch : judges->metrics.epochs())
+  if (assessment == nullptr) return rows;
+  for (const EpochRecord& epoch : assessment->metrics.epochs())
     rows.push_back({{"epoch", epoch.epoch},
                     {"coordinator", epoch.coordinator},
                     {"begun_s", unix_seconds(epoch.begun_at)},

@@ -6,14 +6,14 @@
 
 #include "deploy/inspect/floor/floor_state.hpp"
 #include "deploy/view/monitor/closest_pair.hpp"
-#include "deploy/view/monitor/run_judges.hpp"
+#include "deploy/view/monitor/run_assessment.hpp"
 
 namespace sidestep {
 
 /// Whether the protocol's guarantee has held so far: {"state": "kept", "broken" or "not judged", "reason":…,
 /// "contacts":…, "violations":…, "coverage":…, "closest":…, "smallest":…}. It is "kept" only while the audit
-/// covers enough of the run. `judges` is nullptr if the scenario is unknown.
-[[nodiscard]] nlohmann::ordered_json promise_json(const RunJudges* judges, bool is_heard,
+/// covers enough of the run. `assessment` is nullptr if the scenario is unknown.
+[[nodiscard]] nlohmann::ordered_json promise_json(const RunAssessment* assessment, bool is_heard,
                                                   const std::optional<ClosestPair>& closest,
                                                   const std::optional<ClosestPair>& smallest);
 
@@ -24,6 +24,6 @@ namespace sidestep {
 /// The zones that clients have set.
 [[nodiscard]] nlohmann::ordered_json zones_json(const FloorState& floor);
 /// The epochs that coordinators have begun, with the reasons.
-[[nodiscard]] nlohmann::ordered_json epochs_json(const RunJudges* judges);
+[[nodiscard]] nlohmann::ordered_json epochs_json(const RunAssessment* assessment);
 
 }  // namespace sidestep

@@ -60,7 +60,7 @@ void sample_people(Scenario& scenario, int count, Rng& rng) {
 }
 
 /// Adds a robot at a free position away from others and from people, with goals that it can reach.
-void add_robot(Scenario& scenario, std::vector<Vec2>& starts, std::vector<Vec2>& lasts, Rng& rng) {
+void add_robot(Scenario& scenario, std::vector<Vec2>& starts, std::vector<Vec2>& last_goals, Rng& rng) {
   PositionSampler positions(scenario, rng);
   WalkSampler walks(scenario, scenario.radius_m + scenario.margin_m, rng);
   const auto is_near_people = [&](const Vec2& p) {
@@ -74,10 +74,10 @@ void add_robot(Scenario& scenario, std::vector<Vec2>& starts, std::vector<Vec2>&
   while (is_near_people(robot.start_m));
   starts.push_back(robot.start_m);
   while (robot.goals.size() < kGoalsPerRobot) {
-    const Vec2 goal = positions.sample_apart(lasts);
+    const Vec2 goal = positions.sample_apart(last_goals);
     if (walks.path(robot.start_m, goal)) robot.goals.push_back({goal});
   }
-  lasts.push_back(robot.goals.back().position_m);
+  last_goals.push_back(robot.goals.back().position_m);
   scenario.robots.push_back(std::move(robot));
 }
 
@@ -91,8 +91,8 @@ Scenario clutter_scene(const ClutterSettings& settings, std::uint64_t seed) {
   scenario.time_limit_s = kTimeLimit_s;
   settings.is_building ? sample_building_floor(scenario, rng) : sample_hall(scenario, rng);
   sample_people(scenario, settings.people, rng);
-  std::vector<Vec2> starts, lasts;
-  for (int i = 0; i < settings.robots; ++i) add_robot(scenario, starts, lasts, rng);
+  std::vector<Vec2> starts, last_goals;
+  for (int i = 0; i < settings.robots; ++i) add_robot(scenario, starts, last_goals, rng);
   return scenario;
 }
 

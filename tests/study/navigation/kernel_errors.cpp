@@ -105,7 +105,7 @@ StudyTable errors_among_obstacles(std::uint32_t side, int grids, std::uint64_t s
         CostGrid grid({.columns = side, .rows = side});
         const GridCell goal = grid.layout().cell(side / 10, side / 10);
         const Vec2 goal_m = grid.layout().centre_of(goal);
-        SightLengths exact(grid.layout());
+        LineOfSightDistances exact(grid.layout());
         for (GridCell cell = 0; cell < grid.layout().size(); ++cell) {
           if (rng.chance(0.01 * percent) && cell != goal) grid.block(cell);
           exact.set_open(cell, !grid.is_blocked(cell));

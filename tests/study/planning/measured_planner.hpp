@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "agents/planning/robust.hpp"
+#include "agents/planning/fallback_goal.hpp"
 #include "deploy/trial/planning/worlds.hpp"
 #include "tests/study/measurement/distribution.hpp"
 
@@ -60,7 +60,7 @@ template <typename Planner>
 MeasuredPlanner::PlanFunction plan_function(std::shared_ptr<Planner> planner) {
   return [planner = std::move(planner)](const DiscDomain& domain, const Vec2& start_m, const Budget& budget,
                                         Rng& rng) -> const Plan<Vec2>& {
-    return plan_robustly(*planner, domain, start_m, budget, rng);
+    return plan_with_fallback_goal(*planner, domain, start_m, budget, rng);
   };
 }
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "agents/planning/robust.hpp"
+#include "agents/planning/fallback_goal.hpp"
 
 namespace sidestep {
 namespace {
@@ -40,7 +40,7 @@ void ReplanCourse::step() {
   if ((world_.queries[goal_].goal_m - position_m_).norm() < kGoalTolerance_m)
     goal_ = (goal_ + 1) % world_.queries.size();
   Rng rng(0);  // unused: the driver does not sample
-  path_ = plan_robustly(driver_, domain(), position_m_, {}, rng);
+  path_ = plan_with_fallback_goal(driver_, domain(), position_m_, {}, rng);
 }
 
 DiscDomain ReplanCourse::domain(const DiscDomainSettings& settings) const {

@@ -29,7 +29,7 @@ TEST_CASE("an attestation is for one epoch, and a robot that is heard of is kept
   Floor floor;
   floor.receive(registration_of(floor.b, kEpoch));
   REQUIRE(floor.coordinator.on_attestation(1));
-  floor.receive(fact(floor.a, 1));
+  floor.receive(make_report(floor.a, 1));
   CHECK(floor.coordinator.ledger().is_quarantined(1));
   CHECK(floor.coordinator.ledger().versions(1).size() == 1);
   floor.receive(registration_of(floor.a, kEpoch));

@@ -31,8 +31,8 @@ struct Floor {
     return registration ? coordinator.on_registration(*registration) : std::nullopt;
   }
   void receive(const msg::Feedback& message) {
-    if (const auto feedback = decode(message, message.robot(), kNow))
-      coordinator.on_feedback(*feedback, feedback->valid_at);
+    if (const auto robot_report = decode(message, message.robot(), kNow))
+      coordinator.on_robot_report(*robot_report, robot_report->valid_at);
   }
   void register_both() {
     receive(registration_of(a, kEpoch));

@@ -96,19 +96,19 @@ TEST_CASE("messages that cannot be decoded are counted, get no answer and change
     registration.header().sender(2);
     floor.send(topics::kRegistration, registration);
   }
-  auto feedback = fact(continued(floor.a, 10, 1001, {0, 3}), 1001);  // would contradict the ledger
+  auto robot_report = make_report(continued(floor.a, 10, 1001, {0, 3}), 1001);  // would contradict the ledger
   SECTION("a fact of another sender") {
-    feedback.header().sender(2);
-    floor.send(topics::kFeedback, feedback);
+    robot_report.header().sender(2);
+    floor.send(topics::kFeedback, robot_report);
   }
-  SECTION("a fact on another robot's channel") { floor.send(topics::kFeedback, feedback, 2); }
+  SECTION("a fact on another robot's channel") { floor.send(topics::kFeedback, robot_report, 2); }
   SECTION("a fact without a position") {
-    feedback.x_m(kNan);
-    floor.send(topics::kFeedback, feedback);
+    robot_report.x_m(kNan);
+    floor.send(topics::kFeedback, robot_report);
   }
   SECTION("a fact without a version") {
-    feedback.executing().x_m(kNan);
-    floor.send(topics::kFeedback, feedback);
+    robot_report.executing().x_m(kNan);
+    floor.send(topics::kFeedback, robot_report);
   }
   msg::CoordinatorState other;
   other.coordinator(3);
@@ -191,9 +191,9 @@ TEST_CASE("an agent that obeys an implausible epoch is counted and does not chan
   Floor floor;
   floor.register_both();
   const Epoch epoch = floor.node.coordinator().epoch();
-  auto feedback = fact(floor.a, 1000);
-  feedback.obeyed_epoch(Epoch{1} << 61);
-  floor.send(topics::kFeedback, feedback);
+  auto robot_report = make_report(floor.a, 1000);
+  robot_report.obeyed_epoch(Epoch{1} << 61);
+  floor.send(topics::kFeedback, robot_report);
   CHECK(drops_of(floor.node).total() == 1);
   CHECK(floor.node.coordinator().epoch() == epoch);
 }
@@ -222,7 +222,7 @@ TEST_CASE(
     "an attestation is ignored if the robot was heard a moment ago, is not missing, or by anybody else") {
   Attested floor;
   SECTION("it was heard") {
-    floor.send(topics::kFeedback, fact(floor.a, 1000));
+    floor.send(topics::kFeedback, make_report(floor.a, 1000));
     floor.attest(1);
     CHECK(floor.events.count("robot 1 reports that it is on the floor") == 1);
   }
@@ -263,11 +263,11 @@ TEST_CASE("a coordinator reports robots that are quarantined and released") {
   Floor floor;
   floor.register_both();
   const LogEvents events(floor.node);
-  floor.send(topics::kFeedback, fact(continued(floor.a, 10, 1001, {0, 3}), 1001));
+  floor.send(topics::kFeedback, make_report(continued(floor.a, 10, 1001, {0, 3}), 1001));
   CAPTURE(events.text());
   CHECK(events.count("robot 1 executes version 10, which it was never granted") == 1);
   CHECK(events.count("robot 1 is quarantined") == 1);
-  for (int i = 0; i < 60; ++i) floor.send(topics::kFeedback, fact(floor.a, 1000));
+  for (int i = 0; i < 60; ++i) floor.send(topics::kFeedback, make_report(floor.a, 1000));
   CHECK(events.count("robot 1 is released from quarantine") == 1);
 }
 
@@ -361,7 +361,7 @@ TEST_CASE("a coordinator that stands by answers nothing") {
   Floor floor(true);
   floor.send(topics::kRegistration, registration_of(floor.a, 0));
   floor.send(topics::kProposal, floor.proposal());
-  floor.send(topics::kFeedback, fact(floor.a, 1000));
+  floor.send(topics::kFeedback, make_report(floor.a, 1000));
   CHECK(floor.verdicts.empty());
   CHECK_FALSE(floor.node.coordinator().is_active());
 }
@@ -376,7 +376,7 @@ TEST_CASE("a coordinator that has yielded publishes its state at a standby's rat
     floor.send(topics::kWorld, world);
   };
   // Robot 1 falls silent while it should move.
-  floor.send(topics::kFeedback, fact(floor.a, 1000));
+  floor.send(topics::kFeedback, make_report(floor.a, 1000));
   const double now_s = to_seconds(floor.network.now().time_since_epoch());
   const Version moving = continued(floor.a, 10, now_s + 0.1, {0, 3}, 0.3);
   floor.send(topics::kProposal, proposal_of({moving}, floor.node.coordinator().epoch()));
@@ -405,7 +405,7 @@ TEST_CASE("a coordinator that has yielded publishes its state at a standby's rat
 TEST_CASE("a coordinator whose clock was set back works as before") {
   Floor floor;
   floor.register_both();
-  floor.send(topics::kFeedback, fact(floor.a, 1000));
+  floor.send(topics::kFeedback, make_report(floor.a, 1000));
   floor.bus.set_clock({std::chrono::seconds(-5), 0, floor.network.now()});
   floor.run();
   const Epoch epoch = floor.node.coordinator().epoch();
@@ -429,8 +429,8 @@ TEST_CASE("a coordinator announces all orders at the moment at which its epoch b
     if (begun_at && !told_at) told_at = time_from_ns(page.header().stamp_ns());
   });
   while (!begun_at && floor.network.now() < kBegin + std::chrono::seconds(5)) {
-    floor.send(topics::kFeedback, fact(floor.a, 1000), 1);
-    floor.send(topics::kFeedback, fact(floor.b, 1000), 2);
+    floor.send(topics::kFeedback, make_report(floor.a, 1000), 1);
+    floor.send(topics::kFeedback, make_report(floor.b, 1000), 2);
   }
   floor.run();
   REQUIRE(begun_at);
@@ -468,9 +468,9 @@ TEST_CASE("a hold stops its robot at once, and is confirmed when the robot's age
   status.is_held(true);
   floor.send(topics::kOrderStatus, status);
   CHECK(answers.empty());
-  auto feedback = fact(floor.a, 1001);
-  feedback.obeyed_epoch(floor.node.coordinator().epoch());
-  floor.send(topics::kFeedback, feedback);
+  auto robot_report = make_report(floor.a, 1001);
+  robot_report.obeyed_epoch(floor.node.coordinator().epoch());
+  floor.send(topics::kFeedback, robot_report);
   REQUIRE(answers.size() == 1);
   CHECK(answers[0].order_number() == 1000);
   CHECK(answers[0].result() == msg::OrderResult::RESULT_REMEMBERED);

@@ -59,7 +59,7 @@ TEST_CASE("a denied version is not granted later, when its verdict is forgotten"
   for (VersionNumber number = 11; number <= 20; ++number)
     CHECK(floor.ask(proposal_of({continued(floor.a, number, 1, {3, 0}, 0.6)}, kEpoch)).granted_version == 0);
   // The other robot is lifted: the path is free.
-  auto lifted = fact(rest_version(2, {1, 0}), 2);
+  auto lifted = make_report(rest_version(2, {1, 0}), 2);
   lifted.is_lifted(true);
   floor.receive(lifted);
   const Verdict late = floor.ask(denied);
@@ -104,7 +104,7 @@ TEST_CASE("a standby answers no messages, and begins its own epoch with an empty
   CHECK_FALSE(floor.receive(proposal));
   CHECK_FALSE(floor.receive(proposal_of({continued(floor.a, 10, 1, {0, 3})}, 0)));
   CHECK_FALSE(floor.receive(registration_of(floor.a, 0)));
-  floor.receive(fact(floor.a, 1));
+  floor.receive(make_report(floor.a, 1));
   CHECK(floor.coordinator.ledger().versions(1).empty());
   floor.coordinator.begin_epoch(kEpoch + 5);
   CHECK(missing(floor.coordinator).size() == 2);
@@ -167,7 +167,7 @@ TEST_CASE("a fact from a robot removes the versions that it has left") {
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3});
   REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
-  floor.receive(fact(p, 1.5));
+  floor.receive(make_report(p, 1.5));
   REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 10);
 }

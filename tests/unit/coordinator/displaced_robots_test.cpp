@@ -38,7 +38,7 @@ TEST_CASE("a robot is displaced beyond half the margin and the error of vision, 
   One inflated;
   Version stop = rest_version(1, {0, 0}, 1000);
   stop.inflation_m = 0.03;
-  REQUIRE(inflated.ledger.on_executing(stop, at_s(0.5), true) == FactOutcome::kApplied);
+  REQUIRE(inflated.ledger.on_executing(stop, at_s(0.5), true) == ReportOutcome::kApplied);
   inflated.see({0.0469, 0}, 1);
   CHECK_FALSE(inflated.displaced.contains(1));
   inflated.see({0.0471, 0}, 2);
@@ -88,7 +88,7 @@ TEST_CASE("a robot that rests is displaced if the mean of its observations is ha
   SECTION("until it executes a stop of its own where it is") {
     Version stop = rest_version(1, {0.009, 0}, 1000);
     stop.trajectory = Trajectory::resting(at_s(now), {0.009, 0});
-    REQUIRE(one.ledger.on_executing(stop, at_s(now), true) == FactOutcome::kApplied);
+    REQUIRE(one.ledger.on_executing(stop, at_s(now), true) == ReportOutcome::kApplied);
     see_often(0.009, kEnough + DisplacedRobots::kObservationsUntilBack);
     CHECK_FALSE(one.displaced.contains(1));
   }
@@ -98,7 +98,7 @@ TEST_CASE("the mean of observations says nothing of a robot that has moved meanw
   One one;
   const Version p = continued(one.a, 10, 1, {3, 0}, 0.3);
   REQUIRE(one.ledger.grant(p).is_granted());
-  REQUIRE(one.ledger.on_executing(p, at_s(1.01), false) == FactOutcome::kApplied);
+  REQUIRE(one.ledger.on_executing(p, at_s(1.01), false) == ReportOutcome::kApplied);
   const auto behind = [&](double at) {
     return Vec2(p.trajectory.state_at(at_s(at)).position_m - Vec2(0.012, 0));
   };
@@ -136,7 +136,7 @@ TEST_CASE("an observation is compared with what the robot executed then, however
     CHECK_FALSE(one.displaced.contains(1));
   }
   SECTION("when the robot has left the first one for certain") {
-    REQUIRE(one.ledger.on_executing(p, at_s(1.25), false) == FactOutcome::kApplied);
+    REQUIRE(one.ledger.on_executing(p, at_s(1.25), false) == ReportOutcome::kApplied);
     one.see({0, 0}, 1.24);
     CHECK_FALSE(one.displaced.contains(1));
     one.see({0, 0}, 1.27);
@@ -155,7 +155,7 @@ TEST_CASE("a version counts until the largest difference of two clocks after the
   ledger.register_robot(1, {&a, 1});
   Version stop = rest_version(1, {0.5, 0}, 1000);
   stop.trajectory = Trajectory::resting(at_s(1), {0.5, 0});
-  REQUIRE(ledger.on_executing(stop, at_s(1), true) == FactOutcome::kApplied);
+  REQUIRE(ledger.on_executing(stop, at_s(1), true) == ReportOutcome::kApplied);
   const auto distance_m = ledger.distance_from_versions_m(1, {0, 0}, at_s(1) + late);
   REQUIRE(distance_m);
   CHECK(*distance_m == Approx(late <= max_difference ? 0 : 0.5).margin(1e-12));

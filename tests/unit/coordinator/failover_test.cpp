@@ -36,7 +36,7 @@ bool receive(Failover& failover, const msg::CoordinatorState& message, Time now)
 
 /// Updates a coordinator that hears robots.
 void update(Failover& failover, Time now) {
-  failover.reception().on_fact(7, 1, false, now);
+  failover.reception().on_robot_report(7, 1, false, now);
   failover.update(now);
 }
 

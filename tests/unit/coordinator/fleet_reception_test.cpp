@@ -12,31 +12,31 @@ Time after_ms(int ms) { return time_from_ns(1'000'000'000'000) + std::chrono::mi
 TEST_CASE("a coordinator hears robots while facts arrive of half of those that it heard before") {
   FleetReception reception(kPeriod);
   CHECK_FALSE(reception.hears_robots(after_ms(0)));
-  for (const RobotId robot : {1, 2, 3, 4}) reception.on_fact(robot, 5, false, after_ms(0));
+  for (const RobotId robot : {1, 2, 3, 4}) reception.on_robot_report(robot, 5, false, after_ms(0));
   CHECK(reception.hears_robots(after_ms(80)));
   CHECK_FALSE(reception.hears_robots(after_ms(90)));
-  reception.on_fact(1, 5, false, after_ms(100));
+  reception.on_robot_report(1, 5, false, after_ms(100));
   CHECK_FALSE(reception.hears_robots(after_ms(100)));
-  reception.on_fact(2, 5, false, after_ms(100));
+  reception.on_robot_report(2, 5, false, after_ms(100));
   CHECK(reception.hears_robots(after_ms(100)));
   // Robots that have been silent for long do not count.
-  reception.on_fact(4, 5, false, after_ms(10'200));
+  reception.on_robot_report(4, 5, false, after_ms(10'200));
   CHECK(reception.hears_robots(after_ms(10'200)));
 }
 
 TEST_CASE("a fleet is served while robots begin to execute granted versions") {
   FleetReception reception(kPeriod);
   const Duration lately = std::chrono::milliseconds(60);
-  reception.on_fact(1, 5, true, after_ms(0));
+  reception.on_robot_report(1, 5, true, after_ms(0));
   CHECK_FALSE(reception.is_fleet_served(lately, after_ms(0)));  // it may have executed it for long
-  reception.on_fact(1, 5, true, after_ms(10));
+  reception.on_robot_report(1, 5, true, after_ms(10));
   CHECK_FALSE(reception.is_fleet_served(lately, after_ms(10)));
-  reception.on_fact(1, 9, false, after_ms(20));  // a stop of its own
+  reception.on_robot_report(1, 9, false, after_ms(20));  // a stop of its own
   CHECK_FALSE(reception.is_fleet_served(lately, after_ms(20)));
-  reception.on_fact(1, 10, true, after_ms(30));
+  reception.on_robot_report(1, 10, true, after_ms(30));
   CHECK(reception.is_fleet_served(lately, after_ms(89)));
   CHECK_FALSE(reception.is_fleet_served(lately, after_ms(90)));
-  reception.on_fact(1, 7, true, after_ms(100));  // late
+  reception.on_robot_report(1, 7, true, after_ms(100));  // late
   CHECK_FALSE(reception.is_fleet_served(lately, after_ms(100)));
 }
 

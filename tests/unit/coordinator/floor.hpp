@@ -55,14 +55,14 @@ inline msg::Proposal proposal_of(const std::vector<Version>& candidates, Epoch e
   return proposal;
 }
 
-inline msg::Feedback fact(const Version& executing, double at) {
-  msg::Feedback feedback;
-  feedback.robot(executing.robot);
-  feedback.header().sender(executing.robot);
-  feedback.valid_at_ns(to_ns(at_s(at)));
-  feedback.obeyed_incarnation(1);
-  feedback.executing(encode(executing));
-  return feedback;
+inline msg::Feedback make_report(const Version& executing, double at) {
+  msg::Feedback robot_report;
+  robot_report.robot(executing.robot);
+  robot_report.header().sender(executing.robot);
+  robot_report.valid_at_ns(to_ns(at_s(at)));
+  robot_report.obeyed_incarnation(1);
+  robot_report.executing(encode(executing));
+  return robot_report;
 }
 
 }  // namespace sidestep

@@ -92,11 +92,11 @@ TEST_CASE("random messages of every kind leave the coordinator consistent") {
     noise(registration.versions()[0]);
     registration.version_count(static_cast<std::uint8_t>(rng.bits()));
     floor.receive(registration);
-    auto feedback = fact(floor.a, 1);
-    noise(feedback.executing());
-    feedback.valid_at_ns(static_cast<std::int64_t>(rng.bits() >> (16 + rng.below(16))));
-    feedback.is_off_reference(rng.chance(0.5));
-    floor.receive(feedback);
+    auto robot_report = make_report(floor.a, 1);
+    noise(robot_report.executing());
+    robot_report.valid_at_ns(static_cast<std::int64_t>(rng.bits() >> (16 + rng.below(16))));
+    robot_report.is_off_reference(rng.chance(0.5));
+    floor.receive(robot_report);
     const bool is_quarantined = floor.coordinator.ledger().is_quarantined(1);
     contradictions += is_quarantined;
     // An own stop with a very high number would make all later facts stale.

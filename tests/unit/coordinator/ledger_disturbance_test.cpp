@@ -79,14 +79,14 @@ TEST_CASE("the stop of a robot that lost its reference replaces all its versions
   const Version p = continued(two.a, 10, 1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());
   const Version stop = off_reference(1, 1000, 0.9, {0.5, 0}, {2.5, 0}, 0.01);
-  CHECK(two.ledger.on_executing(stop, at_s(0.9), true) == FactOutcome::kApplied);
+  CHECK(two.ledger.on_executing(stop, at_s(0.9), true) == ReportOutcome::kApplied);
   REQUIRE(two.ledger.versions(1).size() == 1);
   CHECK(two.ledger.versions(1)[0].number == 1000);
   REQUIRE(two.ledger.conflicts().size() == 1);
   CHECK(two.ledger.conflicts()[0] == Conflict{1, 2});
   // The same fact again, then a late earlier one.
-  CHECK(two.ledger.on_executing(stop, at_s(0.95), true) == FactOutcome::kApplied);
-  CHECK(two.ledger.on_executing(two.a, at_s(0.8), false) == FactOutcome::kStale);
+  CHECK(two.ledger.on_executing(stop, at_s(0.95), true) == ReportOutcome::kApplied);
+  CHECK(two.ledger.on_executing(two.a, at_s(0.8), false) == ReportOutcome::kStale);
   CHECK(two.ledger.grant(continued(p, 11, 1.1, {3, 0})).reason == msg::Reason::REASON_BASE_UNKNOWN);
 }
 
@@ -95,14 +95,14 @@ TEST_CASE("a stop off reference that is not newer than all versions is a contrad
   const Version p = continued(two.a, 10, 1, {0, 3});
   REQUIRE(two.ledger.grant(p).is_granted());
   CHECK(two.ledger.on_executing(off_reference(1, 5, 0.9, {0, 0.1}, {0, 0}), at_s(0.9), true) ==
-        FactOutcome::kContradiction);
+        ReportOutcome::kContradiction);
   CHECK(two.ledger.versions(1).size() == 3);  // and the robot is quarantined
 }
 
 TEST_CASE("other robots keep clear of a robot's inflation, which ends only where the robot rests") {
   Two two({0, 0}, {1, 0});
   const Version stop = off_reference(1, 1000, 0.5, {0, 0}, {0, 0.5}, 0.05);
-  REQUIRE(two.ledger.on_executing(stop, at_s(0.5), true) == FactOutcome::kApplied);
+  REQUIRE(two.ledger.on_executing(stop, at_s(0.5), true) == ReportOutcome::kApplied);
   CHECK(two.ledger.conflicts().empty());
   // Robot 2 comes to rest near robot 1: clear of it without inflation, but not with 0.05 m of it.
   Version near = continued(two.b, 20, 1, {-3, 0}, 0.3);
@@ -113,7 +113,7 @@ TEST_CASE("other robots keep clear of a robot's inflation, which ends only where
       inflated(adjacent.trajectory.rest_position_m(), {1, 0});
   CHECK(exact.ledger.grant(near).is_granted());
   Version larger = off_reference(1, 1000, 0.5, {rest_m - 0.22, 0.05}, {0, 0}, 0.05);
-  REQUIRE(inflated.ledger.on_executing(larger, at_s(0.5), true) == FactOutcome::kApplied);
+  REQUIRE(inflated.ledger.on_executing(larger, at_s(0.5), true) == ReportOutcome::kApplied);
   CHECK(inflated.ledger.grant(near).reason == msg::Reason::REASON_CONFLICT);
 
   Version moving = continued(stop, 1001, 0.52, {0, 1}), other = moving;
@@ -138,11 +138,11 @@ TEST_CASE("robots in conflict may move apart but not closer together") {
   const Version away = continued(two.a, 12, 1, {-3, 0}, 0.2);
   REQUIRE(two.ledger.grant(away).is_granted());
   CHECK(two.ledger.conflicts().size() == 1);  // it may not have left yet
-  REQUIRE(two.ledger.on_executing(away, at_s(1), false) == FactOutcome::kApplied);
+  REQUIRE(two.ledger.on_executing(away, at_s(1), false) == ReportOutcome::kApplied);
   CHECK(two.ledger.conflicts().size() == 1);  // the version begins there
   const Version on = continued(away, 13, 1.19, {-1, 0}, 0.2);
   REQUIRE(two.ledger.grant(on).is_granted());
-  REQUIRE(two.ledger.on_executing(on, at_s(1.2), false) == FactOutcome::kApplied);
+  REQUIRE(two.ledger.on_executing(on, at_s(1.2), false) == ReportOutcome::kApplied);
   CHECK(two.ledger.conflicts().empty());
   // Once apart they must keep their full separation: moving back as close as before is refused.
   const auto distance = [&](double seconds) {
@@ -182,9 +182,9 @@ TEST_CASE("lifting a robot removes its versions except those still to start") {
   CHECK(two.ledger.grant(rest_version(1, {3, 3}, 11)).reason == msg::Reason::REASON_BASE_UNKNOWN);
   two.ledger.on_lifted(1, at_s(1));
   CHECK(two.ledger.versions(1).empty());
-  CHECK(two.ledger.on_executing(two.a, at_s(0.8), false) == FactOutcome::kStale);
+  CHECK(two.ledger.on_executing(two.a, at_s(0.8), false) == ReportOutcome::kStale);
   CHECK(two.ledger.versions(1).empty());
-  CHECK(two.ledger.on_executing(two.a, at_s(1.1), false) == FactOutcome::kContradiction);
+  CHECK(two.ledger.on_executing(two.a, at_s(1.1), false) == ReportOutcome::kContradiction);
 
   CHECK(two.ledger.grant(continued(two.a, 12, 1, {0, 3})).reason == msg::Reason::REASON_ABSENT);
   CHECK(two.ledger.grant(rest_version(1, {0.85, 0}, 12)).reason == msg::Reason::REASON_CONFLICT);
@@ -194,7 +194,7 @@ TEST_CASE("lifting a robot removes its versions except those still to start") {
   REQUIRE(two.ledger.grant(placed).is_granted());
   two.ledger.on_lifted(1, at_s(1.9));  // the robot has not switched to it yet
   CHECK(two.ledger.versions(1).size() == 1);
-  CHECK(two.ledger.on_executing(placed, at_s(2), false) == FactOutcome::kApplied);
+  CHECK(two.ledger.on_executing(placed, at_s(2), false) == ReportOutcome::kApplied);
   // Lifted again, it no longer executes that version.
   two.ledger.on_lifted(1, at_s(2.5));
   CHECK(two.ledger.versions(1).empty());
@@ -204,18 +204,18 @@ TEST_CASE("a lifting does not outlive a restart of the robot, after which its cl
   Two two({0, 0}, {1, 0});
   const Incarnation first = 100, second = 200;
   two.ledger.on_lifted(1, at_s(100), first);
-  CHECK(two.ledger.on_executing(two.a, at_s(50), true, first) == FactOutcome::kStale);
+  CHECK(two.ledger.on_executing(two.a, at_s(50), true, first) == ReportOutcome::kStale);
   const Version placed = rest_version(1, {3, 3}, 13);
   REQUIRE(two.ledger.grant(placed).is_granted());
-  CHECK(two.ledger.on_executing(placed, at_s(2), false, second) == FactOutcome::kApplied);
+  CHECK(two.ledger.on_executing(placed, at_s(2), false, second) == ReportOutcome::kApplied);
   Version stop = placed;
   stop.number = 14;
-  CHECK(two.ledger.on_executing(stop, at_s(2.5), true, second) == FactOutcome::kApplied);
+  CHECK(two.ledger.on_executing(stop, at_s(2.5), true, second) == ReportOutcome::kApplied);
   CHECK(two.ledger.versions(1).front().number == 14);
   // Lifted again, by its new clock.
   two.ledger.on_lifted(1, at_s(3), second);
   CHECK(two.ledger.versions(1).empty());
-  CHECK(two.ledger.on_executing(stop, at_s(2.9), true, second) == FactOutcome::kStale);
+  CHECK(two.ledger.on_executing(stop, at_s(2.9), true, second) == ReportOutcome::kStale);
 }
 
 TEST_CASE("no grant brings two robots closer than external events have left them, in random histories") {
@@ -246,7 +246,7 @@ TEST_CASE("no grant brings two robots closer than external events have left them
       const Vec2 velocity = random_in_disc(rng, 1.5), displacement = random_in_disc(rng, 0.1);
       executing[robot] =
           off_reference(robot, number, now, state.position_m + displacement, velocity, inflation_m);
-      REQUIRE(ledger.on_executing(executing[robot], at_s(now), true) == FactOutcome::kApplied);
+      REQUIRE(ledger.on_executing(executing[robot], at_s(now), true) == ReportOutcome::kApplied);
       ++pushes;
     } else {
       const auto held = ledger.versions(robot);
@@ -281,7 +281,7 @@ TEST_CASE("no grant brings two robots closer than external events have left them
           break;
         }
       }
-      REQUIRE(ledger.on_executing(current, at_s(now), false) == FactOutcome::kApplied);
+      REQUIRE(ledger.on_executing(current, at_s(now), false) == ReportOutcome::kApplied);
     }
     ended += ledger.conflicts().size() < conflicts;
     for (const RobotId i : roster) {

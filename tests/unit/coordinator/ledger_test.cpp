@@ -18,7 +18,7 @@ struct Two {
     ledger.register_robot(2, {&b, 1});
     REQUIRE(ledger.conflicts().empty());
   }
-  FactOutcome fact(const Version& executing, double at) {
+  ReportOutcome report(const Version& executing, double at) {
     return ledger.on_executing(executing, at_s(at), false);
   }
 };
@@ -49,7 +49,7 @@ TEST_CASE("candidates are checked against all versions that a robot may execute,
   CHECK(is_clear(towards.trajectory, away.trajectory, 0.19));
   CHECK(two.ledger.grant(towards).reason == msg::Reason::REASON_CONFLICT);
   // Once it is known to execute the move, its old position is free.
-  REQUIRE(two.fact(away, 1.01) == FactOutcome::kApplied);
+  REQUIRE(two.report(away, 1.01) == ReportOutcome::kApplied);
   CHECK(two.ledger.grant(towards).is_granted());
 }
 
@@ -81,11 +81,11 @@ TEST_CASE("a fact removes older versions, and newer ones that start at or before
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}),
                 r = continued(p, 12, 3, {0, 3});
   for (const Version& v : {p, q, r}) REQUIRE(two.ledger.grant(v).is_granted());
-  REQUIRE(two.fact(two.a, 1 - 1e-9) == FactOutcome::kApplied);
+  REQUIRE(two.report(two.a, 1 - 1e-9) == ReportOutcome::kApplied);
   CHECK(two.ledger.versions(1).size() == 4);
-  REQUIRE(two.fact(two.a, 1.0) == FactOutcome::kApplied);  // the robot did not switch to 10 at its start
+  REQUIRE(two.report(two.a, 1.0) == ReportOutcome::kApplied);  // the robot did not switch to 10 at its start
   REQUIRE(two.ledger.versions(1).size() == 3);
-  REQUIRE(two.fact(q, 2.5) == FactOutcome::kApplied);
+  REQUIRE(two.report(q, 2.5) == ReportOutcome::kApplied);
   REQUIRE(two.ledger.versions(1).size() == 2);
   CHECK(two.ledger.versions(1)[0].number == 11);
   CHECK(two.ledger.versions(1)[1].number == 12);
@@ -96,11 +96,11 @@ TEST_CASE("facts may arrive late, twice and in any order") {
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 11, 1.1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());
   REQUIRE(two.ledger.grant(q).is_granted());
-  REQUIRE(two.fact(q, 1.2) == FactOutcome::kApplied);
+  REQUIRE(two.report(q, 1.2) == ReportOutcome::kApplied);
   for (int i = 0; i < 2; ++i) {
-    CHECK(two.fact(p, 1.05) == FactOutcome::kStale);
-    CHECK(two.fact(two.a, 0.5) == FactOutcome::kStale);
-    CHECK(two.fact(q, 1.15) == FactOutcome::kApplied);
+    CHECK(two.report(p, 1.05) == ReportOutcome::kStale);
+    CHECK(two.report(two.a, 0.5) == ReportOutcome::kStale);
+    CHECK(two.report(q, 1.15) == ReportOutcome::kApplied);
   }
   REQUIRE(two.ledger.versions(1).size() == 1);
   CHECK(two.ledger.versions(1)[0].number == 11);
@@ -113,12 +113,12 @@ TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and re
   REQUIRE(two.ledger.grant(q).is_granted());
   Version unknown = p, other = p;
   unknown.number = 11;
-  CHECK(two.fact(unknown, 100) == FactOutcome::kContradiction);
+  CHECK(two.report(unknown, 100) == ReportOutcome::kContradiction);
   unknown.number = 999;
-  CHECK(two.fact(unknown, 100) == FactOutcome::kContradiction);
+  CHECK(two.report(unknown, 100) == ReportOutcome::kContradiction);
   // A known number with other contents.
   other.trajectory = continued(two.a, 10, 1, {2.9, 0}).trajectory;
-  CHECK(two.fact(other, 100) == FactOutcome::kContradiction);
+  CHECK(two.report(other, 100) == ReportOutcome::kContradiction);
   // The version that the robot reported last is kept besides.
   REQUIRE(two.ledger.versions(1).size() == 4);
   CHECK(two.ledger.versions(1)[3].trajectory.rest_position_m() == other.trajectory.rest_position_m());
@@ -130,8 +130,8 @@ TEST_CASE("a fact about a version older than all held ones is late, not a contra
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 12, 1.1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());
   REQUIRE(two.ledger.grant(q).is_granted());
-  REQUIRE(two.fact(q, 1.2) == FactOutcome::kApplied);
-  CHECK(two.fact(p, 1.3) == FactOutcome::kStale);
+  REQUIRE(two.report(q, 1.2) == ReportOutcome::kApplied);
+  CHECK(two.report(p, 1.3) == ReportOutcome::kStale);
   CHECK_FALSE(two.ledger.is_quarantined(1));
 }
 
@@ -142,13 +142,13 @@ TEST_CASE("a quarantine ends after sixty facts in a row that agree with the ledg
   Version unknown = p;
   unknown.number = 999;
   const auto report = [&](const Version& executing, int times) {
-    for (int i = 0; i < times; ++i) (void)two.fact(executing, 1.5);
+    for (int i = 0; i < times; ++i) (void)two.report(executing, 1.5);
   };
-  REQUIRE(two.fact(unknown, 1.2) == FactOutcome::kContradiction);
+  REQUIRE(two.report(unknown, 1.2) == ReportOutcome::kContradiction);
   report(p, 59);
   CHECK(two.ledger.is_quarantined(1));
   CHECK(two.ledger.versions(1).size() == 3);
-  REQUIRE(two.fact(unknown, 1.3) == FactOutcome::kContradiction);
+  REQUIRE(two.report(unknown, 1.3) == ReportOutcome::kContradiction);
   report(p, 59);
   CHECK(two.ledger.is_quarantined(1));
   report(p, 1);
@@ -159,9 +159,9 @@ TEST_CASE("a quarantine ends after sixty facts in a row that agree with the ledg
 
 TEST_CASE("a quarantined robot that is pushed keeps its versions, and its own stop besides") {
   Two two(5);
-  REQUIRE(two.fact(continued(two.a, 999, 1, {3, 0}), 1.2) == FactOutcome::kContradiction);
+  REQUIRE(two.report(continued(two.a, 999, 1, {3, 0}), 1.2) == ReportOutcome::kContradiction);
   Version stop = rest_version(1, {0.5, 0}, 5000);
-  CHECK(two.ledger.on_executing(stop, at_s(2), true) == FactOutcome::kApplied);
+  CHECK(two.ledger.on_executing(stop, at_s(2), true) == ReportOutcome::kApplied);
   REQUIRE(two.ledger.versions(1).size() == 2);
   CHECK(two.ledger.versions(1)[1].number == 5000);
   for (int i = 0; i < 60; ++i) (void)two.ledger.on_executing(stop, at_s(3), true);
@@ -222,7 +222,7 @@ TEST_CASE("all versions of different robots stay clear through random grants, lo
         }
       }
       // A true fact: the robot did not switch to any other version that starts before now.
-      REQUIRE(ledger.on_executing(current, at_s(now), false) == FactOutcome::kApplied);
+      REQUIRE(ledger.on_executing(current, at_s(now), false) == ReportOutcome::kApplied);
     }
     if (number % 100 != 0) continue;
     for (const RobotId i : roster) {

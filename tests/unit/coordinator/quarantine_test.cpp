@@ -14,7 +14,7 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
   rounded.trajectory = Trajectory(granted.trajectory.start(), {{1e-7, 0}, {0, 0}});
   rounded.trajectory.append(from_seconds(1.0 / 60), {0, 3});
   append_stop(rounded.trajectory, 5);
-  floor.receive(fact(rounded, 1.01));
+  floor.receive(make_report(rounded, 1.01));
   CHECK(floor.coordinator.ledger().is_quarantined(1));
   CHECK(floor.coordinator.is_granting());
   const auto state = floor.coordinator.state();
@@ -24,9 +24,9 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
   CHECK_FALSE(state.notices()[0].is_missing());
   // Its versions and the reported one remain, whatever it reports.
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
-  floor.receive(fact(floor.a, 1.02));
-  floor.receive(fact(granted, 1.5));
-  floor.receive(fact(rounded, 1.6));
+  floor.receive(make_report(floor.a, 1.02));
+  floor.receive(make_report(granted, 1.5));
+  floor.receive(make_report(rounded, 1.6));
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
   CHECK(floor.ask(proposal_of({continued(granted, 11, 2, {0, 3})}, kEpoch)).reasons[0] ==
         msg::Reason::REASON_QUARANTINED);
@@ -38,13 +38,13 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
 TEST_CASE("a robot that obeys a higher epoch is not quarantined for what that epoch has granted") {
   Floor floor;
   floor.register_both();
-  auto granted_elsewhere = fact(rest_version(1, {0.5, 0}, 7), 1);
+  auto granted_elsewhere = make_report(rest_version(1, {0.5, 0}, 7), 1);
   granted_elsewhere.obeyed_epoch(kEpoch + 1);
   floor.receive(granted_elsewhere);
   CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
   CHECK(floor.coordinator.ledger().versions(1).size() == 1);
   SECTION("its own stop enters the ledger all the same") {
-    auto stop = fact(rest_version(1, {0.5, 0}, 1'000'000), 1.1);
+    auto stop = make_report(rest_version(1, {0.5, 0}, 1'000'000), 1.1);
     stop.obeyed_epoch(kEpoch + 1);
     stop.is_off_reference(true);
     floor.receive(stop);
@@ -61,7 +61,7 @@ TEST_CASE("a robot that obeys a higher epoch is not quarantined for what that ep
 TEST_CASE("other robots keep clear of what a quarantined robot has reported") {
   Floor floor;
   floor.register_both();
-  floor.receive(fact(rest_version(1, {0.5, 0}, 7), 1));
+  floor.receive(make_report(rest_version(1, {0.5, 0}, 7), 1));
   REQUIRE(floor.coordinator.ledger().is_quarantined(1));
   const auto towards = [&](VersionNumber number) {
     return proposal_of({continued(floor.b, number, 2, {-3, 0}, 0.5)}, kEpoch);
@@ -74,7 +74,7 @@ TEST_CASE("a quarantined robot is released by a new agent, a new epoch, or when 
   Floor floor;
   floor.register_both();
   const Version unknown = rest_version(1, {0.5, 0}, 7);
-  floor.receive(fact(unknown, 1));
+  floor.receive(make_report(unknown, 1));
   REQUIRE(floor.coordinator.ledger().is_quarantined(1));
   SECTION("the same agent does not release it") {
     CHECK(floor.receive(registration_of(floor.a, kEpoch))->reasons[0] == msg::Reason::REASON_GRANTED);
@@ -85,7 +85,7 @@ TEST_CASE("a quarantined robot is released by a new agent, a new epoch, or when 
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
     REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
     CHECK(floor.coordinator.ledger().versions(1)[0].number == 7);
-    floor.receive(fact(unknown, 2));
+    floor.receive(make_report(unknown, 2));
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
   }
   SECTION("a new epoch begins with registrations") {
@@ -94,7 +94,7 @@ TEST_CASE("a quarantined robot is released by a new agent, a new epoch, or when 
     CHECK(missing(floor.coordinator).size() == 2);
   }
   SECTION("a lifted robot executes nothing") {
-    auto lifted = fact(rest_version(1, {0, 0}), 2);
+    auto lifted = make_report(rest_version(1, {0, 0}), 2);
     lifted.is_lifted(true);
     floor.receive(lifted);
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
@@ -107,7 +107,7 @@ TEST_CASE("a registration sent before the robot left its versions does not end t
   floor.register_both();
   const auto late = registration_of(floor.a, kEpoch, 2);
   const Version unknown = rest_version(1, {0.5, 0}, 7);
-  auto under_new_agent = fact(unknown, 1);
+  auto under_new_agent = make_report(unknown, 1);
   under_new_agent.obeyed_incarnation(2);
   floor.receive(under_new_agent);
   REQUIRE(floor.coordinator.ledger().is_quarantined(1));
@@ -136,13 +136,13 @@ TEST_CASE("the stop of a robot that lost its reference enters the ledger, and it
   floor.register_both();
   Version stop = rest_version(1, {0.85, 0}, 1'000'000);
   stop.inflation_m = 0.01;
-  auto feedback = fact(stop, 1);
-  floor.receive(feedback);
+  auto robot_report = make_report(stop, 1);
+  floor.receive(robot_report);
   CHECK(floor.coordinator.ledger().is_quarantined(1));  // the fact does not say that it lost its reference
   floor.coordinator.begin_epoch(kEpoch);
   floor.register_both();
-  feedback.is_off_reference(true);
-  floor.receive(feedback);
+  robot_report.is_off_reference(true);
+  floor.receive(robot_report);
   CHECK(floor.coordinator.is_granting());
   REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 1'000'000);
@@ -151,9 +151,9 @@ TEST_CASE("the stop of a robot that lost its reference enters the ledger, and it
   CHECK(state.conflict_first() == 1);
   CHECK(state.conflict_second() == 2);
   // A version that does not end at rest is refused, also off reference.
-  feedback.executing().vx_mps(1);
-  feedback.executing().version_number(2'000'000);
-  floor.receive(feedback);
+  robot_report.executing().vx_mps(1);
+  robot_report.executing().version_number(2'000'000);
+  floor.receive(robot_report);
   CHECK(floor.coordinator.drops().total(DropReason::kMalformedFeedback) == 1);
   CHECK(floor.coordinator.ledger().versions(1)[0].number == 1'000'000);
 }

@@ -25,7 +25,7 @@ struct Coordinator {
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now - kBegin).count();
     if (ms % 15 == 0) {
       number += is_fleet_served ? 1 : 0;
-      for (const RobotId robot : heard_robots) failover.reception().on_fact(robot, number, true, now);
+      for (const RobotId robot : heard_robots) failover.reception().on_robot_report(robot, number, true, now);
     }
     if (ms % 1000 == 0)
       for (const RobotId robot : heard_agents) failover.reception().on_agent(robot, now);

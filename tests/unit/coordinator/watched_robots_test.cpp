@@ -10,18 +10,18 @@ TEST_CASE("a robot that should move is silent 50 ms after its last fact, until i
   floor.register_both();
   const auto silent_at = [&](double at) {
     const RobotObservation observation{1, at_s(at), {0, 0}, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at));
+    floor.coordinator.on_world_state({&observation, 1}, at_s(at));
     const auto state = floor.coordinator.state();
     return state.notices().size() == 1 && state.notices()[0].robot() == 1 && state.notices()[0].is_silent();
   };
   CHECK_FALSE(silent_at(0.9));  // at rest
   const Version p = continued(floor.a, 10, 1, {0, 3}, 0.3);
   REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
-  floor.receive(fact(p, 1.01));
+  floor.receive(make_report(p, 1.01));
   CHECK_FALSE(silent_at(1.05));
   CHECK(silent_at(1.07));
   // After a gap of 60 ms it may be silent for 120 ms.
-  floor.receive(fact(p, 1.07));
+  floor.receive(make_report(p, 1.07));
   CHECK_FALSE(silent_at(1.18));
   CHECK(silent_at(1.2));
   CHECK_FALSE(silent_at(to_seconds(p.trajectory.end().time_since_epoch()) + 0.01));
@@ -36,10 +36,10 @@ TEST_CASE("a robot that reports facts rarely is silent once three are missing") 
     REQUIRE(coordinator.on_registration(*registration));
     const Version p = continued(a, 10, 1, {0, 3}, 0.6);
     REQUIRE(coordinator.on_proposal(*decode(proposal_of({p}, kEpoch), kNow))->granted_version == 10);
-    coordinator.on_feedback(*decode(fact(p, 1.01), 1, kNow), at_s(1.01));
+    coordinator.on_robot_report(*decode(make_report(p, 1.01), 1, kNow), at_s(1.01));
     const double limit_s = std::max(0.05, 3 * period_s);
     const auto is_silent_at = [&](double at) {
-      coordinator.on_world({}, at_s(at));
+      coordinator.on_world_state({}, at_s(at));
       return coordinator.is_silent(1);
     };
     REQUIRE(at_s(1.01 + 1.01 * limit_s) < p.trajectory.end());
@@ -53,7 +53,7 @@ TEST_CASE("a robot whose own stop is dated by a clock that has jumped ahead coun
   floor.register_both();
   const auto is_silent_at = [&](double at) {
     const RobotObservation observation{1, at_s(at), {0, 0}, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at));
+    floor.coordinator.on_world_state({&observation, 1}, at_s(at));
     return floor.coordinator.is_silent(1);
   };
   const double ahead_s = GENERATE(0.04, 0.06, 4.0);
@@ -61,11 +61,11 @@ TEST_CASE("a robot whose own stop is dated by a clock that has jumped ahead coun
   CHECK_FALSE(is_silent_at(1));
   Version stop = rest_version(1, {0, 0}, 1'000'000);
   stop.trajectory = Trajectory::resting(at_s(1 + ahead_s), {0, 0});
-  auto message = fact(stop, 1 + ahead_s);
+  auto message = make_report(stop, 1 + ahead_s);
   message.is_off_reference(true);
-  const auto feedback = decode(message, 1, at_s(1));
-  REQUIRE(feedback);
-  floor.coordinator.on_feedback(*feedback, at_s(1));
+  const auto robot_report = decode(message, 1, at_s(1));
+  REQUIRE(robot_report);
+  floor.coordinator.on_robot_report(*robot_report, at_s(1));
   CHECK(is_silent_at(1.001) == (ahead_s > 0.055));
   CHECK_FALSE(is_silent_at(1.01 + ahead_s));
 }
@@ -78,19 +78,19 @@ TEST_CASE(
   floor.register_both();
   const auto is_silent_at = [&](double at) {
     const RobotObservation observation{1, at_s(at), {0, 0}, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at));
+    floor.coordinator.on_world_state({&observation, 1}, at_s(at));
     return floor.coordinator.is_silent(1);
   };
   const Version p = continued(floor.a, 10, 1, {0, 3}, 0.3);
   REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
-  floor.receive(fact(p, 1.01));
+  floor.receive(make_report(p, 1.01));
   const double end_s = to_seconds(p.trajectory.end().time_since_epoch());
   CHECK(is_silent_at(end_s + 0.09));
   CHECK_FALSE(is_silent_at(end_s + 0.11));
   // Nor does a clock that is ahead within the bound make a robot silent.
   Version stop = rest_version(2, {1, 0}, 1'000'000);
   stop.trajectory = Trajectory::resting(at_s(3.14), {1, 0});
-  auto message = fact(stop, 3.14);
+  auto message = make_report(stop, 3.14);
   message.is_off_reference(true);
   floor.receive(message);
   CHECK_FALSE(floor.coordinator.is_silent(2));
@@ -104,7 +104,7 @@ TEST_CASE("dropped or uncompared observations do not count as watching") {
   Floor floor;
   floor.register_both();
   const auto see = [&](std::vector<RobotObservation> robots, double now, bool is_whole = true) {
-    floor.coordinator.on_world(robots, at_s(now), is_whole);
+    floor.coordinator.on_world_state(robots, at_s(now), is_whole);
   };
   const auto seen = [](RobotId robot, double at) {
     return RobotObservation{robot, at_s(at), {robot - 1.0, 0}, Vec2(0, 0), 1e-6};
@@ -156,7 +156,7 @@ TEST_CASE("an observation is from the future if it is ahead by more than the rul
   floor.register_both();
   const auto see_ahead = [&](double ahead_s) {
     const RobotObservation observation{1, at_s(1 + ahead_s), {0.3, 0}, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(1));
+    floor.coordinator.on_world_state({&observation, 1}, at_s(1));
   };
   see_ahead(2 * bound_s + 0.0001);
   CHECK_FALSE(floor.coordinator.displaced().contains(1));
@@ -171,7 +171,7 @@ TEST_CASE("nothing is granted to a robot that vision sees away from its versions
   floor.register_both();
   const auto see = [&](RobotId robot, Vec2 position, double at) {
     const RobotObservation observation{robot, at_s(at), position, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at));
+    floor.coordinator.on_world_state({&observation, 1}, at_s(at));
   };
   see(1, {0.005, 0}, 1);
   CHECK_FALSE(floor.coordinator.displaced().any());
@@ -197,9 +197,9 @@ TEST_CASE("a coordinator that begins an epoch or stands by names no robot as sil
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3}, 0.3);
   REQUIRE(floor.ask(proposal_of({p}, kEpoch)).granted_version == 10);
-  floor.receive(fact(p, 1.01));
+  floor.receive(make_report(p, 1.01));
   const RobotObservation observation{1, at_s(1.07), {0, 0}, Vec2(0, 0), 1e-6};
-  floor.coordinator.on_world({&observation, 1}, at_s(1.07));
+  floor.coordinator.on_world_state({&observation, 1}, at_s(1.07));
   REQUIRE(floor.coordinator.has_uncontrolled_robots());
   floor.coordinator.begin_epoch(GENERATE(Epoch{0}, kEpoch + 1));
   CHECK_FALSE(floor.coordinator.has_uncontrolled_robots());
@@ -210,7 +210,7 @@ TEST_CASE("a coordinator whose clock was set back uses observations again") {
   floor.register_both();
   const auto see = [&](double x, double at) {
     const RobotObservation observation{1, at_s(at), {x, 0}, Vec2(0, 0), 1e-6};
-    floor.coordinator.on_world({&observation, 1}, at_s(at));
+    floor.coordinator.on_world_state({&observation, 1}, at_s(at));
     return floor.coordinator.displaced().contains(1);
   };
   // Its host's clock, and the cameras', were an hour ahead.

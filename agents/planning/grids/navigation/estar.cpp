@@ -25,7 +25,7 @@ EStar::EStar(const CostGrid& grid, const EStarSettings& settings)
     throw std::invalid_argument("the radius of exact distances must be 0 to 20 cells, not " +
                                 std::to_string(settings.exact_radius_cells));
   if (!is_euclidean()) settings_.exact_radius_cells = 0;
-  if (settings.kernel == GridKernel::kLineOfSight) sight_.emplace_back(layout_);
+  if (settings.kernel == GridKernel::kLineOfSight) line_of_sight_.emplace_back(layout_);
   costs_.assign(std::size_t{stride_} * (layout_.rows + 4), kBlocked);
   values_.assign(costs_.size(), kBlocked);
   raised_from_.assign(costs_.size(), kBlocked);

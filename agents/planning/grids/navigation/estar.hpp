@@ -3,7 +3,7 @@
 
 #include "agents/planning/grids/navigation/bucket_queue.hpp"
 #include "agents/planning/grids/navigation/cost_grid.hpp"
-#include "agents/planning/grids/navigation/sight_lengths.hpp"
+#include "agents/planning/grids/navigation/line_of_sight_distances.hpp"
 
 namespace sidestep {
 
@@ -80,7 +80,7 @@ class EStar {
     return i < exact_.size() ? exact_[i] : kBlocked;
   }
   bool is_euclidean() const;
-  bool has_sight() const { return !sight_.empty(); }
+  bool has_line_of_sight() const { return !line_of_sight_.empty(); }
   void compute_sight();
   bool is_in_disc(GridCell cell) const;
   float exact_distance(GridCell cell) const;
@@ -132,7 +132,7 @@ class EStar {
   std::vector<float> exact_;
   std::uint32_t exact_begin_ = 0;  // first of these cells
   bool exact_is_stale_ = false;
-  std::vector<SightLengths> sight_;  // one element or none
+  std::vector<LineOfSightDistances> line_of_sight_;  // one element or none
   // Whether all cells that are not blocked have the same cost; only with lines of sight.
   bool is_of_one_cost_ = true;
   std::uint64_t expansions_ = 0;

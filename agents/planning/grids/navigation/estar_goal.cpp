@@ -20,8 +20,8 @@ void EStar::set_goal(const Vec2& goal_m) {
   unsupported_ = 0;
   queue_.clear();
   changed_.clear();
-  const std::uint32_t radius = has_sight() ? std::max(layout_.columns, layout_.rows)
-                                           : static_cast<std::uint32_t>(settings_.exact_radius_cells);
+  const std::uint32_t radius = has_line_of_sight() ? std::max(layout_.columns, layout_.rows)
+                                                   : static_cast<std::uint32_t>(settings_.exact_radius_cells);
   const std::uint32_t column = goal_ % layout_.columns, row = goal_ / layout_.columns;
   disc_.first_column = column - std::min(column, radius);
   disc_.first_row = row - std::min(row, radius);
@@ -42,7 +42,7 @@ bool EStar::is_in_disc(GridCell cell) const {
 float EStar::exact_distance(GridCell cell) const {
   const float cost_there = cost(goal_);
   if (cost_there == kBlocked) return kBlocked;
-  if (has_sight()) return sight_[0].length(cell) * cost_there;
+  if (has_line_of_sight()) return line_of_sight_[0].length(cell) * cost_there;
   if (cell == goal_ && !is_euclidean()) return 0;
   const double distance = (layout_.centre_of(cell) - goal_m_).norm() / layout_.resolution_m;
   if (cell != goal_) {
@@ -60,32 +60,33 @@ void EStar::compute_sight() {
   bool is_of_one_cost = true;
   for (GridCell cell = 0; cell < layout_.size(); ++cell) {
     const float here = cost(cell);
-    sight_[0].set_open(cell, here < kBlocked && here == cost_there);
+    line_of_sight_[0].set_open(cell, here < kBlocked && here == cost_there);
     is_of_one_cost = is_of_one_cost && (here == kBlocked || here == cost_there);
   }
   if (is_of_one_cost != is_of_one_cost_)  // a different equation holds in all cells
     for (GridCell cell = 0; cell < layout_.size(); ++cell) changed_.push_back(padded(cell));
   is_of_one_cost_ = is_of_one_cost;
-  sight_[0].compute(layout_.in_cells(goal_m_));
+  line_of_sight_[0].compute(layout_.in_cells(goal_m_));
 }
 
 Vec2 EStar::exact_target_m(GridCell cell) const {
-  if (!has_sight() || sight_[0].source(cell) == SightLengths::kGoal) return goal_m_;
-  return layout_.origin_m + layout_.resolution_m * sight_[0].position(sight_[0].source(cell));
+  if (!has_line_of_sight() || line_of_sight_[0].source(cell) == LineOfSightDistances::kGoal) return goal_m_;
+  return layout_.origin_m + layout_.resolution_m * line_of_sight_[0].position(line_of_sight_[0].source(cell));
 }
 
 void EStar::append_exact_path(GridCell cell, std::vector<Vec2>& path_m) const {
-  if (has_sight()) {
-    const SightLengths& sight = sight_[0];
-    for (auto corner = sight.source(cell); corner != SightLengths::kGoal; corner = sight.next(corner))
-      path_m.push_back(layout_.origin_m + layout_.resolution_m * sight.position(corner));
+  if (has_line_of_sight()) {
+    const LineOfSightDistances& line_of_sight = line_of_sight_[0];
+    for (auto corner = line_of_sight.source(cell); corner != LineOfSightDistances::kGoal;
+         corner = line_of_sight.next(corner))
+      path_m.push_back(layout_.origin_m + layout_.resolution_m * line_of_sight.position(corner));
   }
   path_m.push_back(goal_m_);
 }
 
 void EStar::compute_exact_values() {
   exact_is_stale_ = false;
-  if (has_sight()) compute_sight();
+  if (has_line_of_sight()) compute_sight();
   for (std::uint32_t row = disc_.first_row; row <= disc_.last_row; ++row) {
     for (std::uint32_t column = disc_.first_column; column <= disc_.last_column; ++column) {
       const GridCell cell = layout_.cell(column, row);

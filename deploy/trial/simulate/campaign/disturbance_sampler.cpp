@@ -26,7 +26,7 @@ class DisturbanceSampler {
     if (rng_.chance(0.14)) repeat(2, [&] { sample_power_loss(); });
     if (rng_.chance(0.08)) repeat(2, [&] { sample_carry(); });
     if (rng_.chance(0.12)) repeat(4, [&] { sample_clock_step(); });
-    if (rng_.chance(0.15)) repeat(3, [&] { sample_sight_error(); });
+    if (rng_.chance(0.15)) repeat(3, [&] { sample_vision_fault(); });
     if (rng_.chance(0.12)) repeat(3, [&] { sample_lost_pose(); });
   }
 
@@ -109,7 +109,7 @@ class DisturbanceSampler {
     const RobotId robot = random_robot();
     plan_.add(times_.sample(rng_), carry_of(robot));
   }
-  void sample_sight_error() {
+  void sample_vision_fault() {
     static constexpr Kind kKinds[] = {Kind::DISTURBANCE_SEEN_BESIDE, Kind::DISTURBANCE_SEEN_AS,
                                       Kind::DISTURBANCE_SEEN_FROZEN};
     RobotDisturbance disturbance;

@@ -29,7 +29,7 @@ struct KindOf {
   std::string operator()(const Carry&) const { return "carry"; }
   std::string operator()(const Place&) const { return "place"; }
   std::string operator()(const TakeAway&) const { return "take away"; }
-  std::string operator()(const StartWithOtherRule&) const { return "other rules"; }
+  std::string operator()(const StartWithMutatedRule&) const { return "other rules"; }
   std::string operator()(const StartWithOwnRules&) const { return "restart"; }
   std::string operator()(const SendForgery&) const { return "forgery"; }
   std::string operator()(const GiveOrder& give) const {

@@ -8,7 +8,7 @@
 
 #include "deploy/audit/disturbances.hpp"
 #include "deploy/trial/simulate/campaign/forger.hpp"
-#include "deploy/trial/simulate/campaign/other_rules.hpp"
+#include "deploy/trial/simulate/campaign/rule_mutations.hpp"
 
 namespace sidestep {
 namespace {
@@ -126,8 +126,8 @@ class Describe {
   std::string operator()(const TakeAway& take) const {
     return fmt::format("robot {} taken away without power", take.robot);
   }
-  std::string operator()(const StartWithOtherRule& start) const {
-    return fmt::format("{} started again with another {}", start.process, other_rules()[start.rule].key);
+  std::string operator()(const StartWithMutatedRule& start) const {
+    return fmt::format("{} started again with another {}", start.process, rule_mutations()[start.rule].key);
   }
   std::string operator()(const StartWithOwnRules& start) const {
     return start.process + " started again with the right scenario";

@@ -53,9 +53,9 @@ struct TakeAway {
 };
 
 /// Restarts a process with a scenario in which one rule differs.
-struct StartWithOtherRule {
+struct StartWithMutatedRule {
   std::string process;
-  std::size_t rule = 0;  ///< index in other_rules()
+  std::size_t rule = 0;  ///< index in rule_mutations()
 };
 /// Restarts such a process with the correct scenario.
 struct StartWithOwnRules {
@@ -74,7 +74,7 @@ struct GiveOrder {
 
 using Fault =
     std::variant<LinkChange, Partition, Pause, Kill, Start, RobotDisturbance, Carry, Place, TakeAway,
-                 StartWithOtherRule, StartWithOwnRules, SendForgery, ClockJump, GiveOrder>;
+                 StartWithMutatedRule, StartWithOwnRules, SendForgery, ClockJump, GiveOrder>;
 
 struct TimedFault {
   Duration at{0};  ///< time since the start of the run

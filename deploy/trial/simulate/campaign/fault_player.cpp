@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "deploy/trial/simulate/campaign/other_rules.hpp"
+#include "deploy/trial/simulate/campaign/rule_mutations.hpp"
 
 namespace sidestep {
 namespace {
@@ -78,9 +78,9 @@ void FaultPlayer::start_with(const Scenario& scenario, const std::string& proces
   system_.restart(process);
 }
 
-void FaultPlayer::apply(const StartWithOtherRule& start, const TimedFault&) {
+void FaultPlayer::apply(const StartWithMutatedRule& start, const TimedFault&) {
   Scenario other = scenario_;
-  other_rules()[start.rule].change(other);
+  rule_mutations()[start.rule].change(other);
   start_with(other, start.process);
 }
 

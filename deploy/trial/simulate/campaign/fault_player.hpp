@@ -47,7 +47,7 @@ class FaultPlayer {
   }
   void apply(const Place& place, const TimedFault&) { operator_.place(place); }
   void apply(const TakeAway& take, const TimedFault&) { operator_.take_away(take.robot); }
-  void apply(const StartWithOtherRule& start, const TimedFault&);
+  void apply(const StartWithMutatedRule& start, const TimedFault&);
   void apply(const StartWithOwnRules& start, const TimedFault&) { start_with(scenario_, start.process); }
   void apply(const SendForgery& send, const TimedFault&);
   void apply(const GiveOrder& give, const TimedFault&) { clients_->give(give.order); }

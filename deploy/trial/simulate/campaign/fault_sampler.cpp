@@ -6,7 +6,7 @@
 #include <span>
 
 #include "deploy/trial/simulate/campaign/forger.hpp"
-#include "deploy/trial/simulate/campaign/other_rules.hpp"
+#include "deploy/trial/simulate/campaign/rule_mutations.hpp"
 #include "deploy/trial/simulate/system/system_processes.hpp"
 
 namespace sidestep {
@@ -161,12 +161,12 @@ class FaultSampler {
                                : u < 0.8 ? random_agent()
                                          : "vision";
     if (!with_other_rules_.insert(victim).second) return;
-    std::size_t rule = rng_.below(other_rules().size());
+    std::size_t rule = rng_.below(rule_mutations().size());
     // An agent needs its own robot.
-    while (victim.starts_with("agent") && other_rules()[rule].changes_roster)
-      rule = rng_.below(other_rules().size());
+    while (victim.starts_with("agent") && rule_mutations()[rule].changes_roster)
+      rule = rng_.below(rule_mutations().size());
     const Duration at = time();
-    plan_.add(at, StartWithOtherRule{victim, rule});
+    plan_.add(at, StartWithMutatedRule{victim, rule});
     const bool is_for_good = scenario_.coordinators > 1 && u < 0.15;
     if (!is_for_good) plan_.add(times_.after(at, log_uniform(0.2, 8)), StartWithOwnRules{victim});
   }
@@ -175,7 +175,7 @@ class FaultSampler {
     repeat(12, [&] {
       const std::size_t forgery = rng_.below(forgeries().size());
       const Duration at = time();
-      if (!forgeries()[forgery].is_plausible_fact) plan_.add(at, SendForgery{victim, forgery});
+      if (!forgeries()[forgery].is_plausible_report) plan_.add(at, SendForgery{victim, forgery});
     });
   }
 

@@ -77,7 +77,7 @@ struct Forgery {
   std::string name;
   std::function<void(Forger&)> change;
   /// Whether the fact could be true, so that for a while a ledger contains a version that no observer knows.
-  bool is_plausible_fact = false;
+  bool is_plausible_report = false;
 };
 
 [[nodiscard]] const std::vector<Forgery>& forgeries();

@@ -30,7 +30,7 @@ class ReceptionSampler {
   /// refuses vision's messages.
   bool can_others_serve() const {
     const bool has_other_rules = std::ranges::any_of(plan_.faults, [](const TimedFault& timed) {
-      return std::holds_alternative<StartWithOtherRule>(timed.fault);
+      return std::holds_alternative<StartWithMutatedRule>(timed.fault);
     });
     const std::size_t out_of_bound = robots_with(plan_, RobotEnd::kClockOutOfBound).size();
     return !has_other_rules && out_of_bound < scenario_.robots.size();

@@ -75,7 +75,7 @@ void sample_paths(Scenario& scenario, Rng& rng) {
   const double spread = rng.uniform(0.5, 0.9);
   const double circle_m = 0.42 * scenario.field.width_m;
   const auto count = static_cast<double>(scenario.robots.size());
-  std::vector<Vec2> starts, lasts;
+  std::vector<Vec2> starts, last_goals;
   for (RobotSpec& robot : scenario.robots) {
     const auto i = static_cast<double>(robot.id);
     const Vec2 arm = rotated(Vec2(circle_m, 0), 2 * std::numbers::pi * i / count);
@@ -96,8 +96,8 @@ void sample_paths(Scenario& scenario, Rng& rng) {
                                                             : positions.sample(),
                              std::nullopt});
     }
-    lasts.push_back(positions.sample_apart(lasts));
-    robot.goals.push_back({lasts.back(), std::nullopt});
+    last_goals.push_back(positions.sample_apart(last_goals));
+    robot.goals.push_back({last_goals.back(), std::nullopt});
   }
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "agents/adapters/robots_node.hpp"
+#include "agents/adapters/robot_driver_node.hpp"
 #include "common/file/temporary_folder.hpp"
-#include "simulator/bases/bases_node.hpp"
+#include "simulator/bases/velocity_robot_sim_node.hpp"
 
 namespace sidestep {
 
@@ -11,12 +11,12 @@ namespace sidestep {
 class DirectDriver : public Driver {
  public:
   /// `bases` must outlive the driver.
-  DirectDriver(BasesNode& bases, const Scenario& scenario) : bases_(bases), scenario_(scenario) {}
+  DirectDriver(VelocityRobotSimNode& bases, const Scenario& scenario) : bases_(bases), scenario_(scenario) {}
 
   void send(std::span<const BaseCommand> commands) override;
 
  private:
-  BasesNode& bases_;
+  VelocityRobotSimNode& bases_;
   const Scenario scenario_;
 };
 
@@ -36,9 +36,9 @@ class DrivenBases {
 
  private:
   TemporaryFolder memory_;
-  BasesNode bases_;
+  VelocityRobotSimNode bases_;
   DirectDriver driver_;
-  RobotsNode robots_;
+  RobotDriverNode robots_;
 };
 
 }  // namespace sidestep

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "common/protocol/process_names.hpp"
+#include "deploy/trial/test/judgement/coverage_gaps.hpp"
 #include "deploy/trial/test/judgement/judge_each.hpp"
-#include "deploy/trial/test/judgement/unheard_time.hpp"
 
 namespace sidestep {
 namespace {
@@ -35,7 +35,7 @@ Judgement judge_arrival(RobotId robot, const ExpectArrived& check, const RunHist
     if (!check.by_s || arrival_s <= *check.by_s) return {};
     return Judgement::failed(arrival_s, fmt::format("robot {} arrived at {:.3f} s only", robot, arrival_s));
   }
-  if (!end.abort_reason.empty()) return unheard_end(history).value_or(Judgement{});
+  if (!end.abort_reason.empty()) return gap_at_end(history).value_or(Judgement{});
   if (const auto ended = check.by_s ? ended_before(*check.by_s, history) : std::nullopt) return *ended;
   return Judgement::failed(check.by_s.value_or(end.at_s), fmt::format("robot {} had not arrived", robot));
 }
@@ -43,7 +43,7 @@ Judgement judge_arrival(RobotId robot, const ExpectArrived& check, const RunHist
 Judgement judge_absence_of_arrival(RobotId robot, const RunHistory& history) {
   const auto found = history.end.arrival_s.find(robot);
   const bool has_arrived = found != history.end.arrival_s.end() && found->second;
-  if (!has_arrived) return unheard_end(history).value_or(Judgement{});
+  if (!has_arrived) return gap_at_end(history).value_or(Judgement{});
   return Judgement::failed(*found->second,
                            fmt::format("robot {} arrived at {:.3f} s", robot, *found->second));
 }
@@ -79,7 +79,7 @@ Judgement judge(const ExpectNoViolations&, const RunHistory& history) {
     return Judgement::failed(end.first_violation_at_s, fmt::format("{} violations, the first: {}",
                                                                    end.violations, end.first_violation));
   }
-  if (!end.abort_reason.empty()) return unheard_end(history).value_or(Judgement{});
+  if (!end.abort_reason.empty()) return gap_at_end(history).value_or(Judgement{});
   if (!end.shortfall.empty()) return Judgement::not_judged(end.at_s, "audit: " + end.shortfall);
   return {};
 }
@@ -95,7 +95,7 @@ Judgement judge(const ExpectNotArrived& check, const RunHistory& history) {
 Judgement judge(const ExpectMismatch& check, const RunHistory& history) {
   const RunEnd& end = history.end;
   if (end.mismatches.contains(check.process)) return {};
-  if (!end.abort_reason.empty()) return unheard_end(history).value_or(Judgement{});
+  if (!end.abort_reason.empty()) return gap_at_end(history).value_or(Judgement{});
   std::string others;
   for (const auto& [process, differences] : end.mismatches) others += (others.empty() ? "" : ", ") + process;
   return Judgement::failed(end.at_s, others.empty() ? "no process is reported to work by other rules"

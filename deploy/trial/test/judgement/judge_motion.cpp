@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "deploy/audit/metrics/run_metrics.hpp"
+#include "deploy/trial/test/judgement/coverage_gaps.hpp"
 #include "deploy/trial/test/judgement/judge.hpp"
 #include "deploy/trial/test/judgement/judge_each.hpp"
-#include "deploy/trial/test/judgement/unheard_time.hpp"
 
 namespace sidestep {
 namespace {
@@ -43,7 +43,7 @@ std::optional<double> rest_time(RobotId robot, const ExpectAtRest& check, const 
 Judgement judge_rest(RobotId robot, const ExpectAtRest& check, const RunHistory& history) {
   if (rest_time(robot, check, history)) return {};
   const double end_s = check.span.to_s + check.for_s;
-  if (const auto unheard = unheard_between(check.span.from_s, end_s, history)) return *unheard;
+  if (const auto unheard = gap_between(check.span.from_s, end_s, history)) return *unheard;
   std::optional<double> moved_s, rested_s;
   double speed_mps = 0;
   for (const TruthSample& sample : history.truths) {
@@ -69,7 +69,7 @@ Judgement judge_motion(RobotId robot, const ExpectMoving& check, const RunHistor
     if (const auto speed = sample.speed_of(robot)) highest_mps = std::max(highest_mps.value_or(0), *speed);
   }
   if (highest_mps >= kMoving_mps) return {};
-  if (const auto unheard = unheard_between(check.span.from_s, check.span.to_s, history)) return *unheard;
+  if (const auto unheard = gap_between(check.span.from_s, check.span.to_s, history)) return *unheard;
   if (!highest_mps) return not_on_floor(robot, check.span.from_s, check.span.to_s);
   return Judgement::failed(
       check.span.to_s,
@@ -86,8 +86,8 @@ Judgement judge_speed(RobotId robot, const ExpectMaxSpeed& check, const RunHisto
     if (*speed > check.speed_mps)
       return Judgement::failed(sample.at_s, fmt::format("robot {} moved at {:.3f} m/s", robot, *speed));
   }
-  if (const auto unheard = check.to_s ? std::nullopt : unheard_end(history)) return *unheard;
-  if (const auto unheard = unheard_between(check.from_s, to_s, history)) return *unheard;
+  if (const auto unheard = check.to_s ? std::nullopt : gap_at_end(history)) return *unheard;
+  if (const auto unheard = gap_between(check.from_s, to_s, history)) return *unheard;
   return is_seen ? Judgement{} : not_on_floor(robot, check.from_s, to_s);
 }
 
@@ -110,13 +110,13 @@ Judgement judge(const ExpectNoContact& check, const RunHistory& history) {
     return Judgement::not_judged(history.end.at_s, fmt::format("the robots of {} contacts are unknown",
                                                                history.unidentified_contacts));
   }
-  return unheard_end(history).value_or(Judgement{});
+  return gap_at_end(history).value_or(Judgement{});
 }
 
 Judgement judge(const ExpectMinClearance& check, const RunHistory& history) {
   const auto close = std::ranges::find_if(
       history.truths, [&](const TruthSample& sample) { return sample.min_clearance_m < check.clearance_m; });
-  if (close == history.truths.end()) return unheard_end(history).value_or(Judgement{});
+  if (close == history.truths.end()) return gap_at_end(history).value_or(Judgement{});
   return Judgement::failed(close->at_s, fmt::format("the clearance was {:.6f} m", close->min_clearance_m));
 }
 

@@ -30,19 +30,19 @@ TEST_CASE(
   scene.sees = true;
   scene.run(100ms);
   REQUIRE(scene.robot.may_report());
-  const Feedback fact = scene.robot.feedback(scene.now);
-  CHECK(fact.is_off_reference);
-  CHECK((fact.executing.trajectory.rest_position_m() - scene.position_m).norm() < 0.001);
-  CHECK(fact.heading_rad == Approx(0.4).margin(0.01));
-  CHECK(fact.lead == 100ms);
-  CHECK_FALSE(fact.has_moved);
+  const RobotReport robot_report = scene.robot.robot_report(scene.now);
+  CHECK(robot_report.is_off_reference);
+  CHECK((robot_report.executing.trajectory.rest_position_m() - scene.position_m).norm() < 0.001);
+  CHECK(robot_report.heading_rad == Approx(0.4).margin(0.01));
+  CHECK(robot_report.lead == 100ms);
+  CHECK_FALSE(robot_report.has_moved);
 }
 
 TEST_CASE("a driven robot follows a version that arrives in time to its end, and turns as commanded") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
-  const Version base = scene.robot.feedback(scene.now).executing;
+  const Version base = scene.robot.robot_report(scene.now).executing;
   Command command = scene.bare();
   const Time start = scene.now + 150ms;
   Trajectory trajectory(start, base.trajectory.state_at(start));
@@ -62,7 +62,7 @@ TEST_CASE("a driven robot follows a version that arrives in time to its end, and
     scene.run(10ms);
     turn();
     const Vec2 reference_m =
-        scene.robot.feedback(scene.now).executing.trajectory.state_at(scene.now).position_m;
+        scene.robot.robot_report(scene.now).executing.trajectory.state_at(scene.now).position_m;
     max_error_m = std::max(max_error_m, (scene.position_m - reference_m).norm());
   }
   CHECK(max_error_m < 0.004);
@@ -75,13 +75,14 @@ TEST_CASE("a driven robot that is moved makes an own stop where it is seen") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
-  const VersionNumber before = scene.robot.feedback(scene.now).executing.number;
+  const VersionNumber before = scene.robot.robot_report(scene.now).executing.number;
   scene.position_m += Vec2(0.3, 0.2);
   scene.run(300ms);
-  const Feedback fact = scene.robot.feedback(scene.now);
-  CHECK(fact.is_off_reference);
-  CHECK(fact.executing.number >= before + robot::RobotSide<float>::kOwnNumberGap);
-  CHECK((fact.executing.trajectory.rest_position_m() - scene.position_m).norm() < fact.executing.inflation_m);
+  const RobotReport robot_report = scene.robot.robot_report(scene.now);
+  CHECK(robot_report.is_off_reference);
+  CHECK(robot_report.executing.number >= before + robot::RobotSide<float>::kOwnNumberGap);
+  CHECK((robot_report.executing.trajectory.rest_position_m() - scene.position_m).norm() <
+        robot_report.executing.inflation_m);
 }
 
 TEST_CASE("after a pause of its process a driven robot stays at rest until it has found its pose again") {
@@ -94,7 +95,7 @@ TEST_CASE("after a pause of its process a driven robot stays at rest until it ha
   CHECK(scene.commanded.latest().linear_mps == Vec2(0, 0));
   scene.run(1s);
   CHECK(scene.robot.may_report());
-  CHECK(scene.robot.feedback(scene.now).is_off_reference);
+  CHECK(scene.robot.robot_report(scene.now).is_off_reference);
 }
 
 namespace {
@@ -102,14 +103,14 @@ namespace {
 /// Sends a version that accelerates for a second and stops, and returns the largest error of the robot's own
 /// estimate while `step` runs each period.
 double drive_and_measure(Scene& scene, const std::function<void()>& step) {
-  const Version base = scene.fact().executing;
+  const Version base = scene.robot_report().executing;
   const Time start = scene.now + 150ms;
   scene.send(test::continuation(base, scene.agent, base.number + 1, start, Vec2(1.2, 0.5), 1s));
   double largest_m = 0;
   for (const Time end = start + 1500ms; scene.now < end;) {
     step();
     if (!scene.robot.may_report()) return std::numeric_limits<double>::infinity();
-    largest_m = std::max(largest_m, (scene.fact().estimate.position_m - scene.position_m).norm());
+    largest_m = std::max(largest_m, (scene.robot_report().estimate.position_m - scene.position_m).norm());
   }
   return largest_m;
 }
@@ -147,14 +148,14 @@ TEST_CASE("fixes that are newer than the odometry are used once the odometry has
     scene.report_odometry();
   }
   const Vec2 push_m(0.004, 0);
-  const Vec2 before_m = scene.fact().estimate.position_m;
+  const Vec2 before_m = scene.robot_report().estimate.position_m;
   scene.position_m += push_m;
   for (int i = 0; i < 20; ++i) {
     scene.step();
     scene.robot.on_odometry({kDrivenRobot, scene.now, scene.position_m - push_m, scene.heading_rad},
                             scene.now);
   }
-  CHECK((scene.fact().estimate.position_m - before_m - push_m).norm() < 0.001);
+  CHECK((scene.robot_report().estimate.position_m - before_m - push_m).norm() < 0.001);
 }
 
 TEST_CASE("odometry with wrong timestamps is counted, and does not mislead a driven robot") {
@@ -196,7 +197,7 @@ TEST_CASE("a driven robot is less certain of its position while its odometry is 
       scene.step();
       scene.report_odometry(date_error);
     }
-    return scene.fact().uncertainty.position_error_rms_m;
+    return scene.robot_report().uncertainty.position_error_rms_m;
   };
   CHECK(error_after(100ms) > 3 * error_after(0ms));
 }
@@ -205,7 +206,7 @@ TEST_CASE("a driven robot whose odometry is NaN stands still and is silent until
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Scene scene;
   scene.run(1500ms);
-  const Version base = scene.fact().executing;
+  const Version base = scene.robot_report().executing;
   const Time start = scene.now + 150ms;
   scene.send(test::continuation(base, scene.agent, base.number + 1, start, Vec2(2, 0), 300ms));
   scene.run(300ms);
@@ -219,8 +220,8 @@ TEST_CASE("a driven robot whose odometry is NaN stands still and is silent until
   CHECK_FALSE(scene.robot.may_report());
   scene.run(1s);
   REQUIRE(scene.robot.may_report());
-  CHECK(scene.fact().is_off_reference);
-  CHECK((scene.fact().estimate.position_m - scene.position_m).norm() < 0.002);
+  CHECK(scene.robot_report().is_off_reference);
+  CHECK((scene.robot_report().estimate.position_m - scene.position_m).norm() < 0.002);
 }
 
 }  // namespace sidestep::driven_robot_test

@@ -62,7 +62,7 @@ class DrivenScene {
     command.version = version;
     robot.on_command(command, now, memory);
   }
-  Feedback fact() { return robot.feedback(now); }
+  RobotReport robot_report() { return robot.robot_report(now); }
 
   Time now = kSceneBegin;
   Incarnation agent = 100;

@@ -21,7 +21,7 @@ double run_and_measure(DrivenScene& scene, Duration duration) {
   double largest_m = 0;
   for (const Time end = scene.now + duration; scene.now < end;) {
     scene.step();
-    largest_m = std::max(largest_m, beyond_m(scene.fact().executing, scene.position_m, scene.now));
+    largest_m = std::max(largest_m, beyond_m(scene.robot_report().executing, scene.position_m, scene.now));
   }
   return largest_m;
 }
@@ -31,7 +31,7 @@ struct PendingScene : DrivenScene {
   explicit PendingScene(Duration latency) : DrivenScene(latency) {
     run(1500ms);
     REQUIRE(robot.may_report());
-    base = fact().executing;
+    base = robot_report().executing;
     start = now + latency + 30ms;
     pending = continuation(base, agent, base.number + 1, start, Vec2(3, 0), 500ms);
     send(pending);
@@ -53,16 +53,16 @@ TEST_CASE("a new agent does not make a robot leave the version that it executes"
   scene.agent = 101;
   scene.send(std::nullopt);
   // The motors have been sent its beginning: it stays, and the new agent is acknowledged together with it.
-  CHECK(scene.fact().obeyed_incarnation == 100);
-  CHECK_FALSE(scene.fact().command);
+  CHECK(scene.robot_report().obeyed_incarnation == 100);
+  CHECK_FALSE(scene.robot_report().command);
   CHECK(scene.robot.side().obeyed_incarnation() == 101);
   double beyond = run_and_measure(scene, scene.start - 10ms - scene.now);
-  CHECK(scene.fact().obeyed_incarnation == 100);
+  CHECK(scene.robot_report().obeyed_incarnation == 100);
   beyond = std::max(beyond, run_and_measure(scene, 10ms));
-  const Feedback fact = scene.fact();
-  CHECK(fact.executing.number == scene.pending.number);
-  CHECK(fact.obeyed_incarnation == 101);
-  CHECK(fact.command);
+  const RobotReport robot_report = scene.robot_report();
+  CHECK(robot_report.executing.number == scene.pending.number);
+  CHECK(robot_report.obeyed_incarnation == 101);
+  CHECK(robot_report.command);
   beyond = std::max(beyond, run_and_measure(scene, 1500ms));
   CHECK(beyond <= kTrackingBound_m);
   CHECK(scene.robot.side().own_stops() == 1);
@@ -75,10 +75,10 @@ TEST_CASE(
   scene.run(10ms);
   scene.agent = 101;
   scene.send(std::nullopt);
-  CHECK(scene.fact().obeyed_incarnation == 101);
+  CHECK(scene.robot_report().obeyed_incarnation == 101);
   CHECK_FALSE(scene.robot.side().has_pending());
   CHECK(run_and_measure(scene, 1500ms) <= kTrackingBound_m);
-  CHECK(scene.fact().executing.number == scene.base.number);
+  CHECK(scene.robot_report().executing.number == scene.base.number);
 }
 
 TEST_CASE("in a chain of versions, those that start within the lead are kept") {
@@ -96,13 +96,13 @@ TEST_CASE("in a chain of versions, those that start within the lead are kept") {
   CHECK(scene.robot.side().counts().refused_fenced == 2);
   const Time acknowledged_at = second.trajectory.start();
   double beyond = run_and_measure(scene, acknowledged_at - 10ms - scene.now);
-  CHECK(scene.fact().executing.number == scene.pending.number);
-  CHECK(scene.fact().obeyed_incarnation == 100);
+  CHECK(scene.robot_report().executing.number == scene.pending.number);
+  CHECK(scene.robot_report().obeyed_incarnation == 100);
   beyond = std::max(beyond, run_and_measure(scene, 10ms));
-  CHECK(scene.fact().executing.number == second.number);
-  CHECK(scene.fact().obeyed_incarnation == 101);
+  CHECK(scene.robot_report().executing.number == second.number);
+  CHECK(scene.robot_report().obeyed_incarnation == 101);
   beyond = std::max(beyond, run_and_measure(scene, 1500ms));
-  CHECK(scene.fact().executing.number == second.number);
+  CHECK(scene.robot_report().executing.number == second.number);
   CHECK(beyond <= kTrackingBound_m);
 }
 
@@ -111,7 +111,7 @@ TEST_CASE("agents that fence a robot in turn do not delay each other for longer 
   scene.run(scene.start - 290ms - scene.now);
   const Time fenced = scene.now;
   double beyond = 0;
-  while (scene.fact().obeyed_incarnation == 100) {
+  while (scene.robot_report().obeyed_incarnation == 100) {
     ++scene.agent;
     // Each agent sends a version that would continue the pending one.
     scene.send(continuation(scene.pending, scene.agent, scene.pending.number + scene.agent, scene.now + 310ms,
@@ -119,8 +119,8 @@ TEST_CASE("agents that fence a robot in turn do not delay each other for longer 
     beyond = std::max(beyond, run_and_measure(scene, 10ms));
     REQUIRE(scene.now - fenced <= 300ms);
   }
-  CHECK(scene.fact().obeyed_incarnation == scene.agent);
-  CHECK(scene.fact().executing.number == scene.pending.number);
+  CHECK(scene.robot_report().obeyed_incarnation == scene.agent);
+  CHECK(scene.robot_report().executing.number == scene.pending.number);
   beyond = std::max(beyond, run_and_measure(scene, 1500ms));
   CHECK(beyond <= kTrackingBound_m);
 }
@@ -131,11 +131,11 @@ TEST_CASE("an agent of a new epoch fences a robot under the same rule") {
   scene.agent = 101;
   scene.epoch = 9;
   scene.send(std::nullopt);
-  CHECK(scene.fact().obeyed_incarnation == 100);
-  CHECK(scene.fact().obeyed_epoch == 9);
+  CHECK(scene.robot_report().obeyed_incarnation == 100);
+  CHECK(scene.robot_report().obeyed_epoch == 9);
   CHECK(run_and_measure(scene, 1500ms) <= kTrackingBound_m);
-  CHECK(scene.fact().obeyed_incarnation == 101);
-  CHECK(scene.fact().executing.number == scene.pending.number);
+  CHECK(scene.robot_report().obeyed_incarnation == 101);
+  CHECK(scene.robot_report().executing.number == scene.pending.number);
 }
 
 namespace {
@@ -145,16 +145,17 @@ class ExpectedVersions {
  public:
   void grant(const Version& version) { versions_.push_back(version); }
   /// Returns whether the fact is one of the expected ones.
-  bool apply(const Feedback& fact) {
-    const VersionNumber f = fact.executing.number;
+  bool apply(const RobotReport& robot_report) {
+    const VersionNumber f = robot_report.executing.number;
     const auto is_f = [=](const Version& version) { return version.number == f; };
     const auto is_older = [=](const Version& version) { return version.number < f; };
     if (std::ranges::none_of(versions_, is_f)) {
-      if (!fact.is_off_reference || !std::ranges::all_of(versions_, is_older)) return false;
-      versions_ = {fact.executing};
+      if (!robot_report.is_off_reference || !std::ranges::all_of(versions_, is_older)) return false;
+      versions_ = {robot_report.executing};
     }
     std::erase_if(versions_, [&](const Version& version) {
-      return version.number < f || (version.number > f && version.trajectory.start() <= fact.valid_at);
+      return version.number < f ||
+             (version.number > f && version.trajectory.start() <= robot_report.valid_at);
     });
     return true;
   }
@@ -180,24 +181,25 @@ TEST_CASE("whichever agents restart, a robot executes what is expected, and its 
     bool is_waiting = false;
     double beyond = 0;
     for (Time next = scene.now, end = scene.now + 4s; scene.now < end; scene.step()) {
-      const Feedback fact = scene.fact();
-      REQUIRE(expected.apply(fact));
-      beyond = std::max(beyond, beyond_m(fact.executing, scene.position_m, scene.now));
-      if (fact.obeyed_incarnation != acknowledged) {
-        acknowledged = fact.obeyed_incarnation;
-        begun_with = fact.executing.number;
-        last = fact.executing;
+      const RobotReport robot_report = scene.robot_report();
+      REQUIRE(expected.apply(robot_report));
+      beyond = std::max(beyond, beyond_m(robot_report.executing, scene.position_m, scene.now));
+      if (robot_report.obeyed_incarnation != acknowledged) {
+        acknowledged = robot_report.obeyed_incarnation;
+        begun_with = robot_report.executing.number;
+        last = robot_report.executing;
         next = scene.now;
       }
       // A version that the acknowledgement did not state is not executed.
-      REQUIRE((fact.executing.incarnation == acknowledged || fact.executing.number == begun_with));
+      REQUIRE((robot_report.executing.incarnation == acknowledged ||
+               robot_report.executing.number == begun_with));
       if (is_waiting && acknowledged == scene.agent) is_waiting = false;
       const bool has_restarted = rng.chance(0.04), is_twin = rng.chance(0.3);
       if (has_restarted) {
         scene.agent += 1 + rng.below(3);
         ++restarts;
         scene.send(std::nullopt);
-        is_waiting = scene.fact().obeyed_incarnation != scene.agent;
+        is_waiting = scene.robot_report().obeyed_incarnation != scene.agent;
         deferred += is_waiting;
       }
       // An agent that the robot does not obey any more may go on.

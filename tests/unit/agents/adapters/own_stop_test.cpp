@@ -22,8 +22,9 @@ struct Excursion {
   void follow(DrivenScene& scene, VersionNumber before) {
     for (int i = 0; i < 150; ++i) {
       scene.step();
-      const Feedback fact = scene.fact();
-      if (!stop && fact.is_off_reference && fact.executing.number != before) stop = fact.executing;
+      const RobotReport robot_report = scene.robot_report();
+      if (!stop && robot_report.is_off_reference && robot_report.executing.number != before)
+        stop = robot_report.executing;
       if (stop) beyond_m = std::max(beyond_m, test::beyond_m(*stop, scene.position_m, scene.now));
     }
   }
@@ -38,12 +39,12 @@ TEST_CASE("a push before a short version leaves the body within the robot's own 
   DrivenScene scene(latency);
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
-  const Version base = scene.fact().executing;
+  const Version base = scene.robot_report().executing;
   const Time start = scene.now + latency + 30ms;
   // It is over when the first of its motion is obeyed.
   scene.send(continuation(base, scene.agent, base.number + 1, start, Vec2(3, 0), latency * 5 / 8 + 1ms));
   scene.run(start - 10ms - scene.now);
-  REQUIRE(scene.fact().executing.number == base.number);
+  REQUIRE(scene.robot_report().executing.number == base.number);
   scene.position_m += Vec2(0.006, 0);
   Excursion excursion;
   excursion.follow(scene, base.number);
@@ -67,7 +68,7 @@ std::optional<Excursion> push_at_random(std::uint64_t seed) {
   DrivenScene scene(random_latency(rng));
   const Duration latency = scene.commanded.latency();
   scene.run(1200ms);
-  Version last = scene.fact().executing;
+  Version last = scene.robot_report().executing;
   const VersionNumber first_stop = last.number;
   const Time push_at = scene.now + from_seconds(rng.uniform(0, 2.5));
   Vec2 aim_mps2(0, 0);
@@ -84,8 +85,9 @@ std::optional<Excursion> push_at_random(std::uint64_t seed) {
     scene.send(last);
     next = last.trajectory.start() + (rng.chance(0.1) ? 300ms : 0ms);
   }
-  if (scene.fact().is_off_reference && scene.fact().executing.number != first_stop) return std::nullopt;
-  const VersionNumber before = scene.fact().executing.number;
+  if (scene.robot_report().is_off_reference && scene.robot_report().executing.number != first_stop)
+    return std::nullopt;
+  const VersionNumber before = scene.robot_report().executing.number;
   const double push_m = rng.uniform(0, 0.02), angle_rad = rng.uniform(-3.14, 3.14);
   scene.position_m += rotated(Vec2(push_m, 0), angle_rad);
   Excursion excursion;

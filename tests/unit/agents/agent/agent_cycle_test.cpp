@@ -50,7 +50,7 @@ struct Floor {
   std::vector<Time> commands, registrations, proposals, order_reports;
   std::optional<msg::Command> last_command;
   Time command_received_at{};  ///< by the robot's clock
-  Writer<msg::Feedback> feedback = other_bus.advertise(topics::kFeedback, kRobot);
+  Writer<msg::Feedback> robot_report_writer = other_bus.advertise(topics::kFeedback, kRobot);
   Writer<msg::Verdict> verdicts = other_bus.advertise(topics::kVerdict, kRobot);
   Writer<msg::CoordinatorState> states = other_bus.advertise(topics::kCoordinator);
   Writer<msg::WorldState> worlds = other_bus.advertise(topics::kWorld);
@@ -96,19 +96,19 @@ struct Floor {
     verdict.reasons().fill(reason);
     verdicts.publish(verdict, network.now());
   }
-  void send_feedback() {
-    Feedback fact;
-    fact.robot = kRobot;
-    fact.robot_incarnation = 5;
-    fact.obeyed_incarnation = kSelf;
-    fact.valid_at = robot_now();
-    fact.executing = {kRobot, 0, 0, 0, Trajectory::resting(kBegin + robot_clock, {0, 0})};
+  void send_robot_report() {
+    RobotReport robot_report;
+    robot_report.robot = kRobot;
+    robot_report.robot_incarnation = 5;
+    robot_report.obeyed_incarnation = kSelf;
+    robot_report.valid_at = robot_now();
+    robot_report.executing = {kRobot, 0, 0, 0, Trajectory::resting(kBegin + robot_clock, {0, 0})};
     if (last_command) {
-      fact.obeyed_epoch = last_command->epoch();
-      fact.command = {{time_from_ns(last_command->header().stamp_ns()), command_received_at}};
+      robot_report.obeyed_epoch = last_command->epoch();
+      robot_report.command = {{time_from_ns(last_command->header().stamp_ns()), command_received_at}};
     }
-    auto message = encode(fact);
-    feedback.publish(message, network.now());
+    auto message = encode(robot_report);
+    robot_report_writer.publish(message, network.now());
   }
   void send_heartbeat() {
     msg::CoordinatorState state;
@@ -133,7 +133,7 @@ struct Floor {
   }
   void run(Duration duration) {
     for (const Time end = network.now() + duration; network.now() < end;) {
-      send_feedback();
+      send_robot_report();
       send_sights();
       if (is_heard) send_heartbeat();
       network.run_until(network.now() + 10ms);
@@ -196,7 +196,7 @@ TEST_CASE("a robot that may drive again is driven at once, unless the next cycle
   floor.run(500ms);
   REQUIRE(floor.proposals.empty());
   const Duration since_cycle = floor.network.now().time_since_epoch() % floor.cycle();
-  floor.send_feedback();
+  floor.send_robot_report();
   floor.send_sights();
   floor.network.run_until(floor.network.now() - since_cycle + floor.cycle() +
                           from_seconds(phase * to_seconds(floor.cycle())));

@@ -31,14 +31,14 @@ Scenario one_robot() {
 }
 
 /// A robot at rest that obeys the agent.
-msg::Feedback valid_feedback() {
-  Feedback feedback;
-  feedback.robot = kRobot;
-  feedback.robot_incarnation = 5;
-  feedback.obeyed_incarnation = kSelf;
-  feedback.valid_at = kBegin;
-  feedback.executing = {kRobot, 0, 0, 0, Trajectory::resting(kBegin, {0, 0})};
-  return encode(feedback);
+msg::Feedback valid_robot_report() {
+  RobotReport robot_report;
+  robot_report.robot = kRobot;
+  robot_report.robot_incarnation = 5;
+  robot_report.obeyed_incarnation = kSelf;
+  robot_report.valid_at = kBegin;
+  robot_report.executing = {kRobot, 0, 0, 0, Trajectory::resting(kBegin, {0, 0})};
+  return encode(robot_report);
 }
 
 msg::CoordinatorState valid_coordinator_state() {
@@ -131,7 +131,7 @@ struct NodeFixture {
 
 TEST_CASE("valid messages are not counted as invalid") {
   NodeFixture f;
-  CHECK(f.send(topics::kFeedback, valid_feedback()) == 0);
+  CHECK(f.send(topics::kFeedback, valid_robot_report()) == 0);
   CHECK(f.send(topics::kCoordinator, valid_coordinator_state()) == 0);
   msg::CoordinatorState standby;
   standby.header().sender(kCoordinator);
@@ -155,19 +155,19 @@ TEST_CASE("valid messages are not counted as invalid") {
 
 TEST_CASE("invalid feedback is counted and changes nothing") {
   NodeFixture f;
-  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kFeedback, valid_feedback(), spoil); };
+  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kFeedback, valid_robot_report(), spoil); };
   CHECK(send([](msg::Feedback& m) { m.executing().x_m(kNan); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.executing().phase_count(99); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_incarnation(kHuge); }) == 1);
   // Sent after other messages, it would be refused as a second process's message.
-  CHECK(NodeFixture().send_spoilt(topics::kFeedback, valid_feedback(),
+  CHECK(NodeFixture().send_spoilt(topics::kFeedback, valid_robot_report(),
                                   [](msg::Feedback& m) { m.header().incarnation(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.valid_at_ns(static_cast<std::int64_t>(kHuge)); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.vx_mps(kNan); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.robot(kRobot + 1); }) == 1);
   CHECK(f.status.agent_state() == msg::AgentState::AGENT_FENCING);
-  CHECK(f.send(topics::kFeedback, valid_feedback()) == 0);
+  CHECK(f.send(topics::kFeedback, valid_robot_report()) == 0);
   CHECK(f.status.agent_state() == msg::AgentState::AGENT_WAITING);
   CHECK(f.status.distance_to_go_m() == 1);
   CHECK(send([](msg::Feedback& m) { m.position_error_rms_m(kNan), m.x_m(1); }) == 1);
@@ -179,7 +179,7 @@ TEST_CASE("invalid coordinator states are counted and change nothing") {
   const auto send = [&](auto spoil) {
     return f.send_spoilt(topics::kCoordinator, valid_coordinator_state(), spoil);
   };
-  REQUIRE(f.send(topics::kFeedback, valid_feedback()) == 0);
+  REQUIRE(f.send(topics::kFeedback, valid_robot_report()) == 0);
   CHECK(send([](msg::CoordinatorState& m) { m.epoch(kHuge); }) == 1);
   CHECK(send([](msg::CoordinatorState& m) { m.epoch(std::numeric_limits<Epoch>::max()); }) == 1);
   CHECK(send([](msg::CoordinatorState& m) { m.coordinator_mode(static_cast<msg::CoordinatorMode>(9)); }) ==

@@ -39,17 +39,17 @@ struct BeforeWall {
 
   BeforeWall(double wall_m, double bearing_rad, double speed_mps = 0)
       : towards(std::cos(bearing_rad), std::sin(bearing_rad)) {
-    Feedback feedback;
-    feedback.robot = 3;
-    feedback.obeyed_incarnation = kSelf;
-    feedback.obeyed_epoch = 7;
-    feedback.valid_at = at_s(0.5);
+    RobotReport robot_report;
+    robot_report.robot = 3;
+    robot_report.obeyed_incarnation = kSelf;
+    robot_report.obeyed_epoch = 7;
+    robot_report.valid_at = at_s(0.5);
     Trajectory trajectory(at_s(0.5), {{-speed_mps * (0.11 + kCycle_s), 0}, {speed_mps, 0}});
     trajectory.append(from_seconds(1), {0, 0});
     trajectory.append(from_seconds(speed_mps / 3), {-3, 0});
-    feedback.executing = {3, 0, 0, 0, trajectory};
-    feedback.estimate = trajectory.at_start();
-    agent.on_feedback(feedback);
+    robot_report.executing = {3, 0, 0, 0, trajectory};
+    robot_report.estimate = trajectory.at_start();
+    agent.on_robot_report(robot_report);
     CoordinatorHeartbeat heartbeat;
     heartbeat.epoch = 7;
     heartbeat.mode = msg::CoordinatorMode::COORDINATOR_GRANTING;
@@ -62,7 +62,7 @@ struct BeforeWall {
     WorldObservations world;
     world.valid_at = at_s(0.6);
     world.self = PoseFix{at_s(0.6), {0, 0}, 0};
-    agent.on_world(world, at_s(0.6));
+    agent.on_world_state(world, at_s(0.6));
     const LaserScanner scanner(scenario.laser->settings);
     std::vector<float> ranges_m;
     for (int beam = 0; beam < scenario.laser->settings.beams; ++beam) {

@@ -20,16 +20,16 @@ Scenario two_goals() {
       "two-goals.yaml");
 }
 
-/// Feedback of the robot at rest.
-Feedback resting_at(const Vec2& position, double at, Epoch epoch = 7) {
-  Feedback feedback;
-  feedback.robot = 3;
-  feedback.obeyed_incarnation = kSelf;
-  feedback.obeyed_epoch = epoch;
-  feedback.valid_at = at_s(at);
-  feedback.executing = {3, 0, 0, 0, Trajectory::resting(at_s(0), position)};
-  feedback.estimate.position_m = position;
-  return feedback;
+/// The report of the robot at rest.
+RobotReport resting_at(const Vec2& position, double at, Epoch epoch = 7) {
+  RobotReport robot_report;
+  robot_report.robot = 3;
+  robot_report.obeyed_incarnation = kSelf;
+  robot_report.obeyed_epoch = epoch;
+  robot_report.valid_at = at_s(at);
+  robot_report.executing = {3, 0, 0, 0, Trajectory::resting(at_s(0), position)};
+  robot_report.estimate.position_m = position;
+  return robot_report;
 }
 
 /// The coordinator remembers that the scenario has given the robot its goals.
@@ -68,7 +68,7 @@ struct DrivenAgent {
   Agent agent;
 
   DrivenAgent() : agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario)) {
-    agent.on_feedback(resting_at({0, 0}, 0.5));
+    agent.on_robot_report(resting_at({0, 0}, 0.5));
     become_ready(agent);
   }
   /// The world state only, which the coordinator receives too.
@@ -78,7 +78,7 @@ struct DrivenAgent {
     heartbeat.mode = msg::CoordinatorMode::COORDINATOR_GRANTING;
     heartbeat.watched_until = at_s(now);
     agent.on_coordinator_state(heartbeat, at_s(now));
-    agent.on_world(observation(x, observed_at), at_s(now));
+    agent.on_world_state(observation(x, observed_at), at_s(now));
   }
   void observe(double x, double observed_at, double now) {
     observe_self(x, observed_at, now);
@@ -130,7 +130,7 @@ TEST_CASE("an agent plans only as long as the coordinator hears vision") {
   d.observe(0, 0.6, 0.61);
   CHECK(d.plans(0.62));
   for (const double at : {0.8, 1.0, 1.2}) {
-    d.agent.on_world(observation(0, at), at_s(at));
+    d.agent.on_world_state(observation(0, at), at_s(at));
     d.agent.on_obstacles(empty_list(at), at_s(at));
     become_ready(d.agent, at, 0.61);
   }
@@ -147,7 +147,7 @@ TEST_CASE("a robot that vision has lost is not driven, although vision sees othe
   for (const double at : {0.8, 0.95}) {
     WorldObservations world = observation(0, at);
     world.self.reset();
-    d.agent.on_world(world, at_s(at));
+    d.agent.on_world_state(world, at_s(at));
     d.agent.on_obstacles(empty_list(at), at_s(at));
     become_ready(d.agent, at, at);
   }
@@ -157,9 +157,9 @@ TEST_CASE("a robot that vision has lost is not driven, although vision sees othe
 TEST_CASE("a robot that is poorly localised waits until it is observed") {
   const auto desired_mps2 = [](double position_error_rms_m) {
     DrivenAgent d;
-    Feedback feedback = resting_at({0, 0}, 0.55);
-    feedback.uncertainty = {position_error_rms_m, 0.01};
-    d.agent.on_feedback(feedback);
+    RobotReport robot_report = resting_at({0, 0}, 0.55);
+    robot_report.uncertainty = {position_error_rms_m, 0.01};
+    d.agent.on_robot_report(robot_report);
     d.observe(0, 0.6, 0.61);
     const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
     return plan ? plan->query.desired_mps2.norm() : 0;
@@ -203,12 +203,12 @@ TEST_CASE("a robot does not drive to a place that an unlisted obstacle could rea
 TEST_CASE(
     "inflation lasts until the robot is at rest and vision agrees with its own estimate, and it waits") {
   DrivenAgent d;
-  Feedback displaced = resting_at({0, 0}, 1);
+  RobotReport displaced = resting_at({0, 0}, 1);
   displaced.executing.number = 50;
   displaced.executing.inflation_m = 0.05;
   displaced.executing.trajectory = Trajectory::resting(at_s(0.9), {0, 0});
   displaced.is_off_reference = true;
-  d.agent.on_feedback(displaced);
+  d.agent.on_robot_report(displaced);
   // If it drove on, the inflation would remain, and it might never fit where it has to go.
   d.observe(0, 0.85, 1.01);  // from a time before it rested
   CHECK_FALSE(d.plans(1.02));
@@ -216,17 +216,17 @@ TEST_CASE(
   CHECK_FALSE(d.plans(1.04));
   displaced.valid_at = at_s(1.05);
   displaced.estimate.position_m = {0.039, 0};
-  d.agent.on_feedback(displaced);
+  d.agent.on_robot_report(displaced);
   CHECK(d.plans(1.06));
 }
 
 TEST_CASE("each own stop of the robot counts once as a loss of its reference") {
   DrivenAgent d;
-  Feedback stopped = resting_at({0, 0}, 1);
+  RobotReport stopped = resting_at({0, 0}, 1);
   const auto losses_after = [&](VersionNumber number, bool is_off_reference) {
     stopped.executing.number = number;
     stopped.is_off_reference = is_off_reference;
-    d.agent.on_feedback(stopped);
+    d.agent.on_robot_report(stopped);
     return d.agent.status(at_s(1)).reference_losses();
   };
   CHECK(losses_after(50, false) == 0);
@@ -242,12 +242,12 @@ TEST_CASE("an observation from the future is dropped and counted, and later vali
   d.observe_self(0, 1e6, 0.61);
   WorldObservations latest = observation(0, 0);
   latest.self->captured_at = Time::max();
-  d.agent.on_world(latest, at_s(0.61));
+  d.agent.on_world_state(latest, at_s(0.61));
   CHECK_FALSE(d.plans(0.62));
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 2);
-  d.agent.on_world(WorldObservations(), at_s(0.61));
+  d.agent.on_world_state(WorldObservations(), at_s(0.61));
   latest.self->captured_at = Time::min();
-  d.agent.on_world(latest, at_s(0.61));
+  d.agent.on_world_state(latest, at_s(0.61));
   CHECK_FALSE(d.plans(0.62));
   d.observe(0, 0.61, 0.62);
   CHECK(d.plans(0.63));
@@ -261,10 +261,10 @@ TEST_CASE("an incomplete list is not used if the observation of the same time wa
   WorldObservations world = observation(0, 0.9);
   world.self->captured_at = at_s(2);  // from the future
   d.observe_self(0, 0.89, 0.9);
-  d.agent.on_world(world, at_s(0.91));
+  d.agent.on_world_state(world, at_s(0.91));
   d.agent.on_obstacles(empty_list(0.9, 2), at_s(0.91));
   CHECK_FALSE(d.plans(0.92));
-  d.agent.on_world(observation(0, 0.9), at_s(0.91));
+  d.agent.on_world_state(observation(0, 0.9), at_s(0.91));
   CHECK(d.plans(0.92));
 }
 
@@ -272,11 +272,11 @@ TEST_CASE("before the robot's clock is known, an observation is forwarded but no
   DrivenAgent d;
   d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
   d.observe_self(0, 0.5, 0.61);
-  d.agent.on_world(observation(0, 3599), at_s(0.61), false);
+  d.agent.on_world_state(observation(0, 3599), at_s(0.61), false);
   const Command command = d.agent.command(at_s(0.62));
   REQUIRE(command.fix);
   CHECK(command.fix->captured_at == at_s(3599));
-  d.agent.on_world(observation(0, 3601), at_s(0.61), false);
+  d.agent.on_world_state(observation(0, 3601), at_s(0.61), false);
   CHECK_FALSE(d.agent.command(at_s(0.62)).fix);
   d.observe(0, 0.62, 0.63);
   CHECK(d.plans(0.63));
@@ -288,9 +288,9 @@ TEST_CASE(
   Scenario scenario = two_goals();
   scenario.laser.emplace();
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
-  agent.on_feedback(resting_at({0, 0}, 0.5));
+  agent.on_robot_report(resting_at({0, 0}, 0.5));
   become_ready(agent, 0.6, 0.6);
-  agent.on_world(observation(0, 0.6), at_s(0.61));
+  agent.on_world_state(observation(0, 0.6), at_s(0.61));
   // Something unknown stands all around.
   const std::vector<float> ranges_m(static_cast<std::size_t>(scenario.laser->settings.beams), 1.5F);
   agent.on_scan({{0, 0}, 0, at_s(0.55), ranges_m}, at_s(0.61));
@@ -329,7 +329,7 @@ TEST_CASE("goals are visited in order, and the robot turns to a goal's heading")
   CHECK(d.agent.command(at_s(1)).desired_heading_rad == 0);
   Agent fresh(d.scenario, 3, kSelf, std::make_shared<PlanningScratch>(d.scenario));
   fresh.on_orders(scenario_orders());
-  fresh.on_feedback(resting_at({1, 0}, 2, 0));
+  fresh.on_robot_report(resting_at({1, 0}, 2, 0));
   CHECK(fresh.status(at_s(1)).goal_index() == 1);
   CHECK(fresh.status(at_s(1)).distance_to_go_m() == Approx(1));
   CHECK(fresh.command(at_s(1)).desired_heading_rad == 1.5);
@@ -340,9 +340,9 @@ TEST_CASE("a robot whose current version ends at its goal proposes nothing") {
   scenario.robots[0].goals = {{{0, 0}, std::nullopt}};
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
   agent.on_orders(scenario_orders());
-  agent.on_feedback(resting_at({0, 0}, 0.5, 0));
+  agent.on_robot_report(resting_at({0, 0}, 0.5, 0));
   become_ready(agent);
-  agent.on_world(observation(0, 0.6), at_s(0.61));
+  agent.on_world_state(observation(0, 0.6), at_s(0.61));
   agent.on_obstacles(empty_list(0.6), at_s(0.61));
   CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
   CHECK(agent.status(at_s(1)).agent_state() == msg::AgentState::AGENT_ARRIVED);

@@ -24,9 +24,9 @@ struct ClockFixture {
 
   ClockFixture() { clocks.on_epoch(kEpoch); }
   double delay() { return min_delay_s + rng.uniform(0, spread_s); }
-  Feedback feedback(double sent) {
+  RobotReport robot_report(double sent) {
     const double received = sent + delay(), answered = received + 0.003;
-    Feedback f;
+    RobotReport f;
     f.robot_incarnation = 5;
     f.obeyed_incarnation = kSelf;
     f.command = {at_s(sent), at_s(received + robot_s)};
@@ -42,9 +42,9 @@ struct ClockFixture {
     return v;
   }
   void measure_robot(double sent) {
-    const Feedback f = feedback(sent);
+    const RobotReport f = robot_report(sent);
     const Time answered = f.valid_at - from_seconds(robot_s);
-    clocks.on_feedback(f, kSelf, answered + from_seconds(delay()));
+    clocks.on_robot_report(f, kSelf, answered + from_seconds(delay()));
   }
   void measure_coordinator(double asked) {
     const Verdict v = verdict(asked);
@@ -222,15 +222,15 @@ TEST_CASE("clock measurements start anew with a new epoch and with a restarted r
   f.clocks.on_verdict(late, at_s(0.221));
   CHECK(f.clocks.allows_motion(at_s(0.23)));
 
-  Feedback rebooted = f.feedback(0.24);
+  RobotReport rebooted = f.robot_report(0.24);
   rebooted.robot_incarnation = 6;
   rebooted.command.reset();
-  f.clocks.on_feedback(rebooted, kSelf, at_s(0.245));
+  f.clocks.on_robot_report(rebooted, kSelf, at_s(0.245));
   CHECK(f.clocks.allows_motion(at_s(0.25)));
   f.robot_s = 0.3;
-  rebooted = f.feedback(0.26);
+  rebooted = f.robot_report(0.26);
   rebooted.robot_incarnation = 6;
-  f.clocks.on_feedback(rebooted, kSelf, at_s(0.265));
+  f.clocks.on_robot_report(rebooted, kSelf, at_s(0.265));
   CHECK(f.clocks.is_beyond_bound(at_s(0.27)));
 }
 
@@ -241,9 +241,10 @@ TEST_CASE("the clock that a robot had before a restart does not narrow the inter
   REQUIRE(f.clocks.max_robot_offset(at_s(0.2)) < from_seconds(0.0004));
   f.robot_s = 0.0005;
   f.min_delay_s = 0.001;
-  Feedback restarted = f.feedback(0.2);
+  RobotReport restarted = f.robot_report(0.2);
   restarted.robot_incarnation = 6;
-  f.clocks.on_feedback(restarted, kSelf, restarted.valid_at - from_seconds(f.robot_s) + from_seconds(0.001));
+  f.clocks.on_robot_report(restarted, kSelf,
+                           restarted.valid_at - from_seconds(f.robot_s) + from_seconds(0.001));
   CHECK(f.clocks.max_robot_offset(at_s(0.21)) >= from_seconds(f.robot_s));
 }
 
@@ -266,21 +267,21 @@ TEST_CASE("echoes of other senders' messages and impossible stamps are ignored")
     Verdict v = f.verdict(0.03);
     v.sent_at = stamp;
     f.clocks.on_verdict(v, at_s(0.031));
-    Feedback hostile = f.feedback(0.03);
+    RobotReport hostile = f.robot_report(0.03);
     hostile.command->sent_at = stamp;
-    f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
-    hostile = f.feedback(0.03);
+    f.clocks.on_robot_report(hostile, kSelf, at_s(0.034));
+    hostile = f.robot_report(0.03);
     hostile.command->received_at = stamp;
-    f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
-    hostile = f.feedback(0.03);
+    f.clocks.on_robot_report(hostile, kSelf, at_s(0.034));
+    hostile = f.robot_report(0.03);
     hostile.valid_at = stamp;
-    f.clocks.on_feedback(hostile, kSelf, at_s(0.034));
+    f.clocks.on_robot_report(hostile, kSelf, at_s(0.034));
     refused += 4;
   }
-  Feedback other = f.feedback(0.03);
+  RobotReport other = f.robot_report(0.03);
   other.obeyed_incarnation = kSelf + 1;
   other.valid_at = time_from_ns(1);
-  f.clocks.on_feedback(other, kSelf, at_s(0.034));
+  f.clocks.on_robot_report(other, kSelf, at_s(0.034));
   CHECK(f.invalid() == refused);
   const auto after = f.clocks.robot_coordinator_offset(at_s(0.03));
   REQUIRE(after);

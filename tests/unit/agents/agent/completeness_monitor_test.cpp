@@ -28,7 +28,7 @@ struct Fixture {
 
 TEST_CASE("before the first list nothing is known") {
   Fixture f;
-  f.monitor.on_world(world(10, {1, 2}));
+  f.monitor.on_world_state(world(10, {1, 2}));
   CHECK(f.monitor.complete_at() == Time{});
   CHECK(f.seen().radius_m == 0);
 }
@@ -40,7 +40,7 @@ TEST_CASE("a complete list is usable alone, an incomplete one only with the worl
   CHECK(f.seen().is_everywhere());
   f.monitor.on_list(list(10.1, 2));
   CHECK(f.monitor.complete_at() == at_s(10));
-  f.monitor.on_world(world(10.1, {1, 2}));
+  f.monitor.on_world_state(world(10.1, {1, 2}));
   CHECK(f.monitor.complete_at() == at_s(10.1));
   CHECK(f.seen().centre_m == Vec2(1, 2));
   CHECK(f.seen().radius_m == 2);
@@ -50,7 +50,7 @@ TEST_CASE("a complete list is usable alone, an incomplete one only with the worl
   CHECK(f.seen(from_seconds(0.06)).radius_at_m(at_s(11)) ==
         Approx(f.seen().radius_at_m(at_s(11)) - 1.5 * 0.06));
   // The world state first.
-  f.monitor.on_world(world(10.2, {1, 3}));
+  f.monitor.on_world_state(world(10.2, {1, 3}));
   f.monitor.on_list(list(10.2, 1));
   CHECK(f.monitor.complete_at() == at_s(10.2));
   CHECK(f.seen().centre_m == Vec2(1, 3));
@@ -64,18 +64,18 @@ TEST_CASE(
   f.monitor.on_list(list(10, 2));
   WorldObservations without_self = world(10, {1, 2});
   without_self.self.reset();
-  f.monitor.on_world(without_self);
-  f.monitor.on_world(world(10, {1, 2}, 2));
-  f.monitor.on_world(world(10.001, {1, 2}));
+  f.monitor.on_world_state(without_self);
+  f.monitor.on_world_state(world(10, {1, 2}, 2));
+  f.monitor.on_world_state(world(10.001, {1, 2}));
   CHECK(f.monitor.complete_at() == Time{});
-  f.monitor.on_world(world(10, {1, 2}));
+  f.monitor.on_world_state(world(10, {1, 2}));
   CHECK(f.monitor.complete_at() == at_s(10));
 }
 
 TEST_CASE("late and repeated lists and worlds do not replace newer ones") {
   Fixture f;
-  f.monitor.on_world(world(10, {1, 2}));
-  f.monitor.on_world(world(9.9, {0, 0}));
+  f.monitor.on_world_state(world(10, {1, 2}));
+  f.monitor.on_world_state(world(9.9, {0, 0}));
   f.monitor.on_list(list(10, 2));
   f.monitor.on_list(list(9.9, 1));
   f.monitor.on_list(list(10, 3));
@@ -85,14 +85,14 @@ TEST_CASE("late and repeated lists and worlds do not replace newer ones") {
   // A list that has waited for its world state is superseded.
   f.monitor.on_list(list(10.1, 1));
   f.monitor.on_list(list(10.2, kCompleteEverywhere_m));
-  f.monitor.on_world(world(10.1, {1, 2}));
+  f.monitor.on_world_state(world(10.1, {1, 2}));
   CHECK(f.monitor.complete_at() == at_s(10.2));
   CHECK(f.seen().is_everywhere());
 }
 
 TEST_CASE("the latest of many world states are remembered") {
   Fixture f;
-  for (int k = 0; k < 100; ++k) f.monitor.on_world(world(10 + 0.01 * k, {0.1 * k, 0}));
+  for (int k = 0; k < 100; ++k) f.monitor.on_world_state(world(10 + 0.01 * k, {0.1 * k, 0}));
   f.monitor.on_list(list(10.9, 1));
   CHECK(f.seen().centre_m.x() == Approx(9));
   f.monitor.on_list(list(10.3, 1));
@@ -109,7 +109,7 @@ TEST_CASE(
   // Of the first region, 3 m - 0.2 s * 1.5 m/s - 1 m remain around the new centre.
   CHECK(f.monitor.seen(at_s(10.5)).centre_m == Vec2(1, 0));
   CHECK(f.monitor.seen(at_s(10.5)).radius_m == Approx(1.7));
-  f.monitor.on_world(world(10.4, {1, 0.5}));
+  f.monitor.on_world_state(world(10.4, {1, 0.5}));
   f.monitor.on_list(list(10.4, 1));
   CHECK(f.monitor.seen(at_s(10.5)).centre_m == Vec2(1, 0.5));
   CHECK(f.monitor.seen(at_s(10.5)).radius_m == Approx(1.7 - 0.5 - 0.199 * 1.5));

@@ -15,14 +15,15 @@ inline constexpr Epoch kEpoch = 50;
 
 inline Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
-inline Feedback fact(const Version& executing, double at, Incarnation obeyed = kSelf, Epoch epoch = kEpoch) {
-  Feedback feedback;
-  feedback.robot = kRobot;
-  feedback.valid_at = at_s(at);
-  feedback.obeyed_incarnation = obeyed;
-  feedback.obeyed_epoch = epoch;
-  feedback.executing = executing;
-  return feedback;
+inline RobotReport make_report(const Version& executing, double at, Incarnation obeyed = kSelf,
+                               Epoch epoch = kEpoch) {
+  RobotReport robot_report;
+  robot_report.robot = kRobot;
+  robot_report.valid_at = at_s(at);
+  robot_report.obeyed_incarnation = obeyed;
+  robot_report.obeyed_epoch = epoch;
+  robot_report.executing = executing;
+  return robot_report;
 }
 
 /// Valid until the next call.
@@ -56,7 +57,7 @@ struct NegotiationFixture {
   Version initial{kRobot, 0, 0, 0, Trajectory::resting(at_s(0), {0, 0})};
 
   void become_ready() {
-    n.on_feedback(fact(initial, 0.5));
+    n.on_robot_report(make_report(initial, 0.5));
     n.on_coordinator_state(heartbeat(kEpoch), at_s(0.9));
     (void)n.registration();
     REQUIRE(n.may_propose(at_s(0.95)));

@@ -13,11 +13,11 @@ using namespace negotiation_fixture;
 TEST_CASE("an agent proposes only after its robot has acknowledged it and the coordinator knows it") {
   NegotiationFixture f;
   CHECK_FALSE(f.n.is_fenced());
-  f.n.on_feedback(fact(f.initial, 0.1, kSelf - 1));
+  f.n.on_robot_report(make_report(f.initial, 0.1, kSelf - 1));
   CHECK_FALSE(f.n.is_fenced());
   f.n.on_coordinator_state(heartbeat(kEpoch, {kRobot}), at_s(0.9));
   CHECK_FALSE(f.n.needs_registration());
-  f.n.on_feedback(fact(f.initial, 0.2));
+  f.n.on_robot_report(make_report(f.initial, 0.2));
   CHECK(f.n.is_fenced());
   CHECK(f.n.needs_registration());
   CHECK(f.n.registration().versions->versions().size() == 1);
@@ -33,7 +33,7 @@ TEST_CASE(
     "an agent repeats its registration until it is received, even if an earlier agent of its robot is "
     "known") {
   NegotiationFixture f;
-  f.n.on_feedback(fact(f.initial, 0.5));
+  f.n.on_robot_report(make_report(f.initial, 0.5));
   f.n.on_coordinator_state(heartbeat(kEpoch), at_s(0.9));
   CHECK(f.n.needs_registration());
   CHECK_FALSE(f.n.may_propose(at_s(0.95)));
@@ -118,7 +118,7 @@ TEST_CASE("nothing is proposed two cycles after the last fact, and again after t
   for (; f.n.may_propose(at_s(1.0)) && cycles < 100; ++cycles) f.n.close_cycle(at_s(1.0));
   CHECK(cycles == 3);
   CHECK(f.n.wait_reason(at_s(1.0)) == WaitReason::kRobotSilent);
-  f.n.on_feedback(fact(f.initial, 1.0));
+  f.n.on_robot_report(make_report(f.initial, 1.0));
   CHECK(f.n.may_propose(at_s(1.0)));
 }
 
@@ -128,39 +128,39 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
   const auto own_stop = [](VersionNumber number, double start) {
     return Version{kRobot, kSelf, number, 0, Trajectory::resting(at_s(start), {0.1, 0})};
   };
-  const auto fact_of = [&](Incarnation robot, const Version& executing, double at) {
-    Feedback feedback = fact(executing, at);
-    feedback.robot_incarnation = robot;
-    feedback.is_off_reference = true;
-    return feedback;
+  const auto report_of = [&](Incarnation robot, const Version& executing, double at) {
+    RobotReport robot_report = make_report(executing, at);
+    robot_report.robot_incarnation = robot;
+    robot_report.is_off_reference = true;
+    return robot_report;
   };
-  f.n.on_feedback(fact_of(1, own_stop(5000, 3600), 3600));
+  f.n.on_robot_report(report_of(1, own_stop(5000, 3600), 3600));
   REQUIRE(f.n.executing().number == 5000);
   // Its clock has been set back.
-  f.n.on_feedback(fact_of(2, own_stop(9000, 10), 10));
+  f.n.on_robot_report(report_of(2, own_stop(9000, 10), 10));
   CHECK(f.n.executing().number == 9000);
   SECTION("a late fact of the earlier one changes nothing") {
-    f.n.on_feedback(fact_of(1, own_stop(5000, 3600), 3601));
+    f.n.on_robot_report(report_of(1, own_stop(5000, 3600), 3601));
     CHECK(f.n.executing().number == 9000);
-    f.n.on_feedback(fact_of(2, own_stop(7000, 10), 9));
+    f.n.on_robot_report(report_of(2, own_stop(7000, 10), 9));
     CHECK(f.n.executing().number == 9000);
     // Robots never go back: the fact before was false.
-    f.n.on_feedback(fact_of(2, own_stop(7000, 10), 11));
+    f.n.on_robot_report(report_of(2, own_stop(7000, 10), 11));
     CHECK(f.n.executing().number == 7000);
   }
   SECTION("a false fact of a later one does not exclude true ones for good") {
-    f.n.on_feedback(fact_of(99, own_stop(20'000, 10), 3000));
+    f.n.on_robot_report(report_of(99, own_stop(20'000, 10), 3000));
     REQUIRE(f.n.executing().number == 20'000);
-    int facts = 0;
-    for (; f.n.executing().number != 9000 && facts < 1000; ++facts)
-      f.n.on_feedback(fact_of(2, own_stop(9000, 10), 11 + 0.01 * facts));
-    CHECK(facts == 60);
+    int reports = 0;
+    for (; f.n.executing().number != 9000 && reports < 1000; ++reports)
+      f.n.on_robot_report(report_of(2, own_stop(9000, 10), 11 + 0.01 * reports));
+    CHECK(reports == 60);
   }
   SECTION("lifting") {
-    Feedback lifted = fact_of(3, f.initial, 11);
+    RobotReport lifted = report_of(3, f.initial, 11);
     lifted.is_off_reference = false;
     lifted.is_lifted = true;
-    f.n.on_feedback(lifted);
+    f.n.on_robot_report(lifted);
     CHECK(f.n.is_absent());
   }
 }
@@ -168,13 +168,13 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
 TEST_CASE("a silent agent continues although its robot's clock was set back meanwhile") {
   NegotiationFixture f;
   f.become_ready();
-  f.n.on_feedback(fact(f.initial, 3600, f.n.incarnation() + 5));
+  f.n.on_robot_report(make_report(f.initial, 3600, f.n.incarnation() + 5));
   REQUIRE(f.n.is_superseded());
-  Feedback feedback = fact(f.initial, 1, f.n.incarnation());
-  f.n.on_feedback(feedback);
+  RobotReport robot_report = make_report(f.initial, 1, f.n.incarnation());
+  f.n.on_robot_report(robot_report);
   CHECK(f.n.is_superseded());
-  feedback.robot_incarnation = 7;
-  f.n.on_feedback(feedback);
+  robot_report.robot_incarnation = 7;
+  f.n.on_robot_report(robot_report);
   CHECK_FALSE(f.n.is_superseded());
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("a silent agent asks its robot when the robot has fallen silent, and o
   for (int cycle = 0; cycle < 40; ++cycle) f.n.close_cycle(at_s(1));
   CHECK_FALSE(f.n.must_ask_robot());
   for (int cycle = 0; cycle < 40; ++cycle) {
-    f.n.on_feedback(fact(f.initial, 2 + 0.01 * cycle, f.n.incarnation() + 1));
+    f.n.on_robot_report(make_report(f.initial, 2 + 0.01 * cycle, f.n.incarnation() + 1));
     f.n.close_cycle(at_s(2));
     REQUIRE(f.n.is_superseded());
     CHECK_FALSE(f.n.must_ask_robot());
@@ -195,7 +195,7 @@ TEST_CASE("a silent agent asks its robot when the robot has fallen silent, and o
   CHECK(f.n.is_superseded());
   CHECK_FALSE(f.n.may_propose(at_s(3)));
   CHECK_FALSE(f.n.needs_registration());
-  f.n.on_feedback(fact(f.initial, 4, f.n.incarnation() + 1));
+  f.n.on_robot_report(make_report(f.initial, 4, f.n.incarnation() + 1));
   CHECK_FALSE(f.n.must_ask_robot());
 }
 
@@ -211,7 +211,7 @@ TEST_CASE("an agent continues although a version starts much later because of a 
   CHECK(next->base == f.initial.number);
   // It may still execute either.
   CHECK(f.n.registration().versions->versions().size() == 3);
-  f.n.on_feedback(fact(*next, 1.2));
+  f.n.on_robot_report(make_report(*next, 1.2));
   CHECK(f.n.registration().versions->versions().size() == 1);
 }
 
@@ -219,7 +219,7 @@ TEST_CASE("an agent asks for another coordinator if it hears none, or gets no an
   NegotiationFixture f;
   CHECK_FALSE(f.n.is_unserved(at_s(0.5)));
   SECTION("none has ever been heard") {
-    f.n.on_feedback(fact(f.initial, 0.5, kSelf, 0));
+    f.n.on_robot_report(make_report(f.initial, 0.5, kSelf, 0));
     CHECK_FALSE(f.n.is_unserved(at_s(2.4)));
     CHECK(f.n.is_unserved(at_s(2.5)));
   }
@@ -278,7 +278,7 @@ TEST_CASE("an agent asks for another coordinator if it hears none, or gets no an
 
 TEST_CASE("a new agent learns from its robot which epoch it has obeyed, and ignores lower ones") {
   NegotiationFixture f;
-  f.n.on_feedback(fact(f.initial, 0.5, kSelf, kEpoch));
+  f.n.on_robot_report(make_report(f.initial, 0.5, kSelf, kEpoch));
   f.n.on_coordinator_state(heartbeat(kEpoch - 10), at_s(0.6));
   CHECK(f.n.epoch() == kEpoch);
   CHECK_FALSE(f.n.may_propose(at_s(0.7)));
@@ -287,11 +287,11 @@ TEST_CASE("a new agent learns from its robot which epoch it has obeyed, and igno
 
 TEST_CASE("an agent registers in an epoch only once its robot has acknowledged it") {
   NegotiationFixture f;
-  f.n.on_feedback(fact(f.initial, 0.5, kSelf, 0));
+  f.n.on_robot_report(make_report(f.initial, 0.5, kSelf, 0));
   f.n.on_coordinator_state(heartbeat(kEpoch, {kRobot}), at_s(0.6));
   CHECK(f.n.epoch() == kEpoch);
   CHECK_FALSE(f.n.needs_registration());
-  f.n.on_feedback(fact(f.initial, 0.7, kSelf, kEpoch));
+  f.n.on_robot_report(make_report(f.initial, 0.7, kSelf, kEpoch));
   CHECK(f.n.needs_registration());
 }
 
@@ -308,13 +308,13 @@ TEST_CASE("a coordinator with a slow clock learns the highest epoch, unless a la
 TEST_CASE(
     "an agent whose clock is behind an earlier agent's starts above it, and yields only once it was obeyed") {
   NegotiationFixture f;
-  f.n.on_feedback(fact(f.initial, 0.5, 5000));
+  f.n.on_robot_report(make_report(f.initial, 0.5, 5000));
   CHECK_FALSE(f.n.is_superseded());
   const Incarnation risen = f.n.incarnation();
   CHECK(risen > 5000);
-  f.n.on_feedback(fact(f.initial, 0.6, risen));
+  f.n.on_robot_report(make_report(f.initial, 0.6, risen));
   CHECK(f.n.is_fenced());
-  f.n.on_feedback(fact(f.initial, 0.7, risen + 1));
+  f.n.on_robot_report(make_report(f.initial, 0.7, risen + 1));
   CHECK(f.n.is_superseded());
 }
 
@@ -322,13 +322,13 @@ TEST_CASE("a silent agent continues if a later fact, but not an earlier one, ack
   NegotiationFixture f;
   f.become_ready();
   const Incarnation self = f.n.incarnation();
-  f.n.on_feedback(fact(f.initial, 0.8, self + 5));
-  f.n.on_feedback(fact(f.initial, 0.7, self + 9));
+  f.n.on_robot_report(make_report(f.initial, 0.8, self + 5));
+  f.n.on_robot_report(make_report(f.initial, 0.7, self + 9));
   REQUIRE(f.n.is_superseded());
   CHECK_FALSE(f.n.may_propose(at_s(0.8)));
-  f.n.on_feedback(fact(f.initial, 0.8, self));
+  f.n.on_robot_report(make_report(f.initial, 0.8, self));
   CHECK(f.n.is_superseded());
-  f.n.on_feedback(fact(f.initial, 0.81, self));
+  f.n.on_robot_report(make_report(f.initial, 0.81, self));
   CHECK_FALSE(f.n.is_superseded());
   CHECK(f.n.may_propose(at_s(0.82)));
 }
@@ -352,7 +352,7 @@ TEST_CASE(
   f.n.on_coordinator_state(heartbeat(kEpoch + 1, {kRobot}), at_s(0.9));
   CHECK_FALSE(f.grant(outstanding, 1.01));
   CHECK_FALSE(f.grant(outstanding, 1.01, kEpoch + 1));
-  f.n.on_feedback(fact(f.initial, 0.99, kSelf, kEpoch + 1));
+  f.n.on_robot_report(make_report(f.initial, 0.99, kSelf, kEpoch + 1));
   CHECK(f.n.needs_registration());
   f.n.on_coordinator_state(heartbeat(kEpoch), at_s(0.9));
   CHECK(f.n.needs_registration());
@@ -367,7 +367,7 @@ TEST_CASE("versions that facts have excluded are not registered") {
   NegotiationFixture f;
   f.become_ready();
   const auto forwarded = f.grant(f.propose(1.0, 0.9), 0.95);
-  f.n.on_feedback(fact(*forwarded, 1.01));
+  f.n.on_robot_report(make_report(*forwarded, 1.01));
   f.n.on_coordinator_state(heartbeat(kEpoch + 1, {kRobot}), at_s(0.9));
   const auto registration = f.n.registration();
   REQUIRE(registration.versions->versions().size() == 1);
@@ -381,7 +381,7 @@ TEST_CASE("a lost command is detected, and the next proposal is based on what th
   REQUIRE(lost);
   (void)f.propose(1.05, 1.0);
   CHECK_FALSE(f.n.is_contradicted());
-  f.n.on_feedback(fact(f.initial, 1.001));
+  f.n.on_robot_report(make_report(f.initial, 1.001));
   CHECK(f.n.is_contradicted());
   CHECK(f.n.counts().lost == 1);
   CHECK(f.propose(1.05, 1.01).candidates[0]->base == 0);
@@ -392,29 +392,29 @@ TEST_CASE("late facts change nothing") {
   NegotiationFixture f;
   f.become_ready();
   const auto first = f.grant(f.propose(1.0, 0.9), 0.95);
-  f.n.on_feedback(fact(*first, 1.01));
-  f.n.on_feedback(fact(f.initial, 0.99));
+  f.n.on_robot_report(make_report(*first, 1.01));
+  f.n.on_robot_report(make_report(f.initial, 0.99));
   CHECK(f.n.executing().number == first->number);
   CHECK(f.n.counts().lost == 0);
 }
 
 TEST_CASE("a fact older than the one that ended the fencing does not exclude a version granted since") {
   NegotiationFixture f;
-  Feedback lifted = fact(f.initial, 0.5);
+  RobotReport lifted = make_report(f.initial, 0.5);
   lifted.is_lifted = true;
-  f.n.on_feedback(lifted);
+  f.n.on_robot_report(lifted);
   f.n.on_coordinator_state(heartbeat(kEpoch), at_s(0.9));
   (void)f.n.registration();
   const Trajectory rest = Trajectory::resting(at_s(1), {2, 0});
   const auto granted = f.grant(f.n.propose({&rest, 1}, 0, at_s(0.9)), 0.95);
   REQUIRE(granted);
   // Sent after the fencing but before the lifting.
-  f.n.on_feedback(fact(f.initial, 0.4));
+  f.n.on_robot_report(make_report(f.initial, 0.4));
   CHECK(f.n.is_absent());
   f.n.on_coordinator_state(heartbeat(kEpoch + 1, {kRobot}), at_s(0.97));
   lifted.valid_at = at_s(0.98);
   lifted.obeyed_epoch = kEpoch + 1;
-  f.n.on_feedback(lifted);
+  f.n.on_robot_report(lifted);
   REQUIRE(f.n.needs_registration());
   const auto registration = f.n.registration();
   REQUIRE(registration.versions->versions().size() == 1);
@@ -425,10 +425,10 @@ TEST_CASE("an agent numbers a rest version above the robot's last version, even 
   NegotiationFixture f;
   f.become_ready();
   const VersionNumber unreported_stop = f.propose(1, 0.96).candidates[0]->number + (VersionNumber{1} << 20);
-  Feedback lifted = fact(f.initial, 0.97);
+  RobotReport lifted = make_report(f.initial, 0.97);
   lifted.is_lifted = true;
   lifted.executing.base = unreported_stop;
-  f.n.on_feedback(lifted);
+  f.n.on_robot_report(lifted);
   REQUIRE(f.n.is_absent());
   const Trajectory rest = Trajectory::resting(at_s(1.1), {2, 0});
   CHECK(f.n.propose({&rest, 1}, 0, at_s(1)).candidates[0]->number > unreported_stop);
@@ -439,14 +439,14 @@ TEST_CASE("an agent recovers from a false fact about a version that its robot do
   f.become_ready();
   const auto granted = f.grant(f.propose(1, 0.96), 0.97);
   REQUIRE(granted);
-  f.n.on_feedback(fact(*granted, 1.01));
+  f.n.on_robot_report(make_report(*granted, 1.01));
   Version forged = *granted;
   forged.number += 1000;
-  f.n.on_feedback(fact(forged, 1.02));
+  f.n.on_robot_report(make_report(forged, 1.02));
   CHECK(f.n.executing().number == forged.number);
-  f.n.on_feedback(fact(*granted, 1.0));  // late
+  f.n.on_robot_report(make_report(*granted, 1.0));  // late
   CHECK(f.n.executing().number == forged.number);
-  f.n.on_feedback(fact(*granted, 1.03));
+  f.n.on_robot_report(make_report(*granted, 1.03));
   CHECK(f.n.executing().number == granted->number);
   CHECK(f.n.is_contradicted());
 }
@@ -455,7 +455,7 @@ TEST_CASE("an agent falls silent when a later agent has fenced it") {
   NegotiationFixture f;
   f.become_ready();
   const auto proposal = f.propose(1.0, 0.9);
-  f.n.on_feedback(fact(f.initial, 0.92, kSelf + 1));
+  f.n.on_robot_report(make_report(f.initial, 0.92, kSelf + 1));
   CHECK(f.n.is_superseded());
   CHECK_FALSE(f.n.may_propose(at_s(0.95)));
   CHECK_FALSE(f.n.needs_registration());
@@ -476,7 +476,7 @@ TEST_CASE("version numbers increase over incarnations and candidates") {
   Negotiation other(kRobot, kSelf, from_seconds(1.0 / 60));
   Version ahead = f.initial;
   ahead.number = 5000;
-  other.on_feedback(fact(ahead, 0.5));
+  other.on_robot_report(make_report(ahead, 0.5));
   Trajectory rest = Trajectory::resting(at_s(1), {0, 0});
   CHECK(other.propose({&rest, 1}, 5000, at_s(0.9)).candidates[0]->number > 5000);
 }

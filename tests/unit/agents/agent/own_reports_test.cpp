@@ -7,11 +7,11 @@ namespace sidestep::own_reports_test {
 
 constexpr double kDriftBound_m = 0.003;
 
-Feedback at(const Vec2& position) {
-  Feedback feedback;
-  feedback.estimate.position_m = position;
-  feedback.uncertainty = {0.0002, 0.01};
-  return feedback;
+RobotReport at(const Vec2& position) {
+  RobotReport robot_report;
+  robot_report.estimate.position_m = position;
+  robot_report.uncertainty = {0.0002, 0.01};
+  return robot_report;
 }
 
 TEST_CASE("a robot that reports nothing is at its start, and may not drive") {
@@ -24,7 +24,7 @@ TEST_CASE("a robot that reports nothing is at its start, and may not drive") {
 TEST_CASE(
     "what a robot plans to drive counts towards the distance that it may drive without being observed") {
   OwnReports own({}, kDriftBound_m);
-  own.on_feedback(at({1, 0}));
+  own.on_robot_report(at({1, 0}));
   const double whole_m = own.dead_reckoning_m({1, 0});
   REQUIRE(whole_m > 0.01);
   CHECK(own.dead_reckoning_m({1.01, 0}) == Approx(whole_m - 0.01));
@@ -33,7 +33,7 @@ TEST_CASE(
 
 TEST_CASE("an estimate agrees with an observation that is no farther away than the drift bound") {
   OwnReports own({}, kDriftBound_m);
-  own.on_feedback(at({1, 0}));
+  own.on_robot_report(at({1, 0}));
   CHECK(own.agrees_with({1.0029, 0}));
   CHECK_FALSE(own.agrees_with({1.0031, 0}));
   CHECK_FALSE(own.agrees_with({1, -0.0031}));
@@ -41,10 +41,10 @@ TEST_CASE("an estimate agrees with an observation that is no farther away than t
 
 TEST_CASE("a robot that has moved once counts as moved, even if it restarts") {
   OwnReports own({}, kDriftBound_m);
-  Feedback moved = at({0, 0});
+  RobotReport moved = at({0, 0});
   moved.has_moved = true;
-  own.on_feedback(moved);
-  own.on_feedback(at({0, 0}));
+  own.on_robot_report(moved);
+  own.on_robot_report(at({0, 0}));
   CHECK(own.has_moved());
 }
 

@@ -59,7 +59,7 @@ TEST_CASE("a page with an index or an epoch out of range, or not from a coordina
 TEST_CASE("readers of one message share the view that the first of them decodes") {
   const msg::LedgerPage message = page_with(10);
   MessageAttachment attachment;
-  std::shared_ptr<LedgerView> first, second;
+  std::shared_ptr<DecodedLedgerPage> first, second;
   ReceivedPage::decode(message, kNow, &attachment)->update(first);
   ReceivedPage::decode(message, kNow, &attachment)->update(second);
   CHECK(first == second);
@@ -69,15 +69,15 @@ TEST_CASE("readers of one message share the view that the first of them decodes"
 
 TEST_CASE("a view that others still read is not overwritten, and an unshared one is reused") {
   const msg::LedgerPage older = page_with(10), newer = page_with(11);
-  std::shared_ptr<LedgerView> view;
-  ReceivedPage::decode(older, kNow)->update(view);
-  const LedgerView* memory = view.get();
-  ReceivedPage::decode(newer, kNow)->update(view);
-  CHECK(view.get() == memory);
-  CHECK(view->versions[0].number == 11);
-  const std::shared_ptr<LedgerView> other_reader = view;
-  ReceivedPage::decode(older, kNow)->update(view);
-  CHECK(view->versions[0].number == 10);
+  std::shared_ptr<DecodedLedgerPage> decoded;
+  ReceivedPage::decode(older, kNow)->update(decoded);
+  const DecodedLedgerPage* memory = decoded.get();
+  ReceivedPage::decode(newer, kNow)->update(decoded);
+  CHECK(decoded.get() == memory);
+  CHECK(decoded->versions[0].number == 11);
+  const std::shared_ptr<DecodedLedgerPage> other_reader = decoded;
+  ReceivedPage::decode(older, kNow)->update(decoded);
+  CHECK(decoded->versions[0].number == 10);
   CHECK(other_reader->versions[0].number == 11);
 }
 

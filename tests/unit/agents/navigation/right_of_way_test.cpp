@@ -39,13 +39,13 @@ TEST_CASE("right of way: robots in passages agree on one order in each period") 
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    std::vector<Passer> passers;
-    for (RobotId robot = 0; robot < 8; ++robot) passers.push_back({robot, rng.below(3)});
+    std::vector<PassageContender> contenders;
+    for (RobotId robot = 0; robot < 8; ++robot) contenders.push_back({robot, rng.below(3)});
     const Time t = in_period(static_cast<int>(rng.below(1000)));
     std::vector<int> ahead;  // number of robots that go before each one
-    for (const Passer& self : passers) {
+    for (const PassageContender& self : contenders) {
       int count = 0;
-      for (const Passer& other : passers)
+      for (const PassageContender& other : contenders)
         if (other.robot != self.robot) count += may_pass_first(other, self, t, kPeriod) ? 1 : 0;
       ahead.push_back(count);
     }

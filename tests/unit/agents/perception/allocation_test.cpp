@@ -18,7 +18,7 @@ TEST_CASE("warm perception does not allocate") {
   LocalGrid grid;
   LaserTracks tracks;
   Visibility visibility;
-  const KnownFloor walls{&scene.map()};
+  const PriorMap walls{&scene.map()};
   std::vector<Circle> discs(people.size());
   double sum = 0;
   std::size_t allocations = 0;

@@ -36,7 +36,7 @@ class Drive {
     scan.at_m += 0.005 * Vec2(rng_.uniform(-1, 1), rng_.uniform(-1, 1));
     scan.heading_rad += rng_.uniform(-0.003, 0.003);
     beams_.read(scan, {});
-    REQUIRE(tracks_.update(beams_, grid_, has_map_ ? KnownFloor{&scene_.map()} : KnownFloor{}));
+    REQUIRE(tracks_.update(beams_, grid_, has_map_ ? PriorMap{&scene_.map()} : PriorMap{}));
     REQUIRE(grid_.update(beams_));
   }
   /// The beams that end at a person.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/perception/visibility.hpp"
 
-#include "agents/perception/known_floor.hpp"
+#include "agents/perception/prior_map.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/agents/perception/hidden_people.hpp"
 
@@ -14,7 +14,7 @@ const auto kNothing = [](const Vec2&, double) { return std::optional<Vec2>(); };
 /// The known part of a scene, with occasional omissions.
 auto known_in(const test::Scene& scene, Rng& rng, double unknown = 0) {
   return [&scene, &rng, unknown](const Vec2& p, double within_m) {
-    return rng.chance(unknown) ? std::nullopt : KnownFloor{&scene.map()}.nearest_m(p, within_m);
+    return rng.chance(unknown) ? std::nullopt : PriorMap{&scene.map()}.nearest_m(p, within_m);
   };
 }
 
@@ -98,7 +98,7 @@ struct View {
     for (float& range_m : ranges)
       if (rng.chance(dropouts)) range_m = test::kNoRange;
     beams.read({{0, 0}, 0, Time{}, ranges}, robots);
-    const KnownFloor floor{nullptr, &world};
+    const PriorMap floor{nullptr, &world};
     visibility.update(beams, [&](const Vec2& p, double within_m) {
       return stand ? floor.nearest_m(p, within_m) : std::nullopt;
     });
@@ -147,7 +147,7 @@ TEST_CASE("a gap is closed if it is too narrow and both of its sides are station
   const ObstacleWorld half({Segment{{3, -3}, {3, 0}}});
   Visibility lone(settings);
   lone.update(fence.beams, [&](const Vec2& p, double within_m) {
-    return KnownFloor{nullptr, &half}.nearest_m(p, within_m);
+    return PriorMap{nullptr, &half}.nearest_m(p, within_m);
   });
   const auto is_open_at = [&](double y_m) {
     return std::ranges::any_of(lone.frontiers(), [&](const Frontier& frontier) {

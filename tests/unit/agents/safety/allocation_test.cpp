@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/neighbours.hpp"
 #include "agents/agent/observed_obstacles.hpp"
-#include "agents/agent/obstacle_view.hpp"
-#include "agents/agent/world_view.hpp"
+#include "agents/agent/obstacle_list_decoder.hpp"
+#include "agents/agent/world_state_decoder.hpp"
+#include "agents/batch/batch_clearance.hpp"
 #include "agents/batch/dispatch.hpp"
-#include "agents/batch/lanes.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/negotiation_codec.hpp"
 #include "common/messaging/robot_codec.hpp"
@@ -61,19 +61,20 @@ TEST_CASE("a search allocates nothing once warm, with any neighbours") {
 
 TEST_CASE("batched comparisons allocate nothing once warm") {
   Rng rng(2);
-  batch::Lanes lanes(batch::best_kernels());
+  batch::BatchClearance clearance(batch::best_kernels());
   std::vector<TrajectoryBounds> others;
   for (RobotId robot = 0; robot < 50; ++robot)
     others.push_back(trajectory_bounds(random_version(robot, rng).trajectory));
   std::size_t clear = 0;
   CHECK(allocations_once_warm([&] {
-          lanes.restart(kStart);
-          for (const TrajectoryBounds& other : others) lanes.add(other, 0.19);
+          clearance.reset(kStart);
+          for (const TrajectoryBounds& other : others) clearance.add(other, 0.19);
           const Trajectory one = random_version(99, rng).trajectory;
           const TrajectoryBounds bounds = trajectory_bounds(one);
-          lanes.sample(one.start(), bounds.first_s + bounds.second_s);
-          lanes.compare(batch::track_of(bounds, one.start(), lanes.step_s()), bounds.acceleration_mps2, 0);
-          for (std::size_t lane = 0; lane < lanes.size(); ++lane) clear += lanes.is_clear(lane);
+          clearance.sample(one.start(), bounds.first_s + bounds.second_s);
+          clearance.compare(batch::track_of(bounds, one.start(), clearance.step_s()),
+                            bounds.acceleration_mps2, 0);
+          for (std::size_t lane = 0; lane < clearance.size(); ++lane) clear += clearance.is_clear(lane);
         }) == 0);
   CHECK(clear > 0);
 }
@@ -114,9 +115,9 @@ TEST_CASE("neighbours are stored without allocations once warm") {
 
 TEST_CASE("an agent's messages are decoded and encoded without allocations") {
   Rng rng(4);
-  Feedback feedback;
-  feedback.executing = random_version(0, rng);
-  const msg::Feedback fact = encode(feedback);
+  RobotReport robot_report;
+  robot_report.executing = random_version(0, rng);
+  const msg::Feedback report_message = encode(robot_report);
   msg::Verdict verdict;
   verdict.header().sender(10000);
   msg::CoordinatorState state;
@@ -125,14 +126,14 @@ TEST_CASE("an agent's messages are decoded and encoded without allocations") {
   msg::WorldState world;
   world.header().sender(20000);
   for (RobotId robot = 0; robot < 100; ++robot) world.robots().emplace_back().robot(robot);
-  const Command command{0, 1, 0, Time{}, feedback.executing};
-  const Proposal proposal{0, 1, 0, Time{}, 0, 1, {feedback.executing}};
+  const Command command{0, 1, 0, Time{}, robot_report.executing};
+  const Proposal proposal{0, 1, 0, Time{}, 0, 1, {robot_report.executing}};
   const Registration registration{0, 1, 0, Time{}, VersionSet()};
-  WorldView view(99);
+  WorldStateDecoder decoder(99);
   std::size_t decoded = 0;
   CHECK(allocations_once_warm([&] {
-          decoded += decode(fact, 0, kStart).has_value() + decode(verdict, 0).has_value();
-          decoded += decode(state, kStart).has_value() + view.decode(world).self.has_value();
+          decoded += decode(report_message, 0, kStart).has_value() + decode(verdict, 0).has_value();
+          decoded += decode(state, kStart).has_value() + decoder.decode(world).self.has_value();
           decoded += encode(command).has_version() + encode(proposal).candidate_count() +
                      encode(registration).is_absent();
         }) == 0);
@@ -153,7 +154,7 @@ TEST_CASE(
       obstacle.y_m(rng.uniform(-3, 3));
     }
   }
-  ObstacleView view;
+  ObstacleListDecoder decoder;
   ObservedObstacles obstacles(1.5, Duration{1'000'000});
   SafetySearch search({});
   TrajectoryIndex empty_index;
@@ -164,7 +165,7 @@ TEST_CASE(
           now += kCycle;
           list.valid_at_ns(to_ns(now));
           for (msg::TrackedObstacle& obstacle : list.obstacles()) obstacle.observed_at_ns(to_ns(now));
-          obstacles.on_list(*view.decode(list), {0, 0}, now);
+          obstacles.on_list(*decoder.decode(list), {0, 0}, now);
           SearchQuery query{now, {{0, 0}, {1, 0}}, random_vector(rng, 3), kCycle};
           query.moving = obstacles.recent(now);
           query.seen = obstacles.seen(now);

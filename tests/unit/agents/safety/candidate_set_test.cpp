@@ -23,7 +23,7 @@ TEST_CASE(
     CAPTURE(kernels.name, seed);
     Rng rng(seed);
     CandidateSet candidates(48, limits, kernels);
-    batch::Lanes lanes(kernels);
+    batch::BatchClearance clearance(kernels);
     int excluded = 0, certainly_clear = 0;
     for (int round = 0; round < 500; ++round) {
       CAPTURE(round);
@@ -35,21 +35,21 @@ TEST_CASE(
       };
       std::vector<Trajectory> others;
       std::vector<double> separations;
-      lanes.restart(kStart);
+      clearance.reset(kStart);
       for (int i = 0; i < 3; ++i) {
         others.push_back(random_trajectory(rng, kStart));
         // Half of the separations are close to the distance that a candidate keeps, where rounding decides.
         const double distance = clearance_m(motion(rng.below(candidates.size())), others.back(), 0);
         separations.push_back(rng.chance(0.5) ? 0.19 : distance + rng.uniform(-1e-8, 1e-8));
-        lanes.add(trajectory_bounds(others.back()), separations.back());
+        clearance.add(trajectory_bounds(others.back()), separations.back());
       }
-      lanes.sample(kStart, kSpan_s);
-      candidates.sample_motions(at_start, to_seconds(kHold), lanes.step_s());
-      const auto is_compared = [&](std::size_t lane) { return !lanes.needs_exact(lane); };
+      clearance.sample(kStart, kSpan_s);
+      candidates.sample_motions(at_start, to_seconds(kHold), clearance.step_s());
+      const auto is_compared = [&](std::size_t lane) { return !clearance.needs_exact(lane); };
       for (std::size_t lane = 0; lane < others.size(); ++lane) {
         if (!is_compared(lane)) continue;
-        candidates.compare(lanes.track(lane), lanes.start_s(lane), lanes.min_separation_m(lane),
-                           lanes.acceleration_mps2(lane));
+        candidates.compare(clearance.track(lane), clearance.start_s(lane), clearance.min_separation_m(lane),
+                           clearance.acceleration_mps2(lane));
       }
       std::vector<bool> is_left(candidates.size());
       while (const auto index = candidates.take_nearest(0)) is_left[*index] = true;

@@ -63,7 +63,7 @@ struct Crowd {
     LaserBeams beams(laser);
     const std::vector<float> ranges = test::with_errors(true_ranges_m, settings.range_error_m, rng);
     beams.read({scanned_at, heading_rad, kCapture, ranges}, {});
-    const KnownFloor walls{&scene.map()};
+    const PriorMap walls{&scene.map()};
     visibility.update(beams, [&](const Vec2& p, double within_m) { return walls.nearest_m(p, within_m); });
   }
 

@@ -49,7 +49,7 @@ TEST_CASE("a robot is free if its agent and vision report it, nobody holds it an
   table.on_status(status_of(3), kBegin);
   REQUIRE(table.robots(kBegin).size() == 1);
   CHECK_FALSE(table.robots(kBegin)[0].is_free());
-  table.on_world(world_with(3, 1, kBegin), kBegin);
+  table.on_world_state(world_with(3, 1, kBegin), kBegin);
   const Robot robot = table.robots(kBegin)[0];
   CHECK(robot.id == 3);
   CHECK(robot.is_free());
@@ -67,7 +67,7 @@ TEST_CASE("a robot is free if its agent and vision report it, nobody holds it an
 
 TEST_CASE("the table shows whose order a robot carries out, and how far it has got") {
   RobotTable table(kSelf);
-  table.on_world(world_with(3, 1, kBegin), kBegin);
+  table.on_world_state(world_with(3, 1, kBegin), kBegin);
   const auto after = [&](ClientId client, msg::OrderState state) {
     table.on_status(status_of(3, client, state), kBegin);
     return table.robots(kBegin)[0];
@@ -90,16 +90,16 @@ TEST_CASE("the table shows whose order a robot carries out, and how far it has g
 TEST_CASE("a robot that is no longer heard or seen is not free") {
   RobotTable table(kSelf);
   table.on_status(status_of(3), kBegin);
-  table.on_world(world_with(3, 1, kBegin), kBegin);
+  table.on_world_state(world_with(3, 1, kBegin), kBegin);
   CHECK(table.robots(kBegin + RobotTable::kPoseTimeout)[0].is_free());
 
   const Time later = kBegin + RobotTable::kPoseTimeout + milliseconds(1);
-  table.on_world(world_with(3, 1, kBegin), later);  // the same observation again
+  table.on_world_state(world_with(3, 1, kBegin), later);  // the same observation again
   CHECK(table.robots(later)[0].is_heard);
   CHECK_FALSE(table.robots(later)[0].pose.has_value());
 
   const Time silent = kBegin + RobotTable::kStatusTimeout + milliseconds(1);
-  table.on_world(world_with(3, 1, silent), silent);
+  table.on_world_state(world_with(3, 1, silent), silent);
   CHECK_FALSE(table.robots(silent)[0].is_heard);
   CHECK(table.robots(silent)[0].pose.has_value());
   CHECK_FALSE(table.robots(silent)[0].is_free());
@@ -115,15 +115,15 @@ TEST_CASE("hostile statuses and worlds leave the table as it is") {
 
   msg::WorldState of_agent = world_with(3, 1, kBegin);
   of_agent.header().sender(3);
-  table.on_world(of_agent, kBegin);
+  table.on_world_state(of_agent, kBegin);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  table.on_world(world_with(3, kNan, kBegin), kBegin);
-  table.on_world(world_with(3, 1e9, kBegin), kBegin);
-  table.on_world(world_with(5000, 1, kBegin), kBegin);
-  table.on_world(world_with(3, 1, kBegin + std::chrono::hours(2)), kBegin);
+  table.on_world_state(world_with(3, kNan, kBegin), kBegin);
+  table.on_world_state(world_with(3, 1e9, kBegin), kBegin);
+  table.on_world_state(world_with(5000, 1, kBegin), kBegin);
+  table.on_world_state(world_with(3, 1, kBegin + std::chrono::hours(2)), kBegin);
   msg::WorldState turned = world_with(3, 1, kBegin);
   turned.robots()[0].observed_heading_rad(kNan);
-  table.on_world(turned, kBegin);
+  table.on_world_state(turned, kBegin);
   CHECK(table.robots(kBegin).empty());
 }
 

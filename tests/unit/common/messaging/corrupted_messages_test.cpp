@@ -115,9 +115,9 @@ TEST_CASE("a command with random bytes is refused or within bounds") {
 TEST_CASE("feedback with random bytes is refused or within bounds") {
   constexpr double kMax = std::numeric_limits<double>::max();
   check_corrupted(
-      topics::kFeedback, [](Rng& rng) { return message_of(random_feedback(rng)); },
+      topics::kFeedback, [](Rng& rng) { return message_of(random_robot_report(rng)); },
       [](const msg::Feedback& message) { return decode(message, kRobot, kNow); },
-      [](const Feedback& f) {
+      [](const RobotReport& f) {
         const bool is_valid_echo =
             !f.command || (is_within(f.command->sent_at) && is_within(f.command->received_at));
         return f.robot == kRobot && is_within(f.robot_incarnation) && is_within(f.obeyed_incarnation) &&

@@ -53,25 +53,25 @@ inline Command random_command(Rng& rng) {
   return command;
 }
 
-inline Feedback random_feedback(Rng& rng) {
-  Feedback feedback;
-  feedback.robot = kRobot;
-  feedback.robot_incarnation = random_number(rng);
-  feedback.obeyed_incarnation = random_number(rng);
-  feedback.obeyed_epoch = random_number(rng);
-  feedback.valid_at = random_time(rng);
-  feedback.executing = random_version(rng);
-  feedback.is_off_reference = rng.chance(0.5);
-  feedback.is_lifted = rng.chance(0.5);
-  if (rng.chance(0.7)) feedback.command = {random_time(rng), random_time(rng)};
-  feedback.estimate = {random_vector(rng, 20), random_vector(rng, 4)};
-  feedback.heading_rad = rng.uniform(-4, 4);
-  feedback.tracking_error_m = rng.uniform(0, 1);
-  feedback.uncertainty = {rng.uniform(0, 0.1), rng.uniform(0, 0.1)};
-  feedback.has_moved = rng.chance(0.5);
-  feedback.activated = rng.bits();
-  feedback.lead = Duration{static_cast<std::int64_t>(rng.uniform(0.0, 3e8))};
-  return feedback;
+inline RobotReport random_robot_report(Rng& rng) {
+  RobotReport robot_report;
+  robot_report.robot = kRobot;
+  robot_report.robot_incarnation = random_number(rng);
+  robot_report.obeyed_incarnation = random_number(rng);
+  robot_report.obeyed_epoch = random_number(rng);
+  robot_report.valid_at = random_time(rng);
+  robot_report.executing = random_version(rng);
+  robot_report.is_off_reference = rng.chance(0.5);
+  robot_report.is_lifted = rng.chance(0.5);
+  if (rng.chance(0.7)) robot_report.command = {random_time(rng), random_time(rng)};
+  robot_report.estimate = {random_vector(rng, 20), random_vector(rng, 4)};
+  robot_report.heading_rad = rng.uniform(-4, 4);
+  robot_report.tracking_error_m = rng.uniform(0, 1);
+  robot_report.uncertainty = {rng.uniform(0, 0.1), rng.uniform(0, 0.1)};
+  robot_report.has_moved = rng.chance(0.5);
+  robot_report.activated = rng.bits();
+  robot_report.lead = Duration{static_cast<std::int64_t>(rng.uniform(0.0, 3e8))};
+  return robot_report;
 }
 
 inline Proposal random_proposal(Rng& rng) {
@@ -116,6 +116,6 @@ inline msg::Verdict message_of(const Verdict& verdict) {
   message.header().stamp_ns(to_ns(verdict.sent_at));
   return message;
 }
-inline msg::Feedback message_of(const Feedback& feedback) { return encode(feedback); }
+inline msg::Feedback message_of(const RobotReport& robot_report) { return encode(robot_report); }
 
 }  // namespace sidestep::random_messages

@@ -28,12 +28,12 @@ msg::Command full_command() {
   return message_of(command);
 }
 
-/// Feedback with all optional parts.
-msg::Feedback full_feedback() {
-  Feedback feedback;
-  feedback.robot = feedback.executing.robot = kRobot;
-  feedback.command = {time_from_ns(1), time_from_ns(2)};
-  return encode(feedback);
+/// A report with all optional parts.
+msg::Feedback full_robot_report() {
+  RobotReport robot_report;
+  robot_report.robot = robot_report.executing.robot = kRobot;
+  robot_report.command = {time_from_ns(1), time_from_ns(2)};
+  return encode(robot_report);
 }
 
 TEST_CASE("encoding and decoding a command preserves it bit for bit") {
@@ -67,7 +67,7 @@ TEST_CASE("encoding and decoding feedback preserves it bit for bit") {
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 5000; ++i) {
-    const Feedback in = random_feedback(rng);
+    const RobotReport in = random_robot_report(rng);
     const auto out = decode(encode(in), kRobot, kNow);
     REQUIRE(out);
     REQUIRE(out->robot == in.robot);
@@ -142,7 +142,7 @@ TEST_CASE("a command with one hostile field is refused") {
 TEST_CASE("feedback with one hostile field is refused") {
   using Message = msg::Feedback;
   const auto is_refused = [](auto spoil) {
-    Message message = full_feedback();
+    Message message = full_robot_report();
     REQUIRE(decode(message, kRobot, kNow));
     spoil(message);
     return !decode(message, kRobot, kNow);
@@ -181,11 +181,11 @@ TEST_CASE("feedback with one hostile field is refused") {
   }
   CHECK(is_refused([](Message& m) { m.lead_ns(-1); }));
   CHECK(is_refused([](Message& m) { m.lead_ns(300'000'001); }));
-  CHECK_FALSE(decode(full_feedback(), kRobot + 1, kNow));
+  CHECK_FALSE(decode(full_robot_report(), kRobot + 1, kNow));
 }
 
 TEST_CASE("feedback of a robot that has received no command contains none") {
-  msg::Feedback message = full_feedback();
+  msg::Feedback message = full_robot_report();
   REQUIRE(decode(message, kRobot, kNow)->command);
   message.command_stamp_ns(0);
   REQUIRE(decode(message, kRobot, kNow));
@@ -193,12 +193,12 @@ TEST_CASE("feedback of a robot that has received no command contains none") {
 }
 
 TEST_CASE("a robot is absent if it is lifted and executes nothing") {
-  Feedback feedback;
-  CHECK_FALSE(feedback.is_absent());
-  feedback.is_lifted = true;
-  CHECK(feedback.is_absent());
-  feedback.executing.number = 1;
-  CHECK_FALSE(feedback.is_absent());
+  RobotReport robot_report;
+  CHECK_FALSE(robot_report.is_absent());
+  robot_report.is_lifted = true;
+  CHECK(robot_report.is_absent());
+  robot_report.executing.number = 1;
+  CHECK_FALSE(robot_report.is_absent());
 }
 
 }  // namespace sidestep::robot_codec_test

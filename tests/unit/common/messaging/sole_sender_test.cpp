@@ -145,10 +145,10 @@ TEST_CASE("with three or more processes no message is used either") {
 TEST_CASE("a robot that raises its incarnation is heard at once, but its earlier messages are not") {
   SoleSender sender;
   Time now = kBegin;
-  for (std::uint64_t life = 0; life < 5; ++life) {
-    for (int i = 0; i < 10; ++i) CHECK(sender.receive(kOne + life, now += kCycle) == Outcome::kCounts);
-    CHECK(sender.receive(kOne + life + 1, now += 1ms) == Outcome::kCounts);
-    CHECK(sender.receive(kOne + life, now += 1ms) == Outcome::kRefused);
+  for (std::uint64_t incarnation = 0; incarnation < 5; ++incarnation) {
+    for (int i = 0; i < 10; ++i) CHECK(sender.receive(kOne + incarnation, now += kCycle) == Outcome::kCounts);
+    CHECK(sender.receive(kOne + incarnation + 1, now += 1ms) == Outcome::kCounts);
+    CHECK(sender.receive(kOne + incarnation, now += 1ms) == Outcome::kRefused);
     now += SoleSender::kGoneAfter;
   }
   // A process that began later is another one, and so is one that began a moment earlier.

@@ -21,28 +21,28 @@ struct Scene {
   int adopted = 0;
   std::vector<Duration> steps;
   Writer<msg::CoordinatorState> heartbeats;
-  Writer<msg::Feedback> facts;
+  Writer<msg::Feedback> robot_reports;
   HostClockWatch watch;
 
   Scene(ClockReference reference, Duration own_ahead)
       : bus(network, {network.new_process(), {own_ahead, 0, {}}}),
         other(network),
         heartbeats(other.advertise(topics::kCoordinator)),
-        facts(other.advertise(topics::kFeedback, 3)),
+        robot_reports(other.advertise(topics::kFeedback, 3)),
         watch(bus, reference, Duration{0},
               {[this] { return host_ahead; }, [this] { return is_in_use; }, [this] { ++adopted; },
                [this](Duration step) { steps.push_back(step); }}) {
     if (reference == ClockReference::kRobots)
       bus.subscribe(topics::kFeedback, 3, [](const msg::Feedback&) {});
   }
-  void run(Duration duration, bool with_heartbeats, bool with_facts) {
+  void run(Duration duration, bool with_heartbeats, bool with_reports) {
     for (const Time end = network.now() + duration; network.now() < end;) {
       msg::CoordinatorState state;
       state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
       if (with_heartbeats) heartbeats.publish(state, other.now());
-      msg::Feedback fact;
-      fact.header().sender(3);
-      if (with_facts) facts.publish(fact, other.now());
+      msg::Feedback robot_report;
+      robot_report.header().sender(3);
+      if (with_reports) robot_reports.publish(robot_report, other.now());
       network.run_until(network.now() + 20ms);
     }
   }

@@ -22,9 +22,9 @@ TEST_CASE("of versions with the same start, the lower number goes first, in what
   const Version low = rest_version(201, 0, 100), high = rest_version(202, is_chain ? 201 : 0, 100);
   CHECK(side.on_command(command(100, 1, is_lower_first ? &low : &high), at_ms(10), memory));
   CHECK(side.on_command(command(100, 1, is_lower_first ? &high : &low), at_ms(11), memory));
-  CHECK(side.facts(at_ms(99)).executing->number == 0);
-  CHECK(side.facts(at_ms(100)).executing->number == (is_chain ? 202 : 201));
-  CHECK(side.facts(at_ms(101)).executing->number == (is_chain ? 202 : 201));
+  CHECK(side.robot_report(at_ms(99)).executing->number == 0);
+  CHECK(side.robot_report(at_ms(100)).executing->number == (is_chain ? 202 : 201));
+  CHECK(side.robot_report(at_ms(101)).executing->number == (is_chain ? 202 : 201));
 }
 
 }  // namespace sidestep::robot

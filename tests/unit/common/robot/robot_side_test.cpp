@@ -65,13 +65,14 @@ TEMPLATE_TEST_CASE("a robot side repeats every version bit for bit and allocates
       (void)side.on_command(command(100, 1, &sent.back()), at_ms(ms), memory);
     }
     side.check_reference(at_ms(ms), exactly_at<TestType>(side.executing(), at_ms(ms)), memory);
-    const Facts facts = side.facts(at_ms(ms));
-    if (facts.executing->number == 0) continue;
-    const Version& original = sent[facts.executing->number - 101];
-    REQUIRE(facts.executing->number == original.number);
-    const bool is_same = facts.executing->x_m == original.x_m && facts.executing->vy_mps == original.vy_mps &&
-                         facts.executing->phases[0].ax_mps2 == original.phases[0].ax_mps2 &&
-                         facts.executing->phases[1].ay_mps2 == original.phases[1].ay_mps2;
+    const RobotReport robot_report = side.robot_report(at_ms(ms));
+    if (robot_report.executing->number == 0) continue;
+    const Version& original = sent[robot_report.executing->number - 101];
+    REQUIRE(robot_report.executing->number == original.number);
+    const bool is_same = robot_report.executing->x_m == original.x_m &&
+                         robot_report.executing->vy_mps == original.vy_mps &&
+                         robot_report.executing->phases[0].ax_mps2 == original.phases[0].ax_mps2 &&
+                         robot_report.executing->phases[1].ay_mps2 == original.phases[1].ay_mps2;
     compared += is_same ? 1 : 0;
     REQUIRE(is_same);
   }
@@ -122,8 +123,8 @@ TEST_CASE(
   CHECK(side.on_command(command(100, 1, &soon), at_ms(0), memory));
   CHECK(side.counts().refused_late == 1);
   CHECK(side.on_command(command(100, 1, &in_time), at_ms(0), memory));
-  CHECK(side.facts(at_ms(101)).executing->number == 102);
-  CHECK(side.facts(at_ms(101)).lead_ns == 100'000'000);
+  CHECK(side.robot_report(at_ms(101)).executing->number == 102);
+  CHECK(side.robot_report(at_ms(101)).lead_ns == 100'000'000);
 }
 
 TEST_CASE("a robot whose motors obey late begins its own stop with the motion under way") {
@@ -251,7 +252,7 @@ TEST_CASE("a robot does not plan to switch to a version that it will refuse") {
   for (std::int64_t ms = 2; ms < 80; ++ms) {
     const std::uint64_t planned = side.planned(at_ms(ms + 5)).number;
     RobotSide<double> later = side;
-    CHECK(planned == later.facts(at_ms(ms + 5)).executing->number);
+    CHECK(planned == later.robot_report(at_ms(ms + 5)).executing->number);
     while (side.switch_next(at_ms(ms))) {
     }
   }
@@ -267,14 +268,14 @@ TEST_CASE("a robot that is switched off and on while being carried is put down a
   Version place = rest_version(101, 0, 20);
   place.x_m = 3;
   REQUIRE(side.on_command(command(100, 1, &place), at_ms(10), memory));
-  REQUIRE(side.facts(at_ms(20)).executing->number == 101);
+  REQUIRE(side.robot_report(at_ms(20)).executing->number == 101);
   side.put_down();
   Estimate<double> there;
   there.position_m.x = 3;
   side.check_reference(at_ms(30), there, memory);
   CHECK_FALSE(side.is_off_reference());
   CHECK(side.own_stops() == 0);
-  CHECK(side.facts(at_ms(31)).executing->number == 101);
+  CHECK(side.robot_report(at_ms(31)).executing->number == 101);
 }
 
 TEST_CASE("a robot without a pose accepts no version") {
@@ -304,7 +305,7 @@ TEST_CASE(
   const std::int64_t before_ns = at_ms(4'000'000), now_ns = before_ns - back_ns;
   const Version first = driving_version(side.executing(), 101, before_ns - 20'000'000, {2, 0});
   (void)side.on_command(command(100, 1, &first), before_ns - 30'000'000, memory);
-  REQUIRE(side.facts(before_ns).executing->number == 101);
+  REQUIRE(side.robot_report(before_ns).executing->number == 101);
   const Version pending = driving_version(side.executing(), 102, before_ns + 10'000'000, {2, 0});
   (void)side.on_command(command(100, 1, &pending), before_ns, memory);
   REQUIRE(side.has_pending());
@@ -320,10 +321,10 @@ TEST_CASE(
   REQUIRE(side.may_report());
   CHECK(side.own_stops() == 1);
   CHECK(side.own_stop_reason() == OwnStopReason::kClockSetBack);
-  const Facts facts = side.facts(now_ns + 1'000'000);
-  CHECK(facts.executing->start_ns == now_ns + 1'000'000);
-  CHECK(facts.executing->number >= 102 + RobotSide<double>::kOwnNumberGap);
-  CHECK(facts.executing->vx_mps == estimate.velocity_mps.x);
+  const RobotReport robot_report = side.robot_report(now_ns + 1'000'000);
+  CHECK(robot_report.executing->start_ns == now_ns + 1'000'000);
+  CHECK(robot_report.executing->number >= 102 + RobotSide<double>::kOwnNumberGap);
+  CHECK(robot_report.executing->vx_mps == estimate.velocity_mps.x);
   // By the new clock that version would be in time, but it was granted for times of the old one.
   (void)side.on_command(command(100, 1, &pending), now_ns + 2'000'000, memory);
   CHECK_FALSE(side.switch_next(before_ns + 20'000'000));
@@ -343,7 +344,7 @@ TEST_CASE("a lifted robot whose clock is set back stays lifted, and has no pendi
   CHECK(side.is_lifted());
   CHECK(side.may_report());
   CHECK_FALSE(side.has_pending());
-  CHECK(side.facts(at_ms(1000)).executing->start_ns == at_ms(1000));
+  CHECK(side.robot_report(at_ms(1000)).executing->start_ns == at_ms(1000));
 }
 
 }  // namespace sidestep::robot

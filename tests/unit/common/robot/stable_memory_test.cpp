@@ -21,8 +21,8 @@ TEST_CASE("a robot stores the agent and the epoch before it acknowledges them") 
   REQUIRE(side.on_command(command(100, 7), at_ms(1), memory));
   CHECK(memory.stored.incarnation == 100);
   CHECK(memory.stored.epoch == 7);
-  CHECK(side.facts(at_ms(2)).obeyed_incarnation == 100);
-  CHECK(side.facts(at_ms(2)).obeyed_epoch == 7);
+  CHECK(side.robot_report(at_ms(2)).obeyed_incarnation == 100);
+  CHECK(side.robot_report(at_ms(2)).obeyed_epoch == 7);
 }
 
 TEST_CASE("a robot whose memory fails neither obeys nor acknowledges a new agent or epoch") {
@@ -34,16 +34,16 @@ TEST_CASE("a robot whose memory fails neither obeys nor acknowledges a new agent
   const Version version = rest_version(101, 0, 50);
   CHECK_FALSE(side.on_command(command(200, 7, &version), at_ms(2), memory));
   CHECK_FALSE(side.on_command(command(100, 8, &version), at_ms(2), memory));
-  CHECK(side.facts(at_ms(3)).obeyed_incarnation == 100);
-  CHECK(side.facts(at_ms(3)).obeyed_epoch == 7);
+  CHECK(side.robot_report(at_ms(3)).obeyed_incarnation == 100);
+  CHECK(side.robot_report(at_ms(3)).obeyed_epoch == 7);
   // The robot's first version would have to be stored too, because it must know afterwards that it has moved.
   CHECK(side.on_command(command(100, 7, &version), at_ms(4), memory));
-  CHECK(side.facts(at_ms(60)).executing->number == 0);
+  CHECK(side.robot_report(at_ms(60)).executing->number == 0);
   CHECK(side.counts().refused_unstored == 3);
   memory.fails = false;
   const Version later = rest_version(102, 0, 80);
   CHECK(side.on_command(command(100, 7, &later), at_ms(61), memory));
-  CHECK(side.facts(at_ms(80)).executing->number == 102);
+  CHECK(side.robot_report(at_ms(80)).executing->number == 102);
 }
 
 TEST_CASE("a robot that restarts refuses what it refused before, and still knows that it has moved") {
@@ -53,21 +53,22 @@ TEST_CASE("a robot that restarts refuses what it refused before, and still knows
     side.begin_at_rest(0, 0);
     const Version version = rest_version(201, 0, 20, 200);
     REQUIRE(side.on_command(command(200, 9, &version), at_ms(1), memory));
-    REQUIRE(side.facts(at_ms(30)).executing->number == 201);
+    REQUIRE(side.robot_report(at_ms(30)).executing->number == 201);
   }
   RobotSide<float> side({}, memory.stored);
   CHECK_FALSE(side.has_pose());
   CHECK_FALSE(side.may_report());
   side.find_pose();
   side.check_reference(at_ms(40), {}, memory);
-  const Facts facts = side.facts(at_ms(41));
-  CHECK(facts.obeyed_incarnation == 200);
-  CHECK(facts.obeyed_epoch == 9);
-  CHECK(facts.has_moved);
-  CHECK(facts.is_off_reference);
-  CHECK(facts.executing->number > 201);
+  const RobotReport robot_report = side.robot_report(at_ms(41));
+  CHECK(robot_report.obeyed_incarnation == 200);
+  CHECK(robot_report.obeyed_epoch == 9);
+  CHECK(robot_report.has_moved);
+  CHECK(robot_report.is_off_reference);
+  CHECK(robot_report.executing->number > 201);
   CHECK_FALSE(side.on_command(command(199, 9), at_ms(42), memory));
-  const Version old_epoch = rest_version(facts.executing->number + 1, facts.executing->number, 60, 200);
+  const Version old_epoch =
+      rest_version(robot_report.executing->number + 1, robot_report.executing->number, 60, 200);
   CHECK(side.on_command(command(200, 8, &old_epoch), at_ms(42), memory));
   CHECK_FALSE(side.has_pending());
 }

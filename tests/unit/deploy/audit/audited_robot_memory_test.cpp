@@ -195,18 +195,18 @@ TEST_CASE("the newest of the last sixteen proposals that matches is found") {
 }
 
 /// What a fact rules out, by the rules one after the other.
-Exclusion slow_exclusion(const AuditedRobot::Fact& fact, const KnownVersion& v) {
-  const bool begins_later = v.has_content && v.path.start_ns() > fact.at_ns;
-  if (fact.is_lifted && fact.executing == 0) {
+Exclusion slow_exclusion(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& v) {
+  const bool begins_later = v.has_content && v.path.start_ns() > robot_report.at_ns;
+  if (robot_report.is_lifted && robot_report.executing == 0) {
     if (!begins_later || v.was_executed) return Exclusion::kLifted;
     const bool rests = v.path.phase_count() == 0;
     if (v.version.base() == 0 && rests && v.number > 0) return Exclusion::kNone;
-    return v.version.base() > fact.last_executed ? Exclusion::kNone : Exclusion::kLifted;
+    return v.version.base() > robot_report.last_executed ? Exclusion::kNone : Exclusion::kLifted;
   }
-  if (v.number < fact.executing) return Exclusion::kOlder;
-  if (v.number > fact.executing && v.has_content) {
+  if (v.number < robot_report.executing) return Exclusion::kOlder;
+  if (v.number > robot_report.executing && v.has_content) {
     if (!begins_later) return Exclusion::kLate;
-    if (v.version.incarnation() < fact.obeyed_incarnation) return Exclusion::kFenced;
+    if (v.version.incarnation() < robot_report.obeyed_incarnation) return Exclusion::kFenced;
   }
   return Exclusion::kNone;
 }
@@ -216,12 +216,12 @@ TEST_CASE("a fact excludes the versions that its robot no longer executes") {
   for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    AuditedRobot::Fact fact;
-    fact.at_ns = static_cast<std::int64_t>(100 + rng.below(3));
-    fact.is_lifted = rng.chance(0.5);
-    fact.executing = rng.below(3);
-    fact.last_executed = rng.below(4);
-    fact.obeyed_incarnation = 10 + rng.below(3);
+    AuditedRobot::ReceivedReport robot_report;
+    robot_report.at_ns = static_cast<std::int64_t>(100 + rng.below(3));
+    robot_report.is_lifted = rng.chance(0.5);
+    robot_report.executing = rng.below(3);
+    robot_report.last_executed = rng.below(4);
+    robot_report.obeyed_incarnation = 10 + rng.below(3);
     KnownVersion known;
     known.number = rng.below(4);
     known.has_content = rng.chance(0.9);
@@ -236,9 +236,9 @@ TEST_CASE("a fact excludes the versions that its robot no longer executes") {
       known.version.phases()[0].duration_ns(1'000'000'000);
       known.path = AuditPath(known.version);
     }
-    const Exclusion expected = slow_exclusion(fact, known);
+    const Exclusion expected = slow_exclusion(robot_report, known);
     ++found[expected];
-    CHECK(exclusion_by(fact, known) == expected);
+    CHECK(exclusion_by(robot_report, known) == expected);
   }
   for (const Exclusion e :
        {Exclusion::kNone, Exclusion::kOlder, Exclusion::kLate, Exclusion::kFenced, Exclusion::kLifted})
@@ -298,13 +298,13 @@ TEST_CASE("live versions are the recent ones with content, and their disc contai
 TEST_CASE("a robot whose clock was set back forgets all times of that clock") {
   AuditedRobot robot;
   robot.forget_times();
-  CHECK_FALSE(robot.fact);
-  robot.fact.emplace().at_ns = 1000;
+  CHECK_FALSE(robot.last_report);
+  robot.last_report.emplace().at_ns = 1000;
   robot.drifted_since_ns = 900;
   robot.beyond_bound_since_ns = 950;
   for (VersionNumber number = 1; number <= 3; ++number) robot.find_or_insert(number).executed_until_ns = 1000;
   robot.forget_times();
-  CHECK(robot.fact->at_ns == kAlways);
+  CHECK(robot.last_report->at_ns == kAlways);
   CHECK(robot.drifted_since_ns == kNever);
   CHECK(robot.beyond_bound_since_ns == kNever);
   for (const KnownVersion& known : robot.versions) CHECK(known.executed_until_ns == kAlways);
@@ -316,13 +316,13 @@ TEST_CASE("a robot on a new floor keeps only its id and the epochs of the former
   robot.registered.emplace().epoch = 5;
   robot.find_or_insert(3);
   propose(robot, 3, 1, 1);
-  robot.fact.emplace();
+  robot.last_report.emplace();
   robot.reset();
   CHECK(robot.id == 7);
   CHECK(robot.forgotten_in == 5);
   CHECK(robot.versions.empty());
   CHECK(robot.find_proposal(3) == nullptr);
-  CHECK_FALSE(robot.fact);
+  CHECK_FALSE(robot.last_report);
   CHECK_FALSE(robot.registered);
   robot.registered.emplace().epoch = 4;
   robot.reset();

@@ -82,7 +82,7 @@ void add_content(AuditedRobot& robot, VersionNumber number, VersionNumber base, 
 
 TEST_CASE("after a robot is lifted, only versions that were granted to it for later remain possible") {
   AuditedRobot robot;
-  AuditedRobot::Fact lifted;
+  AuditedRobot::ReceivedReport lifted;
   lifted.at_ns = 100;
   lifted.is_lifted = true;
   lifted.last_executed = 7;
@@ -100,7 +100,7 @@ TEST_CASE("after a robot is lifted, only versions that were granted to it for la
 
 TEST_CASE("a version that was too late by a clock that has been set back is possible again") {
   AuditedRobot robot = robot_with(5, 3);
-  robot.fact.emplace().at_ns = 1000;
+  robot.last_report.emplace().at_ns = 1000;
   robot.find(4)->exclusion = Exclusion::kLate;
   robot.find(4)->excluded_ns = 10;
   robot.advance_recent(11);

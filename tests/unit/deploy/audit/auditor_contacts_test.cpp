@@ -79,7 +79,7 @@ TEST_CASE("crashes of moving robots are reported, those that are not listed toge
 
 TEST_CASE("an auditor that joins a run judges only what happens from then on") {
   Shown shown(kIncomplete);
-  for (int i = 0; i < 100; ++i) (void)shown.header("truth", 30'000, shown.life);
+  for (int i = 0; i < 100; ++i) (void)shown.header("truth", 30'000, shown.incarnation);
   shown.touch(0, 1);
   shown.crash(0);
   shown.truth.firmware_violations(0);
@@ -103,7 +103,7 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
   std::uint64_t undecided = 1;
   SECTION("a robot is not shown any more") { shown.truth.robots().resize(1); }
   SECTION("messages were missed while a robot was disturbed") {
-    (void)shown.header("truth", 30'000, shown.life);
+    (void)shown.header("truth", 30'000, shown.incarnation);
   }
   SECTION("nothing was missed") { undecided = 0; }
   SECTION("a message of an agent was missed, which tells of no disturbance") {
@@ -145,7 +145,7 @@ TEST_CASE("the counters of every simulator start again from zero") {
   REQUIRE(shown.violations.size() == 3);
   CHECK(shown.count(AuditRule::kFirmwareMonitor) == 1);
   SECTION("the same counters of the next simulator are of new events") {
-    ++shown.life;
+    ++shown.incarnation;
     shown.run(50ms);
     CHECK(shown.violations.size() == 6);
   }
@@ -163,18 +163,18 @@ TEST_CASE("the counters of every simulator start again from zero") {
   }
   SECTION("of more than sixteen simulators the first is forgotten") {
     for (int i = 1; i < 16; ++i) {
-      ++shown.life;
+      ++shown.incarnation;
       shown.truth.contacts(0), shown.truth.crashes_while_moving(0), shown.truth.firmware_violations(0);
       shown.show();
     }
-    shown.life -= 15;
+    shown.incarnation -= 15;
     shown.truth.contacts(1);
     shown.show();
     CHECK(shown.violations.size() == 3);
-    shown.life += 16;
+    shown.incarnation += 16;
     shown.truth.contacts(0);
     shown.show();
-    shown.life -= 16;
+    shown.incarnation -= 16;
     shown.truth.contacts(1);
     shown.show();
     CHECK(shown.violations.size() == 4);

@@ -220,9 +220,9 @@ TEST_CASE(
   Scenario scenario = stage_scenario();
   scenario.obstacles.push_back(Circle{{-1, 1}, 0.2});
   Stage stage(scenario);
-  stage.facts[0].executing().inflation_m(inflation_m);
+  stage.robot_reports[0].executing().inflation_m(inflation_m);
   stage.begin();
-  msg::Version version = stage.next(stage.facts[0].executing(), 1);
+  msg::Version version = stage.next(stage.robot_reports[0].executing(), 1);
   version.inflation_m(inflation_m);
   const double way_m = 1 - 0.2 - separation_m(scenario) + closer_m;
   append(version, 1, {0, way_m});
@@ -285,7 +285,7 @@ TEST_CASE("blocked cells of a map are obstacles") {
   // A second version that begins there and comes no nearer is excused by its base.
   stage.command(version);
   stage.advance(2500ms);
-  stage.facts[0].executing(version);
+  stage.robot_reports[0].executing(version);
   stage.report(0);
   stage.drive(stage.next(version, 2));
   CHECK(stage.count(AuditRule::kObstacle) == (closer_m > 0 ? 1 : 0));
@@ -330,10 +330,10 @@ TEST_CASE("a version that starts when its base does, or before, is reported") {
 
 TEST_CASE("a version has the inflation of its base, or begins at rest without one") {
   Stage stage;
-  stage.facts[0].executing().inflation_m(0.01);
+  stage.robot_reports[0].executing().inflation_m(0.01);
   stage.begin();
   const auto grant = [&](double inflation_m, double speed_mps) {
-    msg::Version version = stage.next(stage.facts[0].executing(), 1);
+    msg::Version version = stage.next(stage.robot_reports[0].executing(), 1);
     version.inflation_m(inflation_m);
     version.vy_mps(speed_mps);
     brake(version, 3);
@@ -364,7 +364,7 @@ TEST_CASE("the base of a granted version was registered or granted in the epoch"
   SECTION("granted in a former epoch, and not registered") {
     stage.drive(first);
     ++stage.epoch;
-    stage.facts[0].obeyed_epoch(stage.epoch), stage.facts[1].obeyed_epoch(stage.epoch);
+    stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
     for (RobotId robot = 0; robot < 2; ++robot) stage.register_versions(robot, {stage.rest(robot)});
     stage.grant(stage.next(first, 2, 100ms));
     CHECK(stage.count(AuditRule::kBase) == 1);
@@ -372,8 +372,8 @@ TEST_CASE("the base of a granted version was registered or granted in the epoch"
   }
   SECTION("a stop that the robot made itself") {
     msg::Version stop = stage.next(stage.rest(0), 9, 0ms);
-    stage.facts[0].executing(stop);
-    stage.facts[0].is_off_reference(true);
+    stage.robot_reports[0].executing(stop);
+    stage.robot_reports[0].is_off_reference(true);
     stage.report(0);
     stage.show_page({stop, stage.rest(1)});
     stage.grant(stage.next(stop, 10, 100ms));

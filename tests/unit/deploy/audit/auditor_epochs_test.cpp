@@ -18,7 +18,7 @@ TEST_CASE("a robot executes no version that was sent under an epoch older than t
   bool is_stale = false;
   const auto obey = [&] {
     stage.advance(1ms);
-    stage.facts[0].obeyed_epoch(stage.epoch + 1);
+    stage.robot_reports[0].obeyed_epoch(stage.epoch + 1);
     stage.report(0);
     stage.advance(1ms);
   };
@@ -28,7 +28,7 @@ TEST_CASE("a robot executes no version that was sent under an epoch older than t
   }
   SECTION("sent at the time of its first fact with the epoch") {
     stage.advance(1ms);
-    stage.facts[0].obeyed_epoch(stage.epoch + 1);
+    stage.robot_reports[0].obeyed_epoch(stage.epoch + 1);
     stage.report(0);
     stage.command(first);
   }
@@ -45,7 +45,7 @@ TEST_CASE("a robot executes no version that was sent under an epoch older than t
     --stage.epoch;
   }
   stage.now = time_from_ns(first.start_ns());
-  stage.facts[0].executing(first);
+  stage.robot_reports[0].executing(first);
   stage.report(0);
   check_only(stage, AuditRule::kStaleEpoch, is_stale ? 1 : 0);
   if (is_stale) CHECK(stage.violations.front().epoch == stage.epoch);
@@ -54,7 +54,7 @@ TEST_CASE("a robot executes no version that was sent under an epoch older than t
 TEST_CASE("a robot that still obeys an older epoch than that of a grant is reported once") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
-  stage.facts[1].obeyed_epoch(stage.epoch - 1);
+  stage.robot_reports[1].obeyed_epoch(stage.epoch - 1);
   stage.register_versions(0, {stage.rest(0)}), stage.register_versions(1, {stage.rest(1)});
   stage.report(0);
   bool is_excused = false;
@@ -71,7 +71,7 @@ TEST_CASE("a robot that still obeys an older epoch than that of a grant is repor
     stage.auditor.on_attestation(attestation, stage.now);
   }
   SECTION("while it is lifted") {
-    stage.facts[1].is_lifted(true);
+    stage.robot_reports[1].is_lifted(true);
     is_excused = true;
   }
   const msg::Version first = stage.next(stage.rest(0), 1);
@@ -93,10 +93,10 @@ TEST_CASE("a robot that executes a version of an epoch obeys that epoch, even if
   else
     stage.decide(0, 1, 1);
   const bool is_obeyed = GENERATE(true, false);
-  if (!is_obeyed) stage.facts[0].obeyed_epoch(stage.epoch - 1);
+  if (!is_obeyed) stage.robot_reports[0].obeyed_epoch(stage.epoch - 1);
   CAPTURE(is_proposed, is_obeyed);
   stage.now = time_from_ns(first.start_ns());
-  stage.facts[0].executing(first);
+  stage.robot_reports[0].executing(first);
   for (int i = 0; i < 3; ++i) stage.report(0);
   CHECK(stage.count(AuditRule::kAllRegistered) == (is_proposed && !is_obeyed ? 1 : 0));
 }
@@ -108,14 +108,14 @@ struct Registering : Stage {
     first = next(rest(0), 1);
     drive(first);
     ++epoch;
-    facts[0].obeyed_epoch(epoch);
+    robot_reports[0].obeyed_epoch(epoch);
     report(0);
     advance(1ms);
   }
   /// The robot repeats the time of a command that was sent after the registration.
   void report_later() {
     advance(1ms);
-    facts[0].command_stamp_ns(to_ns(now));
+    robot_reports[0].command_stamp_ns(to_ns(now));
     report(0);
     report(0);
   }
@@ -135,12 +135,12 @@ TEST_CASE("an agent registers what its robot executes, after the robot has ackno
   SECTION("it does not, but the robot executes a version of the new epoch since") {
     stage.register_versions(0, {stage.rest(0)});
     stage.register_versions(1, {stage.rest(1)});
-    stage.facts[1].obeyed_epoch(stage.epoch);
+    stage.robot_reports[1].obeyed_epoch(stage.epoch);
     const msg::Version second = stage.next(stage.first, 2);
     stage.grant(second);
     stage.command(second);
     stage.now = time_from_ns(second.start_ns());
-    stage.facts[0].executing(second);
+    stage.robot_reports[0].executing(second);
     stage.violations.clear();  // its base is not in the ledger
   }
   SECTION("the robot does not obey the epoch yet") {
@@ -151,12 +151,12 @@ TEST_CASE("an agent registers what its robot executes, after the robot has ackno
   SECTION("the robot is off its reference") {
     stage.register_versions(0, {stage.rest(0)});
     msg::Version stop = stage.next(stage.first, 9, 0ms);
-    stage.facts[0].executing(stop);
-    stage.facts[0].is_off_reference(true);
+    stage.robot_reports[0].executing(stop);
+    stage.robot_reports[0].is_off_reference(true);
   }
   SECTION("the robot is lifted") {
     stage.register_versions(0, {stage.rest(0)});
-    stage.facts[0].is_lifted(true);
+    stage.robot_reports[0].is_lifted(true);
   }
   stage.report_later();
   INFO(stage.lines());
@@ -168,7 +168,7 @@ TEST_CASE("an agent registers what its robot executes, after the robot has ackno
 
 TEST_CASE("a robot that obeys an older agent has not acknowledged the one that registers") {
   Registering stage(kComplete);
-  stage.facts[0].obeyed_incarnation(Stage::kAgent);
+  stage.robot_reports[0].obeyed_incarnation(Stage::kAgent);
   msg::Registration registration;
   registration.header(stage.header("registration", 0, Stage::kAgent + 1));
   registration.epoch(stage.epoch);
@@ -186,20 +186,20 @@ TEST_CASE("if messages may be missed, only a command sent after a registration p
   stage.register_versions(0, {stage.rest(0)});
   const std::int64_t registered_ns = to_ns(stage.now);
   std::uint64_t expected = 0;
-  SECTION("of a command before") { stage.facts[0].command_stamp_ns(registered_ns - 1); }
-  SECTION("of a command at that time") { stage.facts[0].command_stamp_ns(registered_ns); }
+  SECTION("of a command before") { stage.robot_reports[0].command_stamp_ns(registered_ns - 1); }
+  SECTION("of a command at that time") { stage.robot_reports[0].command_stamp_ns(registered_ns); }
   SECTION("of a later command") {
-    stage.facts[0].command_stamp_ns(registered_ns + 1);
+    stage.robot_reports[0].command_stamp_ns(registered_ns + 1);
     expected = 1;
   }
   SECTION("of a later command of another agent") {
-    stage.facts[0].command_stamp_ns(registered_ns + 1);
-    stage.facts[0].obeyed_incarnation(Stage::kAgent + 1);
+    stage.robot_reports[0].command_stamp_ns(registered_ns + 1);
+    stage.robot_reports[0].obeyed_incarnation(Stage::kAgent + 1);
   }
   SECTION("of a clock that was set back") {
     stage.now -= 5ms;
     stage.register_versions(0, {stage.rest(0)});
-    stage.facts[0].command_stamp_ns(registered_ns + 1);
+    stage.robot_reports[0].command_stamp_ns(registered_ns + 1);
     stage.now += 5ms;
   }
   stage.advance(1ms);
@@ -213,12 +213,12 @@ TEST_CASE("facts of a robot's earlier incarnation are ignored, until it has been
   CAPTURE(is_near, was_silent);
   Stage stage;
   const Incarnation before = Stage::kLife + 1'000'000 - (is_near ? 100'000 : 100'001);
-  const auto report = [&](Incarnation life, double x_m) {
-    msg::Feedback fact = stage.facts[0];
-    fact.header(stage.header("feedback", 0, life));
-    fact.valid_at_ns(to_ns(stage.now));
-    fact.executing().x_m(x_m);
-    stage.auditor.on_feedback(fact, stage.now);
+  const auto report = [&](Incarnation robot_incarnation, double x_m) {
+    msg::Feedback robot_report = stage.robot_reports[0];
+    robot_report.header(stage.header("feedback", 0, robot_incarnation));
+    robot_report.valid_at_ns(to_ns(stage.now));
+    robot_report.executing().x_m(x_m);
+    stage.auditor.on_robot_report(robot_report, stage.now);
   };
   report(Stage::kLife + 1'000'000, -1);
   stage.advance(was_silent ? 1s : 999ms);
@@ -236,11 +236,11 @@ TEST_CASE("a robot of a later simulator is on a new floor, one whose firmware ha
   CAPTURE(later);
   Stage stage;
   stage.begin();
-  msg::Feedback fact = stage.facts[0];
-  fact.header(stage.header("feedback", 0, Stage::kLife + later));
-  fact.valid_at_ns(to_ns(stage.now));
-  fact.executing().x_m(-2);
-  stage.auditor.on_feedback(fact, stage.now);
+  msg::Feedback robot_report = stage.robot_reports[0];
+  robot_report.header(stage.header("feedback", 0, Stage::kLife + later));
+  robot_report.valid_at_ns(to_ns(stage.now));
+  robot_report.executing().x_m(-2);
+  stage.auditor.on_robot_report(robot_report, stage.now);
   CHECK(stage.count(AuditRule::kUniqueVersion) == (is_new_floor ? 0 : 1));
   // The ledger may still tell of the former floor.
   if (!is_new_floor) return;
@@ -258,7 +258,7 @@ TEST_CASE("a version that was executed without a command is reported once") {
   const msg::Version first = stage.next(stage.rest(0), 1);
   stage.grant(first);
   stage.now = time_from_ns(first.start_ns());
-  stage.facts[0].executing(first);
+  stage.robot_reports[0].executing(first);
   stage.report(0);
   stage.report(0);
   check_only(stage, AuditRule::kSent, 1);

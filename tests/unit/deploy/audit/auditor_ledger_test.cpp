@@ -24,7 +24,7 @@ TEST_CASE("a run in which everything is as it should be breaks no rule") {
     stage.advance(2ms);
     stage.command(second);
     stage.now = time_from_ns(second.start_ns());
-    stage.facts[0].executing(second);
+    stage.robot_reports[0].executing(second);
     stage.report(0);
     stage.report(1);
     stage.advance(1ms);
@@ -124,7 +124,7 @@ TEST_CASE("a version is granted once, except that its coordinator may repeat its
   }
   SECTION("in another epoch") {
     ++stage.epoch;
-    stage.facts[0].obeyed_epoch(stage.epoch), stage.facts[1].obeyed_epoch(stage.epoch);
+    stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
     stage.begin();
     stage.decide(0, 3, 3);
     CHECK(stage.count(AuditRule::kVersionOrder) == 1);
@@ -147,7 +147,7 @@ TEST_CASE("versions are granted in increasing order in each epoch") {
   SECTION("a lower number of another robot") { stage.grant(stage.next(stage.rest(1), 4)); }
   SECTION("a lower number in a new epoch, and a higher one in the former epoch") {
     ++stage.epoch;
-    stage.facts[0].obeyed_epoch(stage.epoch), stage.facts[1].obeyed_epoch(stage.epoch);
+    stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
     stage.begin();
     stage.grant(stage.next(stage.rest(0), 4));
     CHECK(stage.violations.empty());
@@ -233,14 +233,14 @@ TEST_CASE("one run of one coordinator grants in an epoch") {
     CHECK(stage.violations.front().epoch == stage.epoch);
   }
   SECTION("the same one after a restart") {
-    ++stage.coordinator_life;
+    ++stage.coordinator_incarnation;
     stage.grant(stage.next(stage.rest(1), 2));
     CHECK(stage.count(AuditRule::kSingleCoordinator) == 1);
   }
   SECTION("another one in another epoch") {
     ++stage.epoch;
     ++stage.coordinator;
-    stage.facts[0].obeyed_epoch(stage.epoch), stage.facts[1].obeyed_epoch(stage.epoch);
+    stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
     stage.begin();
     stage.grant(stage.next(stage.rest(1), 2));
     CHECK(stage.count(AuditRule::kSingleCoordinator) == 0);
@@ -275,7 +275,7 @@ TEST_CASE("a page lists what its robots may execute, and nothing else") {
   SECTION("none that a fact has excluded") {
     stage.command(granted);
     stage.advance(50ms);
-    stage.facts[0].executing(granted);
+    stage.robot_reports[0].executing(granted);
     stage.report(0);
     stage.show_page({granted, other});
     // It may be behind.
@@ -283,7 +283,7 @@ TEST_CASE("a page lists what its robots may execute, and nothing else") {
     expected = 0;
   }
   SECTION("a page of a coordinator that does not grant in the epoch") {
-    ++stage.coordinator_life;
+    ++stage.coordinator_incarnation;
     stage.show_page({rest, other});
     expected = 0;
   }

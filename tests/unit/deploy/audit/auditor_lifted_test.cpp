@@ -19,14 +19,14 @@ struct Lifted : Stage {
     for (const auto& version : {first, second, place, later}) grant(version);
     command(first);
     advance(50ms);
-    facts[0].executing(first);
+    robot_reports[0].executing(first);
     report(0);
     advance(1ms);
     msg::Version nothing;
     nothing.robot(0);
     nothing.base(1);
-    facts[0].executing(nothing);
-    facts[0].is_lifted(true);
+    robot_reports[0].executing(nothing);
+    robot_reports[0].is_lifted(true);
     report(0);
     violations.clear();
     advance(1ms);

@@ -91,9 +91,9 @@ TEST_CASE("an auditor on a bus hears every topic, of every robot of the roster")
     command.robot(9);
     run.bus.deliver(topics::kCommand, command, robot);
     CHECK(run.invalid() == 9 + 3 * robot);
-    msg::Feedback fact;
-    fact.robot(9);
-    run.bus.deliver(topics::kFeedback, fact, robot);
+    msg::Feedback robot_report;
+    robot_report.robot(9);
+    run.bus.deliver(topics::kFeedback, robot_report, robot);
     CHECK(run.invalid() == 10 + 3 * robot);
   }
   const std::uint64_t received = run.auditor.totals().received;
@@ -194,13 +194,13 @@ TEST_CASE("an auditor on a bus hears orders, and who remembers them") {
 TEST_CASE("for an auditor on a bus time passes without messages") {
   Listening run;
   for (const RobotId robot : {0u, 1u}) {
-    msg::Feedback fact;
-    fact.robot(robot);
-    fact.header().sender(robot);
-    fact.header().message_number(1);
-    fact.valid_at_ns(to_ns(run.bus.now()));
-    fact.executing().robot(robot);
-    run.bus.deliver(topics::kFeedback, fact, robot);
+    msg::Feedback robot_report;
+    robot_report.robot(robot);
+    robot_report.header().sender(robot);
+    robot_report.header().message_number(1);
+    robot_report.valid_at_ns(to_ns(run.bus.now()));
+    robot_report.executing().robot(robot);
+    run.bus.deliver(topics::kFeedback, robot_report, robot);
   }
   auto state = from<msg::CoordinatorState>(Sender::kCoordinator);
   state.coordinator_mode(msg::CoordinatorMode::COORDINATOR_GRANTING);

@@ -77,26 +77,26 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
     stage.auditor.on_disturbance(disturbance, stage.now);
   }
   SECTION("facts that are no numbers") {
-    msg::Feedback fact = stage.facts[0];
-    SECTION("x") { fact.x_m(INFINITY); }
-    SECTION("y") { fact.y_m(NAN); }
-    SECTION("speed along x") { fact.vx_mps(NAN); }
-    SECTION("speed along y") { fact.vy_mps(-INFINITY); }
-    SECTION("tracking error") { fact.tracking_error_m(NAN); }
+    msg::Feedback robot_report = stage.robot_reports[0];
+    SECTION("x") { robot_report.x_m(INFINITY); }
+    SECTION("y") { robot_report.y_m(NAN); }
+    SECTION("speed along x") { robot_report.vx_mps(NAN); }
+    SECTION("speed along y") { robot_report.vy_mps(-INFINITY); }
+    SECTION("tracking error") { robot_report.tracking_error_m(NAN); }
     SECTION("time") {
-      fact.valid_at_ns(GENERATE(std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()));
+      robot_report.valid_at_ns(GENERATE(std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()));
     }
-    stage.report(fact);
+    stage.report(robot_report);
   }
   SECTION("facts with another robot's version") {
-    msg::Feedback fact = stage.facts[0];
-    fact.executing(of_other);
-    stage.report(fact);
+    msg::Feedback robot_report = stage.robot_reports[0];
+    robot_report.executing(of_other);
+    stage.report(robot_report);
   }
   SECTION("facts of another robot") {
-    msg::Feedback fact = stage.facts[0];
-    fact.header(stage.header("feedback", 1));
-    stage.auditor.on_feedback(fact, stage.now);
+    msg::Feedback robot_report = stage.robot_reports[0];
+    robot_report.header(stage.header("feedback", 1));
+    stage.auditor.on_robot_report(robot_report, stage.now);
   }
   SECTION("world states and ground truth of no time, or with too many robots") {
     const bool has_time = GENERATE(true, false);
@@ -104,7 +104,7 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
     world.valid_at_ns(has_time ? 1 : -1);
     world.robots().resize(has_time ? kMaxRobots + 1 : 0);
     world.header(stage.header("world", 20'000));
-    stage.auditor.on_world(world, stage.now);
+    stage.auditor.on_world_state(world, stage.now);
     CHECK(stage.auditor.totals().invalid == 1);
     msg::GroundTruth truth;
     truth.valid_at_ns(has_time ? 1 : -1);
@@ -125,12 +125,12 @@ TEST_CASE("robots may have every number up to 1023") {
   Scenario scenario = stage_scenario();
   scenario.robots[1].id = robot;
   Auditor auditor(scenario, kComplete);
-  msg::Feedback fact;
-  fact.robot(robot);
-  fact.header().sender(robot);
-  fact.header().message_number(1);
-  fact.executing().robot(robot);
-  auditor.on_feedback(fact, Time{1s});
+  msg::Feedback robot_report;
+  robot_report.robot(robot);
+  robot_report.header().sender(robot);
+  robot_report.header().message_number(1);
+  robot_report.executing().robot(robot);
+  auditor.on_robot_report(robot_report, Time{1s});
   msg::Disturbance disturbance;
   disturbance.robot(robot);
   auditor.on_disturbance(disturbance, Time{1s});
@@ -177,7 +177,7 @@ TEST_CASE("a version number stands for one version of one agent") {
 msg::CoordinatorState state(Stage& stage, msg::CoordinatorMode mode,
                             const std::vector<RobotId>& missing = {}) {
   msg::CoordinatorState state;
-  state.header(stage.header("coordinator", Stage::kCoordinator, stage.coordinator_life));
+  state.header(stage.header("coordinator", Stage::kCoordinator, stage.coordinator_incarnation));
   state.epoch(stage.epoch);
   state.coordinator_mode(mode);
   for (const RobotId robot : missing) {
@@ -218,7 +218,7 @@ TEST_CASE("a coordinator that still misses registrations after it has granted is
       stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
     }
     SECTION("of another run of the coordinator") {
-      ++stage.coordinator_life;
+      ++stage.coordinator_incarnation;
       stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
     }
     SECTION("by a clock that was set back") {

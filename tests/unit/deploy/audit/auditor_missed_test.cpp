@@ -56,17 +56,17 @@ TEST_CASE(
   });
   std::uint64_t sent = 0;
   std::optional<msg::Version> rest;
-  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) {
-    if (fact.robot() != 3) return;
-    if (!rest) rest = fact.executing();
-    fact.executing(*rest);
-    fact.obeyed_epoch(0);
-    fact.obeyed_incarnation(0);
-    fact.header().message_number(++sent);
+  history.each<msg::Feedback>([&](msg::Feedback& robot_report, Time) {
+    if (robot_report.robot() != 3) return;
+    if (!rest) rest = robot_report.executing();
+    robot_report.executing(*rest);
+    robot_report.obeyed_epoch(0);
+    robot_report.obeyed_incarnation(0);
+    robot_report.header().message_number(++sent);
   });
   std::erase_if(history.messages, [&](const ReceivedMessage& received) {
-    const auto* fact = std::get_if<msg::Feedback>(&received.message);
-    return fact && fact->robot() == 3 && received.at < back;
+    const auto* robot_report = std::get_if<msg::Feedback>(&received.message);
+    return robot_report && robot_report->robot() == 3 && received.at < back;
   });
   const AuditTotals totals = audit_of(history, {});
   INFO(lines(totals));
@@ -99,8 +99,9 @@ TEST_CASE(
   const Time end = history.messages.front().at + 1500ms;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) { return received.at > end; });
   std::optional<Vec2> start_m;
-  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) {
-    if (fact.robot() == 2 && !start_m) start_m = Vec2(fact.executing().x_m(), fact.executing().y_m());
+  history.each<msg::Feedback>([&](msg::Feedback& robot_report, Time) {
+    if (robot_report.robot() == 2 && !start_m)
+      start_m = Vec2(robot_report.executing().x_m(), robot_report.executing().y_m());
   });
   REQUIRE(start_m);
   history.scenario.obstacles.push_back(Circle{*start_m * 1.02, 0.001});
@@ -166,20 +167,22 @@ TEST_CASE(
   History history = lift_and_place();
   require_no_violation(audit_of(history, kComplete));
   std::uint64_t lifted = 0;
-  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) { lifted += fact.is_lifted(); });
+  history.each<msg::Feedback>([&](msg::Feedback& robot_report, Time) { lifted += robot_report.is_lifted(); });
   REQUIRE(lifted > 10);
   SECTION("all facts of the lifted robot are missed") {
-    history.remove_if<msg::Feedback>([](const msg::Feedback& fact) { return fact.is_lifted(); });
+    history.remove_if<msg::Feedback>(
+        [](const msg::Feedback& robot_report) { return robot_report.is_lifted(); });
     require_no_violation(audit_of(history, {}));
   }
   SECTION("all of its facts from then until it drives are missed") {
     bool was_lifted = false;
     std::erase_if(history.messages, [&](const ReceivedMessage& received) {
-      const auto* fact = std::get_if<msg::Feedback>(&received.message);
-      if (!fact || fact->robot() != 2) return false;
-      was_lifted |= fact->is_lifted();
+      const auto* robot_report = std::get_if<msg::Feedback>(&received.message);
+      if (!robot_report || robot_report->robot() != 2) return false;
+      was_lifted |= robot_report->is_lifted();
       // One fact of the lifted robot is heard.
-      return was_lifted && (fact->executing().version_number() == 0 || fact->executing().base() == 0) &&
+      return was_lifted &&
+             (robot_report->executing().version_number() == 0 || robot_report->executing().base() == 0) &&
              lifted-- > 1;
     });
     require_no_violation(audit_of(history, {}));
@@ -205,10 +208,10 @@ TEST_CASE("a contact of a disturbed robot is not judged if messages were missed 
   const Time push = history.messages.front().at + 500ms;
   history.push(2, push);
   history.touch(is_of_disturbed ? 2 : 4, is_of_disturbed ? 3 : 5, push + 3s);
-  int facts = 0;
+  int robot_reports = 0;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) {
-    const auto* fact = std::get_if<msg::Feedback>(&received.message);
-    return fact && fact->robot() == 2 && received.at > push && ++facts < 3;
+    const auto* robot_report = std::get_if<msg::Feedback>(&received.message);
+    return robot_report && robot_report->robot() == 2 && received.at > push && ++robot_reports < 3;
   });
   const AuditTotals totals = audit_of(history, {});
   INFO(verdict_line(totals) << "\n" << lines(totals));

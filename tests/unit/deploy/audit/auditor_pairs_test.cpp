@@ -24,17 +24,17 @@ struct Past {
 };
 using Pasts = std::map<std::pair<RobotId, VersionNumber>, Past>;
 
-bool excludes(const msg::Feedback& fact, const Version& version) {
-  const VersionNumber executing = fact.executing().version_number();
+bool excludes(const msg::Feedback& robot_report, const Version& version) {
+  const VersionNumber executing = robot_report.executing().version_number();
   return version.number < executing ||
-         (version.number > executing && to_ns(version.trajectory.start()) <= fact.valid_at_ns());
+         (version.number > executing && to_ns(version.trajectory.start()) <= robot_report.valid_at_ns());
 }
 
 /// All versions that were granted or registered, in one epoch, by agents that did not restart.
 Pasts pasts_of(History& history) {
   Pasts pasts;
   std::map<std::pair<RobotId, VersionNumber>, Version> proposed;
-  std::map<RobotId, msg::Feedback> facts;
+  std::map<RobotId, msg::Feedback> robot_reports;
   for (ReceivedMessage& received : history.messages) {
     const std::int64_t at_ns = to_ns(received.at);
     if (const auto* proposal = std::get_if<msg::Proposal>(&received.message)) {
@@ -49,27 +49,29 @@ Pasts pasts_of(History& history) {
       if (past.granted_ns != kAlways) continue;
       past.version = proposed.at(key);
       past.granted_ns = at_ns;
-      const auto fact = facts.find(verdict->robot());
-      if (fact != facts.end() && excludes(fact->second, past.version)) past.excluded_ns = kAlways;
+      const auto robot_report = robot_reports.find(verdict->robot());
+      if (robot_report != robot_reports.end() && excludes(robot_report->second, past.version))
+        past.excluded_ns = kAlways;
     } else if (const auto* registration = std::get_if<msg::Registration>(&received.message)) {
       for (std::size_t i = 0; i < registration->version_count(); ++i) {
         Past& past = pasts[{registration->robot(), registration->versions()[i].version_number()}];
         past.version = decode(registration->versions()[i]).value();
         past.is_registered = true;
       }
-    } else if (const auto* fact = std::get_if<msg::Feedback>(&received.message)) {
-      facts[fact->robot()] = *fact;
+    } else if (const auto* robot_report = std::get_if<msg::Feedback>(&received.message)) {
+      robot_reports[robot_report->robot()] = *robot_report;
       for (auto& [key, past] : pasts) {
-        if (key.first == fact->robot() && past.excluded_ns == kNever && excludes(*fact, past.version))
+        if (key.first == robot_report->robot() && past.excluded_ns == kNever &&
+            excludes(*robot_report, past.version))
           past.excluded_ns = at_ns;
       }
-      const auto executing = pasts.find({fact->robot(), fact->executing().version_number()});
+      const auto executing = pasts.find({robot_report->robot(), robot_report->executing().version_number()});
       if (executing == pasts.end()) continue;
-      executing->second.executed_until_ns = fact->valid_at_ns();
-      const auto base = pasts.find({fact->robot(), fact->executing().base()});
+      executing->second.executed_until_ns = robot_report->valid_at_ns();
+      const auto base = pasts.find({robot_report->robot(), robot_report->executing().base()});
       if (base != pasts.end() && base != executing)
         base->second.executed_until_ns =
-            std::max(base->second.executed_until_ns, fact->executing().start_ns());
+            std::max(base->second.executed_until_ns, robot_report->executing().start_ns());
     }
   }
   return pasts;
@@ -232,8 +234,8 @@ TEST_CASE("facts of a robot whose clock is out of bound prove no pair") {
   const auto involves = [&](const auto& entry) {
     return entry.first[0].first == robot || entry.first[1].first == robot;
   };
-  history.each<msg::Feedback>([&](msg::Feedback& fact, Time) {
-    if (fact.robot() == robot) fact.valid_at_ns(fact.valid_at_ns() + 3'000'000);
+  history.each<msg::Feedback>([&](msg::Feedback& robot_report, Time) {
+    if (robot_report.robot() == robot) robot_report.valid_at_ns(robot_report.valid_at_ns() + 3'000'000);
   });
   auto after = reported_pairs(history, kComplete);
   CHECK(std::ranges::none_of(after, involves));

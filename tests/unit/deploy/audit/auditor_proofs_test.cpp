@@ -74,7 +74,7 @@ TEST_CASE("a version is compared for a while after a fact has excluded it, becau
   Narrow narrow(kComplete);
   narrow.grant(narrow.closer);
   narrow.report(0);
-  narrow.facts[0].executing(narrow.next(narrow.rest(0), 9, -1ms));
+  narrow.robot_reports[0].executing(narrow.next(narrow.rest(0), 9, -1ms));
   for (int i = 0; i < 5; ++i) {
     narrow.report(0);
     narrow.advance(9ms);
@@ -88,8 +88,8 @@ TEST_CASE("a robot's own stop is compared only with versions granted after a pag
   const bool is_listed = GENERATE(true, false);
   Narrow narrow(kComplete);
   msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.01);
-  narrow.facts[0].executing(stop);
-  narrow.facts[0].is_off_reference(true);
+  narrow.robot_reports[0].executing(stop);
+  narrow.robot_reports[0].is_off_reference(true);
   narrow.report(0);
   narrow.violations.clear();  // it does not brake
   const msg::Version version = moving(narrow.next(narrow.rest(1), 2), -0.01);
@@ -109,8 +109,8 @@ TEST_CASE("a robot's own stop is compared only with versions granted after a pag
 TEST_CASE("a robot's own stop that comes too close is not a violation") {
   Narrow narrow(kComplete);
   msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.05);
-  narrow.facts[0].executing(stop);
-  narrow.facts[0].is_off_reference(true);
+  narrow.robot_reports[0].executing(stop);
+  narrow.robot_reports[0].is_off_reference(true);
   for (int i = 0; i < 5; ++i) {
     narrow.report(0);
     narrow.page({stop, narrow.rest(1)});
@@ -121,9 +121,9 @@ TEST_CASE("a robot's own stop that comes too close is not a violation") {
 
 TEST_CASE("versions with much inflation conflict far away") {
   Stage stage;
-  for (msg::Feedback& fact : stage.facts) fact.executing().inflation_m(0.4);
+  for (msg::Feedback& robot_report : stage.robot_reports) robot_report.executing().inflation_m(0.4);
   stage.begin();
-  msg::Version version = moving(stage.next(stage.facts[0].executing(), 1), 1.01);
+  msg::Version version = moving(stage.next(stage.robot_reports[0].executing(), 1), 1.01);
   version.inflation_m(0.4);
   stage.grant(version);
   stage.advance(1ms);
@@ -191,13 +191,13 @@ TEST_CASE("times of two robots are compared only while both clocks are sound") {
   Narrow narrow(kComplete);
   narrow.command(narrow.closer);
   narrow.now = time_from_ns(narrow.closer.start_ns());
-  narrow.facts[0].executing(narrow.closer);
+  narrow.robot_reports[0].executing(narrow.closer);
   narrow.report(0);
   narrow.report(1);
   narrow.advance(500ms);
   // What the first robot executes until now is proven; then its clock jumps.
   narrow.report(first);
-  msg::Feedback late = narrow.facts[first];
+  msg::Feedback late = narrow.robot_reports[first];
   narrow.advance(1ms);
   if (!is_sound) late.valid_at_ns(to_ns(narrow.now + 1s));
   narrow.report(late);
@@ -276,13 +276,13 @@ TEST_CASE("pages prove that the ledger held a registered version before it grant
   SECTION("the page after is of another run of the coordinator") {
     narrow.page(before);
     narrow.grant(narrow.closer);
-    ++narrow.coordinator_life;
+    ++narrow.coordinator_incarnation;
     narrow.page(after);
   }
   SECTION("the pages are of another run than the grant") {
-    ++narrow.coordinator_life;
+    ++narrow.coordinator_incarnation;
     narrow.page(before);
-    --narrow.coordinator_life;
+    --narrow.coordinator_incarnation;
     narrow.grant(narrow.closer);
     narrow.page(after);
   }

@@ -16,33 +16,33 @@ TEST_CASE("facts that contradict the fact before are reported, one violation eac
   const msg::Version first = stage.next(stage.rest(0), 1);
   stage.drive(first);
   REQUIRE(stage.violations.empty());
-  msg::Feedback& fact = stage.facts[0];
+  msg::Feedback& robot_report = stage.robot_reports[0];
   std::uint64_t expected = 0;
-  SECTION("at the same time") { fact.valid_at_ns(to_ns(stage.now)); }
+  SECTION("at the same time") { robot_report.valid_at_ns(to_ns(stage.now)); }
   SECTION("of an earlier time") {
-    fact.valid_at_ns(to_ns(stage.now) - 1);
+    robot_report.valid_at_ns(to_ns(stage.now) - 1);
     // Its version starts later, too.
     expected = 2;
   }
   SECTION("of an older agent") {
-    fact.obeyed_incarnation(Stage::kAgent - 1);
+    robot_report.obeyed_incarnation(Stage::kAgent - 1);
     // It has not acknowledged the agent that registered, either.
     stage.report(0);
     CHECK(stage.count(AuditRule::kFacts) == 1);
     return;
   }
-  SECTION("of a newer agent") { fact.obeyed_incarnation(Stage::kAgent + 1); }
+  SECTION("of a newer agent") { robot_report.obeyed_incarnation(Stage::kAgent + 1); }
   SECTION("of an older epoch") {
-    fact.obeyed_epoch(stage.epoch - 1);
+    robot_report.obeyed_epoch(stage.epoch - 1);
     // It cannot have registered in the epoch of the grant, either.
     stage.report(0);
     CHECK(stage.count(AuditRule::kFacts) == 1);
     return;
   }
-  SECTION("of a newer epoch") { fact.obeyed_epoch(stage.epoch + 1); }
+  SECTION("of a newer epoch") { robot_report.obeyed_epoch(stage.epoch + 1); }
   SECTION("of the initial rest") {
     stage.advance(1ms);
-    fact.executing(stage.rest(0));
+    robot_report.executing(stage.rest(0));
     // The rest was excluded by the version.
     expected = 2;
   }
@@ -58,7 +58,7 @@ TEST_CASE("a version is not executed before its start") {
   stage.grant(first);
   stage.command(first);
   stage.now = time_from_ns(first.start_ns()) - early;
-  stage.facts[0].executing(first);
+  stage.robot_reports[0].executing(first);
   stage.report(0);
   check_only(stage, AuditRule::kFacts, early == 0ns ? 0 : 1);
 }
@@ -77,10 +77,10 @@ TEST_CASE("a fact of an earlier time is reported only if no clock was set back i
     expected = is_complete ? 1 : 0;
   }
   SECTION("the last fact was of a clock that is out of bound") {
-    stage.facts[0].valid_at_ns(to_ns(stage.now) + 100'000'000);
+    stage.robot_reports[0].valid_at_ns(to_ns(stage.now) + 100'000'000);
     stage.report(0);
   }
-  stage.facts[0].valid_at_ns(early_ns);
+  stage.robot_reports[0].valid_at_ns(early_ns);
   stage.report(0);
   check_only(stage, AuditRule::kFacts, expected);
 }
@@ -97,30 +97,30 @@ TEST_CASE("a robot switches only along bases") {
     stage.command(version);
   }
   stage.advance(55ms);
-  stage.facts[0].executing(first);
+  stage.robot_reports[0].executing(first);
   stage.report(0);
   stage.advance(55ms);
   std::uint64_t expected = 0;
-  SECTION("to the next version") { stage.facts[0].executing(second); }
-  SECTION("across several versions that no fact reported") { stage.facts[0].executing(third); }
+  SECTION("to the next version") { stage.robot_reports[0].executing(second); }
+  SECTION("across several versions that no fact reported") { stage.robot_reports[0].executing(third); }
   SECTION("from another one") {
     // A version at rest on base 0: if facts may have been missed, the robot may have been lifted and put
     // down.
-    stage.facts[0].executing(other);
+    stage.robot_reports[0].executing(other);
     expected = is_complete ? 1 : 0;
   }
   SECTION("from an unrelated version into motion, which a robot that is put down never does") {
     stage.advance(10ms);
-    stage.facts[0].executing(moved);
+    stage.robot_reports[0].executing(moved);
     expected = 1;
   }
   SECTION("from the base of the one that it executes, at rest") {
-    stage.facts[0].executing(second);
+    stage.robot_reports[0].executing(second);
     stage.report(0);
     stage.advance(20ms);
     msg::Version late = stage.next(first, 7, -5ms);
     stage.command(late);
-    stage.facts[0].executing(late);
+    stage.robot_reports[0].executing(late);
     stage.report(0);
     CHECK(stage.count(AuditRule::kSwitch) == 1);
     return;
@@ -129,7 +129,7 @@ TEST_CASE("a robot switches only along bases") {
     msg::Version stranger = stage.next(first, 9, -10ms);
     stranger.base(8);
     stage.command(stranger);
-    stage.facts[0].executing(stranger);
+    stage.robot_reports[0].executing(stranger);
     stage.report(0);
     CHECK(stage.count(AuditRule::kSwitch) == 0);
     return;
@@ -154,26 +154,26 @@ TEST_CASE("each reason that excludes a version is checked by its own rule") {
     rule = AuditRule::kLateSwitch;
   }
   SECTION("fenced") {
-    stage.facts[0].obeyed_incarnation(Stage::kAgent + 1);
+    stage.robot_reports[0].obeyed_incarnation(Stage::kAgent + 1);
     stage.report(0);
     rule = AuditRule::kStaleIncarnation;
     stage.advance(50ms);
   }
   SECTION("older") {
     stage.advance(60ms);
-    stage.facts[0].executing(second);
+    stage.robot_reports[0].executing(second);
     stage.report(0);
   }
   SECTION("lifted") {
     stage.advance(50ms);
     msg::Version nothing;
     nothing.base(1);
-    stage.facts[0].executing(nothing);
-    stage.facts[0].is_lifted(true);
+    stage.robot_reports[0].executing(nothing);
+    stage.robot_reports[0].is_lifted(true);
     stage.report(0);
-    stage.facts[0].is_lifted(false);
+    stage.robot_reports[0].is_lifted(false);
   }
-  stage.facts[0].executing(first);
+  stage.robot_reports[0].executing(first);
   stage.report(0);
   CHECK(stage.count(rule) == 1);
   CHECK(stage.violations.front().version == 1);
@@ -185,14 +185,14 @@ TEST_CASE("a robot that is off its reference stops by itself, and what it execut
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 5);
   stage.drive(first);
-  stage.facts[0].is_off_reference(true);
+  stage.robot_reports[0].is_off_reference(true);
   std::uint64_t expected = 0;
   VersionNumber number = 6;
   SECTION("numbered above the version") {}
   SECTION("numbered below the version") { number = 4, expected = 1; }
   msg::Version stop = stage.next(first, number, 0ms);
   stop.start_ns(to_ns(stage.now));
-  stage.facts[0].executing(stop);
+  stage.robot_reports[0].executing(stop);
   stage.report(0);
   stage.report(0);
   check_only(stage, AuditRule::kOffReference, expected);
@@ -220,9 +220,9 @@ TEST_CASE("a robot's own stop brakes at D after the motion that its motors have 
   stop.phases()[0].ax_mps2(2);
   stop.phases()[1].duration_ns(std::llround(braking_s * 1e9));
   stop.phases()[1].ax_mps2(-speed_mps / (static_cast<double>(stop.phases()[1].duration_ns()) * 1e-9));
-  stage.facts[0].executing(stop);
-  stage.facts[0].is_off_reference(true);
-  stage.facts[0].lead_ns(lead.count());
+  stage.robot_reports[0].executing(stop);
+  stage.robot_reports[0].is_off_reference(true);
+  stage.robot_reports[0].lead_ns(lead.count());
   stage.report(0);
   check_only(stage, AuditRule::kOffReference, is_reported ? 1 : 0);
 }
@@ -233,8 +233,8 @@ TEST_CASE("a robot's own stop ends at rest") {
   stage.begin();
   msg::Version stop = stage.next(stage.rest(0), 1, 0ms);
   stop.vy_mps(left_mps);
-  stage.facts[0].executing(stop);
-  stage.facts[0].is_off_reference(true);
+  stage.robot_reports[0].executing(stop);
+  stage.robot_reports[0].is_off_reference(true);
   stage.report(0);
   check_only(stage, AuditRule::kOffReference, is_reported ? 1 : 0);
 }
@@ -248,8 +248,8 @@ TEST_CASE("a version that was sent is not an own stop, even if a robot off its r
   CAPTURE(was_sent);
   if (was_sent) stage.command(first);
   stage.now = time_from_ns(first.start_ns());
-  stage.facts[0].executing(first);
-  stage.facts[0].is_off_reference(true);
+  stage.robot_reports[0].executing(first);
+  stage.robot_reports[0].is_off_reference(true);
   stage.report(0);
   CHECK(stage.violations.empty());
 }
@@ -258,7 +258,7 @@ TEST_CASE("a version that was sent is not an own stop, even if a robot off its r
 void report_errors(Stage& stage, const std::vector<double>& errors_m) {
   for (const double error_m : errors_m) {
     stage.advance(1ms);
-    stage.facts[0].tracking_error_m(error_m);
+    stage.robot_reports[0].tracking_error_m(error_m);
     stage.report(0);
   }
 }
@@ -308,18 +308,18 @@ TEST_CASE(
   }
   SECTION("beyond the tracking bound while it is off its reference, or lifted") {
     const bool is_lifted = GENERATE(true, false);
-    stage.facts[0].is_off_reference(!is_lifted);
-    stage.facts[0].is_lifted(is_lifted);
+    stage.robot_reports[0].is_off_reference(!is_lifted);
+    stage.robot_reports[0].is_lifted(is_lifted);
     report_errors(stage, repeated(1, 50));
   }
   SECTION("with inflation, farther") {
-    stage.facts[0].executing().inflation_m(0.02);
+    stage.robot_reports[0].executing().inflation_m(0.02);
     report_errors(stage, repeated(0.02 + drift_m - 1e-6, 100));
     stage.violations.clear();  // the inflation came from nowhere
   }
   SECTION("with inflation, too far") {
     Stage inflated(stage_scenario(), is_complete ? kComplete : kIncomplete);
-    inflated.facts[0].executing().inflation_m(0.02);
+    inflated.robot_reports[0].executing().inflation_m(0.02);
     inflated.begin();
     report_errors(inflated, repeated(0.02 + tracking_m - 1e-6, 2));
     CHECK(inflated.violations.empty());
@@ -329,8 +329,8 @@ TEST_CASE(
   SECTION("by a clock that is out of bound") {
     for (int i = 0; i < 50; ++i) {
       stage.advance(1ms);
-      stage.facts[0].tracking_error_m(1);
-      stage.facts[0].valid_at_ns(to_ns(stage.now) + 50'000'000);
+      stage.robot_reports[0].tracking_error_m(1);
+      stage.robot_reports[0].valid_at_ns(to_ns(stage.now) + 50'000'000);
       stage.report(0);
     }
   }
@@ -350,8 +350,8 @@ TEST_CASE("a clock is sound up to its bound, ahead and behind") {
   // Only facts of sound clocks show that a robot is beyond the tracking bound.
   for (int i = 0; i < 5; ++i) {
     stage.advance(1ms);
-    stage.facts[0].tracking_error_m(1);
-    stage.facts[0].valid_at_ns(to_ns(stage.now + ahead));
+    stage.robot_reports[0].tracking_error_m(1);
+    stage.robot_reports[0].valid_at_ns(to_ns(stage.now + ahead));
     stage.report(0);
   }
   CHECK((stage.count(AuditRule::kTracking) > 0) == is_sound);

@@ -20,9 +20,9 @@ TEST_CASE("a run lasts until the latest message, of whatever kind and however in
   SECTION("coordinator state") { auditor.on_coordinator({}, stage.now); }
   SECTION("ledger page") { auditor.on_ledger({}, stage.now); }
   SECTION("command") { auditor.on_command({}, stage.now); }
-  SECTION("feedback") { auditor.on_feedback({}, stage.now); }
+  SECTION("feedback") { auditor.on_robot_report({}, stage.now); }
   SECTION("ground truth") { auditor.on_truth({}, stage.now); }
-  SECTION("world state") { auditor.on_world({}, stage.now); }
+  SECTION("world state") { auditor.on_world_state({}, stage.now); }
   SECTION("disturbance") { auditor.on_disturbance({}, stage.now); }
   SECTION("attestation") { auditor.on_attestation({}, stage.now); }
   SECTION("order") { auditor.on_order({}, stage.now); }

@@ -18,7 +18,7 @@ struct Seen : Stage {
   Seen(const Scenario& staged, const AuditInput& input, double inflation_m = 0) : Stage(staged, input) {
     world.robots().resize(2);
     for (RobotId robot = 0; robot < 2; ++robot) {
-      facts[robot].executing().inflation_m(inflation_m);
+      robot_reports[robot].executing().inflation_m(inflation_m);
       world.robots()[robot].robot(robot);
       place(robot, scenario.robots[robot].start_m);
     }
@@ -41,7 +41,7 @@ struct Seen : Stage {
     message.header(header("world", 20'000));
     message.valid_at_ns(to_ns(now));
     for (msg::TrackedRobot& robot : message.robots()) robot.observed_at_ns(to_ns(now));
-    auditor.on_world(message, now);
+    auditor.on_world_state(message, now);
   }
   void run(Duration duration) {
     for (const Time end = now + duration; now < end;) {
@@ -91,13 +91,13 @@ TEST_CASE("a robot that vision shows out of place for longer than 300 ms is repo
   seen.run(2s);
   REQUIRE(seen.violations.empty());
   const double bound_m = seen.scenario.tracking_bound_m + inflation_m + seen.allowance_m();
-  const auto [excess_m, lasts, is_reported] = GENERATE(table<double, Duration, bool>(
+  const auto [excess_m, duration, is_reported] = GENERATE(table<double, Duration, bool>(
       {{-1e-4, 1s, false}, {1e-4, 1s, true}, {0.1, 290ms, false}, {0.1, 340ms, true}, {0.1, 2s, true}}));
-  CAPTURE(inflation_m, excess_m, to_seconds(lasts));
+  CAPTURE(inflation_m, excess_m, to_seconds(duration));
   const double angle_rad = GENERATE(0.0, 2.0, 4.0);
   const Vec2 home = seen.scenario.robots[0].start_m;
   seen.place(0, home + rotated({bound_m + excess_m, 0}, angle_rad));
-  seen.run(lasts);
+  seen.run(duration);
   seen.place(0, home);
   seen.run(200ms);
   CHECK(seen.position() == (is_reported ? 1 : 0));
@@ -123,9 +123,9 @@ TEST_CASE("only uninterrupted displacements count") {
     seen.place(0, away);
   }
   SECTION("interrupted by a report that it is off its reference") {
-    seen.facts[0].is_off_reference(true);
+    seen.robot_reports[0].is_off_reference(true);
     seen.run(17ms);
-    seen.facts[0].is_off_reference(false);
+    seen.robot_reports[0].is_off_reference(false);
   }
   SECTION("interrupted by a missed fact") {
     (void)seen.header("feedback", 0);
@@ -134,9 +134,9 @@ TEST_CASE("only uninterrupted displacements count") {
   SECTION("interrupted by a clock that is out of bound") {
     seen.advance(16ms);
     seen.show();
-    seen.facts[0].valid_at_ns(to_ns(seen.now + 50ms));
+    seen.robot_reports[0].valid_at_ns(to_ns(seen.now + 50ms));
     seen.report(0);
-    seen.facts[0].valid_at_ns(0);
+    seen.robot_reports[0].valid_at_ns(0);
   }
   SECTION("uninterrupted") { expected = 1; }
   seen.run(150ms);
@@ -328,7 +328,7 @@ TEST_CASE("an older observation does not replace a newer one") {
   for (int i = 0; i < 60; ++i) {
     seen.advance(10ms);
     late.header(seen.header("world", 20'000));
-    seen.auditor.on_world(late, seen.now);
+    seen.auditor.on_world_state(late, seen.now);
     seen.report(0);
   }
   CHECK(seen.position() == 0);
@@ -338,7 +338,7 @@ TEST_CASE("a robot that is off the floor need not be seen") {
   const bool is_lifted = GENERATE(true, false);
   Seen seen;
   seen.run(2s);
-  seen.facts[0].is_lifted(is_lifted);
+  seen.robot_reports[0].is_lifted(is_lifted);
   seen.report(0);
   seen.world.robots().erase(seen.world.robots().begin());
   seen.run(2s);

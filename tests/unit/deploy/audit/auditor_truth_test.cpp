@@ -44,14 +44,14 @@ TEST_CASE("a robot is not compared with its reference while it has none, or may 
   SECTION("off its reference before") { is_off_before = true; }
   SECTION("off its reference afterwards") { is_off_after = true; }
   SECTION("lifted before") {
-    shown.facts[0].is_lifted(true);
+    shown.robot_reports[0].is_lifted(true);
     shown.report(0);
-    shown.facts[0].is_lifted(false);
+    shown.robot_reports[0].is_lifted(false);
     shown.advance(1ms);
   }
   SECTION("lifted afterwards") {
     shown.show();
-    shown.facts[0].is_lifted(true);
+    shown.robot_reports[0].is_lifted(true);
     shown.report(0);
     CHECK(shown.violations.empty());
     return;
@@ -62,14 +62,14 @@ TEST_CASE("a robot is not compared with its reference while it has none, or may 
     expected = is_complete ? 1 : 0;
   }
   if (is_off_before) {
-    shown.facts[0].is_off_reference(true);
+    shown.robot_reports[0].is_off_reference(true);
     shown.report(0);
-    shown.facts[0].is_off_reference(false);
+    shown.robot_reports[0].is_off_reference(false);
     shown.advance(1ms);
   }
   shown.show();
   shown.advance(1ms);
-  shown.facts[0].is_off_reference(is_off_after);
+  shown.robot_reports[0].is_off_reference(is_off_after);
   shown.report(0);
   shown.report(0);
   INFO(shown.lines());
@@ -110,15 +110,15 @@ TEST_CASE("the position of a moving robot is compared with its version at that t
     shown.truth.robots()[0].y_m(path.at_ns(by_robot_ns).y);
     shown.show();
     shown.advance(3ms);
-    shown.facts[0].valid_at_ns(to_ns(shown.now + clock_ahead));
-    if (shown.facts[0].valid_at_ns() >= version.start_ns()) shown.facts[0].executing(version);
+    shown.robot_reports[0].valid_at_ns(to_ns(shown.now + clock_ahead));
+    if (shown.robot_reports[0].valid_at_ns() >= version.start_ns()) shown.robot_reports[0].executing(version);
     shown.report(0);
   }
   INFO(shown.lines());
   CHECK(shown.position() == 0);
   CHECK(shown.auditor.totals().max_position_error_m < 1e-6);
   shown.truth.robots()[0].y_m(1.1);
-  shown.facts[0].valid_at_ns(0);  // now
+  shown.robot_reports[0].valid_at_ns(0);  // now
   shown.run(50ms);
   CHECK(shown.position() > 0);
 }
@@ -129,7 +129,7 @@ TEST_CASE("a robot whose clock jumps is not compared at that moment") {
   shown.truth.robots()[0].x_m(-1.5);
   shown.show();
   shown.advance(1ms);
-  shown.facts[0].valid_at_ns(to_ns(shown.now + GENERATE(-300ms, 300ms)));
+  shown.robot_reports[0].valid_at_ns(to_ns(shown.now + GENERATE(-300ms, 300ms)));
   shown.report(0);
   CHECK(shown.position() == 0);
 }
@@ -230,19 +230,19 @@ TEST_CASE(
   SECTION("in its version") {}
   SECTION("in a stop of its own") {
     msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
-    shown.facts[0].executing(stop);
-    shown.facts[0].is_off_reference(true);
+    shown.robot_reports[0].executing(stop);
+    shown.robot_reports[0].is_off_reference(true);
     expected = false;
   }
   SECTION("in a stop of its own that the ledger has held") {
     msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
-    shown.facts[0].executing(stop);
-    shown.facts[0].is_off_reference(true);
+    shown.robot_reports[0].executing(stop);
+    shown.robot_reports[0].is_off_reference(true);
     shown.run(10ms);
     shown.show_page({stop, shown.rest(1)});
   }
   SECTION("off the floor") {
-    shown.facts[0].is_lifted(true);
+    shown.robot_reports[0].is_lifted(true);
     expected = false;
   }
   shown.run(3s);

@@ -84,11 +84,11 @@ TEST_CASE("ground truth that arrives late replaces vision, and the report says s
 }
 
 TEST_CASE("a displacement that vision shows is reported if it lasts, once") {
-  const auto [lasts, reported] = GENERATE(table<Duration, std::uint64_t>({{100ms, 0}, {800ms, 1}}));
+  const auto [duration, reported] = GENERATE(table<Duration, std::uint64_t>({{100ms, 0}, {800ms, 1}}));
   const bool is_complete = GENERATE(true, false);
-  CAPTURE(to_seconds(lasts), is_complete);
+  CAPTURE(to_seconds(duration), is_complete);
   History history = seen_crossing();
-  change_sight(history, 2, 2s, 2s + lasts,
+  change_sight(history, 2, 2s, 2s + duration,
                [](msg::TrackedRobot& robot, const msg::WorldState&) { shift(robot, 0.03); });
   const AuditTotals totals = audit_of(history, is_complete ? kComplete : AuditInput{});
   INFO(lines(totals));

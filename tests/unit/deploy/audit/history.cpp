@@ -106,9 +106,9 @@ struct Deliver {
   void operator()(const msg::CoordinatorState& m) const { auditor.on_coordinator(m, at); }
   void operator()(const msg::LedgerPage& m) const { auditor.on_ledger(m, at); }
   void operator()(const msg::Command& m) const { auditor.on_command(m, at); }
-  void operator()(const msg::Feedback& m) const { auditor.on_feedback(m, at); }
+  void operator()(const msg::Feedback& m) const { auditor.on_robot_report(m, at); }
   void operator()(const msg::GroundTruth& m) const { auditor.on_truth(m, at); }
-  void operator()(const msg::WorldState& m) const { auditor.on_world(m, at); }
+  void operator()(const msg::WorldState& m) const { auditor.on_world_state(m, at); }
   void operator()(const msg::Disturbance& m) const { auditor.on_disturbance(m, at); }
   void operator()(const msg::AbsenceAttestation& m) const { auditor.on_attestation(m, at); }
   void operator()(const msg::Order& m) const { auditor.on_order(m, at); }

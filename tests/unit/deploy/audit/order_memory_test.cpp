@@ -55,13 +55,13 @@ TEST_CASE("a version that was not granted while the hold was in force breaks no 
   SECTION("a grant of an earlier run of the coordinator") {
     run.remember(kFirst, {hold(4, 100)});
     run.grant(kFirst, 4, 31);
-    ++run.lives[kFirst];
+    ++run.incarnations[kFirst];
   }
   SECTION("a late grant of an earlier run of the coordinator") {
     run.remember(kFirst, {hold(4, 100)});
-    --run.lives[kFirst];
+    --run.incarnations[kFirst];
     run.grant(kFirst, 4, 31);
-    ++run.lives[kFirst];
+    ++run.incarnations[kFirst];
   }
   SECTION("a grant while another memory shows the hold lifted") {
     run.remember(kFirst, {hold(4, 100)});
@@ -176,7 +176,7 @@ TEST_CASE("a coordinator may forget orders that it has not confirmed, or not yet
   SECTION("confirmed by another coordinator") { run.confirm(kSecond, hold(4, 100)); }
   SECTION("confirmed by an earlier run of it") {
     run.confirm(kFirst, hold(4, 100));
-    ++run.lives[kFirst];
+    ++run.incarnations[kFirst];
   }
   run.remember(kFirst, {});
   CHECK(run.found.empty());

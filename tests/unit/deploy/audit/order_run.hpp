@@ -59,7 +59,7 @@ struct Run {
     now_ns += 1'000'000;
     msg::Header header;
     header.sender(sender);
-    header.incarnation(lives[sender]);
+    header.incarnation(incarnations[sender]);
     header.message_number(++sent[{channel, sender}]);
     header.stamp_ns(now_ns);
     stamps.record(channel, header);
@@ -137,8 +137,8 @@ struct Run {
   }
 
   std::int64_t now_ns = 1'000'000'000;
-  std::map<std::uint32_t, Incarnation> lives{{kFirst, 10}, {kSecond, 20}, {3, 30},
-                                             {4, 40},      {5, 50},       {99, 60}};
+  std::map<std::uint32_t, Incarnation> incarnations{{kFirst, 10}, {kSecond, 20}, {3, 30},
+                                                    {4, 40},      {5, 50},       {99, 60}};
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint64_t> sent;
   ComparableStamps stamps;
   std::vector<Found> found;

@@ -63,7 +63,7 @@ TEST_CASE("a new coordinator is reported only if it is certain that an agent has
   }
   SECTION("an agent that has restarted since registers") {
     run.learn();
-    ++run.lives[4];
+    ++run.incarnations[4];
     run.succeed();
   }
   SECTION("the agent has registered in another epoch since") {
@@ -223,7 +223,7 @@ TEST_CASE("the time at which a restarted agent learned an order counts") {
   Succession run;
   run.begin();
   run.learn();
-  ++run.lives[4];
+  ++run.incarnations[4];
   run.learn();
   run.succeed();
   CHECK(run.forgotten() == 1);

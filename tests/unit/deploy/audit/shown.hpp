@@ -12,7 +12,7 @@ struct Shown : Stage {
     truth.robots().resize(2);
     for (RobotId robot = 0; robot < 2; ++robot) {
       truth.robots()[robot].robot(robot);
-      facts[robot].executing().inflation_m(inflation_m);
+      robot_reports[robot].executing().inflation_m(inflation_m);
       truth.robots()[robot].x_m(scenario.robots[robot].start_m.x());
       truth.robots()[robot].disturbance_end_ns(-1);
     }
@@ -21,7 +21,7 @@ struct Shown : Stage {
   void show() { show(now); }
   void show(Time valid_at) {
     msg::GroundTruth message = truth;
-    message.header(header("truth", 30'000, life));
+    message.header(header("truth", 30'000, incarnation));
     message.valid_at_ns(to_ns(valid_at));
     auditor.on_truth(message, now);
   }
@@ -49,7 +49,7 @@ struct Shown : Stage {
   std::uint64_t position() const { return count(AuditRule::kPosition); }
 
   msg::GroundTruth truth;
-  Incarnation life = 800;
+  Incarnation incarnation = 800;
 };
 
 }  // namespace sidestep

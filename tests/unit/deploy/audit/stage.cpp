@@ -41,16 +41,16 @@ Stage::Stage(Scenario staged, const AuditInput& input)
     violations.push_back(violation);
   });
   for (RobotId robot = 0; robot < 2; ++robot) {
-    facts[robot].robot(robot);
-    facts[robot].executing(rest(robot));
-    facts[robot].obeyed_epoch(epoch);
-    facts[robot].obeyed_incarnation(kAgent);
+    robot_reports[robot].robot(robot);
+    robot_reports[robot].executing(rest(robot));
+    robot_reports[robot].obeyed_epoch(epoch);
+    robot_reports[robot].obeyed_incarnation(kAgent);
   }
 }
 
 void Stage::begin() {
   for (RobotId robot = 0; robot < 2; ++robot) {
-    register_versions(robot, {facts[robot].executing()});
+    register_versions(robot, {robot_reports[robot].executing()});
     report(robot);
   }
   advance(10ms);
@@ -82,13 +82,13 @@ msg::Version Stage::next(const msg::Version& base, VersionNumber number, Duratio
 
 void Stage::advance(Duration duration) { now += duration; }
 
-void Stage::report(RobotId robot) { report(facts[robot]); }
+void Stage::report(RobotId robot) { report(robot_reports[robot]); }
 
-void Stage::report(const msg::Feedback& fact) {
-  msg::Feedback message = fact;
-  message.header(header("feedback", fact.robot()));
+void Stage::report(const msg::Feedback& robot_report) {
+  msg::Feedback message = robot_report;
+  message.header(header("feedback", robot_report.robot()));
   if (message.valid_at_ns() == 0) message.valid_at_ns(to_ns(now));
-  auditor.on_feedback(message, now);
+  auditor.on_robot_report(message, now);
 }
 
 void Stage::register_versions(RobotId robot, const std::vector<msg::Version>& versions) {
@@ -114,7 +114,7 @@ void Stage::propose(const std::vector<msg::Version>& candidates) {
 void Stage::decide(RobotId robot, std::uint64_t proposal, VersionNumber granted, msg::Reason reason) {
   msg::Verdict verdict;
   verdict.robot(robot);
-  verdict.header(header("verdict", coordinator, coordinator_life));
+  verdict.header(header("verdict", coordinator, coordinator_incarnation));
   verdict.epoch(epoch);
   verdict.proposal_number(proposal);
   verdict.request_stamp_ns(to_ns(now));
@@ -142,13 +142,13 @@ void Stage::drive(const msg::Version& version) {
   grant(version);
   command(version);
   now = std::max(now, time_from_ns(version.start_ns()));
-  facts[version.robot()].executing(version);
+  robot_reports[version.robot()].executing(version);
   report(version.robot());
 }
 
 void Stage::show_page(const std::vector<msg::Version>& versions) {
   msg::LedgerPage page;
-  page.header(header("ledger", coordinator, coordinator_life));
+  page.header(header("ledger", coordinator, coordinator_incarnation));
   page.epoch(epoch);
   page.versions(versions);
   auditor.on_ledger(page, now);

@@ -35,7 +35,7 @@ class Stage {
 
   void advance(Duration duration);
   void report(RobotId robot);
-  void report(const msg::Feedback& fact);
+  void report(const msg::Feedback& robot_report);
   void register_versions(RobotId robot, const std::vector<msg::Version>& versions);
   void propose(const std::vector<msg::Version>& candidates);
   void decide(RobotId robot, std::uint64_t proposal, VersionNumber granted,
@@ -57,8 +57,8 @@ class Stage {
   Time now{std::chrono::seconds(1000)};
   Epoch epoch = 5;  ///< of all messages but facts
   std::uint32_t coordinator = kCoordinator;
-  Incarnation coordinator_life = kLife;
-  std::array<msg::Feedback, 2> facts;  ///< what each robot reports next
+  Incarnation coordinator_incarnation = kLife;
+  std::array<msg::Feedback, 2> robot_reports;  ///< what each robot reports next
   std::vector<Violation> violations;
   Auditor auditor;
 

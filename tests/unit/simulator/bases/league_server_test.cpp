@@ -22,7 +22,7 @@ TEST_CASE("the league's protocol is served at its three ports, and malformed dat
   scenario.robots.emplace_back();
   SimNetwork network(1, kBegin, {});
   SimBus bus(network);
-  BasesNode node(bus, scenario, 0, {}, 1, 1, 1);
+  VelocityRobotSimNode node(bus, scenario, 0, {}, 1, 1, 1);
   std::vector<std::string> events;
   node.on_event(LogLevel::kInfo, [&](const LogEvent& event) { events.push_back(event.text); });
   const TestEndpoint test;

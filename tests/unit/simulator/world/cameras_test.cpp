@@ -146,11 +146,11 @@ TEST_CASE("cameras show robots with their sight errors") {
   scenario.vision.overlap_m = 100;  // every camera sees everything
   const auto bodies = bodies_of(scenario);
   REQUIRE(bodies.size() >= 3);
-  std::vector<SightError> errors(bodies.size());
+  std::vector<VisionFault> errors(bodies.size());
   errors[0].offset_m = Vec2(0.02, -0.01);
   errors[1].shown_as = 2;
   errors[2].shown_as = 1;
-  errors[2].frozen = SightError::Pose{Vec2(0.5, 0.25), 1};
+  errors[2].frozen = VisionFault::Pose{Vec2(0.5, 0.25), 1};
   Cameras cameras(scenario, kBegin, 1);
   msg::DetectionFrame frame;
   cameras.capture(cameras.next_capture(), {bodies, nullptr, {}, errors}, frame);

@@ -48,12 +48,12 @@ TEST_CASE("a lifted robot is not an obstacle, is invisible, and executes nothing
   Time now = kBegin + milliseconds(30);
   world.advance(now);
   REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
-  CHECK(world.pending_feedback().size() == 1);
+  CHECK(world.pending_reports().size() == 1);
   CHECK_FALSE(truth_has(world, 0));
   CHECK(truth_has(world, 1));
-  const Feedback facts = world.feedback(0, now);
-  CHECK(facts.is_lifted);
-  CHECK(facts.executing.number == 0);
+  const RobotReport robot_report = world.robot_report(0, now);
+  CHECK(robot_report.is_lifted);
+  CHECK(robot_report.executing.number == 0);
   Cameras cameras(scenario, kBegin, 1);
   msg::DetectionFrame frame;
   cameras.capture(cameras.next_capture(), {world.bodies()}, frame);
@@ -89,12 +89,12 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
   SECTION("at the requested place") {
     world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.001, -2}), now);
     run(9);
-    CHECK(world.feedback(0, now).executing.number == 0);
+    CHECK(world.robot_report(0, now).executing.number == 0);
     run(3);
-    const Feedback facts = world.feedback(0, now);
-    CHECK(facts.executing.number == 10);
-    CHECK_FALSE(facts.is_lifted);
-    CHECK(facts.estimate.position_m.x() == Approx(3.001));
+    const RobotReport robot_report = world.robot_report(0, now);
+    CHECK(robot_report.executing.number == 10);
+    CHECK_FALSE(robot_report.is_lifted);
+    CHECK(robot_report.estimate.position_m.x() == Approx(3.001));
     CHECK(truth_has(world, 0));
     CHECK((world.bodies()[0].position_m() - Vec2(3.001, -2)).norm() < 1e-6);
     CHECK(world.bodies()[0].heading_rad() == Approx(1.5));
@@ -112,8 +112,8 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.01, -2}), now);
     run(100);
     CHECK_FALSE(truth_has(world, 0));
-    CHECK(world.feedback(0, now).is_lifted);
-    CHECK(world.feedback(0, now).executing.number == 10);
+    CHECK(world.robot_report(0, now).is_lifted);
+    CHECK(world.robot_report(0, now).executing.number == 10);
     // Only lifting the robot again voids the first rest version and permits another.
     world.on_command(0, rest_version(0, 11, now + milliseconds(10), {3, -2}), now);
     run(100);
@@ -129,7 +129,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     append_stop(dash, 5);
     world.on_command(0, test::command_with({0, 1, 10, 0, dash}), now);
     run(100);
-    CHECK(world.feedback(0, now).executing.number == 0);
+    CHECK(world.robot_report(0, now).executing.number == 0);
     CHECK(world.firmware(0).counts().refused_base == 1);
   }
   CHECK(world.firmware_violations() == 0);
@@ -152,9 +152,9 @@ TEST_CASE("a lifted robot names its last version, which may be a stop that it ha
   REQUIRE(is_off_reference());
   const VersionNumber stop = world.firmware(0).executing().number;
   REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
-  const Feedback facts = world.feedback(0, now);
-  CHECK(facts.is_absent());
-  CHECK(facts.executing.base == stop);
+  const RobotReport robot_report = world.robot_report(0, now);
+  CHECK(robot_report.is_absent());
+  CHECK(robot_report.executing.base == stop);
   CHECK(world.firmware_violations() == 0);
 }
 
@@ -171,7 +171,7 @@ TEST_CASE("a version from before the robot was lifted is never executed afterwar
   REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_LIFT), now));
   world.on_command(0, rest_version(0, 4, now + milliseconds(20), mark), now);
   world.advance(now += milliseconds(50));
-  CHECK(world.feedback(0, now).executing.number == 0);
+  CHECK(world.robot_report(0, now).executing.number == 0);
   CHECK(world.firmware_violations() == 0);
 }
 
@@ -188,20 +188,20 @@ TEST_CASE("a rebooted robot rests or brakes off reference, and obeys the same ag
   Time now = kBegin + milliseconds(moves ? 400 : 2000);
   world.advance(now);
   const Vec2 before = world.bodies()[0].velocity_mps();
-  const Feedback last = world.feedback(0, now);
+  const RobotReport last = world.robot_report(0, now);
   REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_REBOOT), now));
   world.advance(now += milliseconds(2));
-  const Feedback facts = world.feedback(0, now);
-  CHECK(facts.is_off_reference);
-  CHECK(facts.executing.base == 10);
-  CHECK(facts.executing.number > 10);
-  CHECK(facts.executing.incarnation == 3);
-  CHECK(facts.executing.trajectory.start() > last.valid_at);
-  CHECK(std::abs(facts.executing.trajectory.at_start().velocity_mps.x() - before.x()) < 0.05);
-  CHECK(facts.obeyed_incarnation == 3);
-  CHECK(facts.obeyed_epoch == 7);
-  CHECK(facts.activated == 0);
-  CHECK_FALSE(facts.command);
+  const RobotReport robot_report = world.robot_report(0, now);
+  CHECK(robot_report.is_off_reference);
+  CHECK(robot_report.executing.base == 10);
+  CHECK(robot_report.executing.number > 10);
+  CHECK(robot_report.executing.incarnation == 3);
+  CHECK(robot_report.executing.trajectory.start() > last.valid_at);
+  CHECK(std::abs(robot_report.executing.trajectory.at_start().velocity_mps.x() - before.x()) < 0.05);
+  CHECK(robot_report.obeyed_incarnation == 3);
+  CHECK(robot_report.obeyed_epoch == 7);
+  CHECK(robot_report.activated == 0);
+  CHECK_FALSE(robot_report.command);
   world.advance(now + milliseconds(1000));
   CHECK(world.bodies()[0].velocity_mps().norm() < 0.02);
   CHECK(world.reference_error_m(0) < 0.003);
@@ -250,13 +250,14 @@ TEST_CASE("a robot that forgets its pose brakes, reports nothing, and stops itse
   CHECK_FALSE(world.may_report(0));  // its version is still the one from before
   world.advance(now += milliseconds(2));
   REQUIRE(world.may_report(0));
-  const Feedback facts = world.feedback(0, now);
-  CHECK(facts.is_off_reference);
-  CHECK(facts.executing.number > 11);
-  CHECK(facts.executing.trajectory.start() > forgotten_at);
-  CHECK((facts.executing.trajectory.rest_position_m() - world.bodies()[0].position_m()).norm() < 0.001);
-  CHECK(facts.executing.inflation_m > 0.004);
-  CHECK(facts.obeyed_incarnation == 3);
+  const RobotReport robot_report = world.robot_report(0, now);
+  CHECK(robot_report.is_off_reference);
+  CHECK(robot_report.executing.number > 11);
+  CHECK(robot_report.executing.trajectory.start() > forgotten_at);
+  CHECK((robot_report.executing.trajectory.rest_position_m() - world.bodies()[0].position_m()).norm() <
+        0.001);
+  CHECK(robot_report.executing.inflation_m > 0.004);
+  CHECK(robot_report.obeyed_incarnation == 3);
   CHECK(world.firmware_violations() == 0);
 }
 
@@ -270,7 +271,7 @@ TEST_CASE("a robot without a pose that is lifted or switched off and on behaves 
   SECTION("the hand that lifts it tells it so") {
     REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_LIFT));
     REQUIRE(world.may_report(0));
-    CHECK(world.feedback(0, now).is_lifted);
+    CHECK(world.robot_report(0, now).is_lifted);
     CHECK_FALSE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
   }
   SECTION("power does not bring the pose back") {
@@ -295,11 +296,11 @@ TEST_CASE(
   auto command = rest_version(0, 5, now + milliseconds(20), scenario.robots[0].start_m);
   command.sent_at = time_from_ns(12345);
   world.on_command(0, command, now);
-  Feedback facts = world.feedback(0, now);
-  CHECK(facts.valid_at == now + milliseconds(7));
-  REQUIRE(facts.command);
-  CHECK(facts.command->sent_at == time_from_ns(12345));
-  CHECK(facts.command->received_at == facts.valid_at);
+  RobotReport robot_report = world.robot_report(0, now);
+  CHECK(robot_report.valid_at == now + milliseconds(7));
+  REQUIRE(robot_report.command);
+  CHECK(robot_report.command->sent_at == time_from_ns(12345));
+  CHECK(robot_report.command->received_at == robot_report.valid_at);
   CHECK(world.next_start(0) == now + milliseconds(13));
   world.advance(now += milliseconds(12));
   CHECK(world.firmware(0).executing().number == 0);
@@ -312,24 +313,24 @@ TEST_CASE(
   REQUIRE(world.disturb(0, clock, now));
   const Time frozen_at = now + milliseconds(7);
   world.advance(now += little / 2);
-  CHECK(world.feedback(0, now).valid_at == frozen_at);
+  CHECK(world.robot_report(0, now).valid_at == frozen_at);
   world.advance(now += milliseconds(30));
-  CHECK(world.feedback(0, now).valid_at == now + milliseconds(7) - little);
+  CHECK(world.robot_report(0, now).valid_at == now + milliseconds(7) - little);
   CHECK(world.firmware(0).own_stops() == 0);
-  const Incarnation incarnation = world.feedback(0, now).robot_incarnation;
+  const Incarnation incarnation = world.robot_report(0, now).robot_incarnation;
 
   // What it has reported by a clock that is set back farther is void.
   clock.clock_offset = milliseconds(-30);
   REQUIRE(world.disturb(0, clock, now));
   world.advance(now += milliseconds(20));
-  CHECK(world.feedback(0, now).valid_at == now - milliseconds(30));
-  CHECK(world.feedback(0, now).robot_incarnation == incarnation + 1);
+  CHECK(world.robot_report(0, now).valid_at == now - milliseconds(30));
+  CHECK(world.robot_report(0, now).robot_incarnation == incarnation + 1);
   CHECK(world.firmware(0).own_stops() == 1);
   clock.clock_offset = milliseconds(400);
   REQUIRE(world.disturb(0, clock, now));
-  CHECK(world.feedback(0, now).valid_at == now + milliseconds(400));
+  CHECK(world.robot_report(0, now).valid_at == now + milliseconds(400));
   world.advance(now += milliseconds(500));
-  CHECK(world.feedback(0, now).robot_incarnation == incarnation + 1);
+  CHECK(world.robot_report(0, now).robot_incarnation == incarnation + 1);
   CHECK(world.firmware(0).own_stops() == 1);
   CHECK(world.firmware_violations() == 0);
 }
@@ -418,10 +419,10 @@ TEST_CASE("a robot whose clock drifts uses observations and follows its referenc
   CHECK(world.robot_time(0, now) == now + gained);
   Command command = test::command_with({0, 1, 0, 0, Trajectory::resting(now, Vec2(0, 0))});
   command.version.reset();
-  const double before_m = world.feedback(0, now).uncertainty.position_error_rms_m;
+  const double before_m = world.robot_report(0, now).uncertainty.position_error_rms_m;
   command.fix = PoseFix{now + gained - milliseconds(20), world.bodies()[0].position_m(), 0};
   world.on_command(0, command, now);
-  CHECK(world.feedback(0, now).uncertainty.position_error_rms_m < 0.6 * before_m);
+  CHECK(world.robot_report(0, now).uncertainty.position_error_rms_m < 0.6 * before_m);
 }
 
 TEST_CASE("under any disturbance the firmware keeps its rules and ends where it reports to be") {
@@ -435,28 +436,28 @@ TEST_CASE("under any disturbance the firmware keeps its rules and ends where it 
     agents.emplace_back(scenario, world, i, 10 * seed + i);
     agents.back().place_m = scenario.robots[i].start_m;
   }
-  struct Fact {
+  struct LastReport {
     Time at;
     VersionNumber executing;
   };
   std::vector<std::map<VersionNumber, msg::Version>> known(world.robot_count());
-  std::vector<Fact> latest(world.robot_count(), Fact{Time::min(), 0});
+  std::vector<LastReport> latest(world.robot_count(), LastReport{Time::min(), 0});
   for (Time now = kBegin; now < kBegin + std::chrono::seconds(8);) {
     now += kPhysicsStep;
     world.advance(now);
     for (std::size_t i = 0; i < agents.size(); ++i) {
       agents[i].act(now);
-      const Feedback facts = world.feedback(i, now);
-      const VersionNumber number = facts.executing.number;
-      const msg::Version executing = encode(facts.executing);
+      const RobotReport robot_report = world.robot_report(i, now);
+      const VersionNumber number = robot_report.executing.number;
+      const msg::Version executing = encode(robot_report.executing);
       const auto [same, is_new] = known[i].emplace(number, executing);
       if (!is_new && number > 0) REQUIRE(same->second == executing);
-      REQUIRE(facts.valid_at >= latest[i].at);
-      if (!facts.is_lifted && number != latest[i].executing && latest[i].executing > 0) {
-        REQUIRE(facts.executing.trajectory.start() > latest[i].at);
+      REQUIRE(robot_report.valid_at >= latest[i].at);
+      if (!robot_report.is_lifted && number != latest[i].executing && latest[i].executing > 0) {
+        REQUIRE(robot_report.executing.trajectory.start() > latest[i].at);
         REQUIRE(number > latest[i].executing);
       }
-      latest[i] = {facts.valid_at, number};
+      latest[i] = {robot_report.valid_at, number};
     }
     if (now > kBegin + std::chrono::seconds(6) || !rng.chance(0.005)) continue;
     const std::size_t robot = rng.below(world.robot_count());

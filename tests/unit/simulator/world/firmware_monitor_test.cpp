@@ -24,11 +24,11 @@ struct Scene {
     monitor.command_arrived(command_with(v), kBegin + milliseconds(ms));
   }
   void report(const Version& executing, int ms, Incarnation obeyed = 1) {
-    Feedback fact;
-    fact.executing = executing;
-    fact.valid_at = kBegin + milliseconds(ms);
-    fact.obeyed_incarnation = obeyed;
-    monitor.reported(fact);
+    RobotReport robot_report;
+    robot_report.executing = executing;
+    robot_report.valid_at = kBegin + milliseconds(ms);
+    robot_report.obeyed_incarnation = obeyed;
+    monitor.reported(robot_report);
   }
 };
 
@@ -131,11 +131,11 @@ TEST_CASE("an own stop that follows the rules is not a violation") {
   const double speed = GENERATE(0.0, 1e-9, 4e-9, 1e-8, 3e-7, 1e-5, 1.0);
   const Version stop = own_stop(0.01, speed);
   scene.monitor.started_own_stop(stop);
-  Feedback fact;
-  fact.executing = stop;
-  fact.is_off_reference = true;
-  fact.valid_at = kBegin + milliseconds(21);
-  scene.monitor.reported(fact);
+  RobotReport robot_report;
+  robot_report.executing = stop;
+  robot_report.is_off_reference = true;
+  robot_report.valid_at = kBegin + milliseconds(21);
+  scene.monitor.reported(robot_report);
   Version onwards = version((1 << 20) + 1, 1 << 20, 400);
   onwards.trajectory = Trajectory::resting(onwards.trajectory.start(), stop.trajectory.rest_position_m());
   scene.arrive(onwards, 30);
@@ -172,14 +172,16 @@ TEST_CASE("an own stop that breaks a rule is counted") {
 
 TEST_CASE("a report of a false state is counted") {
   Scene scene;
-  Feedback fact;
-  fact.executing = version(0, 0, 0, 0);
-  fact.valid_at = kBegin + milliseconds(21);
-  SECTION("off reference") { fact.is_off_reference = true; }
-  SECTION("lifted") { fact.is_lifted = true; }
+  RobotReport robot_report;
+  robot_report.executing = version(0, 0, 0, 0);
+  robot_report.valid_at = kBegin + milliseconds(21);
+  SECTION("off reference") { robot_report.is_off_reference = true; }
+  SECTION("lifted") { robot_report.is_lifted = true; }
   SECTION("on the floor while lifted") { scene.monitor.lifted(); }
-  SECTION("a command received in the future") { fact.command = {kBegin, fact.valid_at + Duration{1}}; }
-  scene.monitor.reported(fact);
+  SECTION("a command received in the future") {
+    robot_report.command = {kBegin, robot_report.valid_at + Duration{1}};
+  }
+  scene.monitor.reported(robot_report);
   CHECK(scene.monitor.violations() == 1);
 }
 

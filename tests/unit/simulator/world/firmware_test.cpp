@@ -42,21 +42,21 @@ void receive(Firmware& robot, const msg::Command& message, Time now) {
 
 TEST_CASE("a robot without commands executes version 0 at rest at its start position") {
   auto robot = firmware();
-  const auto facts = robot.feedback(at(5));
-  CHECK(facts.robot == kRobot);
-  CHECK(facts.obeyed_incarnation == 0);
-  CHECK_FALSE(facts.command);
-  CHECK(facts.executing.number == 0);
-  CHECK(facts.executing.trajectory.at_start().position_m == kStart);
-  CHECK(facts.executing.trajectory.phases().empty());
-  CHECK(facts.heading_rad == 0.5);
+  const auto robot_report = robot.robot_report(at(5));
+  CHECK(robot_report.robot == kRobot);
+  CHECK(robot_report.obeyed_incarnation == 0);
+  CHECK_FALSE(robot_report.command);
+  CHECK(robot_report.executing.number == 0);
+  CHECK(robot_report.executing.trajectory.at_start().position_m == kStart);
+  CHECK(robot_report.executing.trajectory.phases().empty());
+  CHECK(robot_report.heading_rad == 0.5);
 }
 
 TEST_CASE("a version based on the executed one is switched to at its start time, not earlier") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20)), at(5));
-  CHECK(robot.feedback(at(19)).executing.number == 0);
-  CHECK(robot.feedback(at(20)).executing.number == 101);
+  CHECK(robot.robot_report(at(19)).executing.number == 0);
+  CHECK(robot.robot_report(at(20)).executing.number == 101);
   CHECK(robot.counts().activated == 1);
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("an own stop does not contradict a fact reported for the same time") {
   const Time begin = time_from_ns(1'000'000'000), reported = begin + std::chrono::milliseconds(10);
   Firmware firmware(0, {0, 0}, 0, begin, {});
   firmware.reboot();
-  REQUIRE(firmware.feedback(reported).executing.number == 0);
+  REQUIRE(firmware.robot_report(reported).executing.number == 0);
   firmware.tick(reported, Odometry{});
   CHECK(firmware.executing().number == 0);
   firmware.tick(reported + kPhysicsStep, Odometry{});
@@ -75,7 +75,7 @@ TEST_CASE("a version that arrives after its start time is refused") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20)), at(21));
   robot.on_command(command_with(version(102, 0, 22)), at(22));
-  CHECK(robot.feedback(at(30)).executing.number == 0);
+  CHECK(robot.robot_report(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_late == 2);
   CHECK(robot.counts().activated == 0);
 }
@@ -83,7 +83,7 @@ TEST_CASE("a version that arrives after its start time is refused") {
 TEST_CASE("a version on another base is refused") {
   auto robot = firmware();
   robot.on_command(command_with(version(103, 102, 20)), at(5));
-  CHECK(robot.feedback(at(30)).executing.number == 0);
+  CHECK(robot.robot_report(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_base == 1);
 }
 
@@ -91,15 +91,15 @@ TEST_CASE("the base of a version may arrive after it") {
   auto robot = firmware();
   robot.on_command(command_with(version(102, 101, 40)), at(5));
   robot.on_command(command_with(version(101, 0, 20)), at(6));
-  CHECK(robot.feedback(at(39)).executing.number == 101);
-  CHECK(robot.feedback(at(40)).executing.number == 102);
+  CHECK(robot.robot_report(at(39)).executing.number == 101);
+  CHECK(robot.robot_report(at(40)).executing.number == 102);
 }
 
 TEST_CASE("only one of two versions on the same base is executed") {
   auto robot = firmware();
   robot.on_command(command_with(version(102, 0, 30)), at(5));
   robot.on_command(command_with(version(101, 0, 20)), at(6));
-  CHECK(robot.feedback(at(50)).executing.number == 101);
+  CHECK(robot.robot_report(at(50)).executing.number == 101);
   CHECK(robot.counts().activated == 1);
   CHECK(robot.counts().refused_base == 1);
 }
@@ -109,7 +109,7 @@ TEST_CASE("a version older than the executed one is never executed") {
   robot.on_command(command_with(version(105, 0, 20)), at(5));
   REQUIRE(robot.switch_next(at(20)));
   robot.on_command(command_with(version(104, 105, 40)), at(25));
-  CHECK(robot.feedback(at(50)).executing.number == 105);
+  CHECK(robot.robot_report(at(50)).executing.number == 105);
   CHECK(robot.counts().refused_base == 1);
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("a chain of versions that are due at the same time is executed in orde
   robot.on_command(command_with(version(103, 102, 30)), at(1));
   robot.on_command(command_with(version(101, 0, 10)), at(2));
   robot.on_command(command_with(version(102, 101, 20)), at(3));
-  CHECK(robot.feedback(at(100)).executing.number == 103);
+  CHECK(robot.robot_report(at(100)).executing.number == 103);
   CHECK(robot.counts().activated == 3);
 }
 
@@ -134,9 +134,9 @@ TEST_CASE("an older incarnation is fenced") {
   auto robot = firmware();
   robot.on_command(bare_command(kRobot, kSecond), at(1));
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(2));
-  const auto facts = robot.feedback(at(30));
-  CHECK(facts.obeyed_incarnation == kSecond);
-  CHECK(facts.executing.number == 0);
+  const auto robot_report = robot.robot_report(at(30));
+  CHECK(robot_report.obeyed_incarnation == kSecond);
+  CHECK(robot_report.executing.number == 0);
   CHECK(robot.counts().refused_fenced == 1);
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("a fence without a version drops pending versions of the older incarna
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
   robot.on_command(bare_command(kRobot, kSecond), at(2));
-  CHECK(robot.feedback(at(30)).executing.number == 0);
+  CHECK(robot.robot_report(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_fenced == 1);
 }
 
@@ -152,10 +152,10 @@ TEST_CASE("a fence does not affect the executed version") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
   robot.on_command(bare_command(kRobot, kSecond), at(20));
-  const auto facts = robot.feedback(at(30));
-  CHECK(facts.executing.number == 101);
-  CHECK(facts.executing.incarnation == kFirst);
-  CHECK(facts.obeyed_incarnation == kSecond);
+  const auto robot_report = robot.robot_report(at(30));
+  CHECK(robot_report.executing.number == 101);
+  CHECK(robot_report.executing.incarnation == kFirst);
+  CHECK(robot_report.obeyed_incarnation == kSecond);
 }
 
 TEST_CASE("a new incarnation cannot forward an older one's version") {
@@ -164,7 +164,7 @@ TEST_CASE("a new incarnation cannot forward an older one's version") {
   command.incarnation = kSecond;
   robot.on_command(command, at(1));
   CHECK(robot.obeyed_incarnation() == kSecond);
-  CHECK(robot.feedback(at(30)).executing.number == 0);
+  CHECK(robot.robot_report(at(30)).executing.number == 0);
   CHECK(robot.counts().refused_fenced == 1);
 }
 
@@ -175,18 +175,18 @@ TEST_CASE(
   auto later = bare_command(kRobot, kFirst);
   later.epoch = 9;
   robot.on_command(later, at(1));
-  CHECK(robot.feedback(at(2)).obeyed_epoch == 9);
+  CHECK(robot.robot_report(at(2)).obeyed_epoch == 9);
   auto old = command_with(version(101, 0, 20, kFirst));
   old.epoch = 8;
   robot.on_command(old, at(3));
   auto successor = command_with(version(201, 0, 20, kSecond));
   successor.epoch = 8;
   robot.on_command(successor, at(4));
-  const auto facts = robot.feedback(at(30));
-  CHECK(facts.executing.number == 0);
-  CHECK(facts.obeyed_epoch == 9);
+  const auto robot_report = robot.robot_report(at(30));
+  CHECK(robot_report.executing.number == 0);
+  CHECK(robot_report.obeyed_epoch == 9);
   // The successor's incarnation is obeyed, but not its version.
-  CHECK(facts.obeyed_incarnation == kSecond);
+  CHECK(robot_report.obeyed_incarnation == kSecond);
   CHECK(robot.counts().refused_fenced == 2);
 }
 
@@ -196,7 +196,7 @@ TEST_CASE("a fenced agent cannot raise the epoch") {
   auto zombie = bare_command(kRobot, kFirst);
   zombie.epoch = 9;
   robot.on_command(zombie, at(2));
-  CHECK(robot.feedback(at(3)).obeyed_epoch == 0);
+  CHECK(robot.robot_report(at(3)).obeyed_epoch == 0);
 }
 
 TEST_CASE("a new incarnation continues from the executed version") {
@@ -204,32 +204,32 @@ TEST_CASE("a new incarnation continues from the executed version") {
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(1));
   robot.on_command(bare_command(kRobot, kSecond), at(25));
   robot.on_command(command_with(version(201, 101, 40, kSecond)), at(30));
-  CHECK(robot.feedback(at(40)).executing.number == 201);
+  CHECK(robot.robot_report(at(40)).executing.number == 201);
 }
 
 TEST_CASE("a robot reports for ever whether it has executed a granted version, and own stops are none") {
   auto robot = firmware();
   robot.reboot();
   (void)robot.tick(at(5), {});
-  const VersionNumber stop = robot.feedback(at(6)).executing.number;
+  const VersionNumber stop = robot.robot_report(at(6)).executing.number;
   CHECK(stop > 0);
-  CHECK_FALSE(robot.feedback(at(7)).has_moved);
+  CHECK_FALSE(robot.robot_report(at(7)).has_moved);
   robot.on_command(command_with(version(stop + 1, stop, 2000)), at(1900));
-  CHECK_FALSE(robot.feedback(at(1999)).has_moved);
-  CHECK(robot.feedback(at(2000)).has_moved);
+  CHECK_FALSE(robot.robot_report(at(1999)).has_moved);
+  CHECK(robot.robot_report(at(2000)).has_moved);
   robot.reboot();
   (void)robot.tick(at(2005), {});
-  CHECK(robot.feedback(at(2006)).executing.number > stop + 1);
-  CHECK(robot.feedback(at(2007)).has_moved);
+  CHECK(robot.robot_report(at(2006)).executing.number > stop + 1);
+  CHECK(robot.robot_report(at(2007)).has_moved);
 }
 
 TEST_CASE("a due switch is made before a fact is reported") {
   SECTION("by a report") {
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20)), at(5));
-    const auto facts = robot.feedback(at(20));
-    CHECK(facts.executing.number == 101);
-    CHECK(facts.activated == 1);
+    const auto robot_report = robot.robot_report(at(20));
+    CHECK(robot_report.executing.number == 101);
+    CHECK(robot_report.activated == 1);
   }
   SECTION("by a command") {
     auto robot = firmware();
@@ -296,11 +296,11 @@ TEST_CASE("hostile commands change nothing and are counted") {
     receive(robot, hostile, at(5));
     CHECK(robot.counts().refused_malformed == 1);
     CHECK(robot.obeyed_incarnation() == kFirst);
-    CHECK(robot.feedback(at(15)).executing.number == 0);
-    const auto facts = robot.feedback(at(20));
-    CHECK(facts.executing.number == 101);
-    CHECK(facts.estimate.position_m == kStart);
-    CHECK(facts.tracking_error_m == 0);
+    CHECK(robot.robot_report(at(15)).executing.number == 0);
+    const auto robot_report = robot.robot_report(at(20));
+    CHECK(robot_report.executing.number == 101);
+    CHECK(robot_report.estimate.position_m == kStart);
+    CHECK(robot_report.tracking_error_m == 0);
   }
 }
 
@@ -333,7 +333,7 @@ TEST_CASE("versions that start far ahead do not displace an earlier one") {
   auto robot = firmware();
   for (VersionNumber n = 0; n < 50; ++n) robot.on_command(command_with(version(200 + n, 0, 100'000)), at(1));
   robot.on_command(command_with(version(101, 0, 20)), at(2));
-  CHECK(robot.feedback(at(20)).executing.number == 101);
+  CHECK(robot.robot_report(at(20)).executing.number == 101);
 }
 
 TEST_CASE("a robot turns to the commanded heading and holds it") {
@@ -383,9 +383,9 @@ TEST_CASE("the monitor finds no broken rule under any commands") {
       robot.on_command(command, now);
     } else {
       switch_due(now);
-      const auto facts = robot.feedback(now);
-      monitor.reported(facts);
-      taken = facts.activated;
+      const auto robot_report = robot.robot_report(now);
+      monitor.reported(robot_report);
+      taken = robot_report.activated;
     }
   }
   CHECK(monitor.violations() == 0);

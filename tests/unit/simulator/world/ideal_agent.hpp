@@ -43,7 +43,7 @@ class IdealAgent {
     const bool is_missed =
         scenario_.vision.miss_probability > 0 && rng_.chance(scenario_.vision.miss_probability);
     if (seen != seen_.rend() && !is_missed) command.fix = *seen;
-    command.version = next_version(world_.feedback(robot_, now));
+    command.version = next_version(world_.robot_report(robot_, now));
     world_.on_command(robot_, command, now);
   }
 
@@ -61,11 +61,11 @@ class IdealAgent {
     if (seen_.size() > 100) seen_.pop_front();
   }
 
-  std::optional<Version> next_version(const Feedback& facts) {
-    const Version& executing = facts.executing;
-    const Time start = facts.valid_at + scenario_.cycle - 2 * kPhysicsStep;
+  std::optional<Version> next_version(const RobotReport& robot_report) {
+    const Version& executing = robot_report.executing;
+    const Time start = robot_report.valid_at + scenario_.cycle - 2 * kPhysicsStep;
     newest_ = std::max(newest_, executing.number) + 1;
-    if (facts.is_lifted) {
+    if (robot_report.is_lifted) {
       if (executing.number > 0) return std::nullopt;
       return Version{world_.id(robot_), 1, newest_, 0, Trajectory::resting(start, place_m)};
     }

@@ -203,13 +203,13 @@ TEST_CASE("a robot farther from its reference than the bound makes an own stop a
   world.on_command(0, test::command_with({0, 1, 5, 0, dash}), floor.now);
   for (; floor.now < kBegin + milliseconds(1200); floor.now += kPhysicsStep) world.advance(floor.now);
   Command command = test::bare_command(0, 1);
-  command.fix = {world.time(), world.feedback(0, floor.now).estimate.position_m + Vec2(0, drift_m)};
+  command.fix = {world.time(), world.robot_report(0, floor.now).estimate.position_m + Vec2(0, drift_m)};
   REQUIRE(world.firmware(0).own_stops() == 0);
   world.on_command(0, command, floor.now);
   for (const Time end = floor.now + milliseconds(100); floor.now < end;) {
     world.advance(floor.now += kPhysicsStep);
-    const Feedback facts = world.feedback(0, floor.now);
-    CHECK(facts.tracking_error_m <= bound_m + facts.executing.inflation_m);
+    const RobotReport robot_report = world.robot_report(0, floor.now);
+    CHECK(robot_report.tracking_error_m <= bound_m + robot_report.executing.inflation_m);
   }
   // In between, the uncertainty of its estimate decides.
   if (std::abs(drift_m) < 0.7 * bound_m) CHECK(world.firmware(0).own_stops() == 0);

@@ -45,9 +45,9 @@ TEST_CASE("a robot that was without power does not execute versions that it rece
   REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF), now));
   world.advance(now += milliseconds(500));
   REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_SWITCH_ON), now));
-  CHECK(world.feedback(0, now).executing.number == 0);
+  CHECK(world.robot_report(0, now).executing.number == 0);
   world.advance(now += milliseconds(10));
-  CHECK(world.feedback(0, now).is_off_reference);
+  CHECK(world.robot_report(0, now).is_off_reference);
   CHECK(world.firmware_violations() == 0);
 }
 

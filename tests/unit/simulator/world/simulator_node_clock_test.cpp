@@ -35,20 +35,20 @@ class ManualBus : public Bus {
     const msg::Command message = encode(command);
     on_command_(&message);
   }
-  std::vector<msg::Feedback> facts;
+  std::vector<msg::Feedback> robot_reports;
 
  protected:
   struct Recorder : RawWriter {
     ManualBus* bus = nullptr;
-    bool is_feedback = false;
+    bool is_robot_report = false;
     void write(const void* message) override {
-      if (is_feedback) bus->facts.push_back(*static_cast<const msg::Feedback*>(message));
+      if (is_robot_report) bus->robot_reports.push_back(*static_cast<const msg::Feedback*>(message));
     }
   };
   std::unique_ptr<RawWriter> make_writer(const TopicInfo& topic, const std::string&) override {
     auto writer = std::make_unique<Recorder>();
     writer->bus = this;
-    writer->is_feedback = std::string(topic.name) == topics::kFeedback.name;
+    writer->is_robot_report = std::string(topic.name) == topics::kFeedback.name;
     return writer;
   }
   void make_reader(const TopicInfo& topic, const std::string&,
@@ -75,7 +75,7 @@ TEST_CASE("a simulator catches up after a long pause, and continues") {
     bus.set(bus.now() + pause);
     bus.run_due();
     CHECK(bus.now() - node.world().time() < milliseconds(2));
-    CHECK(bus.facts.back().executing().version_number() == 1);
+    CHECK(bus.robot_reports.back().executing().version_number() == 1);
     CHECK(node.world().reference_error_m(0) < 0.005);
   }
   const Time start = bus.now() + milliseconds(20);
@@ -83,7 +83,7 @@ TEST_CASE("a simulator catches up after a long pause, and continues") {
       test::command_with({0, 1, 2, 1, Trajectory::resting(start, trajectory.rest_position_m())}));
   bus.set(start + milliseconds(5));
   bus.run_due();
-  CHECK(bus.facts.back().executing().version_number() == 2);
+  CHECK(bus.robot_reports.back().executing().version_number() == 2);
   CHECK(node.world().firmware_violations() == 0);
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("robots whose host's clock is set back stop by themselves, in a new in
   SimulatorNode node(bus, scenario, 1, 1);
   bus.set(kBegin + milliseconds(500));
   bus.run_due();
-  const msg::Feedback before = bus.facts.back();
+  const msg::Feedback before = bus.robot_reports.back();
   bus.set(kBegin + milliseconds(400));
   const Vec2 mark = scenario.robots[0].start_m;
   // On a base that the robot leaves because of the jump.
@@ -101,7 +101,7 @@ TEST_CASE("robots whose host's clock is set back stop by themselves, in a new in
       test::command_with({0, 1, 1, 0, Trajectory::resting(kBegin + milliseconds(450), mark)}));
   bus.set(kBegin + milliseconds(600));
   bus.run_due();
-  const msg::Feedback& after = bus.facts.back();
+  const msg::Feedback& after = bus.robot_reports.back();
   CHECK(after.header().incarnation() > before.header().incarnation());
   CHECK(after.is_off_reference());
   CHECK(after.executing().version_number() > 1);

@@ -32,10 +32,11 @@ struct Scene {
         outside(network) {
     for (const RobotSpec& robot : scenario.robots) {
       commands.push_back(outside.advertise(topics::kCommand, robot.id));
-      outside.subscribe<msg::Feedback>(topics::kFeedback, robot.id, [this](const msg::Feedback& fact) {
-        facts[fact.robot()].push_back(fact);
-        heard_at[fact.robot()].push_back(network.now());
-      });
+      outside.subscribe<msg::Feedback>(topics::kFeedback, robot.id,
+                                       [this](const msg::Feedback& robot_report) {
+                                         robot_reports[robot_report.robot()].push_back(robot_report);
+                                         heard_at[robot_report.robot()].push_back(network.now());
+                                       });
     }
     outside.subscribe<msg::DetectionFrame>(
         topics::kDetections, [this](const msg::DetectionFrame& frame) { frames.push_back(frame); });
@@ -53,7 +54,7 @@ struct Scene {
   SimulatorNode node;
   SimBus outside;
   std::vector<Writer<msg::Command>> commands;
-  std::map<RobotId, std::vector<msg::Feedback>> facts;
+  std::map<RobotId, std::vector<msg::Feedback>> robot_reports;
   std::map<RobotId, std::vector<Time>> heard_at;
   std::vector<msg::DetectionFrame> frames;
   std::vector<msg::GroundTruth> truths;
@@ -63,19 +64,19 @@ TEST_CASE("every robot reports about once per cycle when idle, and not all at th
   Scene scene(separated_robots(10));
   scene.run(std::chrono::seconds(2));
   std::map<std::int64_t, int> burst;
-  for (const auto& [robot, facts] : scene.facts) {
+  for (const auto& [robot, robot_reports] : scene.robot_reports) {
     CAPTURE(robot);
-    CHECK(facts.size() >= 90);
-    CHECK(facts.size() <= 125);
-    for (std::size_t i = 1; i < facts.size(); ++i) {
-      CHECK(facts[i].valid_at_ns() - facts[i - 1].valid_at_ns() <= 21'000'000);
-      CHECK(facts[i].header().message_number() == facts[i - 1].header().message_number() + 1);
+    CHECK(robot_reports.size() >= 90);
+    CHECK(robot_reports.size() <= 125);
+    for (std::size_t i = 1; i < robot_reports.size(); ++i) {
+      CHECK(robot_reports[i].valid_at_ns() - robot_reports[i - 1].valid_at_ns() <= 21'000'000);
+      CHECK(robot_reports[i].header().message_number() == robot_reports[i - 1].header().message_number() + 1);
     }
-    CHECK(facts.back().header().sender() == robot);
-    CHECK(facts.back().header().incarnation() == 77);
-    for (const auto& fact : facts) ++burst[fact.valid_at_ns()];
+    CHECK(robot_reports.back().header().sender() == robot);
+    CHECK(robot_reports.back().header().incarnation() == 77);
+    for (const auto& robot_report : robot_reports) ++burst[robot_report.valid_at_ns()];
   }
-  CHECK(scene.facts.size() == 10);
+  CHECK(scene.robot_reports.size() == 10);
   for (const auto& [time, count] : burst) CHECK(count <= 5);
 }
 
@@ -88,10 +89,10 @@ TEST_CASE("a switch of version is reported immediately") {
   const Vec2 mark = scenario.robots[1].start_m;
   scene.send(1, test::command_with({1, 9, 1, 0, Trajectory::resting(start, mark)}));
   scene.run(milliseconds(100));
-  const auto& facts = scene.facts[1];
-  const auto first = std::find_if(facts.begin(), facts.end(),
+  const auto& robot_reports = scene.robot_reports[1];
+  const auto first = std::find_if(robot_reports.begin(), robot_reports.end(),
                                   [](const msg::Feedback& f) { return f.executing().version_number() == 1; });
-  REQUIRE(first != facts.end());
+  REQUIRE(first != robot_reports.end());
   CHECK(first->valid_at_ns() == to_ns(start));
   CHECK(first->activated() == 1);
   CHECK(scene.node.world().firmware_violations() == 0);
@@ -110,11 +111,11 @@ TEST_CASE("every switch in a chain of pending versions is reported immediately")
   }
   scene.run(milliseconds(100));
   for (VersionNumber n = 1; n <= 4; ++n) {
-    const auto& facts = scene.facts[0];
-    const auto first = std::find_if(facts.begin(), facts.end(), [n](const msg::Feedback& f) {
+    const auto& robot_reports = scene.robot_reports[0];
+    const auto first = std::find_if(robot_reports.begin(), robot_reports.end(), [n](const msg::Feedback& f) {
       return f.executing().version_number() == n;
     });
-    REQUIRE(first != facts.end());
+    REQUIRE(first != robot_reports.end());
     CHECK(first->valid_at_ns() == to_ns(starts[n - 1]));
   }
 }
@@ -127,8 +128,8 @@ TEST_CASE("a fence is acknowledged immediately") {
   const Time sent = scene.network.now();
   scene.send(0, test::bare_command(0, 1234));
   scene.run(std::chrono::microseconds(250));
-  CHECK(scene.facts[0].back().obeyed_incarnation() == 1234);
-  CHECK(scene.facts[0].back().valid_at_ns() == to_ns(sent + std::chrono::microseconds(100)));
+  CHECK(scene.robot_reports[0].back().obeyed_incarnation() == 1234);
+  CHECK(scene.robot_reports[0].back().valid_at_ns() == to_ns(sent + std::chrono::microseconds(100)));
 }
 
 TEST_CASE("a command's lateness is decided by the robot's clock at its arrival") {
@@ -141,7 +142,7 @@ TEST_CASE("a command's lateness is decided by the robot's clock at its arrival")
   scene.send(0, test::command_with({0, 9, 1, 0, Trajectory::resting(now + milliseconds(10), mark)}));
   scene.run(milliseconds(50));
   CHECK(scene.node.world().firmware(0).counts().refused_late == 1);
-  CHECK(scene.facts[0].back().executing().version_number() == 0);
+  CHECK(scene.robot_reports[0].back().executing().version_number() == 0);
 }
 
 TEST_CASE("frames are published exactly the scenario's delay after their capture") {
@@ -191,9 +192,9 @@ TEST_CASE("the same seed gives the same messages") {
     for (const auto& frame : scene.frames) {
       for (const auto& robot : frame.robots()) total += robot.x_m() + robot.heading_rad();
     }
-    for (const auto& [robot, facts] : scene.facts) {
-      for (const auto& fact : facts)
-        total += fact.x_m() + 1e-12 * static_cast<double>(fact.valid_at_ns() - to_ns(kBegin));
+    for (const auto& [robot, robot_reports] : scene.robot_reports) {
+      for (const auto& robot_report : robot_reports)
+        total += robot_report.x_m() + 1e-12 * static_cast<double>(robot_report.valid_at_ns() - to_ns(kBegin));
     }
     return total;
   };
@@ -204,9 +205,9 @@ TEST_CASE("the same seed gives the same messages") {
 // An agent that drives randomly over a bad network; each version continues the one last reported as executed.
 struct RandomAgent {
   void act(Scene& scene, std::size_t robot, Rng& rng) {
-    const auto& facts = scene.facts[scene.scenario.robots[robot].id];
-    if (facts.empty()) return;
-    const auto base = decode(facts.back().executing());
+    const auto& robot_reports = scene.robot_reports[scene.scenario.robots[robot].id];
+    if (robot_reports.empty()) return;
+    const auto base = decode(robot_reports.back().executing());
     REQUIRE(base.has_value());
     const Time start = scene.network.now() + from_seconds(rng.uniform(0.02, 0.12));
     if (start <= base->trajectory.start()) return;
@@ -262,7 +263,7 @@ TEST_CASE("hostile commands over the bus do not stop the simulator") {
     scene.run(std::chrono::microseconds(300));
   }
   scene.run(milliseconds(100));
-  const auto& last = scene.facts[0].back();
+  const auto& last = scene.robot_reports[0].back();
   CHECK(scene.node.world().firmware(0).counts().refused_malformed > 1000);
   CHECK(last.executing().version_number() == 0);
   CHECK(last.tracking_error_m() < 0.002);
@@ -292,17 +293,19 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
   send(0, static_cast<msg::DisturbanceKind>(99));
   send(0, msg::DisturbanceKind::DISTURBANCE_PLACE);  // it is on the floor
   CHECK(drops_of(scene.node).total(DropReason::kRefusedDisturbance) == 5);
-  CHECK_FALSE(scene.facts[0].back().is_lifted());
+  CHECK_FALSE(scene.robot_reports[0].back().is_lifted());
   send(0, msg::DisturbanceKind::DISTURBANCE_LIFT);
-  CHECK(scene.facts[0].back().is_lifted());
-  CHECK(scene.facts[0].back().valid_at_ns() == to_ns(scene.network.now() - std::chrono::microseconds(150)));
+  CHECK(scene.robot_reports[0].back().is_lifted());
+  CHECK(scene.robot_reports[0].back().valid_at_ns() ==
+        to_ns(scene.network.now() - std::chrono::microseconds(150)));
   send(1, msg::DisturbanceKind::DISTURBANCE_REBOOT);
   scene.run(milliseconds(6));
-  CHECK(scene.facts[1].back().is_off_reference());
-  CHECK(scene.facts[1].back().executing().version_number() >= robot::RobotSide<double>::kOwnNumberGap);
+  CHECK(scene.robot_reports[1].back().is_off_reference());
+  CHECK(scene.robot_reports[1].back().executing().version_number() >=
+        robot::RobotSide<double>::kOwnNumberGap);
   send(1, msg::DisturbanceKind::DISTURBANCE_CLOCK);
   scene.run(milliseconds(100));
-  CHECK(scene.facts[1].back().valid_at_ns() > to_ns(scene.network.now()) - 20'000'000 + 5'000'000);
+  CHECK(scene.robot_reports[1].back().valid_at_ns() > to_ns(scene.network.now()) - 20'000'000 + 5'000'000);
   scene.run(milliseconds(20));
   CHECK(scene.truths.back().robots().size() == 1);
   CHECK(drops_of(scene.node).total(DropReason::kRefusedDisturbance) == 5);
@@ -319,10 +322,10 @@ TEST_CASE("a version's start is timed by the robot's clock") {
   const Time start = robot_now + std::chrono::microseconds(10'300);
   scene.send(0, test::command_with({0, 9, 1, 0, Trajectory::resting(start, scenario.robots[0].start_m)}));
   scene.run(milliseconds(30));
-  const auto& facts = scene.facts[0];
-  const auto first = std::find_if(facts.begin(), facts.end(),
+  const auto& robot_reports = scene.robot_reports[0];
+  const auto first = std::find_if(robot_reports.begin(), robot_reports.end(),
                                   [](const msg::Feedback& f) { return f.executing().version_number() == 1; });
-  REQUIRE(first != facts.end());
+  REQUIRE(first != robot_reports.end());
   CHECK(first->valid_at_ns() == to_ns(start));
   CHECK(first->header().stamp_ns() == to_ns(start - scenario.robots[0].clock_offset));
 }

@@ -94,18 +94,18 @@ TEST_CASE("a robot with pending feedback is listed once, until it is cleared") {
   const Scenario scenario = separated_robots(3);
   World world(scenario, kBegin, 1);
   world.on_command(1, test::bare_command(1, 5), kBegin);
-  REQUIRE(world.pending_feedback().size() == 1);
-  CHECK(world.pending_feedback()[0] == 1);
-  world.clear_pending_feedback(1);
-  CHECK(world.pending_feedback().empty());
+  REQUIRE(world.pending_reports().size() == 1);
+  CHECK(world.pending_reports()[0] == 1);
+  world.clear_pending_report(1);
+  CHECK(world.pending_reports().empty());
   const Vec2 mark = scenario.robots[1].start_m;
   world.on_command(1, test::command_with({1, 5, 1, 0, Trajectory::resting(kBegin + milliseconds(3), mark)}),
                    kBegin);
   world.on_command(1, test::command_with({1, 5, 2, 1, Trajectory::resting(kBegin + milliseconds(5), mark)}),
                    kBegin);
-  CHECK(world.pending_feedback().empty());
+  CHECK(world.pending_reports().empty());
   world.advance(kBegin + milliseconds(10));
-  CHECK(world.pending_feedback().size() == 1);
+  CHECK(world.pending_reports().size() == 1);
   CHECK(world.firmware(1).executing().number == 2);
 }
 

@@ -2,7 +2,7 @@
 #include "agents/navigation/bubble_band/bubble_band.hpp"
 
 #include "agents/planning/domain/disc_domain.hpp"
-#include "agents/planning/robust.hpp"
+#include "agents/planning/fallback_goal.hpp"
 #include "agents/planning/visibility/lazy_visibility.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/agents/navigation/dynamic_window/random_hull.hpp"
@@ -117,7 +117,7 @@ TEST_CASE("a band from a planner's path stays free and gets no longer than the p
     const Vec2 start(-3.2, 0), goal(3.2, 0);
     LazyVisibility planner;
     const DiscDomain domain(world, Field{10, 8}, 1.1 * kRadius_m, start, goal);
-    const Plan<Vec2> plan = plan_robustly(planner, domain, start, Budget{}, rng);
+    const Plan<Vec2> plan = plan_with_fallback_goal(planner, domain, start, Budget{}, rng);
     if (plan.states.empty() || plan.states.back() != goal) continue;
     const ObstaclePoints free = obstacles_of(points);
     BubbleBand band(kRadius_m);

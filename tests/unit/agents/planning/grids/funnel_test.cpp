@@ -17,75 +17,76 @@ double length_of(const std::vector<Vec2>& path) {
   return length;
 }
 
-/// Whether the straight line from one point to another passes through vertical gates that lie between them.
-bool passes(const Vec2& from, const Vec2& to, std::span<const Gate> gates) {
-  for (const Gate& gate : gates) {
-    const double x = gate.left_m.x();
+/// Whether the straight line from one point to another passes through vertical portals that lie between them.
+bool passes(const Vec2& from, const Vec2& to, std::span<const PortalEdge> portals) {
+  for (const PortalEdge& portal : portals) {
+    const double x = portal.left_m.x();
     if (x <= from.x() || x >= to.x()) continue;
     const double y = from.y() + (to.y() - from.y()) * (x - from.x()) / (to.x() - from.x());
-    if (y > gate.left_m.y() + kTolerance_m || y < gate.right_m.y() - kTolerance_m) return false;
+    if (y > portal.left_m.y() + kTolerance_m || y < portal.right_m.y() - kTolerance_m) return false;
   }
   return true;
 }
 
-/// The length of the shortest path over ends of gates, by comparison of all.
-double shortest_m(const Vec2& from, const std::vector<Gate>& gates, const Vec2& to) {
+/// The length of the shortest path over ends of portals, by comparison of all.
+double shortest_m(const Vec2& from, const std::vector<PortalEdge>& portals, const Vec2& to) {
   std::vector<Vec2> points{from};
-  for (const Gate& gate : gates) points.insert(points.end(), {gate.left_m, gate.right_m});
+  for (const PortalEdge& portal : portals) points.insert(points.end(), {portal.left_m, portal.right_m});
   points.push_back(to);
   std::vector<double> length(points.size(), std::numeric_limits<double>::infinity());
   length[0] = 0;
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t k = 0; k < i; ++k)
-      if (points[k].x() < points[i].x() && passes(points[k], points[i], gates))
+      if (points[k].x() < points[i].x() && passes(points[k], points[i], portals))
         length[i] = std::min(length[i], length[k] + (points[i] - points[k]).norm());
   return length.back();
 }
 
-TEST_CASE("the path through gates is the shortest one") {
+TEST_CASE("the path through portals is the shortest one") {
   const std::uint64_t seed = GENERATE(range(1, 101));
   CAPTURE(seed);
   Rng rng(seed);
   const std::size_t count = rng.below(30);
   const double wander_m = rng.uniform(0.1, 2), height_m = rng.uniform(0.01, 3);
-  std::vector<Gate> gates;
+  std::vector<PortalEdge> portals;
   double middle_m = 0;
   for (std::size_t i = 0; i < count; ++i) {
     middle_m += rng.uniform(-wander_m, wander_m);
     const auto x = static_cast<double>(i + 1);
     const double above_m = rng.uniform(0, height_m), below_m = rng.uniform(0, height_m);
-    gates.push_back({{x, middle_m + above_m}, {x, middle_m - below_m}});
-    // A gate that begins or ends where the one before does.
+    portals.push_back({{x, middle_m + above_m}, {x, middle_m - below_m}});
+    // A portal that begins or ends where the one before does.
     if (i > 0 && rng.chance(0.2))
-      gates[i].left_m.y() = std::max(gates[i - 1].left_m.y(), gates[i].right_m.y());
+      portals[i].left_m.y() = std::max(portals[i - 1].left_m.y(), portals[i].right_m.y());
   }
   const Vec2 from(0, rng.uniform(-1, 1)), to(static_cast<double>(count + 1), rng.uniform(-1, 1) + middle_m);
   std::vector<Vec2> path;
-  write_shortest_through(from, gates, to, path);
+  write_shortest_through(from, portals, to, path);
   REQUIRE(path.front() == from);
   REQUIRE(path.back() == to);
-  for (std::size_t i = 1; i < path.size(); ++i) REQUIRE(passes(path[i - 1], path[i], gates));
-  CHECK(length_of(path) == Approx(shortest_m(from, gates, to)).epsilon(1e-9));
+  for (std::size_t i = 1; i < path.size(); ++i) REQUIRE(passes(path[i - 1], path[i], portals));
+  CHECK(length_of(path) == Approx(shortest_m(from, portals, to)).epsilon(1e-9));
 
   // The same path backwards.
-  std::vector<Gate> reversed;
-  for (auto gate = gates.rbegin(); gate != gates.rend(); ++gate)
-    reversed.push_back({gate->right_m, gate->left_m});
+  std::vector<PortalEdge> reversed;
+  for (auto portal = portals.rbegin(); portal != portals.rend(); ++portal)
+    reversed.push_back({portal->right_m, portal->left_m});
   std::vector<Vec2> back;
   write_shortest_through(to, reversed, from, back);
   CHECK(length_of(back) == Approx(length_of(path)).epsilon(1e-9));
 }
 
-TEST_CASE("a path turns around the common end of several gates once") {
-  // Gates like the spokes of a wheel, passed clockwise.
+TEST_CASE("a path turns around the common end of several portals once") {
+  // Portals like the spokes of a wheel, passed clockwise.
   const Vec2 hub(0, 0);
-  const std::vector<Gate> gates{{{-1, 0}, hub}, {{-1, 1}, hub}, {{0, 1}, hub}, {{1, 1}, hub}, {{1, 0}, hub}};
+  const std::vector<PortalEdge> portals{
+      {{-1, 0}, hub}, {{-1, 1}, hub}, {{0, 1}, hub}, {{1, 1}, hub}, {{1, 0}, hub}};
   std::vector<Vec2> path;
-  write_shortest_through({-0.5, -1}, gates, {0.5, -1}, path);
+  write_shortest_through({-0.5, -1}, portals, {0.5, -1}, path);
   CHECK(path == std::vector<Vec2>{{-0.5, -1}, hub, {0.5, -1}});
 }
 
-TEST_CASE("a path without gates is straight") {
+TEST_CASE("a path without portals is straight") {
   std::vector<Vec2> path{{7, 7}};
   write_shortest_through({0, 0}, {}, {1, 1}, path);
   CHECK(path == std::vector<Vec2>{{0, 0}, {1, 1}});

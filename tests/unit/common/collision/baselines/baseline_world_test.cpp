@@ -18,7 +18,7 @@ constexpr double kTolerance_m = 1e-9;
 /// Calls `call(name, set)` with the name and an empty instance of each structure.
 template <typename Call>
 void each_structure(const Call& call) {
-  const Bodies none({});
+  const ShapeStore none({});
   call("spatial hash", baselines::SpatialHash(none));
   call("sweep and prune", baselines::SweepAndPrune(none));
   call("K-D tree", baselines::KdTree(none));
@@ -146,10 +146,10 @@ TEST_CASE("a textbook structure finds every obstacle that is only just touched")
 TEST_CASE("a textbook structure compares few of many obstacles") {
   Rng rng(1);
   constexpr std::size_t kCount = 2000;
-  const Bodies bodies(random_shapes(rng, kCount, 5));
+  const ShapeStore store(random_shapes(rng, kCount, 5));
   each_structure([&]<typename Set>(const char* structure, const Set&) {
     CAPTURE(structure);
-    const Set set(bodies);
+    const Set set(store);
     std::size_t tested = 0;
     constexpr int kQueries = 200;
     for (int i = 0; i < kQueries; ++i) {
@@ -161,8 +161,8 @@ TEST_CASE("a textbook structure compares few of many obstacles") {
         candidates.insert(slot);
         return false;
       });
-      for (const Slot slot : bodies.slots())
-        if (bodies.touches(slot, sweep)) REQUIRE(candidates.count(slot) == 1);
+      for (const Slot slot : store.slots())
+        if (store.touches(slot, sweep)) REQUIRE(candidates.count(slot) == 1);
       // It ends with the first for which the test holds.
       std::size_t first = 0;
       const bool found = set.any_candidate(sweep, [&](Slot) { return ++first > 0; });

@@ -367,11 +367,11 @@ TEST_CASE("crashes are summed over the simulator's incarnations, and maximum spe
   message.max_crash_speed_mps(1.5);
   message.max_robot_crash_speed_mps(0.2);
   metrics.on_truth(message);
-  auto next_life = truth(1, 0.2, {}, 2);
-  next_life.crashes(1);
-  next_life.max_crash_speed_mps(0.7);
-  next_life.max_robot_crash_speed_mps(0.3);
-  metrics.on_truth(next_life);
+  auto next_incarnation = truth(1, 0.2, {}, 2);
+  next_incarnation.crashes(1);
+  next_incarnation.max_crash_speed_mps(0.7);
+  next_incarnation.max_robot_crash_speed_mps(0.3);
+  metrics.on_truth(next_incarnation);
   auto bad = truth(2, 0.3, {}, 2);
   bad.max_crash_speed_mps(kNaN);
   metrics.on_truth(bad);
@@ -432,10 +432,10 @@ TEST_CASE("a process that has been restarted very often is still counted, and no
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);
-  for (Incarnation life = 1; life <= 100; ++life) {
-    metrics.on_counters(counters(20000, life, 1, drops));
-    metrics.on_counters(counters(20000, life, 2, drops));
-    if (life > 50) metrics.on_counters(counters(20000, life - 50, 3, drops));  // late
+  for (Incarnation incarnation = 1; incarnation <= 100; ++incarnation) {
+    metrics.on_counters(counters(20000, incarnation, 1, drops));
+    metrics.on_counters(counters(20000, incarnation, 2, drops));
+    if (incarnation > 50) metrics.on_counters(counters(20000, incarnation - 50, 3, drops));  // late
   }
   CHECK(metrics.report().counters.at("vision").at(DropReason::kOtherRules) == 100);
 }
@@ -454,22 +454,22 @@ TEST_CASE("without ground truth a robot has arrived when its agent says so and v
   RunMetrics metrics(kTwo);
   CHECK_FALSE(metrics.has_seen_robots());
   metrics.on_status(status(3, 1, msg::AgentState::AGENT_ARRIVED));
-  metrics.on_world(world(1, 0.9, 0));
+  metrics.on_world_state(world(1, 0.9, 0));
   CHECK(metrics.has_seen_robots());
   CHECK(metrics.seen_at() == after(1));
   CHECK(metrics.arrived() == 0);
-  metrics.on_world(world(2, kNaN, 0));
+  metrics.on_world_state(world(2, kNaN, 0));
   CHECK(metrics.seen_at() == after(1));
-  metrics.on_world(world(3, 1.02, 0.2));
+  metrics.on_world_state(world(3, 1.02, 0.2));
   CHECK(metrics.arrived() == 1);
-  metrics.on_world(world(2.5, 0, 0));  // late
+  metrics.on_world_state(world(2.5, 0, 0));  // late
   CHECK(metrics.arrived() == 1);
   metrics.on_status(status(3, 2, msg::AgentState::AGENT_DRIVING));
   CHECK(metrics.arrived() == 0);
   // Ground truth comes first, once there is some.
   metrics.on_status(status(3, 3, msg::AgentState::AGENT_ARRIVED));
   metrics.on_truth(truth(1, 4, {body(3, 0.5, 0)}));
-  metrics.on_world(world(5, 1, 0));
+  metrics.on_world_state(world(5, 1, 0));
   CHECK(metrics.arrived() == 0);
 }
 

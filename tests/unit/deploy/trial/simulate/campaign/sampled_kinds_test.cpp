@@ -14,7 +14,7 @@
 #include "deploy/trial/simulate/campaign/disturbance_sampler.hpp"
 #include "deploy/trial/simulate/campaign/fault_sampler.hpp"
 #include "deploy/trial/simulate/campaign/forger.hpp"
-#include "deploy/trial/simulate/campaign/other_rules.hpp"
+#include "deploy/trial/simulate/campaign/rule_mutations.hpp"
 #include "deploy/trial/simulate/campaign/scene_sampler.hpp"
 #include "deploy/trial/simulate/campaign/trial.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
@@ -186,7 +186,7 @@ TEST_CASE("random faults of processes and links have every kind, target and prop
         const Duration dead = timed.at - killed_at.at(start->process);
         kills.has("dead for no time", dead == Duration{0});
         kills.has("dead for more than 1 s", dead > 1s);
-      } else if (const auto* other = std::get_if<StartWithOtherRule>(&timed.fault)) {
+      } else if (const auto* other = std::get_if<StartWithMutatedRule>(&timed.fault)) {
         ++kinds["other rules of a " + kind_of(other->process)];
         if (other->process == "coordinator") ++kinds["other rules of coordinator 0"];
         rules.insert(other->rule);
@@ -284,10 +284,10 @@ TEST_CASE("random faults of processes and links have every kind, target and prop
                                         {"a agent", 0.5, 0.75},
                                         {"dead for no time", 0.15, 0.4},
                                         {"dead for more than 1 s", 0.08, 0.3}}));
-  CHECK(rules.size() == other_rules().size());
+  CHECK(rules.size() == rule_mutations().size());
   for (std::size_t i = 0; i < forgeries().size(); ++i) {
     CAPTURE(forgeries()[i].name);
-    CHECK(forged.contains(i) != forgeries()[i].is_plausible_fact);
+    CHECK(forged.contains(i) != forgeries()[i].is_plausible_report);
   }
 }
 

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "agents/adapters/driven_robot.hpp"
+#include "agents/adapters/driver.hpp"
+#include "agents/adapters/robot_memory.hpp"
+#include "common/log/log_event.hpp"
+#include "common/messaging/bus.hpp"
+#include "common/messaging/counter_publisher.hpp"
+
+namespace sidestep {
+
+/// Runs the robots that a driver moves: receives their commands, drives them, and publishes their reports at
+/// every change and at least once per cycle. The bus must make no callback after the node's destruction.
+class RobotDriverNode {
+ public:
+  /// Precondition: `robots` belong to the scenario. Throws if RobotMemory does.
+  RobotDriverNode(Bus& bus, const Scenario& scenario, const std::vector<RobotId>& robots,
+                  Incarnation incarnation, const DriveSettings& settings, Driver& driver,
+                  const std::string& memory_folder);
+  RobotDriverNode(const RobotDriverNode&) = delete;
+  RobotDriverNode& operator=(const RobotDriverNode&) = delete;
+
+  /// Sets a callback for events of at least a level.
+  void on_event(LogLevel min_level, OnLogEvent callback) {
+    events_.set_listener(min_level, std::move(callback));
+  }
+  void count_drops(DropCounters& drops) const;
+  /// Whether any robot obeys an agent, by this process's clock.
+  bool is_commanded() const;
+  /// From now on accepts no commands, so that all robots come to rest at the ends of their versions. Returns
+  /// whether they have done so.
+  bool come_to_rest();
+  const DrivenRobot& robot(std::size_t index) const { return *robots_[index].robot; }
+
+ private:
+  struct Entry {
+    std::unique_ptr<RobotMemory> memory;
+    std::unique_ptr<DrivenRobot> robot;
+    Writer<msg::Feedback> robot_report;
+    Time report_due{};
+    Time watched_start{};  ///< the version start for which a timer is set
+    // As last reported.
+    VersionNumber executing = 0;
+    Incarnation incarnation = 0;
+    Epoch epoch = 0;
+    bool is_known = false;
+  };
+  Time clock();
+  void tick();
+  void on_command(Entry& entry, const msg::Command& message);
+  void publish_if_changed(Entry& entry, Time now);
+  void publish(Entry& entry, Time now);
+  void watch_start(Entry& entry, Time now);
+  void report_changes(Entry& entry);
+
+  Bus& bus_;
+  Duration cycle_;
+  Incarnation incarnation_;
+  Driver& driver_;
+  Time clock_;
+  EventReporter events_;
+  std::vector<Entry> robots_;
+  std::unordered_map<RobotId, std::size_t> index_of_;
+  std::vector<BaseCommand> commands_;
+  Time next_tick_;
+  bool comes_to_rest_ = false;
+  CounterPublisher counters_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/bases/velocity_robot_sim_node.hpp"
+
+#include <algorithm>
+
+#include "common/protocol/senders.hpp"
+#include "common/random/rng.hpp"
+
+namespace sidestep {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Duration kWakePeriod = milliseconds(2);
+constexpr Duration kTruthPeriod{16'666'667};
+// After a longer pause of this process, all robots stand still, and the time is not made up for.
+constexpr Duration kMaxCatchUp = milliseconds(1000);
+constexpr auto kSender = static_cast<std::uint32_t>(Sender::kSimulator);
+
+}  // namespace
+
+VelocityRobotSimNode::VelocityRobotSimNode(Bus& bus, const Scenario& scenario, std::uint32_t team_size,
+                                           const BaseSettings& settings, double speed,
+                                           Incarnation incarnation, std::uint64_t seed)
+    : bus_(bus),
+      delay_(scenario.vision.delay),
+      incarnation_(incarnation),
+      clock_(bus.now(), speed),
+      world_(scenario, team_size, settings, bus.now()),
+      cameras_(world_.floor(), bus.now(), Rng(seed).bits()),
+      detections_(bus.advertise(topics::kDetections)),
+      truth_(bus.advertise(topics::kTruth)),
+      truth_due_(bus.now()),
+      counters_(bus, kSender, incarnation, [this](DropCounters& drops) {
+        for (const auto& source : drop_sources_) source(drops);
+      }) {
+  bus.at(bus.now(), [this] { wake(); });
+}
+
+BaseWorld& VelocityRobotSimNode::world_now() {
+  const Time now = simulated_now();
+  if (now - world_.time() > kMaxCatchUp) {
+    clock_ = SimulatedClock(bus_.now(), 1);
+    events_.report(LogLevel::kWarning, {}, "the simulation was paused");
+  }
+  while (cameras_.next_capture() <= now) {
+    world_.advance(cameras_.next_capture());
+    capture();
+  }
+  world_.advance(now);
+  return world_;
+}
+
+void VelocityRobotSimNode::wake() {
+  world_now();
+  publish_frames();
+  if (truth_due_ <= bus_.now()) publish_truth();
+  bus_.at(bus_.now() + kWakePeriod, [this] { wake(); });
+}
+
+void VelocityRobotSimNode::capture() {
+  PendingFrame& frame = frames_.emplace_back();
+  const Vec2* const ball_m = world_.ball() ? &world_.ball()->state().position_m : nullptr;
+  const Time captured_at = world_.time();
+  cameras_.capture(captured_at, {world_.bodies(), ball_m}, frame.message);
+  frame.message.captured_at_ns(to_ns(clock_.clock(captured_at)));
+  frame.publish_at = captured_at + delay_;
+}
+
+void VelocityRobotSimNode::publish_frames() {
+  const Time now = simulated_now();
+  std::size_t published = 0;
+  for (; published < frames_.size() && frames_[published].publish_at <= now; ++published) {
+    msg::DetectionFrame& message = frames_[published].message;
+    message.header().sender(kSender);
+    message.header().incarnation(incarnation_);
+    detections_.publish(message, bus_.now());
+    if (detection_listener_) detection_listener_(message);
+  }
+  frames_.erase(frames_.begin(), frames_.begin() + static_cast<std::ptrdiff_t>(published));
+}
+
+void VelocityRobotSimNode::publish_truth() {
+  world_.fill(truth_message_);
+  truth_message_.valid_at_ns(to_ns(clock_.clock(world_.time())));
+  truth_message_.simulator(kSender);
+  truth_message_.header().sender(kSender);
+  truth_message_.header().incarnation(incarnation_);
+  truth_.publish(truth_message_, bus_.now());
+  truth_due_ = std::max(truth_due_ + kTruthPeriod, bus_.now());
+  report_contacts();
+}
+
+void VelocityRobotSimNode::report_contacts() {
+  const std::uint64_t contacts = truth_message_.contacts();
+  if (contacts == reported_contacts_) return;
+  const msg::ContactPair& last = truth_message_.recent_contacts()[(contacts - 1) % msg::MAX_CONTACTS];
+  if (last.second() == msg::NO_ROBOT)
+    events_.report(LogLevel::kWarning, last.first(), "robot {} touches an obstacle; {} contacts so far",
+                   last.first(), contacts);
+  else
+    events_.report(LogLevel::kWarning, last.first(), "robots {} and {} touch; {} contacts so far",
+                   last.first(), last.second(), contacts);
+  reported_contacts_ = contacts;
+}
+
+}  // namespace sidestep

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "common/log/log_event.hpp"
+#include "common/messaging/bus.hpp"
+#include "common/messaging/counter_publisher.hpp"
+#include "simulator/bases/base_world.hpp"
+#include "simulator/bases/simulated_clock.hpp"
+#include "simulator/world/cameras.hpp"
+
+namespace sidestep {
+
+/// Simulates, on a bus, a floor of robots that external programs drive: advances it with time, publishes the
+/// cameras' detections after the scenario's delay, and ground truth for metrics and audit. The bus must make
+/// no callback after the node's destruction.
+class VelocityRobotSimNode {
+ public:
+  VelocityRobotSimNode(Bus& bus, const Scenario& scenario, std::uint32_t team_size,
+                       const BaseSettings& settings, double speed, Incarnation incarnation,
+                       std::uint64_t seed);
+  VelocityRobotSimNode(const VelocityRobotSimNode&) = delete;
+  VelocityRobotSimNode& operator=(const VelocityRobotSimNode&) = delete;
+
+  void on_event(LogLevel min_level, OnLogEvent callback) {
+    events_.set_listener(min_level, std::move(callback));
+  }
+  const EventReporter& events() const { return events_; }
+  void add_drop_source(std::function<void(DropCounters&)> source) {
+    drop_sources_.push_back(std::move(source));
+  }
+  /// Sets a callback for each frame's detections when they are due. Capture times are by the process's clock.
+  void set_detection_listener(std::function<void(const msg::DetectionFrame&)> listener) {
+    detection_listener_ = std::move(listener);
+  }
+
+  /// Advances the floor to the present and returns it.
+  BaseWorld& world_now();
+  Time simulated_now() const { return clock_.simulated(bus_.now()); }
+  void set_speed(double speed) { clock_.set_speed(speed, bus_.now()); }
+  const Cameras& cameras() const { return cameras_; }
+
+ private:
+  struct PendingFrame {
+    Time publish_at{};  ///< by simulated time
+    msg::DetectionFrame message;
+  };
+  void wake();
+  void capture();
+  void publish_frames();
+  void publish_truth();
+  void report_contacts();
+
+  Bus& bus_;
+  Duration delay_;
+  Incarnation incarnation_;
+  SimulatedClock clock_;
+  BaseWorld world_;
+  Cameras cameras_;
+  EventReporter events_;
+  std::vector<std::function<void(DropCounters&)>> drop_sources_;
+  std::function<void(const msg::DetectionFrame&)> detection_listener_;
+  std::vector<PendingFrame> frames_;  ///< sorted by time
+  Writer<msg::DetectionFrame> detections_;
+  Writer<msg::GroundTruth> truth_;
+  msg::GroundTruth truth_message_;
+  Time truth_due_;
+  std::uint64_t reported_contacts_ = 0;
+  CounterPublisher counters_;
+};
+
+}  // namespace sidestep

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/adapters/robot_driver_node.hpp"
+
+#include <filesystem>
+
+#include "common/file/temporary_folder.hpp"
+#include "common/messaging/robot_codec.hpp"
+#include "common/messaging/sim/bus.hpp"
+#include "common/motion/robot_model.hpp"
+#include "tests/catch.hpp"
+
+namespace sidestep::robot_driver_node_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
+
+/// Bases that stay where they are.
+class IdleDriver : public Driver {
+ public:
+  void send(std::span<const BaseCommand> commands) override {
+    periods += commands.size() == 2;
+    max_speed_mps = 0;
+    for (const BaseCommand& command : commands)
+      max_speed_mps = std::max(max_speed_mps, command.velocity.linear_mps.norm());
+  }
+  void on_odometry(std::function<void(const OdometryReport&)> callback) override {
+    report = std::move(callback);
+  }
+  int periods = 0;
+  double max_speed_mps = 0;  ///< maximum in the latest commands
+  std::function<void(const OdometryReport&)> report;
+};
+
+/// Two robots that stand, and their agents.
+struct Scene {
+  Scene() {
+    for (const RobotId id : {4u, 7u}) {
+      RobotSpec robot;
+      robot.id = id;
+      scenario.robots.push_back(robot);
+      writers.push_back(agent_bus.advertise(topics::kCommand, id));
+      agent_bus.subscribe<msg::Feedback>(topics::kFeedback, id, [this](const msg::Feedback& robot_report) {
+        robot_reports.push_back(robot_report);
+      });
+    }
+    node.emplace(*robot_bus, scenario, roster_of(scenario), 55, DriveSettings{}, driver, memory.path());
+  }
+  void command(std::size_t index, Incarnation incarnation, Epoch epoch,
+               const std::optional<Version>& version = std::nullopt) {
+    Command command;
+    command.robot = scenario.robots[index].id;
+    command.incarnation = incarnation;
+    command.epoch = epoch;
+    if (!version) command.fix = PoseFix{agent_bus.now() - 20ms, Vec2(static_cast<double>(index), 0), 0};
+    command.version = version;
+    auto message = encode(command);
+    writers[index].publish(message, agent_bus.now());
+  }
+  void run(Duration duration) { network.run_until(network.now() + duration); }
+
+  Scenario scenario;
+  TemporaryFolder memory;
+  SimNetwork network{1, kBegin, {}};
+  SimBus agent_bus{network};
+  std::optional<SimBus> robot_bus{std::in_place, network};
+  IdleDriver driver;
+  std::optional<RobotDriverNode> node;
+  std::vector<Writer<msg::Command>> writers;
+  std::vector<msg::Feedback> robot_reports;
+};
+
+}  // namespace
+
+TEST_CASE("driven robots report at least once per cycle, and at once when they obey a new agent") {
+  Scene scene;
+  for (int i = 0; i < 60; ++i) {
+    scene.command(0, 100, 1);
+    scene.run(20ms);
+  }
+  REQUIRE_FALSE(scene.robot_reports.empty());
+  CHECK(scene.robot_reports.front().robot() == 4);
+  CHECK(scene.robot_reports.front().header().incarnation() == 55);
+  scene.robot_reports.clear();
+  scene.run(1s);
+  CHECK(scene.robot_reports.size() >= 49);
+  scene.robot_reports.clear();
+  const Time sent = scene.network.now();
+  scene.command(0, 200, 2);
+  scene.run(3ms);
+  REQUIRE_FALSE(scene.robot_reports.empty());
+  CHECK(scene.robot_reports.front().obeyed_incarnation() == 200);
+  CHECK(time_from_ns(scene.robot_reports.front().header().stamp_ns()) - sent < 2ms);
+  CHECK(scene.node->is_commanded());
+  CHECK(scene.driver.periods > 100);
+}
+
+TEST_CASE("odometry with a wrong timestamp is counted for its robot") {
+  Scene scene;
+  scene.run(100ms);
+  const Time now = scene.network.now();
+  scene.driver.report({4, now, {0, 0}, 0});
+  scene.driver.report({7, now + 100ms, {0, 0}, 0});
+  scene.driver.report({7, now - 100ms, {0, 0}, 0});
+  scene.driver.report({99, now + 100ms, {0, 0}, 0});
+  CHECK(scene.node->robot(0).misdated_odometry() == 0);
+  CHECK(scene.node->robot(1).misdated_odometry() == 2);
+  DropCounters drops;
+  scene.node->count_drops(drops);
+  CHECK(drops.total(DropReason::kMisdatedOdometry) == 2);
+}
+
+TEST_CASE("robots whose process must end drive their versions to the end and accept no others") {
+  Scene scene;
+  for (int i = 0; i < 60; ++i) {
+    scene.command(0, 100, 1);
+    scene.run(20ms);
+  }
+  REQUIRE_FALSE(scene.robot_reports.empty());
+  CHECK(scene.node->come_to_rest());
+
+  Scene driving;
+  for (int i = 0; i < 60; ++i) {
+    driving.command(0, 100, 1);
+    driving.run(20ms);
+  }
+  const auto version_of = [&](const Version& base, Time start) {
+    Trajectory trajectory(start, base.trajectory.state_at(start));
+    trajectory.append(500ms, Vec2(1, 0));
+    append_stop(trajectory, 1);
+    return Version{base.robot, 100, base.number + 1, base.number, trajectory};
+  };
+  const auto robot_report =
+      decode(driving.robot_reports.back(), driving.scenario.robots[0].id, driving.network.now());
+  REQUIRE(robot_report);
+  const Version first = version_of(robot_report->executing, driving.network.now() + 150ms);
+  const Version second = version_of(first, first.trajectory.start() + 700ms);
+  driving.command(0, 100, 1, first);
+  driving.run(400ms);
+  REQUIRE(driving.driver.max_speed_mps > 0.1);
+  CHECK_FALSE(driving.node->come_to_rest());
+  driving.command(0, 100, 1, second);
+  // The base obeys after the latency.
+  while (driving.network.now() < first.trajectory.end() + DriveSettings{}.latency) {
+    CHECK_FALSE(driving.node->come_to_rest());
+    driving.run(10ms);
+  }
+  CHECK(driving.node->come_to_rest());
+  CHECK(driving.node->robot(0).side().executing().number == first.number);
+  CHECK(driving.driver.max_speed_mps < 0.01);
+}
+
+TEST_CASE("robots that restart remember whom they obey, and count what they cannot store") {
+  Scene scene;
+  for (int i = 0; i < 60; ++i) {
+    scene.command(1, 100, 9);
+    scene.run(20ms);
+  }
+  scene.robot_bus.reset();  // first, so that it calls nobody any more
+  scene.node.reset();
+  SimBus second_bus(scene.network);
+  RobotDriverNode second(second_bus, scene.scenario, roster_of(scene.scenario), 56, DriveSettings{},
+                         scene.driver, scene.memory.path());
+  CHECK(second.robot(1).side().obeyed_incarnation() == 100);
+  CHECK(second.robot(1).side().obeyed_epoch() == 9);
+  std::filesystem::remove_all(scene.memory.path());
+  scene.command(1, 300, 10);
+  scene.run(5ms);
+  CHECK(second.robot(1).side().obeyed_incarnation() == 100);
+  DropCounters drops;
+  second.count_drops(drops);
+  CHECK(drops.total(DropReason::kUnstoredCommand) == 1);
+  std::filesystem::create_directories(scene.memory.path());
+}
+
+}  // namespace sidestep::robot_driver_node_test

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "agents/agent/agent_event_logger.hpp"
+
+#include "tests/catch.hpp"
+#include "tests/log_events.hpp"
+
+namespace sidestep::agent_event_logger_test {
+
+using namespace std::chrono_literals;
+
+constexpr Time kBegin = time_from_ns(1'000'000'000'000);
+
+/// Feeds the changes of an agent's work, one call per cycle.
+struct Fixture {
+  EventReporter reporter;
+  AgentEventLogger changes{reporter, 3};
+  AgentActivity activity;
+  ClockSpeedLimit limit{2, 2, OffsetInterval{Duration{-1000}, Duration{1000}}};
+  Time now = kBegin;
+  LogEvents events{*this};
+
+  void on_event(LogLevel level, OnLogEvent callback) { reporter.set_listener(level, std::move(callback)); }
+  void run(Duration duration) {
+    const Time end = now + duration;
+    for (; now < end; now += 16ms) changes.update(activity, limit, now);
+  }
+};
+
+TEST_CASE("each step of an agent's start is reported once") {
+  Fixture f;
+  f.run(100ms);
+  CHECK(f.events.all().empty());
+  f.activity.is_fenced = true;
+  f.activity.incarnation = 99;
+  f.run(100ms);
+  CHECK(f.events.count("the robot obeys this agent, with incarnation 99") == 1);
+  f.changes.on_epoch(7, 10001);
+  f.activity.epoch = 7;
+  f.run(100ms);
+  CHECK(f.events.count("epoch 7 of coordinator 1") == 1);
+  f.changes.on_epoch(8, std::nullopt);
+  CHECK(f.events.count("epoch 8, which the robot obeys already") == 1);
+  f.activity.epoch = 8;
+  f.activity.is_registered = true;
+  f.run(1s);
+  CHECK(f.events.count("registered in epoch 8") == 1);
+  f.activity.epoch = 9;
+  f.run(1s);
+  CHECK(f.events.count("registered in epoch 9") == 1);
+  CAPTURE(f.events.text());
+  CHECK(f.events.all().size() == 5);
+  for (const LogEvent& event : f.events.all()) CHECK(event.robot == 3);
+}
+
+TEST_CASE("an agent reports that its robot no longer obeys it, and that the robot obeys it after all") {
+  Fixture f;
+  f.activity.is_superseded = true;
+  f.run(1s);
+  CHECK(f.events.count("a later agent drives this robot") == 1);
+  f.activity.is_superseded = false;
+  f.run(1s);
+  CHECK(f.events.count("the robot obeys this agent after all") == 1);
+}
+
+TEST_CASE("every reason to wait is reported once it has lasted, and so is the end of waiting") {
+  for (int i = 1; i <= static_cast<int>(WaitReason::kClockOutOfBound); ++i) {
+    const auto reason = static_cast<WaitReason>(i);
+    CAPTURE(to_text(reason));
+    Fixture f;
+    f.activity.waits_for = reason;
+    f.run(200ms);
+    CHECK(f.events.all().empty());
+    f.run(5s);
+    CHECK(f.events.count("waits for " + std::string(to_text(reason))) == 1);
+    f.activity.waits_for = WaitReason::kNone;
+    f.run(5s);
+    CHECK(f.events.count("no longer waits") == 1);
+    CHECK(f.events.all().size() == 2);
+  }
+}
+
+TEST_CASE("a reason to wait that comes and goes in every cycle is not reported") {
+  Fixture f;
+  for (int i = 0; i < 1000; ++i) {
+    f.activity.waits_for = i % 2 == 0 ? WaitReason::kRobotSilent : WaitReason::kNone;
+    f.run(16ms);
+  }
+  CHECK(f.events.all().empty());
+}
+
+TEST_CASE("a speed limit due to the clocks is reported with the offset, when it changes and when it ends") {
+  Fixture f;
+  f.run(2s);
+  CHECK(f.events.all().empty());
+  f.limit = {0.5, 2, OffsetInterval{4ms, 6ms}};
+  f.run(5s);
+  CHECK(f.events.count("the clocks limit the speed to 0.50 m/s: they differ by 5.00 +- 1.00 ms") == 1);
+  f.limit.speed_mps = 0.55;
+  f.run(5s);
+  CHECK(f.events.all().size() == 1);
+  f.limit.speed_mps = 1;
+  f.run(5s);
+  CHECK(f.events.count("to 1.00 m/s") == 1);
+  f.limit.speed_mps = 2;
+  f.run(5s);
+  CHECK(f.events.count("the clocks no longer limit the speed") == 1);
+  CHECK(f.events.all().size() == 3);
+}
+
+TEST_CASE("arrivals, escapes and deadlock recovery are reported, the latter at most once per second") {
+  Fixture f;
+  f.activity.goal_index = 1;
+  f.run(1s);
+  CHECK(f.events.count("arrived at goal 0") == 1);
+  f.activity.has_arrived = true;
+  f.run(1s);
+  CHECK(f.events.count("arrived at goal 1, the last one") == 1);
+  for (int i = 0; i < 200; ++i) {
+    f.activity.is_escaping = f.activity.is_recovering = i % 2 == 0;
+    f.run(16ms);
+  }
+  CAPTURE(f.events.text());
+  CHECK(f.events.count("escapes from a conflict") == 4);
+  CHECK(f.events.count("to resolve the deadlock") == 4);
+}
+
+TEST_CASE("the robot's own stops, restarts and liftings are reported once each") {
+  Fixture f;
+  RobotReport robot_report;
+  robot_report.valid_at = kBegin;
+  robot_report.activated = 5;
+  f.changes.on_robot_report(robot_report);
+  CHECK(f.events.all().empty());
+  robot_report.is_off_reference = true;
+  robot_report.executing.number = 1234;
+  for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
+  CHECK(f.events.count("off its reference and makes its own stop, version 1234") == 1);
+  robot_report.activated = 0;
+  robot_report.executing.number = 5678;
+  for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
+  CHECK(f.events.count("version 5678") == 1);
+  CHECK(f.events.count("firmware has restarted") == 1);
+  robot_report.is_off_reference = false;
+  for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
+  CHECK(f.events.count("back on a granted version") == 1);
+  robot_report.is_lifted = true;
+  for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
+  CHECK(f.events.count("is off the floor") == 1);
+  robot_report.is_lifted = false;
+  for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
+  CHECK(f.events.count("has been put down") == 1);
+  const std::size_t before = f.events.all().size();
+  robot_report.valid_at -= 1ms;  // overtaken on the network
+  robot_report.is_lifted = true;
+  f.changes.on_robot_report(robot_report);
+  CHECK(f.events.all().size() == before);
+}
+
+TEST_CASE("denials are counted by reason and reported at most once per second, at debug level") {
+  Fixture f;
+  Verdict denial;
+  denial.reasons.fill(msg::Reason::REASON_NOT_EVALUATED);
+  for (int i = 0; i < 60; ++i) {
+    denial.reasons.front() = i % 3 == 0 ? msg::Reason::REASON_OBSTACLE : msg::Reason::REASON_CONFLICT;
+    denial.blockers.front() = 7;
+    f.changes.on_denial(denial);
+    f.run(16ms);
+  }
+  f.run(1s);
+  CAPTURE(f.events.text());
+  CHECK(f.events.all().size() == 2);
+  CHECK(f.events.count("40 x conflict (last with robot 7)") == 1);
+  for (const LogEvent& event : f.events.all()) CHECK(event.level == LogLevel::kDebug);
+}
+
+}  // namespace sidestep::agent_event_logger_test

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vision/tracking/vision_event_logger.hpp"
+
+#include "common/messaging/sim/bus.hpp"
+#include "tests/catch.hpp"
+#include "tests/log_events.hpp"
+#include "tests/unit/vision/tracker_fixture.hpp"
+#include "vision/tracking/vision_node.hpp"
+
+namespace sidestep::vision_event_logger_test {
+
+using namespace sidestep::test;
+
+/// A vision node for robot 0 that receives frames.
+struct Fixture {
+  explicit Fixture(const std::vector<std::uint32_t>& cameras = {0}) {
+    RobotSpec robot;
+    robot.id = 0;
+    scenario.robots.push_back(robot);
+    node.emplace(bus, scenario, 77, FrameSource::kCaller, cameras);
+    events.emplace(*node);
+  }
+  /// Runs, with a frame of the camera every 20 ms; each shows the robot if `is_seen`.
+  void run(Duration duration, std::uint32_t camera, bool is_seen, Duration clock_error = Duration{0}) {
+    const Time end = network.now() + duration;
+    while (network.now() < end) {
+      msg::DetectionFrame frame = frame_message(camera, network.now() + clock_error);
+      if (is_seen) add_robot(frame, 0, {1, 0});
+      node->add_frame(frame);
+      wait(20 * kMs);
+    }
+  }
+  void wait(Duration duration) { network.run_until(network.now() + duration); }
+
+  Scenario scenario;
+  SimNetwork network{1, kBegin, {}};
+  SimBus bus{network};
+  std::optional<VisionNode> node;
+  std::optional<LogEvents> events;
+};
+
+TEST_CASE("a camera that falls silent is lost, and back with its next frame") {
+  Fixture f({4});
+  f.run(1000 * kMs, 4, false);
+  f.wait(2000 * kMs);
+  f.run(1000 * kMs, 4, false);
+  CAPTURE(f.events->text());
+  CHECK(f.events->count("camera 4 sends frames") == 1);
+  CHECK(f.events->count("camera 4 is lost") == 1);
+  CHECK(f.events->count("camera 4 is back, after 2.0 s") == 1);
+  CHECK(f.events->all().size() == 3);
+}
+
+TEST_CASE("a robot that no camera sees is lost, and reported when it is seen again") {
+  Fixture f;
+  f.run(1000 * kMs, 0, true);
+  f.run(2000 * kMs, 0, false);
+  CHECK(f.events->count("robot 0 is lost: no camera sees it") == 1);
+  f.run(1000 * kMs, 0, true);
+  CAPTURE(f.events->text());
+  CHECK(f.events->count("robot 0 is seen again") == 1);
+  CHECK(f.events->all().size() == 3);
+  CHECK(f.events->all().back().robot == 0);
+}
+
+TEST_CASE("refused frames are reported with the reason, ever more rarely, and that there is no other") {
+  Fixture f({2, 3});
+  f.run(20'000 * kMs, 2, true, 3000 * kMs);
+  CAPTURE(f.events->text());
+  CHECK(f.events->count("captured -3.000 s before it arrived") == 4);  // 1, 10, 100, 1000
+  CHECK(f.events->count("camera 2 has sent no usable frame so far") == 1);
+  CHECK(f.events->count("camera 3 has sent no usable frame so far") == 1);
+  CHECK(f.events->all().size() == 6);
+  msg::DetectionFrame frame = frame_message(3, f.network.now());
+  frame.obstacle_count(msg::MAX_OBSTACLES + 1);
+  f.node->add_frame(frame);
+  CHECK(f.events->count("camera 3: 1 frame(s) refused so far: malformed") == 1);
+}
+
+TEST_CASE("frames of cameras that are not configured are reported, ever more rarely") {
+  Fixture f;
+  for (std::uint32_t camera = 1; camera <= 10'000; ++camera)
+    f.node->add_frame(frame_message(camera, f.network.now()));
+  CAPTURE(f.events->text());
+  CHECK(f.events->count("frame(s) refused so far of cameras that are not configured") == 5);
+  CHECK(f.events->count("10000 frame(s) refused so far") == 1);
+  CHECK(f.events->all().size() == 5);
+}
+
+}  // namespace sidestep::vision_event_logger_test

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/log/log_event.hpp"
+#include "common/motion/version.hpp"
+#include "common/time/time.hpp"
+#include "vision/tracking/frame.hpp"
+
+namespace sidestep {
+
+/// Reports cameras and robots that are lost or found again, and refused frames.
+class VisionEventLogger {
+ public:
+  /// A camera that sends no usable frame for longer than this is lost.
+  static constexpr Duration kCameraTimeout{500'000'000};
+  /// How long a camera may take to send its first frame.
+  static constexpr Duration kFirstFrameTimeout{3'000'000'000};
+
+  VisionEventLogger(const EventReporter& events, const std::vector<std::uint32_t>& cameras);
+
+  /// A frame from a camera that is not among these has arrived. A hostile sender may invent any number of
+  /// cameras.
+  void on_unknown_camera(std::uint32_t camera);
+  /// A frame from one of the cameras has arrived, usable or not.
+  void on_frame(const Frame& frame, Time now);
+  /// Processes the tracked world; call it once per period.
+  void update(const msg::WorldState& world, Time now);
+
+ private:
+  struct Camera {
+    Time heard_at{};
+    bool is_lost = false;
+    std::uint64_t refused = 0;
+    std::uint64_t next_report = 1;  // value of `refused` at which it is reported
+    bool is_missing = false;        // it was reported that the camera has not sent anything yet
+  };
+  void report_missing(std::uint32_t number, Camera& camera, Time now);
+  void report_refusal(const Frame& frame, Camera& camera, Time now);
+
+  const EventReporter& events_;
+  std::map<std::uint32_t, Camera> cameras_;
+  std::optional<Time> begin_;
+  std::uint64_t unknown_ = 0, next_unknown_report_ = 1;
+  std::array<bool, kMaxRobots> was_tracked_{}, was_lost_{}, is_tracked_{};
+};
+
+}  // namespace sidestep
