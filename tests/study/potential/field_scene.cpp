@@ -9,7 +9,7 @@ namespace sidestep {
 namespace {
 
 // Room that every method has on some path.
-constexpr double kRoom_m = 0.09;
+constexpr double kExtraRadius_m = 0.09;
 
 void add_u(PlanWorld& world, Rng& rng) {
   const double back_m = rng.uniform(0.3, 0.9), half_m = rng.uniform(0.6, 1.0), arm_m = rng.uniform(0.8, 1.5),
@@ -59,7 +59,7 @@ PlanWorld open_floor(Rng& rng) {
 }
 
 bool is_solvable(PlanWorld world) {
-  world.radius_m += kRoom_m;
+  world.radius_m += kExtraRadius_m;
   const PlanQuery query = world.queries.front();
   return is_free(world, query.start_m) && is_free(world, query.goal_m) &&
          FreeSpace(world).connects(query.start_m, query.goal_m);

@@ -18,12 +18,12 @@ namespace {
 constexpr std::size_t kGoals = 150;
 
 Shape sample_obstacle(const Field& field, Rng& rng) {
-  enum Kind { kCircle, kBox, kPolygon, kWall, kKinds };
+  enum ShapeKind { kCircle, kBox, kPolygon, kWall, kKinds };
   const double y = rng.uniform(-0.4, 0.4) * field.width_m, x = rng.uniform(-0.4, 0.4) * field.length_m;
   const Vec2 centre(x, y);
   const double max_radius_m = std::min(0.4, field.width_m / 6);
   const double first_m = rng.uniform(0.05, max_radius_m), second_m = rng.uniform(0.05, max_radius_m);
-  switch (static_cast<Kind>(rng.below(kKinds))) {
+  switch (static_cast<ShapeKind>(rng.below(kKinds))) {
     case kBox:
       return Box{centre - Vec2(first_m, second_m), centre + Vec2(first_m, second_m)};
     case kPolygon: {
