@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// Which agent the robot obeys, according to its reports. An agent may register and propose only for a robot
-/// that obeys it (coordinator/PROTOCOL.md, "Joining").
+/// that obeys it (coordinator/PROTOCOL.md, "Robots fence epochs").
 class Fencing {
  public:
   /// What a report of the robot means for the agent.

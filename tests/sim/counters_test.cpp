@@ -383,9 +383,7 @@ const std::set<DropReason> kElsewhere{
     DropReason::kRefusedParticipant,
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
     DropReason::kMalformedLeaguePacket,  // league/league_source_test, like the next three
-    DropReason::kRepeatedLeagueFrame,
-    DropReason::kUndatedLeagueFrame,
-    DropReason::kUnusedLeagueDetection,
+    DropReason::kRepeatedLeagueFrame, DropReason::kUndatedLeagueFrame, DropReason::kUnusedLeagueDetection,
     DropReason::kUnsentLeaguePacket,  // needs a network that does not work
     DropReason::kUnstoredCommand,     // adapters/robot_driver_node_test
     DropReason::kMalformedOdometry,   // adapters/velocity_driver_test

@@ -221,8 +221,7 @@ TEST_CASE("among the blocked cells of a map, the search finds the same candidate
       FloorRules open = rules;
       open.map = nullptr;
       Rng third = rng;
-      restricted +=
-          reference_search(open, scene.query, scene.others, third).count != expected.count ? 1 : 0;
+      restricted += reference_search(open, scene.query, scene.others, third).count != expected.count ? 1 : 0;
       (void)rng.bits();
     }
   }
