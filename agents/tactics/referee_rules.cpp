@@ -64,7 +64,7 @@ bool RefereeRules::keeps_off_ball(RefereeCommand command) const {
 
 Zone RefereeRules::around_ball(std::vector<Vec2> corners_m) const {
   const double radius_m =
-      BallSettings{}.radius_m + settings_.ball_distance_m + settings_.ball_allowance_m + kZoneTolerance_m;
+      RollingBall::kRadius_m + settings_.ball_distance_m + settings_.ball_allowance_m + kZoneTolerance_m;
   return {std::move(corners_m), radius_m};
 }
 

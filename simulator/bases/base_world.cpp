@@ -78,13 +78,13 @@ void BaseWorld::remove(std::size_t robot) {
   contacts_.invalidate_near_pairs();
 }
 
-void BaseWorld::set_ball(const State& state) { ball_.emplace(state, BallSettings{}); }
+void BaseWorld::set_ball(const State& state) { ball_.emplace(state); }
 
 bool BaseWorld::has_ball(std::size_t robot) const {
   const Body& body = bodies_[robot];
   if (!ball_ || !body.is_on_floor()) return false;
   const Vec2 to_ball = rotated(Vec2(ball_->state().position_m - body.position_m()), -body.heading_rad());
-  const double gap_m = to_ball.norm() - floor_.radius_m - BallSettings{}.radius_m;
+  const double gap_m = to_ball.norm() - floor_.radius_m - RollingBall::kRadius_m;
   return gap_m < kReach_m && std::abs(std::atan2(to_ball.y(), to_ball.x())) < kFrontAngle_rad;
 }
 

@@ -56,7 +56,7 @@ league::VisionPacket LeagueFrames::detection(const msg::DetectionFrame& frame, T
     league::DetectedBall detected;
     detected.position_m = {ball.x_m(), ball.y_m()};
     detected.confidence = ball.confidence();
-    detected.pixel = pixel_of(detected.position_m, BallSettings{}.radius_m, camera);
+    detected.pixel = pixel_of(detected.position_m, RollingBall::kRadius_m, camera);
     detection.balls.push_back(detected);
   }
   return {std::move(detection), std::nullopt, kSourceOther};

@@ -42,7 +42,7 @@ league::FieldSize league_field(const Field& field) {
   size.centre_circle_radius_m = marking.centre_circle_radius_m;
   size.line_thickness_m = marking.line_m;
   size.goal_centre_to_penalty_mark_m = marking.penalty_mark_m;
-  size.ball_radius_m = BallSettings{}.radius_m;
+  size.ball_radius_m = RollingBall::kRadius_m;
   size.max_robot_radius_m = 0.09;
   add_markings(size, marking);
   return size;

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-inline constexpr double kBallRadius_m = BallSettings{}.radius_m;
+inline constexpr double kBallRadius_m = RollingBall::kRadius_m;
 
 /// Draws a camera's view of a ball over the canvas, in the same way as draw(VerticalBody).
 cv::Rect draw(const SceneBall& ball, const Light& light, const CameraModel& camera, double exposure_s,

@@ -33,7 +33,7 @@ struct SceneCylinder {
 };
 
 struct SceneBall {
-  Vec3 position_m{0, 0, BallSettings{}.radius_m};  ///< position of the ball's centre
+  Vec3 position_m{0, 0, RollingBall::kRadius_m};  ///< position of the ball's centre
   Vec2 velocity_mps{0, 0};
 };
 

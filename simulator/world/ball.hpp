@@ -11,7 +11,7 @@ namespace sidestep {
 /// A ball that rolls and bounces off the field's walls and obstacles. Robots push it without being affected.
 class Ball {
  public:
-  Ball(const State& state, const BallSettings& settings) : ball_(state, settings) {}
+  explicit Ball(const State& state) : ball_(state) {}
 
   /// Advances by kPhysicsStep. `map` may be null. Robots are discs of robot_radius_m.
   void step(const Field& field, std::span<const Shape> obstacles, const FloorMap* map,

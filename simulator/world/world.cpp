@@ -82,8 +82,7 @@ World::World(const Scenario& scenario, Time begin, std::uint64_t seed)
                        clock});
     if (spec.is_absent) lift(robots_.size() - 1, begin);
   }
-  if (scenario.ball)
-    ball_.emplace(State{scenario.ball->position_m, scenario.ball->velocity_mps}, BallSettings{});
+  if (scenario.ball) ball_.emplace(State{scenario.ball->position_m, scenario.ball->velocity_mps});
 }
 
 void World::advance(Time to) {

@@ -85,7 +85,7 @@ class RefereedRun {
     max_speed_mps_ = std::max(max_speed_mps_, run_.max_speed_mps());
     for (const auto& robot : truth.robots()) {
       const double centres_m = std::hypot(robot.x_m() - truth.ball_x_m(), robot.y_m() - truth.ball_y_m());
-      min_distance_m_ = std::min(min_distance_m_, centres_m - 0.09 - BallSettings{}.radius_m);
+      min_distance_m_ = std::min(min_distance_m_, centres_m - 0.09 - RollingBall::kRadius_m);
     }
   }
 

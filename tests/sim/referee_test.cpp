@@ -60,7 +60,7 @@ struct RefereedSystem {
   void measure() {
     for (const auto& [robot, body] : run.bodies) {
       max_speed_mps = std::max(max_speed_mps, body.velocity_mps.norm());
-      const double edges_m = run.scenario.radius_m + BallSettings{}.radius_m;
+      const double edges_m = run.scenario.radius_m + RollingBall::kRadius_m;
       min_distance_m = std::min(min_distance_m, (body.position_m - run.ball_m).norm() - edges_m);
     }
   }

@@ -58,7 +58,7 @@ void set_image_noise(const Scenario& scenario, TrackModel& robot) {
 TrackModel TrackerSettings::ball_model() {
   TrackModel ball;
   ball.motion = {1, 1};
-  ball.rolling_mps2 = BallSettings().friction_mps2;
+  ball.rolling_mps2 = RollingBall::kFriction_mps2;
   ball.start_speed_mps = 4;
   ball.gate_m = 0.5;
   ball.relocate_after = Duration{30'000'000};
@@ -165,7 +165,7 @@ void Tracker::obstacles_at(const msg::WorldState& world, msg::ObstacleList& list
 State Tracker::ball_at(Time t, const msg::WorldState& world) const {
   constexpr double kStep_s = 0.005;
   const TrackState& track = ball_.state();
-  RollingBall ball({track.filter.position.position(), track.filter.position.velocity()}, BallSettings());
+  RollingBall ball({track.filter.position.position(), track.filter.position.velocity()});
   double remaining_s = to_seconds(t - track.last.captured_at);
   while (remaining_s > 0) {
     const double step_s = std::min(remaining_s, kStep_s);

@@ -16,7 +16,7 @@ class FirstView {
                            floor_.statics);
     SceneRobot robot;
     robot.position_m = floor_.start_m;
-    const SceneBall ball{{floor_.target_m.x(), floor_.target_m.y(), BallSettings{}.radius_m}, {0, 0}};
+    const SceneBall ball{{floor_.target_m.x(), floor_.target_m.y(), RollingBall::kRadius_m}, {0, 0}};
     image_ = renderer.render({{&robot, 1}, floor_.cylinders, ball});
     guidance_ = guide_.guide(image_.view());
   }

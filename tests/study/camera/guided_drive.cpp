@@ -55,7 +55,7 @@ class DriveWorld {
     robot.velocity_mps = body_.velocity_mps();
     const Scene scene{{&robot, 1},
                       floor_.cylinders,
-                      SceneBall{{floor_.target_m.x(), floor_.target_m.y(), BallSettings{}.radius_m}, {0, 0}}};
+                      SceneBall{{floor_.target_m.x(), floor_.target_m.y(), RollingBall::kRadius_m}, {0, 0}}};
     return (is_bumped(number) ? *bumped_renderer_ : renderer_).render(scene);
   }
 

@@ -205,11 +205,13 @@ TEST_CASE("an unobserved ball bounces off the wall and off robots") {
   TrackerSettings settings = tracker_settings(scenario);
   const std::vector<RobotId> roster{0};
   Tracker tracker(settings, roster);
-  const BallSettings ball;
-  const double turn_x_m = is_robot ? 1.2 - scenario.radius_m - ball.radius_m : 2 - ball.radius_m;
-  const double restitution = is_robot ? ball.robot_restitution : ball.wall_restitution;
+  const double turn_x_m =
+      is_robot ? 1.2 - scenario.radius_m - RollingBall::kRadius_m : 2 - RollingBall::kRadius_m;
+  const double restitution = is_robot ? RollingBall::kRobotRestitution : RollingBall::kWallRestitution;
   const double observed_until_s = is_robot ? 0.25 : 0.6, speed_mps = 3;
-  const auto rolled_m = [&](double t_s) { return speed_mps * t_s - ball.friction_mps2 * t_s * t_s / 2; };
+  const auto rolled_m = [&](double t_s) {
+    return speed_mps * t_s - RollingBall::kFriction_mps2 * t_s * t_s / 2;
+  };
   Frame frame;
   for (double t_s = 0; t_s < observed_until_s; t_s += to_seconds(kFrame)) {
     msg::DetectionFrame message = frame_message(0, after_s(t_s));
@@ -228,10 +230,10 @@ TEST_CASE("an unobserved ball bounces off the wall and off robots") {
     REQUIRE(world.ball().is_visible());
     double expected_m = rolled_m(t_s);
     if (expected_m > turn_x_m) {
-      const double discriminant = speed_mps * speed_mps - 2 * ball.friction_mps2 * turn_x_m;
-      const double since_s = t_s - (speed_mps - std::sqrt(discriminant)) / ball.friction_mps2;
+      const double discriminant = speed_mps * speed_mps - 2 * RollingBall::kFriction_mps2 * turn_x_m;
+      const double since_s = t_s - (speed_mps - std::sqrt(discriminant)) / RollingBall::kFriction_mps2;
       expected_m = turn_x_m - restitution * std::sqrt(discriminant) * since_s +
-                   ball.friction_mps2 * since_s * since_s / 2;
+                   RollingBall::kFriction_mps2 * since_s * since_s / 2;
       ++after_bounce;
     }
     CAPTURE(t_s, expected_m);
