@@ -11,6 +11,18 @@
 namespace sidestep {
 namespace {
 
+/// Below the rules' 1.5 m/s, because a robot is sometimes slightly faster than its reference.
+constexpr double kStopSpeedLimit_mps = 1.4;
+/// Required distance between the edges of robot and ball, as in the rules.
+constexpr double kBallDistance_m = 0.5;
+/// Allowance for the error of the ball's position, and for its motion until all robots know of it.
+constexpr double kBallAllowance_m = 0.03;
+// Robots also leave the line along which the ball will roll within this time, up to a maximum length.
+constexpr double kBallLookahead_s = 1, kMaxBallPath_m = 2;
+/// A slower ball counts as being at rest, because its measured velocity is noise.
+constexpr double kMinBallSpeed_mps = 0.1;
+constexpr double kAreaDistance_m = 0.2;  ///< distance from defence areas while the ball is not in play
+
 using league::RefereeCommand;
 
 /// So large that the limit also holds for robots that were carried off the field.
@@ -48,7 +60,7 @@ RefereeRules::RefereeRules(const Field& field, const RefereeSettings& settings) 
   const Vec2 corner(field.length_m / 2, field.width_m / 2);
   floor_ = rectangle(-corner, corner);
   floor_.radius_m = kFloorMargin_m;
-  floor_.speed_limit_mps = settings.speed_limit_mps;
+  floor_.speed_limit_mps = kStopSpeedLimit_mps;
   const FieldMarking marking(field);
   const double inner_m = corner.x() - marking.area_depth_m, side_m = marking.area_width_m / 2;
   areas_ = {rectangle({-corner.x(), -side_m}, {-inner_m, side_m}),
@@ -63,8 +75,7 @@ bool RefereeRules::keeps_off_ball(RefereeCommand command) const {
 }
 
 Zone RefereeRules::around_ball(std::vector<Vec2> corners_m) const {
-  const double radius_m =
-      RollingBall::kRadius_m + settings_.ball_distance_m + settings_.ball_allowance_m + kZoneTolerance_m;
+  const double radius_m = RollingBall::kRadius_m + kBallDistance_m + kBallAllowance_m + kZoneTolerance_m;
   return {std::move(corners_m), radius_m};
 }
 
@@ -79,8 +90,8 @@ std::optional<Zone> RefereeRules::ball_zone(const league::RefereePacket& packet,
 
 std::optional<Zone> RefereeRules::ball_path_zone(const BallState& ball) const {
   const double speed_mps = ball.velocity_mps.norm();
-  if (speed_mps < settings_.min_ball_speed_mps) return std::nullopt;
-  const double path_m = std::min(settings_.ball_lookahead_s * speed_mps, settings_.max_ball_path_m);
+  if (speed_mps < kMinBallSpeed_mps) return std::nullopt;
+  const double path_m = std::min(kBallLookahead_s * speed_mps, kMaxBallPath_m);
   return around_ball({ball.position_m, ball.position_m + path_m / speed_mps * ball.velocity_mps});
 }
 
@@ -98,7 +109,7 @@ RefereeDemands RefereeRules::demands(const league::RefereePacket& packet,
     demands.zones[kLeftAreaZone] = areas_[0];
     demands.zones[kRightAreaZone] = areas_[1];
     for (const std::uint32_t number : {kLeftAreaZone, kRightAreaZone})
-      demands.zones[number].radius_m = is_in_play(packet.command) ? 0 : settings_.area_distance_m;
+      demands.zones[number].radius_m = is_in_play(packet.command) ? 0 : kAreaDistance_m;
   }
   return demands;
 }

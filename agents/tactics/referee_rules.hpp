@@ -18,18 +18,6 @@ struct RefereeSettings {
   std::optional<Team> team{};
   /// Whether to keep all robots, including goalkeepers, out of both defence areas.
   bool closes_defence_areas = false;
-  /// Below the rules' 1.5 m/s, because a robot is sometimes slightly faster than its reference.
-  double speed_limit_mps = 1.4;
-  /// Required distance between the edges of robot and ball, as in the rules.
-  double ball_distance_m = 0.5;
-  /// Allowance for the error of the ball's position, and for its motion until all robots know of it.
-  double ball_allowance_m = 0.03;
-  /// Robots also leave the line along which the ball will roll within this time, up to a maximum length.
-  double ball_lookahead_s = 1;
-  double max_ball_path_m = 2;
-  /// A slower ball counts as being at rest, because its measured velocity is noise.
-  double min_ball_speed_mps = 0.1;
-  double area_distance_m = 0.2;  ///< distance from defence areas while the ball is not in play
 };
 
 /// The ball as last seen.
