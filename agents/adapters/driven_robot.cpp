@@ -11,6 +11,16 @@
 namespace sidestep {
 namespace {
 
+// The values suit bases that follow their commands as the league's simulators do.
+constexpr double kVelocityNoise_mps = 0.05;  ///< standard deviation with which a base follows its commands
+/// Standard deviation of a base's own motion measurement, if it has one.
+constexpr double kOdometryNoise_mps = 0.01;
+constexpr double kPositionGain_ps = 4;
+/// Maximum speed that is added to the reference's speed to return to it.
+constexpr double kMaxCorrection_mps = 0.3;
+constexpr double kHeadingGain_ps = 4;
+constexpr double kTurningSpeed_radps = 3;
+
 using std::chrono::milliseconds;
 
 // A base stops within this time after its last command, whoever sent it.
@@ -37,8 +47,8 @@ robot::Settings<float> side_settings(const DriveSettings& settings) {
 EstimatorSettings estimator_settings(const DriveSettings& settings) {
   EstimatorSettings estimator;
   estimator.period = DrivenRobot::kPeriod;
-  estimator.velocity_noise_mps = settings.odometry_noise_mps;
-  estimator.commanded_noise_mps = settings.velocity_noise_mps;
+  estimator.velocity_noise_mps = kOdometryNoise_mps;
+  estimator.commanded_noise_mps = kVelocityNoise_mps;
   estimator.scale_error = settings.scale_error;
   estimator.fix_noise_m = settings.fix_noise_m;
   estimator.velocity_gain = 1;
@@ -219,12 +229,10 @@ BodyVelocity DrivenRobot::track(Time now) const {
   Vec2 error_m = to_double(at_begin.position_m) - pose.position_m;
   const Vec2 planned_mps = to_double(at_middle.velocity_mps);
   if (planned_mps.isZero(0) && error_m.norm() < kRestTolerance_m) error_m.setZero();
-  const Vec2 velocity_mps =
-      planned_mps + limited(Vec2(settings_.position_gain_ps * error_m), settings_.max_correction_mps);
+  const Vec2 velocity_mps = planned_mps + limited(Vec2(kPositionGain_ps * error_m), kMaxCorrection_mps);
   BodyVelocity command;
   double heading_error = wrapped_rad(target_heading_rad_ - pose.heading_rad);
-  command.turn_radps = std::clamp(settings_.heading_gain_ps * heading_error, -settings_.turning_speed_radps,
-                                  settings_.turning_speed_radps);
+  command.turn_radps = std::clamp(kHeadingGain_ps * heading_error, -kTurningSpeed_radps, kTurningSpeed_radps);
   const double middle_rad = pose.heading_rad + 0.5 * command.turn_radps * to_seconds(kPeriod);
   command.linear_mps = rotated(Vec2(velocity_mps / (1 - estimator_.scale_error())), -middle_rad);
   return command;

@@ -14,22 +14,15 @@
 
 namespace sidestep {
 
-/// Settings for controlling a driven robot. The defaults suit bases that follow their commands as the
-/// league's simulators do.
+/// What is known of a driven robot and its base.
 struct DriveSettings {
   /// Delay from a command until the base moves accordingly.
   Duration latency = std::chrono::milliseconds(100);
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
   MotionLimits limits;
-  double fix_noise_m = 0.0005;       ///< standard deviation of vision, on each axis
-  double velocity_noise_mps = 0.05;  ///< standard deviation with which a base follows its commands
-  /// Standard deviation of a base's own motion measurement, if it has one.
-  double odometry_noise_mps = 0.01;
-  double scale_error = 0.005;  ///< standard deviation of the relative error of that measurement
-  double position_gain_ps = 4;
-  double max_correction_mps = 0.3;  ///< maximum speed that is added to the reference's speed to return to it
-  double heading_gain_ps = 4;
-  double turning_speed_radps = 3;
+  double fix_noise_m = 0.0005;  ///< standard deviation of vision, on each axis
+  /// Standard deviation of the relative error of a base's own motion measurement.
+  double scale_error = 0.005;
 };
 
 DriveSettings drive_settings(const Scenario& scenario, Duration latency);
