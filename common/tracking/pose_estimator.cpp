@@ -8,6 +8,8 @@
 namespace sidestep {
 namespace {
 
+constexpr double kExtraFixNoise_m = 0.0005;  ///< for correlation between fixes due to vision's filter
+
 // Periods differ a little because the robot's clock may drift: by up to one part in this.
 constexpr int kMaxPeriodErrorPart = 1000;
 constexpr double kHeadingGain = 0.05;        // gain of a heading fix
@@ -76,8 +78,8 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   const double elapsed_s = to_seconds(captured_at - anchor_time_);
   covariance_ = covariance_after(elapsed_s, moved);
 
-  const double fix_variance = settings_.fix_noise_m * settings_.fix_noise_m +
-                              settings_.extra_fix_noise_m * settings_.extra_fix_noise_m;
+  const double fix_variance =
+      settings_.fix_noise_m * settings_.fix_noise_m + kExtraFixNoise_m * kExtraFixNoise_m;
   const Vec2 predicted = anchor_m_ + moved * (1 - scale_);
   Vec2 innovation = position_m - predicted;
   jump_m_ = 0;

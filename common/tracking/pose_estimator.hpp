@@ -24,7 +24,6 @@ struct EstimatorSettings {
   double velocity_noise_mps = 0.01;   ///< of one odometry measurement, on each axis
   double scale_error = 0.005;         ///< of the odometry's constant relative error
   double fix_noise_m = 0.0005;        ///< of a fix, on each axis
-  double extra_fix_noise_m = 0.0005;  ///< for correlation between fixes due to vision's filter
   double velocity_gain = 0.08;        ///< weight against the motor model; 1: no model
   Duration period{1'000'000};         ///< of the odometry
   double commanded_noise_mps = 0.01;  ///< of a velocity that was commanded instead of measured, on each axis
