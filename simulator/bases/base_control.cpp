@@ -6,6 +6,9 @@
 namespace sidestep {
 namespace {
 
+constexpr double kBaseAcceleration_mps2 = 4.7;
+constexpr double kBaseTurnAcceleration_radps2 = 50, kBaseTurnSpeed_radps = 20;
+
 // The time constant with which the motors reach a velocity.
 constexpr double kResponse_s = 0.02;
 // Bounds a flood of commands within the latency.
@@ -16,10 +19,10 @@ constexpr std::size_t kMaxWaiting = 1000;
 BodySettings body_settings(const BaseSettings& settings) {
   BodySettings body;
   body.lag_s = 0.005;
-  body.acceleration_mps2 = std::max(settings.acceleration_mps2, settings.braking_mps2);
-  body.speed_mps = settings.speed_mps;
-  body.angular_acceleration_radps2 = settings.turn_acceleration_radps2;
-  body.angular_speed_radps = settings.turn_speed_radps;
+  body.acceleration_mps2 = std::max(kBaseAcceleration_mps2, settings.braking_mps2);
+  body.speed_mps = BaseControl::kMaxSpeed_mps;
+  body.angular_acceleration_radps2 = kBaseTurnAcceleration_radps2;
+  body.angular_speed_radps = kBaseTurnSpeed_radps;
   return body;
 }
 
@@ -35,16 +38,15 @@ Actuation BaseControl::actuation(const Body& body, Time now) {
     waiting_.pop_front();
   }
   if (now >= silent_from_) current_ = {};
-  const Vec2 commanded = settings_.scale * current_.linear_mps;
+  const Vec2& commanded = current_.linear_mps;
   const Vec2 target = current_.is_global ? commanded : rotated(commanded, body.heading_rad());
   Actuation actuation;
   actuation.acceleration_mps2 = (target - body.velocity_mps()) / kResponse_s;
   const bool is_braking = target.squaredNorm() < body.velocity_mps().squaredNorm();
-  const double max = is_braking ? settings_.braking_mps2 : settings_.acceleration_mps2;
+  const double max = is_braking ? settings_.braking_mps2 : kBaseAcceleration_mps2;
   const double norm = actuation.acceleration_mps2.norm();
   if (norm > max) actuation.acceleration_mps2 *= max / norm;
-  actuation.angular_acceleration_radps2 =
-      (settings_.scale * current_.turn_radps - body.angular_radps()) / kResponse_s;
+  actuation.angular_acceleration_radps2 = (current_.turn_radps - body.angular_radps()) / kResponse_s;
   return actuation;
 }
 

@@ -15,12 +15,7 @@ struct BaseSettings {
   Duration latency = std::chrono::milliseconds(100);  ///< delay from a command to the first motion
   /// The base brakes after this time without a command.
   Duration silence_timeout = std::chrono::milliseconds(100);
-  double acceleration_mps2 = 4.7;
   double braking_mps2 = 5.9;
-  double speed_mps = 3.7;
-  double turn_acceleration_radps2 = 50;
-  double turn_speed_radps = 20;
-  double scale = 1;  ///< ratio of the reached speed to the commanded speed
 };
 
 /// The velocity command of a base.
@@ -36,6 +31,8 @@ BodySettings body_settings(const BaseSettings& settings);
 /// within its acceleration, and brakes when there are no commands.
 class BaseControl {
  public:
+  static constexpr double kMaxSpeed_mps = 3.7;
+
   explicit BaseControl(const BaseSettings& settings) : settings_(settings) {}
 
   void command(const BaseVelocity& velocity, Time now);

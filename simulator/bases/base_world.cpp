@@ -50,7 +50,7 @@ BaseWorld::BaseWorld(const Scenario& scenario, std::uint32_t team_size, const Ba
       time_(begin),
       controls_(floor_.robots.size(), BaseControl(settings)),
       pushed_at_(floor_.robots.size(), Time::min()),
-      contacts_(scenario.obstacles, scenario.map, scenario.radius_m, settings.speed_mps),
+      contacts_(scenario.obstacles, scenario.map, scenario.radius_m, BaseControl::kMaxSpeed_mps),
       speeds_mps_(floor_.robots.size()) {
   for (const RobotSpec& robot : floor_.robots) {
     bodies_.emplace_back(robot.start_m, robot.start_heading_rad, body_settings(settings));

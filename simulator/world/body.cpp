@@ -39,7 +39,7 @@ void Body::step(const Actuation& command) {
 void Body::coast() {
   constexpr double dt = kPhysicsStepSeconds;
   const double speed = state_.velocity_mps.norm();
-  const double lost = settings_.rolling_mps2 * dt;
+  const double lost = kRolling_mps2 * dt;
   const Vec2 before = state_.velocity_mps;
   state_.velocity_mps *= speed > lost ? 1 - lost / speed : 0;
   state_.position_m += 0.5 * dt * (before + state_.velocity_mps);

@@ -20,8 +20,7 @@ struct BodySettings {
   double speed_mps = 2.5;
   double angular_acceleration_radps2 = 40;
   double angular_speed_radps = 8;
-  double friction_mps2 = 6;   ///< acceleration that the floor exerts on a body whose wheels slip
-  double rolling_mps2 = 0.5;  ///< deceleration of a body without power
+  double friction_mps2 = 6;  ///< acceleration that the floor exerts on a body whose wheels slip
 };
 
 /// Accelerations commanded to the motors, in the world frame.
@@ -34,6 +33,8 @@ struct Actuation {
 /// within limits. The wheels roll, so they measure the body's motion, unless a disturbance makes them slip.
 class Body {
  public:
+  static constexpr double kRolling_mps2 = 0.5;  ///< deceleration of a body without power
+
   Body(const Vec2& position_m, double heading_rad, const BodySettings& settings);
 
   /// Advances by kPhysicsStep; the integration is exact below the speed limit. A command beyond the limits is

@@ -9,6 +9,10 @@
 namespace sidestep {
 namespace {
 
+// Gains of the tracking control.
+constexpr double kPositionGain_ps2 = 8000, kVelocityGain_ps = 180;
+constexpr double kHeadingGain_ps = 8, kTurningSpeed_radps = 4, kTurningGain_ps = 25;
+
 // A robot without a pose is at rest if its wheels have been slower than this for this long. The velocity
 // estimate, which starts at zero, converges in less time.
 constexpr double kRestSpeed_mps = 0.02;
@@ -35,7 +39,7 @@ Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time 
       // A command is held for a whole period and so acts half a period late on average.
       look_ahead_(from_seconds(settings.body.lag_s) + kPhysicsStep / 2),
       max_position_error_m_(settings.body.acceleration_mps2 *
-                            std::pow(settings.velocity_gain_ps / settings.position_gain_ps2, 2)),
+                            std::pow(kVelocityGain_ps / kPositionGain_ps2, 2)),
       estimator_(start_m, heading_rad, now, settings.estimator),
       target_heading_rad_(heading_rad) {
   side_.begin_at_rest(start_m.x(), start_m.y());
@@ -118,8 +122,8 @@ Actuation Firmware::track(Time now) const {
   if (position_error.squaredNorm() > max_position_error_m_ * max_position_error_m_)
     position_error *= max_position_error_m_ / position_error.norm();
   const Vec2 velocity_error = ahead_velocity_mps - (estimator_.velocity_mps() + lag * modelled);
-  Vec2 acceleration = ahead_acceleration_mps2 + settings_.position_gain_ps2 * position_error +
-                      settings_.velocity_gain_ps * velocity_error;
+  Vec2 acceleration =
+      ahead_acceleration_mps2 + kPositionGain_ps2 * position_error + kVelocityGain_ps * velocity_error;
   const double max_acceleration = settings_.body.acceleration_mps2;
   if (acceleration.squaredNorm() > max_acceleration * max_acceleration)
     acceleration *= max_acceleration / acceleration.norm();
@@ -130,11 +134,10 @@ Actuation Firmware::track(Time now) const {
 double Firmware::turn() const {
   double heading_error = target_heading_rad_ - estimator_.heading_rad();
   if (std::abs(heading_error) > 3) heading_error = wrapped_rad(heading_error);
-  const double turn_rate = std::clamp(settings_.heading_gain_ps * heading_error,
-                                      -settings_.turning_speed_radps, settings_.turning_speed_radps);
+  const double turn_rate =
+      std::clamp(kHeadingGain_ps * heading_error, -kTurningSpeed_radps, kTurningSpeed_radps);
   const double max_angular = settings_.body.angular_acceleration_radps2;
-  return std::clamp(settings_.turning_gain_ps * (turn_rate - estimator_.angular_radps()), -max_angular,
-                    max_angular);
+  return std::clamp(kTurningGain_ps * (turn_rate - estimator_.angular_radps()), -max_angular, max_angular);
 }
 
 void Firmware::lift(Time now) {
@@ -179,11 +182,10 @@ Actuation Firmware::brake_by_wheels(Time now) {
   }
   if (!(velocity.norm() <= kRestSpeed_mps)) moved_at_ = now;
   const double lag = settings_.body.lag_s;
-  Vec2 braking = -settings_.velocity_gain_ps * (velocity + lag * modelled_.acceleration_mps2);
+  Vec2 braking = -kVelocityGain_ps * (velocity + lag * modelled_.acceleration_mps2);
   if (braking.norm() > settings_.deceleration_mps2) braking *= settings_.deceleration_mps2 / braking.norm();
   const double max_angular = settings_.body.angular_acceleration_radps2;
-  return {braking,
-          std::clamp(-settings_.turning_gain_ps * estimator_.angular_radps(), -max_angular, max_angular)};
+  return {braking, std::clamp(-kTurningGain_ps * estimator_.angular_radps(), -max_angular, max_angular)};
 }
 
 void Firmware::find_pose(const PoseFix& fix, Time now) {

@@ -15,11 +15,6 @@ namespace sidestep {
 struct FirmwareSettings {
   BodySettings body;  ///< the firmware's model of its motors
   EstimatorSettings estimator;
-  double position_gain_ps2 = 8000;  ///< gain of the tracking control, 1/s^2
-  double velocity_gain_ps = 180;    ///< 1/s
-  double heading_gain_ps = 8;
-  double turning_speed_radps = 4;
-  double turning_gain_ps = 25;
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
   /// D, used for stops that the firmware generates.
   double deceleration_mps2 = MotionLimits{}.deceleration_mps2;

@@ -71,7 +71,7 @@ struct BodyPath {
 
   static BodyPath coasting(const State& state) {
     const double speed = state.velocity_mps.norm();
-    const double deceleration = BodySettings{}.rolling_mps2;
+    const double deceleration = Body::kRolling_mps2;
     return {state.position_m, state.velocity_mps / speed, speed, deceleration, speed / deceleration};
   }
   static BodyPath carried(const Vec2& from, const Vec2& to, double seconds) {
