@@ -47,7 +47,7 @@ std::optional<std::string> CameraView::jpeg(std::size_t camera, const FloorState
   for (const auto& [id, robot] : floor.robots()) {
     const msg::TrackedRobot* seen = fresh(robot.seen, now);
     if (seen == nullptr) continue;
-    const auto pixel = shown.model.pixel_of({seen->x_m(), seen->y_m(), DetectorSettings{}.robot_height_m});
+    const auto pixel = shown.model.pixel_of({seen->x_m(), seen->y_m(), kRobotHeight_m});
     if (!pixel || !shown.model.is_in_image(*pixel)) continue;
     const cv::Point centre(static_cast<int>(pixel->x()), static_cast<int>(pixel->y()));
     cv::drawMarker(picture, centre, {255, 255, 255}, cv::MARKER_CROSS, 14, 2);

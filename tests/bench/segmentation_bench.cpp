@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kRounds = 41;
 constexpr std::uint64_t kSeed = 1;
-constexpr SegmentationSettings kAll{1, {0.5, -1}};
+constexpr SegmentationSettings kAll{1, -1};
 
 cv::Scalar scalar(const Yuv& yuv) { return cv::Scalar(yuv.y, yuv.u, yuv.v); }
 

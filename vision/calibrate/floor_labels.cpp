@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/motion/rolling_ball.hpp"
 #include "vision/colours/labelled_discs.hpp"
 #include "vision/detection/detector.hpp"
 #include "vision/patterns/projected_region.hpp"
@@ -11,12 +12,10 @@
 namespace sidestep {
 namespace {
 
-/// Assumed height of robots, obstacles and opponents.
-const double kHeight_m = DetectorSettings{}.robot_height_m;
-
-/// Adds discs for the base and the top of a vertical cylinder, even when their centres are outside the image.
+/// Adds discs for the base and the top of a vertical cylinder that is as high as a robot, even when their
+/// centres are outside the image.
 void add_cylinder(const CameraModel& camera, const Circle& circle, std::vector<LabelledDisc>& discs) {
-  for (const double height_m : {0.0, kHeight_m}) {
+  for (const double height_m : {0.0, kRobotHeight_m}) {
     const Vec3 centre_m(circle.centre_m.x(), circle.centre_m.y(), height_m);
     const auto pixel = camera.pixel_of(centre_m);
     const auto scale = px2_per_m2(camera, centre_m);
@@ -33,14 +32,14 @@ FloorLabels floor_labels_at_start(const Scenario& scenario, const MarkerLayout& 
     if (robot.is_absent) continue;
     const Pose pose{robot.start_m, robot.start_heading_rad};
     const auto dots =
-        projected_dots(camera, layout, robot.team, pattern_of(layout, robot.id), pose, kHeight_m);
+        projected_dots(camera, layout, robot.team, pattern_of(layout, robot.id), pose, kRobotHeight_m);
     labels.discs.insert(labels.discs.end(), dots.begin(), dots.end());
   }
   if (scenario.ball) {
-    const double radius_m = DetectorSettings{}.ball_radius_m;
+    const double radius_m = RollingBall::kRadius_m;
     const Vec2& position_m = scenario.ball->position_m;
     const auto disc =
-        projected_disc(camera, DetectorSettings{}.ball, {position_m.x(), position_m.y(), radius_m}, radius_m);
+        projected_disc(camera, kBallColour, {position_m.x(), position_m.y(), radius_m}, radius_m);
     if (disc) labels.discs.push_back(*disc);
   }
   for (const Circle& obstacle : circles_of(scenario.obstacles))
@@ -58,7 +57,7 @@ std::vector<Colour> colours_at_start(const Scenario& scenario, const MarkerLayou
     colours.insert(layout.team_colour(robot.team));
     colours.insert(pattern.colours.begin(), pattern.colours.end());
   }
-  if (scenario.ball) colours.insert(DetectorSettings{}.ball);
+  if (scenario.ball) colours.insert(kBallColour);
   return {colours.begin(), colours.end()};
 }
 

@@ -15,6 +15,8 @@
 namespace sidestep {
 namespace {
 
+constexpr double kMaxRobotTopSd_px = 0.5;  ///< upper limit of CalibrationResult::robot_top_sd_px
+
 // Focal length, distortion, principal point (2), rotation vector applied after the current rotation (3),
 // translation (3).
 constexpr int kParameters = 10;
@@ -250,12 +252,12 @@ CalibrationResult calibrate_camera(std::span<const CalibrationPoint> points, con
   find_worst_point(camera, points, result);
   const double noise_px = std::sqrt(cost / (2 * count - static_cast<double>(unknowns)));
   result.robot_top_sd_px = robot_top_sd_px(camera, points, is_free, std::max(noise_px, kMinNoise_px));
-  if (!(result.robot_top_sd_px <= settings.max_robot_top_sd_px)) {
+  if (!(result.robot_top_sd_px <= kMaxRobotTopSd_px)) {
     result.error = fmt::format(
         "the points do not determine the camera: predicted error of {:.2g} px at the height of robots, "
         "expected "
         "at most {:g}; add points farther apart and at several heights, or give the focal length",
-        result.robot_top_sd_px, settings.max_robot_top_sd_px);
+        result.robot_top_sd_px, kMaxRobotTopSd_px);
   }
   return result;
 }

@@ -19,7 +19,6 @@ struct CalibrationSettings {
   bool estimates_focal_length = true;
   bool estimates_distortion = true;
   bool estimates_principal_point = false;
-  double max_robot_top_sd_px = 0.5;  ///< upper limit of CalibrationResult::robot_top_sd_px
 };
 
 struct CalibrationResult {

@@ -7,15 +7,18 @@
 #include <numbers>
 
 #include "common/messaging/detected_obstacles.hpp"
+#include "common/motion/rolling_ball.hpp"
 
 namespace sidestep {
 namespace {
+
+constexpr double kMinObstacleRadius_m = 0.03;
 
 // Lit from above, a ball shows its colour on only part of its disc.
 constexpr double kMinBallAreaRatio = 0.25, kMaxBallAreaRatio = 2.0;
 
 // A small merge gap keeps dots of one colour apart.
-constexpr SegmentationSettings kSegmentation{3, {0.5, 1}};
+constexpr SegmentationSettings kSegmentation{3, 1};
 
 double confidence_of(const DetectedPattern& pattern, const MarkerLayout& layout) {
   return pattern.dot_count / static_cast<double>(layout.dots.size() + 1);
@@ -42,11 +45,10 @@ ObstacleFinderSettings obstacle_finder_settings(const DetectorSettings& settings
   ObstacleFinderSettings result;
   result.ground_colours =
       (bit(Colour::kField) | bit(Colour::kWhite) | bit(Colour::kBlack)) & ~colours_of(settings.layout);
-  result.max_dot_radius_m = std::max(settings.layout.centre.radius_m, settings.ball_radius_m);
+  result.max_dot_radius_m = std::max(settings.layout.centre.radius_m, RollingBall::kRadius_m);
   for (const Marker& dot : settings.layout.dots)
     result.max_dot_radius_m = std::max(result.max_dot_radius_m, dot.radius_m);
-  result.min_radius_m = settings.min_obstacle_radius_m;
-  result.robot_height_m = settings.robot_height_m;
+  result.min_radius_m = kMinObstacleRadius_m;
   result.known_obstacles = settings.known_obstacles;
   result.known_map = settings.known_map;
   return result;
@@ -86,7 +88,7 @@ double Detector::chroma_distance(Colour colour, const Vec2& uv) const {
 /// The team of a pattern whose centre dot is missing because tinted light has moved its colour out of the
 /// team's thresholds. It is the team whose colour is near, provided that the other team's colour is far.
 std::optional<Team> Detector::team_by_chroma(const ImageView& image, const Vec2& centre_m) const {
-  const auto centre = camera_.pixel_of({centre_m.x(), centre_m.y(), settings_.robot_height_m});
+  const auto centre = camera_.pixel_of({centre_m.x(), centre_m.y(), kRobotHeight_m});
   if (!centre) return std::nullopt;
   const auto x = static_cast<int>(std::lround(centre->x())), y = static_cast<int>(std::lround(centre->y()));
   if (x < 1 || y < 1 || x + 1 >= image.width_px || y + 1 >= image.height_px) return std::nullopt;
@@ -108,7 +110,7 @@ void Detector::find_robots(const ImageView& image, Time captured_at, std::span<c
   dot_regions_.clear();
   for (const Region& region : regions_) {
     if ((marking_colours_ >> region.colour & 1) == 0) continue;
-    if (const auto projected = project_region(region, camera_, settings_.robot_height_m))
+    if (const auto projected = project_region(region, camera_, kRobotHeight_m))
       dot_regions_.push_back(*projected);
   }
   const auto found = pattern_finder_.find(dot_regions_);
@@ -147,14 +149,14 @@ bool Detector::is_robot_dot(const ProjectedRegion& region) const {
 void Detector::find_balls(msg::DetectionFrame& frame) {
   ball_regions_.clear();
   for (const Region& region : regions_) {
-    if (static_cast<Colour>(region.colour) != settings_.ball || obstacle_finder_.is_part_of_obstacle(region))
+    if (static_cast<Colour>(region.colour) != kBallColour || obstacle_finder_.is_part_of_obstacle(region))
       continue;
-    const auto at_robot_height = project_region(region, camera_, settings_.robot_height_m);
-    const auto at_ball_height = project_region(region, camera_, settings_.ball_radius_m);
+    const auto at_robot_height = project_region(region, camera_, kRobotHeight_m);
+    const auto at_ball_height = project_region(region, camera_, RollingBall::kRadius_m);
     if (at_robot_height && at_ball_height && !is_robot_dot(*at_robot_height))
       ball_regions_.push_back(*at_ball_height);
   }
-  const double disc_m2 = std::numbers::pi * settings_.ball_radius_m * settings_.ball_radius_m;
+  const double disc_m2 = std::numbers::pi * RollingBall::kRadius_m * RollingBall::kRadius_m;
   std::erase_if(ball_regions_, [&](const ProjectedRegion& region) {
     return region.area_m2 < kMinBallAreaRatio * disc_m2 || region.area_m2 > kMaxBallAreaRatio * disc_m2;
   });

@@ -17,15 +17,13 @@
 
 namespace sidestep {
 
+inline constexpr Colour kBallColour = Colour::kOrange;
+
 struct DetectorSettings {
   std::vector<ColourBox> boxes;  ///< numbers are those of Colour, or kOtherColour
   MarkerLayout layout;
   std::vector<RosterEntry> roster;
   double robot_radius_m = 0.09;
-  double robot_height_m = 0.15;
-  double ball_radius_m = 0.0215;
-  Colour ball = Colour::kOrange;
-  double min_obstacle_radius_m = 0.03;
   std::vector<Shape> known_obstacles;         ///< not reported
   std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported either; null: no map
 };

@@ -122,7 +122,7 @@ bool ObstacleFinder::find_contour(const Blob& blob, const ImageView& image, cons
 /// Whether a point on the floor is hidden by a wall, a map cell or another shape that is not a circle.
 bool ObstacleFinder::is_in_shadow_of_floor(const Vec2& floor_m) const {
   const Vec3& eye_m = camera_.position_m();
-  const double share = std::min(1.0, settings_.robot_height_m / eye_m.z());
+  const double share = std::min(1.0, kRobotHeight_m / eye_m.z());
   const Segment ray{floor_m, floor_m + share * (eye_m.head<2>() - floor_m)};
   constexpr double kMargin2_m2 = kKnownMargin_m * kKnownMargin_m;
   return std::ranges::any_of(settings_.known_obstacles,
@@ -189,7 +189,7 @@ Circle ObstacleFinder::fit_circle(const ImageView& image, const VerticalCylinder
 
 std::span<Circle> ObstacleFinder::find(const ImageView& image, const ColourClasses& classes,
                                        std::span<const Region> regions, std::span<const Circle> robots) {
-  const VerticalCylinders robot_cylinders{robots, settings_.robot_height_m};
+  const VerticalCylinders robot_cylinders{robots, kRobotHeight_m};
   found_.clear();
   obstacles_.clear();
   collect_blobs(regions, robot_cylinders);

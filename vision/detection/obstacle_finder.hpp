@@ -18,11 +18,13 @@
 
 namespace sidestep {
 
+/// Height of the dots on robots.
+inline constexpr double kRobotHeight_m = 0.15;
+
 struct ObstacleFinderSettings {
-  std::uint32_t ground_colours = 0;  ///< bit c: colour c belongs to the ground, never to an obstacle
-  double max_dot_radius_m = 0.025;   ///< radius of the largest dot or ball
-  double min_radius_m = 0.03;        ///< minimum radius of an obstacle
-  double robot_height_m = 0.15;
+  std::uint32_t ground_colours = 0;           ///< bit c: colour c belongs to the ground, never to an obstacle
+  double max_dot_radius_m = 0.025;            ///< radius of the largest dot or ball
+  double min_radius_m = 0.03;                 ///< minimum radius of an obstacle
   std::vector<Shape> known_obstacles;         ///< not reported
   std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported either; null: no map
 };

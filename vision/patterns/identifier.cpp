@@ -7,6 +7,12 @@
 namespace sidestep {
 namespace {
 
+/// Maximum distance from the expected position; the radius of a robot.
+constexpr double kRobotGate_m = 0.09;
+constexpr double kRobotGate_rad = 0.8;  ///< maximum deviation from the expected heading
+constexpr double kMaxRobotSpeed_mps = 3;
+constexpr Duration kHistoryTimeout{500'000'000};
+
 constexpr double kPositionTolerance_m = 0.02;
 
 std::size_t count(const std::vector<bool>& flags) {
@@ -25,8 +31,7 @@ std::size_t first_set(const std::vector<bool>& flags) {
 
 }  // namespace
 
-Identifier::Identifier(std::span<const RosterEntry> roster, const IdentifierSettings& settings)
-    : roster_(roster.begin(), roster.end()), settings_(settings) {}
+Identifier::Identifier(std::span<const RosterEntry> roster) : roster_(roster.begin(), roster.end()) {}
 
 /// The robots whose pattern matches, except those already identified in this frame by a pattern with more
 /// dots.
@@ -41,8 +46,8 @@ Identifier::RosterMask Identifier::matching_robots(const DetectedPattern& patter
 }
 
 bool Identifier::is_within_gates(const ExpectedRobot& expected, const DetectedPattern& pattern) const {
-  return (expected.pose.position_m - pattern.pose.position_m).norm() <= settings_.gate_m &&
-         std::abs(wrapped_rad(expected.pose.heading_rad - pattern.pose.heading_rad)) <= settings_.gate_rad;
+  return (expected.pose.position_m - pattern.pose.position_m).norm() <= kRobotGate_m &&
+         std::abs(wrapped_rad(expected.pose.heading_rad - pattern.pose.heading_rad)) <= kRobotGate_rad;
 }
 
 /// Two robots cannot occupy one position: a pattern found there belongs to the expected robot, or its dots
@@ -62,7 +67,7 @@ Identifier::RosterMask Identifier::robots_expected_at(const DetectedPattern& pat
 Identifier::RosterMask Identifier::narrowed_by_history(Time captured_at, const DetectedPattern& pattern,
                                                        const RosterMask& matches) {
   std::erase_if(unidentified_, [&](const UnidentifiedRobot& one) {
-    return captured_at - one.observed_at > settings_.history_timeout;
+    return captured_at - one.observed_at > kHistoryTimeout;
   });
   const auto distance_m = [&](const UnidentifiedRobot& one) {
     return (one.position_m - pattern.pose.position_m).norm();
@@ -71,9 +76,9 @@ Identifier::RosterMask Identifier::narrowed_by_history(Time captured_at, const D
   const bool is_known =
       nearest != unidentified_.end() &&
       distance_m(*nearest) <=
-          std::min(settings_.gate_m,
+          std::min(kRobotGate_m,
                    kPositionTolerance_m +
-                       settings_.max_speed_mps * std::abs(to_seconds(captured_at - nearest->observed_at)));
+                       kMaxRobotSpeed_mps * std::abs(to_seconds(captured_at - nearest->observed_at)));
   if (!is_known) {
     unidentified_.push_back({pattern.pose.position_m, captured_at, matches});
     return matches;

@@ -28,20 +28,13 @@ struct IdentifiedRobot {
   DetectedPattern pattern;
 };
 
-struct IdentifierSettings {
-  double gate_m = 0.09;      ///< maximum distance from the expected position; the radius of a robot
-  double gate_rad = 0.8;     ///< maximum deviation from the expected heading
-  double max_speed_mps = 3;  ///< maximum speed of a robot
-  Duration history_timeout{500'000'000};
-};
-
 /// Identifies robots by the colours of their dots. A complete pattern identifies one robot. If a dot is
 /// missing, several robots may match; then the robot expected at that position is chosen, or else the only
 /// one that matches everything observed there so far. A robot expected at a position is not confused with
 /// another if a dot was misread. An ambiguous pattern remains unidentified.
 class Identifier {
  public:
-  explicit Identifier(std::span<const RosterEntry> roster, const IdentifierSettings& settings = {});
+  explicit Identifier(std::span<const RosterEntry> roster);
 
   /// Identifies the patterns of one camera's frame; frames may come in any order. Returns each robot at most
   /// once. Valid until the next call.
@@ -64,7 +57,6 @@ class Identifier {
   RosterMask narrowed_by_history(Time captured_at, const DetectedPattern& pattern, const RosterMask& matches);
 
   std::vector<RosterEntry> roster_;
-  IdentifierSettings settings_;
   std::vector<UnidentifiedRobot> unidentified_;
   std::vector<IdentifiedRobot> found_;
 };

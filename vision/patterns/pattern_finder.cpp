@@ -8,6 +8,11 @@
 namespace sidestep {
 namespace {
 
+/// Maximum distance of a dot from the position that the pose predicts.
+constexpr double kDotTolerance_m = 0.012;
+// Minimum and maximum area of a region, as fractions of the dot's area.
+constexpr double kMinDotAreaRatio = 0.3, kMaxDotAreaRatio = 2.5;
+
 double area_m2(double radius_m) { return std::numbers::pi * radius_m * radius_m; }
 
 double angle_rad(const Vec2& v) { return std::atan2(v.y(), v.x()); }
@@ -26,16 +31,15 @@ bool DetectedPattern::matches(Team other_team, const MarkerPattern& pattern) con
   return true;
 }
 
-PatternFinder::PatternFinder(const MarkerLayout& layout, const PatternSettings& settings)
-    : layout_(layout), settings_(settings) {
+PatternFinder::PatternFinder(const MarkerLayout& layout) : layout_(layout) {
   for (const Marker& dot : layout_.dots) {
     max_dot_distance_m_ = std::max(max_dot_distance_m_, (dot.position_m - layout_.centre.position_m).norm());
   }
 }
 
 bool PatternFinder::has_disc_area(const ProjectedRegion& region, double radius_m) const {
-  return region.area_m2 >= settings_.min_area_ratio * area_m2(radius_m) &&
-         region.area_m2 <= settings_.max_area_ratio * area_m2(radius_m);
+  return region.area_m2 >= kMinDotAreaRatio * area_m2(radius_m) &&
+         region.area_m2 <= kMaxDotAreaRatio * area_m2(radius_m);
 }
 
 void PatternFinder::classify_regions(std::span<const ProjectedRegion> regions) {
@@ -62,7 +66,7 @@ void PatternFinder::classify_regions(std::span<const ProjectedRegion> regions) {
 
 int PatternFinder::nearest_dot(const Vec2& position_m) const {
   int nearest = -1;
-  double min_squared = settings_.tolerance_m * settings_.tolerance_m;
+  double min_squared = kDotTolerance_m * kDotTolerance_m;
   for (std::size_t j = 0; j < dots_.size(); ++j) {
     const double squared = (dots_[j].position_m - position_m).squaredNorm();
     if (squared > min_squared || is_used_[j]) continue;
@@ -116,10 +120,10 @@ std::optional<PatternFinder::Candidate> PatternFinder::best_around(int centre) c
   for (std::size_t j = 0; j < dots_.size(); ++j) {
     const Vec2 observed = dots_[j].position_m - centre_m;
     const double distance_m = observed.norm();
-    if (is_used_[j] || distance_m > max_dot_distance_m_ + settings_.tolerance_m) continue;
+    if (is_used_[j] || distance_m > max_dot_distance_m_ + kDotTolerance_m) continue;
     for (const Marker& dot : layout_.dots) {
       const Vec2 expected = dot.position_m - layout_.centre.position_m;
-      if (std::abs(expected.norm() - distance_m) > settings_.tolerance_m) continue;
+      if (std::abs(expected.norm() - distance_m) > kDotTolerance_m) continue;
       const double heading_rad = angle_rad(observed) - angle_rad(expected);
       const Pose guess{centre_m - rotated(layout_.centre.position_m, heading_rad), heading_rad};
       const auto candidate = refined(guess, centre);
@@ -161,7 +165,7 @@ void PatternFinder::find_without_centres() {
     for (std::size_t j = 0; j < dots_.size() && !is_used_[i]; ++j) {
       if (is_used_[j] || i == j) continue;
       const Vec2 &from = dots_[i].position_m, &to = dots_[j].position_m;
-      if (std::abs((to - from).norm() - spacing_m) > settings_.tolerance_m) continue;
+      if (std::abs((to - from).norm() - spacing_m) > kDotTolerance_m) continue;
       const std::array<PointCorrespondence, 2> pair{{{first, from}, {second, to}}};
       const auto candidate = refined(fit_pose(pair), -1);
       if (candidate && candidate->pattern.dot_count == static_cast<int>(layout_.dots.size()))

@@ -15,12 +15,6 @@ namespace sidestep {
 
 /// Limits, all measured in the plane of the dots rather than in pixels, so that they hold at any camera
 /// height.
-struct PatternSettings {
-  double tolerance_m = 0.012;   ///< maximum distance of a dot from the position that the pose predicts
-  double min_area_ratio = 0.3;  ///< minimum area of a region, as a fraction of the dot's area
-  double max_area_ratio = 2.5;  ///< maximum area of a region, as a fraction of the dot's area
-};
-
 /// A set of dots arranged as in the layout; at most one dot is missing.
 struct DetectedPattern {
   Pose pose;
@@ -38,7 +32,7 @@ struct DetectedPattern {
 /// per robot and dots that belong to no robot. The colours identify the robot afterwards (Identifier).
 class PatternFinder {
  public:
-  explicit PatternFinder(const MarkerLayout& layout, const PatternSettings& settings = {});
+  explicit PatternFinder(const MarkerLayout& layout);
 
   /// Patterns, best first: more dots, then smaller residuals. No region is used twice. Valid until the next
   /// call.
@@ -61,7 +55,6 @@ class PatternFinder {
   void accept(const Candidate& candidate);
 
   MarkerLayout layout_;
-  PatternSettings settings_;
   double max_dot_distance_m_ = 0;  ///< from the centre dot to the farthest dot
   std::vector<ProjectedRegion> centres_, dots_;
   std::vector<bool> is_used_;  ///< parallel to dots_

@@ -75,7 +75,7 @@ void FloorBlobFinder::collect(std::span<const Region> regions) {
   for (const Region& region : regions) {
     if ((settings_.ground_colours >> region.colour & 1) != 0) continue;
     const Vec2 centre(region.x_px, region.y_px);
-    if (found_.robot && (centre - *found_.robot).norm() < settings_.max_robot_px) continue;
+    if (found_.robot && (centre - *found_.robot).norm() < kMaxRobot_px) continue;
     ObstacleBlob merged;
     merged.left_px = region.left_px;
     merged.right_px = region.right_px;
@@ -94,8 +94,7 @@ void FloorBlobFinder::collect(std::span<const Region> regions) {
     }
     found_.obstacles.push_back(merged);
   }
-  std::erase_if(found_.obstacles,
-                [&](const ObstacleBlob& blob) { return blob.area_px <= settings_.max_marker_px; });
+  std::erase_if(found_.obstacles, [&](const ObstacleBlob& blob) { return blob.area_px <= kMaxMarker_px; });
 }
 
 /// Fits diamond and disc to the coloured pixels in the bounding box, except those of the robot.
@@ -109,7 +108,7 @@ void FloorBlobFinder::measure(const ImageView& image, const ColourClasses& class
     for (int x = blob.left_px; x <= blob.right_px; ++x) {
       if (!is_obstacle(pixel_at(image, x, y), classes)) continue;
       const Vec2 pixel(x, y);
-      if (found_.robot && (pixel - *found_.robot).norm() < settings_.max_robot_px) continue;
+      if (found_.robot && (pixel - *found_.robot).norm() < kMaxRobot_px) continue;
       for (const Vec2& point : {pixel, foot_of(pixel)}) {
         min_sum = std::min(min_sum, point.x() + point.y());
         max_sum = std::max(max_sum, point.x() + point.y());

@@ -21,10 +21,7 @@ struct FloorBlobSettings {
   std::uint32_t ground_colours =
       1U << static_cast<unsigned>(Colour::kField) | 1U << static_cast<unsigned>(Colour::kWhite) |
       1U << static_cast<unsigned>(Colour::kBlack);  ///< bit c: no obstacle has colour c
-  std::uint32_t min_marker_px = 4;                  ///< minimum area of the robot's dot and of the target
-  std::uint32_t max_marker_px = 80;                 ///< a larger region is an obstacle
-  double max_robot_px = 20;    ///< anything nearer than this to the robot's dot belongs to the robot
-  Vec2 below_camera_px{0, 0};  ///< pixel of the floor point below the camera
+  Vec2 below_camera_px{0, 0};                       ///< pixel of the floor point below the camera
   /// The foot of the highest obstacle appears at this fraction of its top's distance from below_camera_px;
   /// its side may be too dark to be seen. 1: obstacles are flat.
   double foot_share = 1;
@@ -70,11 +67,16 @@ class FloorBlobFinder {
   std::optional<Vec2> target(const ImageView& image, const ColourClasses& classes,
                              std::span<const Region> regions) const;
   bool has_marker_size(const Region& region) const {
-    return region.area_px >= settings_.min_marker_px && region.area_px <= settings_.max_marker_px;
+    return region.area_px >= kMinMarker_px && region.area_px <= kMaxMarker_px;
   }
   bool is_isolated(const ImageView& image, const ColourClasses& classes, const Region& region) const;
   void collect(std::span<const Region> regions);
   void measure(const ImageView& image, const ColourClasses& classes, ObstacleBlob& blob) const;
+
+  static constexpr std::uint32_t kMinMarker_px = 4;   // minimum area of the robot's dot and of the target
+  static constexpr std::uint32_t kMaxMarker_px = 80;  // a larger region is an obstacle
+  // Anything nearer than this to the robot's dot belongs to the robot.
+  static constexpr double kMaxRobot_px = 20;
 
   FloorBlobSettings settings_;
   FloorBlobs found_;

@@ -6,6 +6,9 @@
 namespace sidestep {
 namespace {
 
+/// Minimum fraction of the common bounding box that both regions fill together.
+constexpr double kMinDensity = 0.5;
+
 Region merged(const Region& a, const Region& b) {
   Region both = a;
   both.area_px = a.area_px + b.area_px;
@@ -27,25 +30,25 @@ double density(const Region& region) {
 bool is_absorbed(const Region& region) { return region.area_px == 0; }
 
 /// False for a region of another colour or too far below, and thus for all regions after it.
-bool is_within_rows(const Region& upper, const Region& lower, const MergeSettings& settings) {
-  return lower.colour == upper.colour && lower.top_px - upper.bottom_px - 1 <= settings.max_gap_px;
+bool is_within_rows(const Region& upper, const Region& lower, int max_gap_px) {
+  return lower.colour == upper.colour && lower.top_px - upper.bottom_px - 1 <= max_gap_px;
 }
 
-bool is_within_columns(const Region& a, const Region& b, const MergeSettings& settings) {
-  return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) - 1 <= settings.max_gap_px;
+bool is_within_columns(const Region& a, const Region& b, int max_gap_px) {
+  return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) - 1 <= max_gap_px;
 }
 
 }  // namespace
 
-void merge_by_density(std::vector<Region>& regions, const MergeSettings& settings) {
-  if (settings.max_gap_px < 0) return;
+void merge_by_density(std::vector<Region>& regions, int max_gap_px) {
+  if (max_gap_px < 0) return;
   for (std::size_t i = 0; i < regions.size(); ++i) {
     if (is_absorbed(regions[i])) continue;
     std::size_t j = i + 1;
-    while (j < regions.size() && is_within_rows(regions[i], regions[j], settings)) {
+    while (j < regions.size() && is_within_rows(regions[i], regions[j], max_gap_px)) {
       const Region both = merged(regions[i], regions[j]);
-      if (is_absorbed(regions[j]) || !is_within_columns(regions[i], regions[j], settings) ||
-          density(both) < settings.min_density) {
+      if (is_absorbed(regions[j]) || !is_within_columns(regions[i], regions[j], max_gap_px) ||
+          density(both) < kMinDensity) {
         ++j;
         continue;
       }

@@ -159,7 +159,7 @@ std::span<const Region> Segmenter::segment(const ImageView& image) {
   for_each_bit(colours_, [&](std::size_t colour) {
     builders_[colour].finish(static_cast<std::uint32_t>(colour), settings_.min_area_px, regions_);
   });
-  merge_by_density(regions_, settings_.merge);
+  merge_by_density(regions_, settings_.max_gap_px);
   return regions_;
 }
 

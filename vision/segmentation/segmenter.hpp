@@ -17,7 +17,8 @@ namespace sidestep {
 
 struct SegmentationSettings {
   std::uint32_t min_area_px = 3;  ///< smaller regions are noise; applied before merging
-  MergeSettings merge;
+  /// Maximum gap in columns or rows between the bounding boxes of merged regions; negative: no merging.
+  int max_gap_px = 2;
 };
 
 /// Finds the colour regions of a frame in one pass: each row is classified, cut into runs and joined to the

@@ -12,6 +12,12 @@
 namespace sidestep {
 namespace {
 
+constexpr MotionNoise kObstacleMotion{2, 5};  ///< people turn abruptly
+/// Number of observations before a track is confirmed. While frames are incomplete, one is enough: an
+/// obstacle that the last frame left out is not new.
+constexpr int kConfirmHits = 2;
+constexpr Duration kDropAfter{1'000'000'000};  ///< time without an observation after which a track ends
+
 constexpr double kGateDeviations = 5;
 constexpr double kRadiusGain = 0.3;
 
@@ -40,8 +46,7 @@ double robot_distance_m(const ObstacleObservation& observation, const Frame& fra
 
 ObstacleTracker::ObstacleTracker(const ObstacleTrackerSettings& settings)
     : settings_(settings),
-      incomplete_frames_(settings.max_speed_mps, kObstacleSigmas * settings.position_noise_m,
-                         settings.drop_after) {
+      incomplete_frames_(settings.max_speed_mps, kObstacleSigmas * settings.position_noise_m, kDropAfter) {
   tracks_.reserve(kMaxTracks);
   pairs_.reserve(std::size_t{4} * kMaxTracks);
   robots_m_.reserve(kMaxRobots);
@@ -55,7 +60,7 @@ void ObstacleTracker::forget() {
 
 void ObstacleTracker::update(const Frame& frame) {
   double complete_within_m = frame.obstacles_complete_within_m();
-  const int confirm_hits = incomplete_frames_.is_empty() ? settings_.confirm_hits : 1;
+  const int confirm_hits = incomplete_frames_.is_empty() ? kConfirmHits : 1;
   if (!frame.obstacles().empty()) {
     drop_stale_tracks(frame.captured_at());
     associate(frame);
@@ -120,7 +125,7 @@ double ObstacleTracker::gate_m(const Track& track, Time at) const {
 void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservation& observation) {
   if (at <= track.observed_at) return;
   const double variance = settings_.position_noise_m * settings_.position_noise_m;
-  track.filter.predict(to_seconds(at - track.observed_at), settings_.motion);
+  track.filter.predict(to_seconds(at - track.observed_at), kObstacleMotion);
   const Vec2 innovation = observation.position_m - track.filter.position();
   if (track.filter.squared_distance(innovation, variance) > kGateDeviations * kGateDeviations) {
     // The obstacle has turned abruptly, so the velocity estimate is discarded.
@@ -132,7 +137,7 @@ void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservat
   track.radius_m =
       std::max(observation.radius_m, track.radius_m + kRadiusGain * (observation.radius_m - track.radius_m));
   track.observed_at = at;
-  if (++track.hits >= settings_.confirm_hits && track.number == 0) track.number = ++last_number_;
+  if (++track.hits >= kConfirmHits && track.number == 0) track.number = ++last_number_;
 }
 
 bool ObstacleTracker::start_track(Time at, const ObstacleObservation& observation, int confirm_hits) {
@@ -145,7 +150,7 @@ bool ObstacleTracker::start_track(Time at, const ObstacleObservation& observatio
 }
 
 void ObstacleTracker::drop_stale_tracks(Time now) {
-  std::erase_if(tracks_, [&](const Track& track) { return now - track.observed_at > settings_.drop_after; });
+  std::erase_if(tracks_, [&](const Track& track) { return now - track.observed_at > kDropAfter; });
 }
 
 double ObstacleTracker::min_distance_m(const Track& track, Time t) const {
@@ -162,7 +167,7 @@ void ObstacleTracker::list_at(Time t, std::span<const msg::TrackedRobot> robots,
   for (const msg::TrackedRobot& robot : robots) robots_m_.emplace_back(robot.x_m(), robot.y_m());
   listed_.clear();
   for (const Track& track : tracks_) {
-    if (track.number > 0 && t - track.observed_at <= settings_.drop_after)
+    if (track.number > 0 && t - track.observed_at <= kDropAfter)
       listed_.push_back({min_distance_m(track, t), &track});
   }
   std::ranges::sort(listed_, {}, [](const ListedTrack& listed) {

@@ -17,11 +17,6 @@ namespace sidestep {
 struct ObstacleTrackerSettings {
   double max_speed_mps = 1.5;        ///< maximum speed of an obstacle
   double position_noise_m = 0.0015;  ///< standard deviation of an observation on each axis
-  MotionNoise motion{2, 5};          ///< people turn abruptly
-  /// Number of observations before a track is confirmed. While frames are incomplete, one is enough: an
-  /// obstacle that the last frame left out is not new.
-  int confirm_hits = 2;
-  Duration drop_after{1'000'000'000};  ///< time without an observation after which a track ends
 };
 
 /// Tracks moving obstacles, which cannot be identified: each observation updates the nearest track that can

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "common/motion/rolling_ball.hpp"
 #include "vision/detection/detector.hpp"
 
 namespace sidestep {
@@ -57,20 +58,19 @@ void FloorPen::text(const std::string& text, const Vec2& position_m, double heig
 }
 
 void draw_detections(const msg::DetectionFrame& frame, const Scenario& scenario, FloorPen& pen) {
-  const DetectorSettings defaults;
   for (const msg::RobotDetection& robot : frame.robots()) {
     const RobotSpec* const spec = find_robot(scenario, robot.robot());
     const Ink& ink = spec && spec->team == Team::kYellow ? kYellowTeam : kBlueTeam;
     const Vec2 position_m(robot.x_m(), robot.y_m());
     const Vec2 direction(std::cos(robot.heading_rad()), std::sin(robot.heading_rad()));
-    pen.circle(position_m, defaults.robot_height_m, scenario.radius_m, ink);
-    pen.line(position_m, position_m + 1.5 * scenario.radius_m * direction, defaults.robot_height_m, ink);
+    pen.circle(position_m, kRobotHeight_m, scenario.radius_m, ink);
+    pen.line(position_m, position_m + 1.5 * scenario.radius_m * direction, kRobotHeight_m, ink);
     pen.text(fmt::format("{}", robot.robot()), position_m + Vec2(1.1, 0.9) * scenario.radius_m,
-             defaults.robot_height_m, ink);
+             kRobotHeight_m, ink);
   }
   for (std::size_t i = 0; i < frame.ball_count(); ++i) {
     const msg::BallDetection& ball = frame.balls()[i];
-    pen.circle({ball.x_m(), ball.y_m()}, defaults.ball_radius_m, 2 * defaults.ball_radius_m, kBall);
+    pen.circle({ball.x_m(), ball.y_m()}, RollingBall::kRadius_m, 2 * RollingBall::kRadius_m, kBall);
   }
   for (std::size_t i = 0; i < frame.obstacle_count(); ++i) {
     const msg::ObstacleDetection& obstacle = frame.obstacles()[i];

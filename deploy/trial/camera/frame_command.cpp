@@ -12,6 +12,7 @@
 #include "common/image/picture.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
+#include "common/motion/rolling_ball.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
 #include "simulator/images/floor_scene.hpp"
@@ -38,17 +39,16 @@ constexpr double kCrossRadius_m = 0.03;
 void overlay(const Image& image, const CameraModel& camera, const Scenario& scenario,
              const MarkerLayout& layout, cv::Mat3b& picture) {
   const FloorScene floor = floor_scene(scenario);
-  const DetectorSettings settings =
-      detector_settings(scenario, default_colours(image.view().format, layout).boxes, layout);
-  Detector detector(camera, settings);
+  Detector detector(camera,
+                    detector_settings(scenario, default_colours(image.view().format, layout).boxes, layout));
   msg::DetectionFrame frame;
   detector.detect(image.view(), {}, {}, frame);
   FloorPen pen(picture, camera);
   for (const SceneRobot& robot : floor.robots)
-    pen.cross(robot.position_m, settings.robot_height_m, kCrossRadius_m, kTruth);
+    pen.cross(robot.position_m, kRobotHeight_m, kCrossRadius_m, kTruth);
   for (const SceneCylinder& cylinder : floor.cylinders)
     pen.cross(cylinder.circle.centre_m, 0, cylinder.circle.radius_m, kTruth);
-  if (floor.ball) pen.cross(floor.ball->position_m.head<2>(), settings.ball_radius_m, kCrossRadius_m, kTruth);
+  if (floor.ball) pen.cross(floor.ball->position_m.head<2>(), RollingBall::kRadius_m, kCrossRadius_m, kTruth);
   draw_detections(frame, scenario, pen);
   for (const msg::RobotDetection& robot : frame.robots()) {
     const RobotSpec& truth = *find_robot(scenario, robot.robot());

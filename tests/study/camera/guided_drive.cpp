@@ -130,9 +130,7 @@ void count(const PixelGuide::Guidance& guidance, int frame, const DriveWorld& wo
 
 DriveResult drive(DriveEvent event, PixelPlanner planner, std::uint64_t seed) {
   DriveWorld world(event, seed);
-  GuideSettings settings;
-  settings.planner = planner;
-  PixelGuide guide(guiding_camera(), kGuidedField, settings);
+  PixelGuide guide(guiding_camera(), kGuidedField, planner);
   DriveResult result;
   for (int frame = 0; frame < kMaxFrames; ++frame) {
     world.happen(frame);

@@ -12,8 +12,13 @@
 namespace sidestep {
 namespace {
 
+constexpr double kGuideRadius_m = 0.09, kGuideHeight_m = 0.15;  // of the robot
+constexpr double kObstacleHeight_m = 0.15;
+/// Covers tracking errors, cut corners and a slightly misplaced camera.
+constexpr double kGuideMargin_m = 0.045;
+
 constexpr PathFollowerSettings kFollowing{10, 4, 10};  // in pixels
-constexpr SegmentationSettings kSegmentation{3, {0.5, 1}};
+constexpr SegmentationSettings kSegmentation{3, 1};
 
 /// Measures a stage.
 template <typename Stage>
@@ -56,13 +61,13 @@ FloorBlobSettings blob_settings(const CameraModel& camera, double height_m) {
 
 }  // namespace
 
-PixelGuide::PixelGuide(const CameraModel& camera, const Field& field, const GuideSettings& settings)
+PixelGuide::PixelGuide(const CameraModel& camera, const Field& field, PixelPlanner planner)
     : camera_(camera),
-      settings_(settings),
+      planner_(planner),
       centre_px_(0.5 * Vec2(camera.parameters().width_px - 1, camera.parameters().height_px - 1)),
-      radius_px_((settings.radius_m + settings.margin_m) * max_px_per_m(camera)),
+      radius_px_((kGuideRadius_m + kGuideMargin_m) * max_px_per_m(camera)),
       segmenter_(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), kSegmentation),
-      finder_(blob_settings(camera, settings.obstacle_height_m)),
+      finder_(blob_settings(camera, kObstacleHeight_m)),
       watch_(camera, field),
       cells_(camera.parameters().width_px, camera.parameters().height_px),
       follower_(kFollowing) {}
@@ -74,7 +79,7 @@ void PixelGuide::look(const ImageView& image) {
   blobs_ = timed(times_.blobs, [&] { return &finder_.find(image, segmenter_.classes(), regions); });
   has_robot_ = false;
   if (blobs_->robot) {
-    const auto robot_m = camera_.point_at(*blobs_->robot, settings_.robot_height_m);
+    const auto robot_m = camera_.point_at(*blobs_->robot, kGuideHeight_m);
     const auto pixel = robot_m ? camera_.pixel_of({robot_m->x(), robot_m->y(), 0}) : std::nullopt;
     has_robot_ = pixel && camera_.is_in_image(*pixel);
     if (has_robot_) robot_px_ = *pixel;
@@ -163,7 +168,7 @@ PixelGuide::Guidance PixelGuide::guide(const ImageView& image) {
   guidance.to_target_m = (*camera_.point_at(target_px_, 0) - *guidance.robot_m).norm();
   guidance.replanned = follower_.replan_reason(robot_px_, target_px_);
   if (guidance.replanned != ReplanReason::kNone) {
-    follower_.follow(plan(settings_.planner), target_px_);
+    follower_.follow(plan(planner_), target_px_);
     if (follower_.path().empty()) return guidance;
   }
   guidance.carrot_m = camera_.point_at(follower_.carrot(robot_px_), 0);

@@ -34,17 +34,11 @@ struct StageTimes {
   Distribution registration, segmentation, blobs, cells, astar, diamonds, discs;
 };
 
-struct GuideSettings {
-  PixelPlanner planner = PixelPlanner::kCells;
-  double radius_m = 0.09, robot_height_m = 0.15, obstacle_height_m = 0.15;
-  double margin_m = 0.045;  ///< covers tracking errors, cut corners and a slightly misplaced camera
-};
-
 /// Guides a robot to a target using only one camera. From image to image it determines where to drive; it has
 /// no other input.
 class PixelGuide {
  public:
-  PixelGuide(const CameraModel& camera, const Field& field, const GuideSettings& settings);
+  PixelGuide(const CameraModel& camera, const Field& field, PixelPlanner planner);
 
   struct Guidance {
     bool camera_is_known = true;
@@ -78,7 +72,7 @@ class PixelGuide {
   Vec2 to_pixel(const Vec2& p) const { return {p.x() + centre_px_.x(), centre_px_.y() - p.y()}; }
 
   CameraModel camera_;
-  GuideSettings settings_;
+  PixelPlanner planner_;
   Vec2 centre_px_;
   double radius_px_;
   Segmenter segmenter_;

@@ -77,7 +77,7 @@ double distance_px(const Vec2& p, const std::array<Vec2, 4>& corners) {
 
 TEST_CASE("robot, target and obstacles are found, and diamonds and discs contain the obstacles' bases") {
   const CameraModel camera = camera_over_field();
-  Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, {0.5, 1}});
+  Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, 1});
   FloorBlobFinder finder(settings_of(camera));
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     RandomFloor floor(seed);
@@ -108,7 +108,7 @@ TEST_CASE("robot, target and obstacles are found, and diamonds and discs contain
 
 TEST_CASE("without robot or target, or with two of them, none is reported") {
   const CameraModel camera = camera_over_field();
-  Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, {0.5, 1}});
+  Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, 1});
   FloorBlobFinder finder(settings_of(camera));
   FrameRenderer renderer(camera, kField, butterfly(), RenderSpec{}, Rng(1));
   std::array<SceneRobot, 2> robots;
@@ -126,7 +126,7 @@ TEST_CASE("without robot or target, or with two of them, none is reported") {
 
 TEST_CASE("a disc whose centre lies anywhere in a free cell touches no obstacle and stays in the image") {
   const CameraModel camera = camera_over_field();
-  Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, {0.5, 1}});
+  Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, 1});
   FloorBlobFinder finder(settings_of(camera));
   int free = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

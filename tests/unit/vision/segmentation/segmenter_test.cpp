@@ -9,7 +9,7 @@
 
 namespace sidestep::segmenter_test {
 
-constexpr SegmentationSettings kAll{1, {0.5, -1}};  // all regions, no merging
+constexpr SegmentationSettings kAll{1, -1};  // all regions, no merging
 
 std::uint8_t byte(Rng& rng) { return static_cast<std::uint8_t>(rng.below(256)); }
 
@@ -80,7 +80,7 @@ TEST_CASE("all kernels find the same regions as flood filling") {
   const auto expected = flood_filled(image.view(), classes, min_area_px);
   for (const auto& kernels : segmentation::available_kernels()) {
     CAPTURE(seed, kernels.name, width_px, height_px);
-    Segmenter segmenter(classes, {min_area_px, kAll.merge}, kernels);
+    Segmenter segmenter(classes, {min_area_px, kAll.max_gap_px}, kernels);
     const auto regions = found(segmenter, image);
     CHECK(regions == expected);
     CHECK(found(segmenter, image) == regions);
@@ -132,7 +132,7 @@ TEST_CASE("a region split by a line is merged") {
                                 ".XXXXX...X"});
   Segmenter unmerged(ColourClasses(std::vector{kRed}), kAll);
   CHECK(unmerged.segment(image.view()).size() == 3);
-  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.7, 1}});
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, 1});
   const auto regions = found(segmenter, image);
   REQUIRE(regions.size() == 2);
   CHECK(regions[0] == Region{0, 20, 3, 2, 1, 5, 0, 4});
@@ -144,7 +144,7 @@ TEST_CASE("regions skipped as too far away are reconsidered after a merge") {
                                 "XXXX....XX",  //
                                 "XXXX.XX.XX",  //
                                 "XXXX.XX.XX"});
-  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.65, 1}});
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, 1});
   const auto regions = found(segmenter, image);
   REQUIRE(regions.size() == 1);
   CHECK(regions[0].area_px == 28);
@@ -156,7 +156,7 @@ TEST_CASE("regions that do not fill their common box are not merged") {
                                 "......",  //
                                 "..XX..",  //
                                 "..XX.."});
-  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, {0.5, 2}});
+  Segmenter segmenter(ColourClasses(std::vector{kRed}), {1, 2});
   CHECK(segmenter.segment(image.view()).size() == 2);
 }
 
@@ -168,7 +168,7 @@ TEST_CASE("regions of different colours are never merged") {
     image.row(1)[3 * static_cast<std::ptrdiff_t>(x) + 2] = 255;
   }
   const ColourBox blue{{50, 200, 0}, {80, 255, 255}, 1};
-  Segmenter segmenter(ColourClasses(std::vector{kRed, blue}), {1, {0.1, 5}});
+  Segmenter segmenter(ColourClasses(std::vector{kRed, blue}), {1, 5});
   const auto regions = found(segmenter, image);
   REQUIRE(regions.size() == 2);
   CHECK(regions[0].colour == 0);
