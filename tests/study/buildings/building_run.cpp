@@ -42,9 +42,8 @@ BuildingResult run_building(const Scenario& scenario, Duration duration, std::ui
   SimSystem system(without_goals(scenario), seed);
   DistanceMeter meter(system.begin());
   system.on_truth([&](const msg::GroundTruth& truth) { meter.add(truth); });
-  const TripSettings settings;
   SimBus bus(system.network());
-  RandomTrips trips(bus, scenario, seed, settings);
+  RandomTrips trips(bus, scenario, seed);
   system.run_for(kStartup);
   const Time end = system.now() + duration;
   while (system.now() < end) {
@@ -52,7 +51,7 @@ BuildingResult run_building(const Scenario& scenario, Duration duration, std::ui
     system.run_for(kStep);
   }
   trips.finish();
-  const Time limit = system.now() + settings.stuck_after;
+  const Time limit = system.now() + RandomTrips::kStuckAfter;
   while (!trips.is_over() && system.now() < limit) {
     trips.update(system.now());
     system.run_for(kStep);

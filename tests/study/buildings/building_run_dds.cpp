@@ -35,7 +35,7 @@ void write_without_goals(const std::string& file, const std::string& to) {
 class DrivenRun {
  public:
   DrivenRun(Launcher& launcher, const Scenario& places, const BuildingRunOverDds& run)
-      : launcher_(launcher), run_(run), trips_(launcher.bus(), places, run.seed, settings_) {
+      : launcher_(launcher), run_(run), trips_(launcher.bus(), places, run.seed) {
     launcher.bus().subscribe(topics::kTruth, [this](const msg::GroundTruth& truth) {
       if (!meter_) meter_.emplace(launcher_.bus().now());
       meter_->add(truth);
@@ -59,12 +59,11 @@ class DrivenRun {
     if (over_time >= Duration::zero()) trips_.finish();
     trips_.update(now);
     counts_ = trips_.counts(now);
-    return over_time >= Duration::zero() && (trips_.is_over() || over_time >= settings_.stuck_after);
+    return over_time >= Duration::zero() && (trips_.is_over() || over_time >= RandomTrips::kStuckAfter);
   }
 
   Launcher& launcher_;
   const BuildingRunOverDds& run_;
-  TripSettings settings_;
   RandomTrips trips_;
   TripCounts counts_;
   std::optional<DistanceMeter> meter_;

@@ -6,14 +6,18 @@
 namespace sidestep {
 namespace {
 
+/// A robot stays at a goal for a random time, at most this long.
+constexpr Duration kMaxPause{3'000'000'000};
+/// A goal that has been reported as blocked for longer than this is given up.
+constexpr Duration kPatience{30'000'000'000};
+
 // Robots at their positions leave this much more than the margin between each other.
 constexpr double kExtraSeparation_m = 0.02;
 
 }  // namespace
 
-RandomTrips::RandomTrips(Bus& bus, const Scenario& scenario, std::uint64_t seed, const TripSettings& settings)
-    : settings_(settings),
-      client_(bus, client_id("random trips")),
+RandomTrips::RandomTrips(Bus& bus, const Scenario& scenario, std::uint64_t seed)
+    : client_(bus, client_id("random trips")),
       rng_(seed),
       separation_m_(2 * scenario.radius_m + scenario.margin_m + kExtraSeparation_m) {
   for (const RobotSpec& robot : scenario.robots) {
@@ -57,11 +61,11 @@ void RandomTrips::follow(Trip& trip, Time now) {
     trip.blocked_since.reset();
   else if (!trip.blocked_since)
     trip.blocked_since = now;
-  if (trip.blocked_since && now - *trip.blocked_since >= settings_.patience) {
+  if (trip.blocked_since && now - *trip.blocked_since >= kPatience) {
     ++counts_.blocked;
     return end(trip, now);
   }
-  if (!trip.blocked_since && now - trip.begun_at >= settings_.stuck_after) {
+  if (!trip.blocked_since && now - trip.begun_at >= kStuckAfter) {
     ++counts_.stuck;
     end(trip, now);
   }
@@ -71,7 +75,7 @@ void RandomTrips::end(Trip& trip, Time now) {
   counts_.longest_s = std::max(counts_.longest_s, to_seconds(now - trip.begun_at));
   trip.order.reset();
   trip.blocked_since.reset();
-  trip.next_at = now + from_seconds(rng_.uniform(0, to_seconds(settings_.max_pause)));
+  trip.next_at = now + from_seconds(rng_.uniform(0, to_seconds(kMaxPause)));
 }
 
 bool RandomTrips::is_over() const {

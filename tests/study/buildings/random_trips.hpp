@@ -12,14 +12,6 @@
 
 namespace sidestep {
 
-struct TripSettings {
-  Duration max_pause{3'000'000'000};  ///< a robot stays at a goal for a random time, at most this long
-  /// A goal that has been reported as blocked for longer than this is given up.
-  Duration patience{30'000'000'000};
-  /// An order that takes longer than this without being blocked is given up.
-  Duration stuck_after{180'000'000'000};
-};
-
 /// The outcome of all orders.
 struct TripCounts {
   int orders = 0, reached = 0;
@@ -32,8 +24,11 @@ struct TripCounts {
 /// the scenario. Places of different robots never overlap.
 class RandomTrips {
  public:
+  /// An order that takes longer than this without being blocked is given up.
+  static constexpr Duration kStuckAfter{180'000'000'000};
+
   /// `bus` must outlive this object.
-  RandomTrips(Bus& bus, const Scenario& scenario, std::uint64_t seed, const TripSettings& settings = {});
+  RandomTrips(Bus& bus, const Scenario& scenario, std::uint64_t seed);
 
   /// Tracks the orders, and sends robots without an order to their next places. Call it several times a
   /// second.
@@ -56,7 +51,6 @@ class RandomTrips {
   void begin(RobotId robot, Trip& trip, Time now);
   void end(Trip& trip, Time now);
 
-  TripSettings settings_;
   OrderClient client_;
   Rng rng_;
   double separation_m_;  // minimum distance between places

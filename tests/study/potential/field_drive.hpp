@@ -10,16 +10,6 @@
 
 namespace sidestep {
 
-struct FieldDriveSettings {
-  MotionLimits limits{.speed_mps = 0.5};
-  double cycle_s = 1.0 / 60;
-  double arrival_m = 0.05;  ///< distance from the goal that counts as arrived
-  double time_limit_s = 60;
-  double stuck_m = 0.1;       ///< a robot that moves less than this ...
-  double stuck_s = 4;         ///< ... in this time is in a local minimum
-  double reversal_rad = 0.2;  ///< see ReversalCounter
-};
-
 enum class DriveEnd { kArrived, kLocalMinimum, kContact, kTimeLimit };
 
 struct FieldDrive {
@@ -37,6 +27,6 @@ using DriveDirection = std::function<Vec2(const Vec2&)>;
 /// towards its speed in the method's direction, and slows down before the goal. `obstacles` are the world's
 /// obstacles.
 [[nodiscard]] FieldDrive drive_by(const DriveDirection& direction, const PlanWorld& world,
-                                  const ObstacleWorld& obstacles, const FieldDriveSettings& settings = {});
+                                  const ObstacleWorld& obstacles);
 
 }  // namespace sidestep
