@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "agents/agent/planning_distances.hpp"
@@ -10,8 +11,8 @@
 namespace sidestep {
 namespace {
 
-constexpr Duration kStationaryAfter{
-    500'000'000};                          ///< a robot at rest for longer than this counts as an obstacle
+/// A robot at rest for longer than this counts as an obstacle.
+constexpr Duration kStationaryAfter{500'000'000};
 constexpr std::size_t kMaxStationary = 8;  ///< number of stationary robots considered, the nearest ones first
 constexpr std::size_t kMaxMoving = 4;      ///< number of moving obstacles considered, the nearest ones first
 constexpr double kMovingRange_m = 1.5;     ///< moving obstacles farther away are ignored

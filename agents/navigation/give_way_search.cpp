@@ -7,8 +7,8 @@
 namespace sidestep {
 namespace {
 
-constexpr double kRouteClearance_m =
-    0.02;                              ///< distance from other robots' routes beyond the minimum separation
+/// Distance from other robots' routes beyond the minimum separation.
+constexpr double kRouteClearance_m = 0.02;
 constexpr std::size_t kMaxPlans = 12;  ///< maximum number of paths to places that are planned in one search
 constexpr std::size_t kMaxPathSamples = 5000;
 

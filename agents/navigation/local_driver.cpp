@@ -2,7 +2,9 @@
 #include "agents/navigation/local_driver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace sidestep {

@@ -18,8 +18,8 @@ struct LaserSightSettings {
   // bound.
   double position_error_m = SafetyBudget{}.tracking_bound_m;
   double heading_error_rad = 0.02;
-  std::size_t max_unknown =
-      48;  ///< number of squares with unknown standing obstacles, the nearest ones first
+  /// Number of squares with unknown standing obstacles, the nearest ones first.
+  std::size_t max_unknown = 48;
 };
 
 /// Interprets the scans of a robot's own laser: where people may step out, who moves, and which stationary

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/perception/laser_tracks.hpp"
 
-#include <stdexcept>
-
 namespace sidestep {
 namespace {
 

@@ -67,8 +67,8 @@ class LocalGrid {
 
  private:
   static constexpr float kOccupiedFrom = 1.2F;  // a cell with at least this evidence is occupied
-  static constexpr float kFreeUpTo =
-      -0.6F;  // a cell with at most this evidence is free; in between it is unknown
+  // A cell with at most this evidence is free; in between it is unknown.
+  static constexpr float kFreeUpTo = -0.6F;
 
   bool in_window(int number, int first) const {
     const std::int64_t offset = std::int64_t{number} - first;

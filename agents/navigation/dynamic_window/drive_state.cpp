@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/navigation/dynamic_window/drive_state.hpp"
 
-#include <stdexcept>
+#include <numbers>
 
 namespace sidestep {
 namespace {

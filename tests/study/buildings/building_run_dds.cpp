@@ -40,7 +40,7 @@ class DrivenRun {
       if (!meter_) meter_.emplace(launcher_.bus().now());
       meter_->add(truth);
     });
-    launcher.follow({[] { return Time::max(); }, [this] { return act(); }});
+    launcher.set_director({[] { return Time::max(); }, [this] { return act(); }});
   }
 
   BuildingResult run(const std::string& report_file) {

@@ -77,7 +77,7 @@ StudyTable cost_effects() {
     layer.add(person, kRobot_m);
     CostGrid grid(kFloor);
     for (GridCell cell = 0; cell < kFloor.size(); ++cell) grid.set_cost(cell, layer.cost(cell));
-    const PathMeasures measures = measure_path(path_of(grid), 0, person, settings.robot_radius_m);
+    const PathMeasures measures = measure_path(path_of(grid), 0, person, RiskLayer::kRobotRadius_m);
     table.rows.push_back(cells("person", weight, fmt::format("{:.3f}", measures.length_m), "-",
                                fmt::format("{:.3f}", measures.clearance_m)));
     path.points.push_back(plot_point(weight, measures.length_m - 8));

@@ -55,7 +55,7 @@ class LaunchedTestRun {
         observer_(launcher.bus()),
         faults_(test, hosts, operator_settings(options), launcher, observer_),
         end_(test) {
-    launcher.follow({[this] { return next(); }, [this] { return act(); }});
+    launcher.set_director({[this] { return next(); }, [this] { return act(); }});
   }
 
   RunOutcome run() {

@@ -82,6 +82,8 @@ TEST_CASE("encoding and decoding a verdict preserves it") {
     const Verdict in = random_verdict(rng);
     const auto out = decode(message_of(in), kRobot);
     REQUIRE(out);
+    REQUIRE(out->sender == in.sender);
+    REQUIRE(out->incarnation == in.incarnation);
     REQUIRE(out->robot == in.robot);
     REQUIRE(out->epoch == in.epoch);
     REQUIRE(out->sent_at == in.sent_at);

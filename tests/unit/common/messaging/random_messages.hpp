@@ -96,7 +96,14 @@ inline Registration random_registration(Rng& rng) {
 }
 
 inline Verdict random_verdict(Rng& rng) {
-  Verdict verdict{kRobot, random_number(rng), random_time(rng), rng.bits(), random_time(rng), rng.bits()};
+  Verdict verdict{static_cast<std::uint32_t>(Sender::kCoordinator),
+                  random_number(rng),
+                  kRobot,
+                  random_number(rng),
+                  random_time(rng),
+                  rng.bits(),
+                  random_time(rng),
+                  rng.bits()};
   for (msg::Reason& reason : verdict.reasons)
     reason = static_cast<msg::Reason>(rng.below(static_cast<std::uint32_t>(msg::Reason::REASON_HELD) + 1));
   for (RobotId& blocker : verdict.blockers) blocker = static_cast<RobotId>(rng.bits());
@@ -112,7 +119,8 @@ auto message_of(const Value& value) {
 }
 inline msg::Verdict message_of(const Verdict& verdict) {
   msg::Verdict message = encode(verdict);
-  message.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
+  message.header().sender(verdict.sender);
+  message.header().incarnation(verdict.incarnation);
   message.header().stamp_ns(to_ns(verdict.sent_at));
   return message;
 }
