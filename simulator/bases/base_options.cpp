@@ -53,7 +53,7 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
 
 void check(const BaseOptions& options) {
   if (options.is_league && options.is_velocity)
-    throw UsageError("--velocity: the robots are driven by --league already");
+    throw UsageError("--velocity: cannot be combined with --league");
 }
 
 BaseSettings settings_of(const BaseOptions& options) {

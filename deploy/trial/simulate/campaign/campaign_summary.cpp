@@ -131,7 +131,7 @@ std::string CampaignSummary::text() const {
   text += fmt::format("{} excused contacts", sum(&TrialResult::excused_contacts));
   for (const auto& [cause, excused] : excused_by_cause())
     text += fmt::format(", {} of cause {}", excused, cause);
-  text += fmt::format("; contacts are excused in {:.2f} % of the time of all pairs\n",
+  text += fmt::format("; a contact would be excused in {:.2f} % of the time of all pairs\n",
                       100 * excused_time_share());
   std::vector<std::string> kinds;
   for (const auto& [kind, trials] : trials_by_fault()) kinds.push_back(fmt::format("{} {}", kind, trials));

@@ -23,7 +23,7 @@ Judgement judge_name(RobotId robot, const ExpectNamed& check, const RunHistory& 
   if (const auto ended = ended_before(check.span.to_s, history)) return *ended;
   if (!is_heard) return Judgement::not_judged(check.span.from_s, "no active coordinator was heard");
   return Judgement::failed(check.span.to_s,
-                           is_named ? fmt::format("robot {} was named at {:.3f} s only", robot, named->at_s)
+                           is_named ? fmt::format("robot {} was named only at {:.3f} s", robot, named->at_s)
                                     : fmt::format("robot {} was not named", robot));
 }
 
@@ -33,7 +33,7 @@ Judgement judge_arrival(RobotId robot, const ExpectArrived& check, const RunHist
   if (found != end.arrival_s.end() && found->second) {
     const double arrival_s = *found->second;
     if (!check.by_s || arrival_s <= *check.by_s) return {};
-    return Judgement::failed(arrival_s, fmt::format("robot {} arrived at {:.3f} s only", robot, arrival_s));
+    return Judgement::failed(arrival_s, fmt::format("robot {} arrived only at {:.3f} s", robot, arrival_s));
   }
   if (!end.abort_reason.empty()) return gap_at_end(history).value_or(Judgement{});
   if (const auto ended = check.by_s ? ended_before(*check.by_s, history) : std::nullopt) return *ended;

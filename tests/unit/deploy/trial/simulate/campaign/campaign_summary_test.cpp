@@ -108,8 +108,8 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK(forwards.excused_by_cause() == std::map<std::string, std::uint64_t>{{"push", 3}, {"slip", 1}});
   CHECK(forwards.excused_time_share() == Approx(0.01));
   CHECK_THAT(forwards.text(),
-             ContainsSubstring("4 excused contacts, 3 of cause push, 1 of cause slip; contacts are excused "
-                               "in 1.00 % of the time of all pairs"));
+             ContainsSubstring("4 excused contacts, 3 of cause push, 1 of cause slip; a contact would be "
+                               "excused in 1.00 % of the time of all pairs"));
   CHECK_THAT(forwards.text(), ContainsSubstring("2.00 robot-hours, 12.4 km driven"));
   CHECK_THAT(forwards.text(), ContainsSubstring("smallest clearance, in metres: seed 7 (-0.002)"));
 }

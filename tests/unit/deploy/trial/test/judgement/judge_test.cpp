@@ -174,7 +174,7 @@ TEST_CASE("named: each robot, for the right reason, within the span") {
     return ExpectNamed{kOne, as, {from_s, to_s}};
   };
   check_passes(named(NoticeKind::kDisplaced, 5, 6), history);
-  check_fails(named(NoticeKind::kDisplaced, 4, 5), history, 5, "robot 1 was named at 5.200 s only");
+  check_fails(named(NoticeKind::kDisplaced, 4, 5), history, 5, "robot 1 was named only at 5.200 s");
   check_fails(named(NoticeKind::kQuarantined, 4, 6), history, 6, "robot 1 was not named");
   check_fails(named(NoticeKind::kMissing, 3, 6), history, 6, "robot 1 was not named");
   check_fails(ExpectNamed{kBoth, NoticeKind::kDisplaced, {5, 6}}, history, 6, "robot 2 was not named");
@@ -199,7 +199,7 @@ TEST_CASE("arrivals: which robot has not arrived, or too late") {
   const RunHistory history = run();
   check_passes(ExpectArrived{kOne, std::nullopt}, history);
   check_passes(ExpectArrived{kOne, 4.6}, history);
-  check_fails(ExpectArrived{kOne, 4.4}, history, 4.5, "robot 1 arrived at 4.500 s only");
+  check_fails(ExpectArrived{kOne, 4.4}, history, 4.5, "robot 1 arrived only at 4.500 s");
   check_fails(ExpectArrived{kBoth, std::nullopt}, history, 10, "robot 2 had not arrived");
   check_fails(ExpectArrived{kBoth, 8}, history, 8, "robot 2 had not arrived");
   check_not_judged(ExpectArrived{kBoth, 8}, run_until(5), "the run ended at 5.000 s");
