@@ -177,7 +177,7 @@ TEST_CASE("broken YAML is refused by all commands that read YAML, with file, lin
       runner.check(row_for(runner, command, file, {file + ":" + expected}));
 }
 
-TEST_CASE("unknown options and surplus words are refused and named", "[slow]") {
+TEST_CASE("unknown options and surplus arguments are refused and named", "[slow]") {
   Runner runner;
   for (const std::string& command : commands_of(runner.table(), "unknown")) {
     for (const std::string extra :
@@ -190,7 +190,7 @@ TEST_CASE("unknown options and surplus words are refused and named", "[slow]") {
   }
 }
 
-TEST_CASE("wrong command lines are refused with their reason", "[slow]") {
+TEST_CASE("invalid command lines are refused with the reason", "[slow]") {
   Runner runner;
   const std::vector<Row> rows = single_rows(runner.table(), runner.placeholders());
   REQUIRE(rows.size() > 150);

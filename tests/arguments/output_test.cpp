@@ -41,7 +41,7 @@ struct RunFixture {
 
 }  // namespace
 
-TEST_CASE("a run continues to its end and writes its report when its output has lost its reader") {
+TEST_CASE("a run continues to its end and writes its report although nobody reads its output any more") {
   const RunFixture f;
   const std::string output =
       GENERATE("2>err | head -1", "2>&1 | head -1", ">/dev/full 2>/dev/full", ">&- 2>&-");
@@ -53,7 +53,8 @@ TEST_CASE("a run continues to its end and writes its report when its output has 
   CHECK_THAT(f.text("r.log"), !ContainsSubstring("SIGPIPE"));
 }
 
-TEST_CASE("a simulation continues to its end and writes its report when its output has lost its reader") {
+TEST_CASE(
+    "a simulation continues to its end and writes its report although nobody reads its output any more") {
   const TemporaryFolder folder;
   const std::string runs = GENERATE(as<std::string>(), kScenario + " --seconds 1",
                                     "--faults none --seeds 1..40 --seconds 1 --jobs 2");
@@ -65,7 +66,7 @@ TEST_CASE("a simulation continues to its end and writes its report when its outp
 }
 
 TEST_CASE(
-    "a run whose recording cannot be written says so once, goes on, and writes the reason in its report") {
+    "a run that cannot write its recording says so once, continues, and gives the reason in its report") {
   const RunFixture f;
   const ProgramRun run = run_in_shell(f.command("--record /dev/full --report r.json >out"), f.folder);
   CAPTURE(run.errors);
@@ -79,7 +80,7 @@ TEST_CASE(
                  ContainsSubstring("\"violations\": 0"));
 }
 
-TEST_CASE("a run whose report cannot be written prints its summary") {
+TEST_CASE("a run that cannot write its report still prints its summary") {
   const RunFixture f;
   const std::string command = GENERATE("run", "simulate");
   std::filesystem::create_directory(f.folder.file("taken"));

@@ -19,7 +19,7 @@ std::string audit(LaunchedRun& run, const std::string& scenario_file) {
 
 }  // namespace
 
-TEST_CASE("an audit that joins a run judges it, and refuses to judge it by other rules") {
+TEST_CASE("an audit that joins a run judges it, but not if its own scenario has different rules") {
   LaunchedRun run(shuttles(20, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   const std::string reason = audit(run, run.scenario_file());

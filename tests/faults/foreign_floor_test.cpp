@@ -65,7 +65,7 @@ class RandomTeam {
 
 }  // namespace
 
-TEST_CASE("robots of a foreign simulator all arrive without contact, with 5 % of packets lost too",
+TEST_CASE("robots of a third-party simulator all arrive without contact, even with 5 % packet loss",
           "[both-cores][slow]") {
   const auto [name, robots, loss] =
       GENERATE(table<std::string, int, std::string>({{"crossing", 8, "0"},
@@ -96,7 +96,7 @@ TEST_CASE("without ground truth, agents report arrivals and vision judges contac
   WARN("judged by vision: " << outcome(report));
 }
 
-TEST_CASE("robots go on when the process that drives them is killed and started again", "[both-cores]") {
+TEST_CASE("robots continue after the process that drives them is killed and restarted", "[both-cores]") {
   ForeignFloor floor(shipped_scenario("league/crossing") + "restart: [robots]\n");
   LaunchedRun& run = floor.run();
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
@@ -135,7 +135,7 @@ TEST_CASE("robots come to rest before the process that drives them ends, however
   require_no_violations(run.report());
 }
 
-TEST_CASE("robots go on when the foreign simulator is killed and started again", "[both-cores]") {
+TEST_CASE("robots continue after the third-party simulator is killed and restarted", "[both-cores]") {
   ForeignFloor floor(shipped_scenario("league/crossing"));
   LaunchedRun& run = floor.run();
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));

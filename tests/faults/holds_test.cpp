@@ -90,12 +90,12 @@ void check_holds(LaunchedRun& run, double extra_s) {
   CHECK(published.seconds.back() <= budget_s + 0.5);
 }
 
-TEST_CASE("22 robots rest soon after they are held at full speed over DDS, 40 times", "[.long][slow]") {
+TEST_CASE("22 robots held at full speed over DDS come to rest quickly, 40 times", "[.long][slow]") {
   LaunchedRun run(teams_to_and_fro());
   check_holds(run, 0);
 }
 
-TEST_CASE("22 robots on three hosts with 5 % packet loss rest soon after they are held, 40 times",
+TEST_CASE("22 robots held on three hosts with 5 % packet loss come to rest quickly, 40 times",
           "[.long][slow]") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(teams_to_and_fro());

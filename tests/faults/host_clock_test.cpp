@@ -46,7 +46,7 @@ void check_recovery(const LateStart& start) {
   CHECK(run.children() == children);
 }
 
-TEST_CASE("all processes but the simulator that started with a clock a day behind recover once it is set") {
+TEST_CASE("all processes except the simulator, started with a clock a day behind, recover once it is set") {
   check_recovery({"processes: [vision, coordinator], agents: [0-7]",
                   "processes: [simulator]",
                   {"sidestep-coordinator", "sidestep-vision", "agent-0", "agent-7"},
@@ -73,14 +73,14 @@ TEST_CASE("vision that started with a clock 2 s ahead recovers once it is set") 
 }
 
 TEST_CASE(
-    "a simulator whose robots obey nobody yet, with a clock two hours behind, recovers once it is set") {
+    "a simulator with a clock two hours behind, whose robots obey nobody yet, recovers once it is set") {
   check_recovery({"processes: [simulator]",
                   "processes: [vision, coordinator], agents: [0-7]",
                   {"sidestep-simulator"},
                   -2h});
 }
 
-TEST_CASE("a host's clock that is set during a healthy run changes nothing", "[slow]") {
+TEST_CASE("setting a host's clock during a healthy run changes nothing", "[slow]") {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
   const Duration ahead = GENERATE(Duration(1h), Duration(-24h), Duration(-300ms));
   CAPTURE(to_seconds(ahead));

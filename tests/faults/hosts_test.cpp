@@ -108,7 +108,7 @@ TEST_CASE("vision finds the robots in images of cameras on another host", "[both
   std::filesystem::remove(file);
 }
 
-TEST_CASE("the robots of a host that is cut off for five seconds rest, the others drive on, all arrive",
+TEST_CASE("robots on a host that is cut off for five seconds stop, the others drive on, and all arrive",
           "[both-cores]") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"));

@@ -161,7 +161,7 @@ void check_flood(Duration duration) {
   CHECK(refused > sent);  // each of some processes hears what is sent to all
 }
 
-TEST_CASE("a flood of strangers on every port costs time but neither safety nor memory",
+TEST_CASE("a flood of packets from strangers on every port costs time, but neither safety nor memory",
           "[both-cores][slow]") {
   check_flood(seconds(15));
 }

@@ -167,7 +167,7 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]
   keyed.check_unharmed();
 }
 
-TEST_CASE("with keys, processes speak only for themselves") {
+TEST_CASE("with keys, no process can speak for another") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
@@ -292,7 +292,7 @@ class LocalSsh {
   TemporaryFolder folder_;
 };
 
-TEST_CASE("keys that are revoked during a run are refused on other hosts, too") {
+TEST_CASE("keys that are revoked during a run are also refused on other hosts") {
   const LocalSsh ssh;
   const TemporaryFolder folder;
   const std::string hosts = folder.file("hosts.yaml");

@@ -222,7 +222,7 @@ TEST_CASE("robots observed through league packets cross the field and arrive wit
   CHECK(tracked.max_error_m() < 0.03);
 }
 
-TEST_CASE("a recorded log of league packets shows vision the same robots when it is replayed") {
+TEST_CASE("replaying a recorded log of league packets shows vision the same robots") {
   LeagueSystem system;
   const std::string log = system.file("floor.ssl");
   const Arguments groups{"--ssl-vision", system.endpoints().text(0), "--tracked", system.endpoints().text(1),

@@ -69,9 +69,9 @@ void seek_back(double back_s) {
   CHECK(delays_ms.back() < 200);
 }
 
-TEST_CASE("a viewer seeks back while the run goes on", "[both-cores]") { seek_back(5); }
+TEST_CASE("a viewer can seek back while the run continues", "[both-cores]") { seek_back(5); }
 
-TEST_CASE("a viewer seeks 60 seconds back while the run goes on", "[.figures][slow]") { seek_back(60); }
+TEST_CASE("a viewer can seek 60 seconds back while the run continues", "[.figures][slow]") { seek_back(60); }
 
 /// The scenario two-teams-22, whose teams change sides again and again.
 std::string two_teams_for(int changes) {
@@ -116,7 +116,7 @@ class CountingViewer {
   std::thread thread_;
 };
 
-TEST_CASE("a run shows itself in the browser, and goes on without the monitor") {
+TEST_CASE("a run serves its page to the browser, and continues without the monitor") {
   // Any free port: that of a monitor which has just ended.
   std::uint16_t port = 0;
   {
@@ -220,7 +220,7 @@ class SlowViewer {
   std::thread thread_;
 };
 
-TEST_CASE("slow, many and hostile viewers harm neither run nor monitor", "[both-cores][slow]") {
+TEST_CASE("slow, numerous or hostile viewers harm neither the run nor the monitor", "[both-cores][slow]") {
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));

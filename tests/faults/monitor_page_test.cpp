@@ -104,8 +104,9 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   CHECK(page.complaints() == "");
 }
 
-TEST_CASE("the page shows how a coordinator dies and another takes over, and connects again to a monitor",
-          "[both-cores]") {
+TEST_CASE(
+    "the page shows that a coordinator dies and another takes over, and reconnects to a restarted monitor",
+    "[both-cores]") {
   LaunchedRun run(kWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
   auto monitor = std::make_unique<MonitorProcess>(run);
@@ -177,7 +178,7 @@ class ShownRecording {
   std::string url_;
 };
 
-TEST_CASE("the page shows a recording, and a moment by its link") {
+TEST_CASE("the page shows a recording, and a link opens it at a given moment") {
   ShownRecording recording("crossing.yaml");
   Browser page;
   page.open(recording.url());
@@ -351,8 +352,8 @@ void send_events(std::size_t events) {
                   delays_ms[events / 2], delays_ms[events * 99 / 100], delays_ms.back(), events));
 }
 
-TEST_CASE("events reach the page soon", "[both-cores]") { send_events(100); }
+TEST_CASE("events reach the page without delay", "[both-cores]") { send_events(100); }
 
-TEST_CASE("a thousand events reach the page soon", "[.figures][slow]") { send_events(1000); }
+TEST_CASE("a thousand events reach the page without delay", "[.figures][slow]") { send_events(1000); }
 
 }  // namespace sidestep::monitor_page_test

@@ -162,12 +162,12 @@ void check_rounds(int count, std::uint64_t seed) {
   require_no_violations(run->report());
 }
 
-TEST_CASE("held robots rest and no order is lost while a host is cut off and processes are killed",
+TEST_CASE("held robots stay at rest and no order is lost while a host is cut off and processes are killed",
           "[.long][slow]") {
   check_rounds(2, 1);
 }
 
-TEST_CASE("held robots rest and no order is lost in fifty partitions with killed processes",
+TEST_CASE("held robots stay at rest and no order is lost in fifty partitions with killed processes",
           "[.long][slow]") {
   check_rounds(50, 2);
 }

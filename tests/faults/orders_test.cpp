@@ -105,7 +105,7 @@ TEST_CASE("a client learns the outcome of every order while agents and coordinat
   check_random_goals(seconds(12));
 }
 
-TEST_CASE("in ten minutes a client learns the outcome of every order", "[.long][slow]") {
+TEST_CASE("a client learns the outcome of every order for ten minutes", "[.long][slow]") {
   check_random_goals(minutes(10));
 }
 

@@ -36,9 +36,8 @@ TEST_CASE("all robots arrive without contact although each kind of process pause
   CHECK(run.report()["arrived"] == 8);
 }
 
-TEST_CASE(
-    "processes that pause until they are forgotten, also the launcher during startup, are discovered again",
-    "[slow]") {
+TEST_CASE("processes that pause until they are forgotten are rediscovered, even the launcher during startup",
+          "[slow]") {
   LaunchedRun run(shuttles(5, ""));
   const Duration until_forgotten = kSilenceLimit + std::chrono::seconds(2);
   REQUIRE(run.wait_until([&] { return run.printed("started agent 1"); }));
@@ -55,7 +54,7 @@ TEST_CASE(
   CHECK(run.report()["arrived"] == 8);
 }
 
-TEST_CASE("a process with cameras that pauses until it is forgotten is found again, and its images too",
+TEST_CASE("a camera process that pauses until it is forgotten is rediscovered, and its images arrive again",
           "[both-cores]") {
   LaunchedRun run(crossing_images(), {"--seconds", "120"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));

@@ -13,7 +13,7 @@
 
 using namespace sidestep;
 
-TEST_CASE("robots as processes cross the field over DDS and arrive without contact") {
+TEST_CASE("robots run by separate processes cross the field over DDS and arrive without contact") {
   LaunchedRun run(shipped_scenario("crossing"));
   const std::string ended = run.wait_for_end();
   INFO(run.output());
@@ -25,7 +25,8 @@ TEST_CASE("robots as processes cross the field over DDS and arrive without conta
   for (const auto& [name, pid] : run.children()) CHECK_FALSE(is_running(pid));
 }
 
-TEST_CASE("robots as processes drive through a building whose map has 2,000 x 2,000 cells", "[slow]") {
+TEST_CASE("robots run by separate processes drive through a building whose map has 2,000 x 2,000 cells",
+          "[slow]") {
   const auto folder = std::filesystem::temp_directory_path() / ("sidestep-large-" + std::to_string(getpid()));
   BuildingOptions options;
   options.folder = folder.string();
@@ -113,7 +114,7 @@ TEST_CASE("kill -9 of the coordinator: all robots stop, and drive on to their go
   CHECK(report["deaths"][0].dump().find("coordinator") != std::string::npos);
 }
 
-TEST_CASE("robots wait for one that is silent when an epoch begins, until an operator attests its absence",
+TEST_CASE("if a robot is silent when an epoch begins, the others wait until an operator attests its absence",
           "[slow]") {
   LaunchedRun run(shuttles(20, "restart: [coordinator]\n"), {"--seconds", "20"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
@@ -214,7 +215,7 @@ TEST_CASE("robots drive on when the process that directs their run dies, and the
   CHECK(run.children() == children);
 }
 
-TEST_CASE("the time limit of a run counts from its start, also when the process that directs it has died") {
+TEST_CASE("the time limit of a run counts from its start, even if the process that directs it has died") {
   constexpr double kLimit_s = 12;
   LaunchedRun run(shuttles(40, ""), {"--seconds", "12"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
@@ -244,7 +245,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a standby with yesterday's scenario is named, never takes over, and no robot drives by its rules") {
+    "a standby with an outdated scenario is named, never takes over, and no robot drives by its rules") {
   std::string scenario = shuttles(20, "");
   LaunchedRun run(scenario);
   scenario.resize(scenario.rfind("  - {id: 7"));

@@ -35,18 +35,18 @@ void check_ends(LaunchedRun& run, const std::string& program, const std::string&
   CHECK(run.report()["crashes_while_moving"] == 0);
 }
 
-TEST_CASE("a second simulator in the domain of a run ends, and the robots drive on without contact") {
+TEST_CASE("a second simulator in a run's domain exits, and the robots drive on without contact") {
   LaunchedRun run(shuttles(40, ""));
   check_ends(run, "sidestep-simulator", "simulator");
   CHECK(run.logged("two processes send 'detections' as simulator"));
 }
 
-TEST_CASE("a second vision in the domain of a run ends, and the robots drive on without contact") {
+TEST_CASE("a second vision process in a run's domain exits, and the robots drive on without contact") {
   LaunchedRun run(shuttles(40, ""));
   check_ends(run, "sidestep-vision", "vision");
 }
 
-TEST_CASE("a second run in one domain is refused before it starts a process, and told of the first") {
+TEST_CASE("a second run in the same domain is refused before it starts a process, and is told of the first") {
   LaunchedRun run(shuttles(4, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   std::vector<std::string> arguments{"run", run.scenario_file()};

@@ -106,7 +106,7 @@ Soak soak(const SoakSettings& settings) {
   return result;
 }
 
-TEST_CASE("the growth rate of a process's memory is found in spite of noise") {
+TEST_CASE("the growth rate of a process's memory is estimated despite noise") {
   std::vector<MemorySample> samples;
   for (int i = 0; i < 330; ++i) samples.push_back({10.0 * i, 20 + 0.5 * (10.0 * i / 3600) + (i % 2) * 0.1});
   CHECK(memory_slope_mb_per_h(samples) == Approx(0.5).margin(0.01));
@@ -125,7 +125,7 @@ TEST_CASE("the growth rate of a process that leaks memory shows how much it leak
   CHECK(memory_slope_mb_per_h(samples) == Approx(1).margin(0.3));
 }
 
-TEST_CASE("eight agents drive to and fro for some seconds, and every process is measured") {
+TEST_CASE("eight agents drive back and forth for some seconds, and every process is measured") {
   const Soak result = soak({8s, 2s, 500ms});
   CHECK(result.processes.size() == 8 + 4);  // simulator, vision, coordinator, launcher
   for (const auto& [name, record] : result.processes) {
@@ -149,11 +149,11 @@ void check_hour(bool has_keys) {
   }
 }
 
-TEST_CASE("eight agents drive to and fro for an hour, and no process grows", "[.long][slow]") {
+TEST_CASE("eight agents drive back and forth for an hour, and no process grows", "[.long][slow]") {
   check_hour(false);
 }
 
-TEST_CASE("eight agents with keys drive to and fro for an hour, and no process grows", "[.long][slow]") {
+TEST_CASE("eight agents with keys drive back and forth for an hour, and no process grows", "[.long][slow]") {
   check_hour(true);
 }
 

@@ -84,7 +84,7 @@ void start_bases(LaunchedRun& run, const std::vector<std::string>& options) {
 
 }  // namespace
 
-TEST_CASE("a run with keys drives ROS 2's bases, which have no keys, in a separate domain", "[both-cores]") {
+TEST_CASE("a run with keys drives ROS 2 bases, which have no keys, in a separate domain", "[both-cores]") {
   const auto keys = keys_for(shipped_scenario("bases/four-bases"));
   const TestDomain bases;
   const std::string domain = std::to_string(bases.number());
@@ -103,8 +103,7 @@ TEST_CASE("a run with keys drives ROS 2's bases, which have no keys, in a separa
 }
 
 TEST_CASE(
-    "four bases that are driven by velocities all arrive without contact, and ROS 2's programs can read "
-    "their topics",
+    "four velocity-controlled bases all arrive without contact, and ROS 2 programs can read their topics",
     "[both-cores]") {
   LaunchedRun run(shipped_scenario("bases/four-bases"), {"--driver", "velocity", "--robots=--latency-ms 58"});
   start_bases(run, {"--odometry-drift", "0.02"});

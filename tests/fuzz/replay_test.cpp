@@ -51,7 +51,7 @@ Bytes mutated(Bytes bytes, const Bytes& other, Rng& rng) {
   return bytes;
 }
 
-TEST_CASE("seeds are accepted, and random changes of them break nothing") {
+TEST_CASE("seed inputs are accepted, and random mutations of them break nothing") {
   const std::vector<Bytes> seeds = fuzz::seeds();
   REQUIRE(!seeds.empty());
   for (std::size_t i = 0; i < seeds.size(); ++i) {

@@ -139,7 +139,7 @@ TEST_CASE("robots leave zones that overlap") {
   }
 }
 
-TEST_CASE("a robot goes as near to a goal in an obstacle, or behind a closed ring, as it can") {
+TEST_CASE("a robot gets as near as it can to a goal in an obstacle or behind a closed ring") {
   std::string obstacles = "obstacles:\n  - {centre_m: [0, -1], radius_m: 0.3}\n";
   for (int i = 0; i < 12; ++i) {
     const Vec2 centre = Vec2(0, 1) + rotated({0.6, 0}, i * 0.5236);

@@ -79,8 +79,7 @@ TEST_CASE("agents drive their robots although their hosts' clocks are wrong") {
 }
 
 TEST_CASE(
-    "robots whose clocks are within the bound come nearer than the margin by at most the clocks' share of "
-    "the "
+    "robots whose clocks are within the bound undercut the margin by at most the clocks' share of the "
     "budget") {
   double smallest = 1;
   Scenario scenario = circle_scenario(16);

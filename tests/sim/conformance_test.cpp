@@ -89,7 +89,7 @@ TEST_CASE("a third-party base that is driven in single precision conforms") {
   CHECK(report.figures.is_within_limits);
 }
 
-TEST_CASE("a robot conforms with the latency that was measured") {
+TEST_CASE("a robot conforms if it assumes the latency that was measured") {
   const auto [latency, counted] =
       GENERATE(table<Duration, Duration>({{60ms, 100ms}, {100ms, 60ms}, {100ms, 100ms}, {140ms, 100ms}}));
   BaseSettings bases;
@@ -104,7 +104,7 @@ TEST_CASE("a robot conforms with the latency that was measured") {
   CHECK(std::abs(measured_ms - static_cast<int>(to_seconds(latency) * 1e3) - 18) <= 5);
 }
 
-TEST_CASE("a robot that brakes at 60 % fails in the row of its braking") {
+TEST_CASE("a robot that brakes at 60 % fails the check of braking") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;
   bases.braking_mps2 = 3;
@@ -114,7 +114,7 @@ TEST_CASE("a robot that brakes at 60 % fails in the row of its braking") {
   CHECK_FALSE(report.figures.is_within_limits);
 }
 
-TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails in the row of its latency") {
+TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails the check of latency") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;
   bases.latency = 150ms - 18ms;
@@ -123,7 +123,7 @@ TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails in the ro
   CHECK(failed(report) == std::vector<std::string>{"latency"});
 }
 
-TEST_CASE("a robot whose clock is 5 ms off fails in the row of its clock") {
+TEST_CASE("a robot whose clock is 5 ms off fails the check of the clock") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const Duration offset = GENERATE(5ms, -5ms);
   Scenario scenario = lone_robot();
@@ -133,7 +133,7 @@ TEST_CASE("a robot whose clock is 5 ms off fails in the row of its clock") {
   CHECK(failed(report) == std::vector<std::string>{"clock"});
 }
 
-TEST_CASE("a robot that ignores fences fails in the row of the fences") {
+TEST_CASE("a robot that ignores fences fails the check of fences") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const Scenario scenario = lone_league_robot();
   SimNetwork network(seed, kBegin, scenario.network);
@@ -154,7 +154,7 @@ TEST_CASE("a robot that ignores fences fails in the row of the fences") {
   CHECK(failed(report) == std::vector<std::string>{"fences"});
 }
 
-TEST_CASE("a robot that obeys new agents late fails in the row of its pending versions") {
+TEST_CASE("a robot that obeys new agents late fails the check of pending versions") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const Scenario scenario = lone_league_robot();
   SimNetwork network(seed, kBegin, scenario.network);

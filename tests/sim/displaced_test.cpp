@@ -287,7 +287,8 @@ void check(const Totals& totals) {
   CHECK(totals.wrongly_named == 0);
 }
 
-TEST_CASE("robots stay clear of robots that roll without power or are carried, and these are named") {
+TEST_CASE(
+    "robots stay clear of robots that roll without power or are carried, and the coordinator names these") {
   check(run_cases(1, 40));
 }
 

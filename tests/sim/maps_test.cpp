@@ -119,7 +119,7 @@ Scenario large_building(const std::string& kind, std::uint64_t seed) {
   return scenario;
 }
 
-TEST_CASE("robots find their ways through buildings of 100 x 100 m, without contact", "[slow]") {
+TEST_CASE("robots find their way through buildings of 100 x 100 m, without contact", "[slow]") {
   const auto kind = GENERATE(from_range(kBuildingKinds));
   const auto planner = GENERATE(as<std::string>(), "lazy-visibility", "estar");
   const std::uint64_t seed = GENERATE(11u, 12u);

@@ -71,7 +71,7 @@ TEST_CASE("twenty-two robots that are held at full speed rest after the braking 
   CHECK(delays_s.back() <= budget_s);
 }
 
-TEST_CASE("a hold outlives the coordinator, the agents and both, until its owner or an operator resumes") {
+TEST_CASE("a hold outlives the coordinator, the agents, or both, until its owner or an operator resumes") {
   const int coordinators = GENERATE(1, 2);
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(coordinators, seed);
@@ -210,7 +210,7 @@ TEST_CASE("a client learns the outcome of every order, whatever is killed meanwh
   }
 }
 
-TEST_CASE("orders count in the order in which clients give them, although their clocks differ") {
+TEST_CASE("orders take effect in the order in which clients give them, although their clocks differ") {
   OrderedSystem run(shipped("crossing"), 1);
   SimNetwork& network = run.system.network();
   SimBus early_bus(network, {network.new_process(), {seconds(-20), 0, run.system.begin()}});
@@ -269,7 +269,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a client that sends each order only once is told only of orders that outlive the coordinator") {
+TEST_CASE(
+    "a client that sends each order only once gets answers only for orders that outlive the coordinator") {
   int answered = 0, lost = 0, unanswered = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);

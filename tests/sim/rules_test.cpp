@@ -59,7 +59,7 @@ TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and 
   }
 }
 
-TEST_CASE("a standby with other rules is named within a second, and never takes over") {
+TEST_CASE("a standby with different rules is named within a second, and never takes over") {
   const RuleMutation& other = rule_mutations().at(GENERATE(range(std::size_t{0}, rule_mutations().size())));
   CAPTURE(other.key);
   Scenario scenario = crossing();
@@ -82,7 +82,7 @@ TEST_CASE("a standby with other rules is named within a second, and never takes 
   CHECK(report.audit->violations == 0);
 }
 
-TEST_CASE("a later agent with other rules does not take its robot") {
+TEST_CASE("a later agent with different rules does not take over its robot") {
   const Scenario scenario = crossing();
   SimSystem system(scenario, 4);
   Scenario changed = scenario;
@@ -97,7 +97,7 @@ TEST_CASE("a later agent with other rules does not take its robot") {
   CHECK(differing_keys(report, "agent 3") == std::vector<std::string>{"radius_m"});
 }
 
-TEST_CASE("an agent with other rules is refused and named, and no other robot drives without it") {
+TEST_CASE("an agent with different rules is refused and named, and no other robot drives without it") {
   const Scenario scenario = crossing();
   SimSystem system(scenario, 5);
   Scenario changed = scenario;
@@ -110,7 +110,7 @@ TEST_CASE("an agent with other rules is refused and named, and no other robot dr
   CHECK(system.run_until_arrived(system.now() + 20s));
 }
 
-TEST_CASE("observations by a vision process with another roster are not used") {
+TEST_CASE("observations by a vision process with a different roster are not used") {
   const Scenario scenario = crossing();
   SimSystem system(scenario, 6);
   system.run_for(1s);

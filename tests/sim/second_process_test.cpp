@@ -84,7 +84,8 @@ TEST_CASE(
   watch.require_safe();
 }
 
-TEST_CASE("while two simulators stay, robots rest, and every process that hears both names them") {
+TEST_CASE(
+    "as long as two simulators run, robots stay at rest, and every process that hears both names them") {
   const auto seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);
   Rng rng(seed);

@@ -58,7 +58,7 @@ void count_own_stops(SimSystem& system, int& own_stops) {
   });
 }
 
-TEST_CASE("robots arrive with any camera rate and wheel error that a scenario may state") {
+TEST_CASE("robots arrive with any camera rate and wheel error that a scenario may specify") {
   const auto [rate_hz, scale_error] = GENERATE(table<double, double>({{5, 0.005}, {7, 0.02}, {1000, 0.05}}));
   Scenario scenario = shipped("crossing");
   scenario.vision.rate_hz = rate_hz;
@@ -69,7 +69,7 @@ TEST_CASE("robots arrive with any camera rate and wheel error that a scenario ma
   run.require_safe();
 }
 
-TEST_CASE("simulated robots obey any motion limits that a scenario states") {
+TEST_CASE("simulated robots obey any motion limits that a scenario specifies") {
   const auto seed = GENERATE(range(1u, 31u));
   Rng rng(seed);
   Scenario scenario = shipped("crossing");

@@ -25,7 +25,8 @@ TEST_CASE("an operator can attest the absence of a robot that has not registered
   CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version == 10);
 }
 
-TEST_CASE("an attestation is for one epoch, and a robot that is heard of is kept clear of") {
+TEST_CASE(
+    "an attestation is valid for one epoch, and an attested robot that reports after all is quarantined") {
   Floor floor;
   floor.receive(registration_of(floor.b, kEpoch));
   REQUIRE(floor.coordinator.on_attestation(1));

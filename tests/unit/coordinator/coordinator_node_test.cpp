@@ -219,7 +219,8 @@ TEST_CASE("an operator attests that a silent robot is absent, and the coordinato
 }
 
 TEST_CASE(
-    "an attestation is ignored if the robot was heard a moment ago, is not missing, or by anybody else") {
+    "an attestation is ignored if the robot was just heard or is not missing, or if it is not from an "
+    "operator") {
   Attested floor;
   SECTION("it was heard") {
     floor.send(topics::kFeedback, make_report(floor.a, 1000));
@@ -250,7 +251,7 @@ TEST_CASE("a coordinator reports its role, each registration, and that it grants
   CHECK(events.all().size() == 4);
 }
 
-TEST_CASE("a coordinator names the robots for whose registrations it waits, once per second") {
+TEST_CASE("a coordinator names the robots whose registrations it awaits, once per second") {
   Floor floor;
   const LogEvents events(floor.node);
   floor.send(topics::kRegistration, registration_of(floor.a, floor.node.coordinator().epoch()));
@@ -416,7 +417,7 @@ TEST_CASE("a coordinator whose clock was set back works as before") {
   CHECK(floor.node.coordinator().epoch() == epoch);
 }
 
-TEST_CASE("a coordinator announces all orders at the moment at which its epoch begins") {
+TEST_CASE("a coordinator announces all orders as soon as its epoch begins") {
   Floor floor(true);
   int whole_memories = 0;
   std::optional<Time> begun_at, told_at;

@@ -22,7 +22,8 @@ struct One {
   }
 };
 
-TEST_CASE("a robot is displaced beyond half the margin and the error of vision, and its inflation") {
+TEST_CASE(
+    "a robot is displaced if it is off by more than half the margin plus vision's error and its inflation") {
   One one;
   one.see({0.0169, 0}, 1);
   CHECK_FALSE(one.displaced.contains(1));
@@ -94,7 +95,7 @@ TEST_CASE("a robot that rests is displaced if the mean of its observations is ha
   }
 }
 
-TEST_CASE("the mean of observations says nothing of a robot that has moved meanwhile") {
+TEST_CASE("the mean of observations is not used for a robot that has moved in the meantime") {
   One one;
   const Version p = continued(one.a, 10, 1, {3, 0}, 0.3);
   REQUIRE(one.ledger.grant(p).is_granted());
@@ -145,7 +146,7 @@ TEST_CASE("an observation is compared with what the robot executed then, however
 }
 
 //   version a at x = 0, version p begins elsewhere, as an own stop does
-TEST_CASE("a version counts until the largest difference of two clocks after the robot has left it") {
+TEST_CASE("after a robot has left a version, it counts for as long as two clocks may differ") {
   const Duration max_difference = GENERATE(Duration{1'000'000}, Duration{4'000'000}, Duration{100'000'000});
   CAPTURE(to_seconds(max_difference));
   const Duration late = max_difference * GENERATE(1, 2, 3, 4, 5) / 4;
@@ -161,7 +162,7 @@ TEST_CASE("a version counts until the largest difference of two clocks after the
   CHECK(*distance_m == Approx(late <= max_difference ? 0 : 0.5).margin(1e-12));
 }
 
-TEST_CASE("an observation from before all versions that the ledger remembers was not compared") {
+TEST_CASE("an observation older than all versions that the ledger remembers is not compared") {
   One one;
   CHECK(one.displaced.observe({1, at_s(1), {0, 0}, Vec2(0, 0), 0}, one.ledger));
   Version stop = rest_version(1, {0, 0}, 1000);

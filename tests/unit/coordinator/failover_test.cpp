@@ -102,7 +102,7 @@ TEST_CASE("heartbeats of standbys and of superseded coordinators do not prevent 
   CHECK(standby.failover.is_active());
 }
 
-TEST_CASE("a coordinator knows the reason of its role") {
+TEST_CASE("a coordinator knows the reason for its role") {
   using enum msg::RoleReason;
   const auto reason_of = [](const Failover& failover) { return failover.cause().reason; };
   Failover active({0, 5}, false, kBegin);
@@ -253,7 +253,7 @@ TEST_CASE("a coordinator keeps working while another process reports higher and 
   CHECK((active.too_frequent() > 0) == (period < std::chrono::seconds(5)));
 }
 
-TEST_CASE("coordinators never share an epoch, except two instances of one number, which give it up") {
+TEST_CASE("coordinators never share an epoch, except two instances with one number, which then give it up") {
   Rng rng(3);
   std::set<Epoch> epochs;
   for (int round = 0; round < 200; ++round) {

@@ -9,7 +9,8 @@ constexpr Duration kPeriod{16'666'667};
 
 Time after_ms(int ms) { return time_from_ns(1'000'000'000'000) + std::chrono::milliseconds(ms); }
 
-TEST_CASE("a coordinator hears robots while facts arrive of half of those that it heard before") {
+TEST_CASE(
+    "a coordinator counts as hearing robots while facts arrive from half of those that it heard before") {
   FleetReception reception(kPeriod);
   CHECK_FALSE(reception.hears_robots(after_ms(0)));
   for (const RobotId robot : {1, 2, 3, 4}) reception.on_robot_report(robot, 5, false, after_ms(0));
@@ -24,7 +25,7 @@ TEST_CASE("a coordinator hears robots while facts arrive of half of those that i
   CHECK(reception.hears_robots(after_ms(10'200)));
 }
 
-TEST_CASE("a fleet is served while robots begin to execute granted versions") {
+TEST_CASE("a fleet counts as served while robots begin to execute granted versions") {
   FleetReception reception(kPeriod);
   const Duration lately = std::chrono::milliseconds(60);
   reception.on_robot_report(1, 5, true, after_ms(0));
@@ -58,7 +59,7 @@ TEST_CASE("an agent asks for a coordinator as long as it repeats its registratio
   CHECK(reception.request_duration(1, after_ms(9600)) == Duration{0});
 }
 
-TEST_CASE("a coordinator hears agents if a message of each has arrived lately") {
+TEST_CASE("a coordinator counts as hearing agents if a message from each has arrived recently") {
   FleetReception reception(kPeriod);
   reception.on_agent(1, after_ms(0));
   CHECK_FALSE(reception.hears_agents({1, 2}, after_ms(0)));

@@ -86,7 +86,7 @@ TEST_CASE("a coordinator learns the orders from the whole memory of a process th
 }
 
 TEST_CASE(
-    "orders are refused for unknown robots, outside the field, and if a later one stands in their place") {
+    "orders are refused for unknown robots, outside the field, and if a later order has replaced them") {
   Keeper k;
   k.keeper.update(true, false, kNow);
   CHECK(k.keeper.on_order(go(9, 5, {0, 0})) == msg::OrderResult::RESULT_UNKNOWN_ROBOT);
@@ -140,7 +140,7 @@ TEST_CASE("clients that have lifted their holds, and removed their zones, can ho
   CHECK(keeper.on_order(clients.zone(msg::OrderKind::ORDER_ZONE, 1000)) == kRemembered);
 }
 
-TEST_CASE("the owner of as many holds as there is room for can lift them") {
+TEST_CASE("a client whose holds have used up all room can lift them") {
   OrderKeeper keeper(hundreds(), kSelf);
   Clients clients;
   for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)
@@ -153,7 +153,7 @@ TEST_CASE("the owner of as many holds as there is room for can lift them") {
   CHECK(keeper.book().hold_count() == 1);  // the operator's
 }
 
-TEST_CASE("a hold that one coordinator has accepted is in all others, however full they are") {
+TEST_CASE("a hold that one coordinator has accepted is stored by all others, however full they are") {
   OrderKeeper active(hundreds(), kSelf), standby(hundreds(), kOther);
   for (OrderKeeper* keeper : {&active, &standby}) (void)keeper->update(true, false, kNow);
   const auto page = [](const OrderKeeper& from, std::uint32_t process) {
@@ -179,8 +179,7 @@ TEST_CASE("a hold that one coordinator has accepted is in all others, however fu
   }
 }
 
-TEST_CASE(
-    "a memory that somebody fills with holds, page by page, holds all robots until an operator resumes") {
+TEST_CASE("if somebody floods a memory with holds, all robots are held until an operator resumes them") {
   OrderKeeper keeper(hundreds(), kSelf);
   (void)keeper.update(true, false, kNow);
   Clients clients;

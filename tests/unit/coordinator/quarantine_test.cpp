@@ -35,7 +35,7 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
   CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version == 20);
 }
 
-TEST_CASE("a robot that obeys a higher epoch is not quarantined for what that epoch has granted") {
+TEST_CASE("a robot that obeys a higher epoch is not quarantined for executing what that epoch granted") {
   Floor floor;
   floor.register_both();
   auto granted_elsewhere = make_report(rest_version(1, {0.5, 0}, 7), 1);

@@ -60,8 +60,7 @@ struct Coordinator {
   }
 };
 
-TEST_CASE(
-    "a coordinator that hears no robot does not take over, and does so soon after it hears them again") {
+TEST_CASE("a coordinator that hears no robot does not take over until shortly after it hears robots again") {
   Coordinator c;
   c.other = kEpoch;
   c.run(3);
@@ -200,7 +199,8 @@ TEST_CASE("a coordinator that could not serve waits longer, a bounded time, unti
   CHECK(c.takeover_s(30) < 0.8);
 }
 
-TEST_CASE("a coordinator that waits in vain yields to an epoch that robots obey, a new one begins above it") {
+TEST_CASE(
+    "faced with a higher obeyed epoch, a coordinator that waited in vain yields, a new one begins above it") {
   Coordinator c;
   REQUIRE(c.takeover_s(5) < 5);
   const Epoch own = c.failover.epoch();
@@ -221,7 +221,7 @@ TEST_CASE("a coordinator that waits in vain yields to an epoch that robots obey,
   }
 }
 
-TEST_CASE("a standby whose clock is set back or forth takes over in time") {
+TEST_CASE("a standby whose clock is set back or forward takes over in time") {
   const double jump_s = GENERATE(-3500.0, -5.0, -0.1, 0.1, 5.0, 3500.0);
   CAPTURE(jump_s);
   Coordinator c;
@@ -234,7 +234,7 @@ TEST_CASE("a standby whose clock is set back or forth takes over in time") {
   CHECK(c.takeover_s(2) < 0.3);
 }
 
-TEST_CASE("a coordinator whose clock is set back learns of higher epochs as soon as before") {
+TEST_CASE("a coordinator whose clock is set back learns of higher epochs as quickly as before") {
   const Time ahead = kBegin + std::chrono::hours(1);
   Failover failover({0, 5}, false, ahead);
   Epoch learned = failover.epoch();

@@ -5,7 +5,9 @@
 
 namespace sidestep::coordinator_test {
 
-TEST_CASE("a robot that should move is silent 50 ms after its last fact, until its versions have ended") {
+TEST_CASE(
+    "a robot that should move counts as silent from 50 ms after its last fact until its versions have "
+    "ended") {
   Floor floor;
   floor.register_both();
   const auto silent_at = [&](double at) {
@@ -27,7 +29,7 @@ TEST_CASE("a robot that should move is silent 50 ms after its last fact, until i
   CHECK_FALSE(silent_at(to_seconds(p.trajectory.end().time_since_epoch()) + 0.01));
 }
 
-TEST_CASE("a robot that reports facts rarely is silent once three are missing") {
+TEST_CASE("a robot that reports facts rarely counts as silent once three are missing") {
   const Version a = rest_version(1, {0, 0});
   for (const double period_s : {1.0 / 60, 0.1, 0.2}) {
     CAPTURE(period_s);
@@ -48,7 +50,9 @@ TEST_CASE("a robot that reports facts rarely is silent once three are missing") 
   }
 }
 
-TEST_CASE("a robot whose own stop is dated by a clock that has jumped ahead counts as silent until then") {
+TEST_CASE(
+    "a robot whose own stop starts in the future because its clock jumped ahead counts as silent until "
+    "then") {
   Floor floor;
   floor.register_both();
   const auto is_silent_at = [&](double at) {
@@ -71,7 +75,7 @@ TEST_CASE("a robot whose own stop is dated by a clock that has jumped ahead coun
 }
 
 TEST_CASE(
-    "a robot whose clock is slow within the bound is silent until its version has ended by that clock") {
+    "a robot with a slow clock within the bound counts as silent until its version has ended by that clock") {
   const Duration max_difference{100'000'000};
   Floor floor;
   floor.coordinator = Coordinator(floor_for_tests(), {1, 2}, kEpoch, max_difference);

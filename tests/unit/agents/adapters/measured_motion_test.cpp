@@ -27,7 +27,7 @@ TEST_CASE("a base's velocity follows from its odometry, whatever the odometry's 
   CHECK_FALSE(measured.mean(begin - 5ms, begin + 5ms));
 }
 
-TEST_CASE("a base that moves and turns moves in the direction that it has at the middle of an interval") {
+TEST_CASE("a base that turns moves in the direction of its heading at the middle of the interval") {
   const Time begin = time_from_ns(1'000'000'000'000);
   const double turn_radps = GENERATE(-2.5, 2.5);
   MeasuredMotion measured;
@@ -45,7 +45,7 @@ TEST_CASE("a base that moves and turns moves in the direction that it has at the
   CHECK(velocity->turn_radps == Approx(turn_radps));
 }
 
-TEST_CASE("reports of odometry that come late or after a long gap give no velocity") {
+TEST_CASE("odometry reports that are late or follow a long gap give no velocity") {
   const Time begin = time_from_ns(1'000'000'000'000);
   MeasuredMotion measured;
   measured.add({3, begin, {0, 0}, 0});

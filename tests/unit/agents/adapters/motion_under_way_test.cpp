@@ -69,9 +69,7 @@ double acceleration_mps2(const robot::MotionUnderWay<float>& motion) {
   return largest_mps2;
 }
 
-TEST_CASE(
-    "whenever commands change, the motion's accelerations are such that receivers accept them, and its error "
-    "is bounded") {
+TEST_CASE("whenever commands change, receivers accept the motion's accelerations, and its error is bounded") {
   const auto seed = GENERATE(range(1u, 301u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -139,7 +137,7 @@ TEST_CASE(
   CHECK(worst_ratio < 1.2);
 }
 
-TEST_CASE("the fit of a path with NaN has no small error") {
+TEST_CASE("a path with NaN is never fitted with a small error") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   auto path = path_of({{1, 0}, {1, 0}, {1, 0}, {1, 0}}, 10ms);
   path[2].position_m.x() = nan;

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-TEST_CASE("timestamps are trusted once a report has arrived on time, but not for ever") {
+TEST_CASE("timestamps are trusted for a limited time after a report has arrived on time") {
   OdometryDates dates(4ms);
   CHECK_FALSE(dates.admit(kBegin, kBegin + 10ms));
   CHECK(dates.admit(kBegin + 20ms, kBegin + 24ms));
@@ -20,7 +20,7 @@ TEST_CASE("timestamps are trusted once a report has arrived on time, but not for
   CHECK_FALSE(dates.admit(kBegin + 520ms, kBegin + 530ms));
 }
 
-TEST_CASE("a report from the future is refused, and ends the trust until another proof") {
+TEST_CASE("a report from the future is refused, and ends the trust until another report arrives on time") {
   OdometryDates dates(4ms);
   CHECK(dates.admit(kBegin, kBegin));
   CHECK(dates.admit(kBegin + 14ms, kBegin + 10ms));

@@ -39,7 +39,7 @@ TEST_CASE("a broken memory is refused with its file and line, and is not overwri
   CHECK(std::string(std::istreambuf_iterator<char>(file), {}) == broken.first);
 }
 
-TEST_CASE("only one process can have the memory of a robot") {
+TEST_CASE("only one process can hold a robot's memory") {
   const TemporaryFolder folder;
   {
     const RobotMemory memory(folder.path(), 3);

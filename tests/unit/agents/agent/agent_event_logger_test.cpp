@@ -26,7 +26,7 @@ struct Fixture {
   }
 };
 
-TEST_CASE("each step of an agent's start is reported once") {
+TEST_CASE("each step of an agent's startup is reported once") {
   Fixture f;
   f.run(100ms);
   CHECK(f.events.all().empty());

@@ -200,8 +200,7 @@ TEST_CASE("a robot does not drive to a place that an unlisted obstacle could rea
   CHECK_FALSE(drives(0));
 }
 
-TEST_CASE(
-    "inflation lasts until the robot is at rest and vision agrees with its own estimate, and it waits") {
+TEST_CASE("a robot with inflation waits until it is at rest and vision agrees with its own estimate") {
   DrivenAgent d;
   RobotReport displaced = resting_at({0, 0}, 1);
   displaced.executing.number = 50;
@@ -284,7 +283,7 @@ TEST_CASE("before the robot's clock is known, an observation is forwarded but no
 }
 
 TEST_CASE(
-    "the region that the laser did not see dates from its scan, and includes the error of the scan's pose") {
+    "the region that the laser did not see has the scan's time, and includes the error of the scan's pose") {
   Scenario scenario = two_goals();
   scenario.laser.emplace();
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));

@@ -239,7 +239,7 @@ TEST_CASE("a robot is held as the orders say") {
   CHECK_FALSE(r.assignment.is_held());
 }
 
-TEST_CASE("zones are known until they are removed, and only their changes count as changes") {
+TEST_CASE("zones are remembered until they are removed, and other orders do not count as changes of zones") {
   Robot r;
   RememberedOrder zone{{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient, 5}};
   zone.order.zone.corners_m = {{1, 1}};

@@ -22,7 +22,7 @@ TEST_CASE("a blockage is reported once it has lasted long enough, with its lates
   CHECK(monitor.lasting(kStart + 300ms)->blocker == 4);
 }
 
-TEST_CASE("a blockage ends when the goal can be reached, and the next one has to last again") {
+TEST_CASE("a blockage ends when the goal can be reached, and the next one must last long enough again") {
   BlockageMonitor monitor(300ms);
   monitor.on_blocked(by_robot(3), kStart);
   monitor.clear();
@@ -33,7 +33,7 @@ TEST_CASE("a blockage ends when the goal can be reached, and the next one has to
   CHECK(monitor.lasting(kStart + 1300ms));
 }
 
-TEST_CASE("after the clock was set back, a blockage has to last again") {
+TEST_CASE("after the clock was set back, a blockage must last long enough again") {
   BlockageMonitor monitor(300ms);
   monitor.on_blocked(by_robot(3), kStart);
   monitor.restart();

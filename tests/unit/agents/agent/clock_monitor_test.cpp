@@ -208,7 +208,7 @@ TEST_CASE("a coordinator that begins another epoch is still known by the clock t
   CHECK(uncertainty_in_epoch(kEpoch + 4, 0, 1) > from_seconds(0.05));
 }
 
-TEST_CASE("clock measurements start anew with a new epoch and with a restarted robot") {
+TEST_CASE("clock measurements start over with a new epoch and with a restarted robot") {
   ClockFixture f;
   f.measure_both(0, 10);
   REQUIRE(f.clocks.allows_motion(at_s(0.2)));

@@ -306,7 +306,8 @@ TEST_CASE("a coordinator with a slow clock learns the highest epoch, unless a la
 }
 
 TEST_CASE(
-    "an agent whose clock is behind an earlier agent's starts above it, and yields only once it was obeyed") {
+    "an agent whose clock is behind raises its incarnation above an earlier agent's, and yields only once it "
+    "was obeyed") {
   NegotiationFixture f;
   f.n.on_robot_report(make_report(f.initial, 0.5, 5000));
   CHECK_FALSE(f.n.is_superseded());

@@ -21,8 +21,7 @@ TEST_CASE("a robot that reports nothing is at its start, and may not drive") {
   CHECK_FALSE(own.has_moved());
 }
 
-TEST_CASE(
-    "what a robot plans to drive counts towards the distance that it may drive without being observed") {
+TEST_CASE("the planned motion counts towards the distance that a robot may drive without being observed") {
   OwnReports own({}, kDriftBound_m);
   own.on_robot_report(at({1, 0}));
   const double whole_m = own.dead_reckoning_m({1, 0});
@@ -39,7 +38,7 @@ TEST_CASE("an estimate agrees with an observation that is no farther away than t
   CHECK_FALSE(own.agrees_with({1, -0.0031}));
 }
 
-TEST_CASE("a robot that has moved once counts as moved, even if it restarts") {
+TEST_CASE("a robot that has ever moved counts as having moved, even after a restart") {
   OwnReports own({}, kDriftBound_m);
   RobotReport moved = at({0, 0});
   moved.has_moved = true;

@@ -76,7 +76,7 @@ TEST_CASE("obstacles of equal size keep their place in the world when they move"
   CHECK(obstacles.world().obstacles() == before);
 }
 
-TEST_CASE("the blocked cells of a map are obstacles of routes, and robots and people are not fixed ones") {
+TEST_CASE("a map's blocked cells are fixed obstacles of routes, robots and people are temporary ones") {
   MapGrid grid;
   grid.columns = grid.rows = 60, grid.resolution_m = 0.1, grid.origin_m = {-3, -3};
   BitGrid blocked(grid.columns, grid.rows);

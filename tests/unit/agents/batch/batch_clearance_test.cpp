@@ -163,7 +163,7 @@ TEST_CASE("lanes decide as the exact clearance does, over millions of pairs and 
   }
 }
 
-TEST_CASE("few of the pairs that agents compare are left to the exact clearance") {
+TEST_CASE("few of the pairs that agents compare need the exact clearance") {
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     Rng rng(7);
     BatchedClearance batch(kernels);
@@ -181,7 +181,7 @@ TEST_CASE("few of the pairs that agents compare are left to the exact clearance"
   }
 }
 
-TEST_CASE("a batch that is reset has forgotten what was added") {
+TEST_CASE("resetting a batch removes everything that was added") {
   BatchedClearance batch(batch::best_kernels());
   batch.restart(kBegin);
   const Trajectory one = Trajectory::resting(kBegin, {0, 0}), other = Trajectory::resting(kBegin, {1, 0});

@@ -65,8 +65,7 @@ TEST_CASE("a robot that is stuck in a corridor backs out into the nearest bay, u
   CHECK_FALSE(robot.decide(8, *place, {coming_from(bay_x_m - 0.5, -4.9)}, fixed));
 }
 
-TEST_CASE(
-    "a robot does not give way without being stuck, to one without the right of way, or off its route") {
+TEST_CASE("a robot does not give way unless it is stuck and blocks a robot with the right of way") {
   const ObstacleWorld fixed = corridor(-1);
   SECTION("it makes progress") {
     Robot robot;
@@ -97,7 +96,7 @@ TEST_CASE("a robot that gives way although nobody passes continues after a while
   CHECK_FALSE(robot.decide(23, *place, facing, fixed));
 }
 
-TEST_CASE("another goal ends giving way") {
+TEST_CASE("a robot that gets another goal stops giving way") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
@@ -141,7 +140,7 @@ TEST_CASE("a robot gives way until the other has passed, even while the other is
   CHECK_FALSE(robot.decide(6, *place, {}, fixed));
 }
 
-TEST_CASE("robots that close a door together give way, although each of them alone would not close it") {
+TEST_CASE("robots that only together block a door give way") {
   // A wall with a door as wide as two robots, in which two stand side by side.
   const ObstacleWorld fixed({Box{{-0.05, -2}, {0.05, -0.24}}, Box{{-0.05, 0.24}, {0.05, 2}}});
   const OtherRobot beside{1, true, {0, -0.125}};
@@ -188,7 +187,7 @@ TEST_CASE("a robot keeps giving way when the right of way changes, until the oth
   CHECK_FALSE(robot.decide(6, *place, {other}, fixed));
 }
 
-TEST_CASE("progress and another goal end a search") {
+TEST_CASE("a search ends when the robot makes progress or gets another goal") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   CHECK_FALSE(robot.give_way.track_progress(at(0), 5));

@@ -29,7 +29,7 @@ TEST_CASE("on an open floor, the window heads for the end of the path") {
   CHECK(choice.velocity_mps->normalized().dot(Vec2(2, 1).normalized()) > 0.95);
 }
 
-TEST_CASE("a window that ignores the path heads for its end, behind a waypoint") {
+TEST_CASE("a window that ignores the path heads for the path's end, beyond a waypoint") {
   LocalDriver local = driver({.uses_window = true, .ignores_path = true});
   const ObstacleWorld world;
   const std::vector<Vec2> path{{0, 2}, {2, 0}};

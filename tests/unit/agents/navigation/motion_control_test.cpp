@@ -10,7 +10,7 @@
 
 namespace sidestep::motion_control_test {
 
-TEST_CASE("a robot comes to rest at its goal, however long its control cycle and strong its motors are") {
+TEST_CASE("a robot comes to rest at its goal, whatever its control cycle and the strength of its motors") {
   Rng rng(1);
   for (int i = 0; i < 2000; ++i) {
     MotionLimits limits;
@@ -41,7 +41,8 @@ TEST_CASE("a robot comes to rest at its goal, however long its control cycle and
 }
 
 TEST_CASE(
-    "a robot that brakes much better than it speeds up hardly passes its goal, however long its cycle") {
+    "a robot that brakes much harder than it accelerates hardly overshoots its goal, however long its "
+    "cycle") {
   Rng rng(3);
   for (int i = 0; i < 1000; ++i) {
     MotionLimits limits;
@@ -67,7 +68,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a stop after each hold never passes the goal, and halves the distance to a goal nearer than a hold") {
+    "a stop after each hold never overshoots the goal, and halves the distance to a goal nearer than a "
+    "hold") {
   Rng rng(2);
   for (int i = 0; i < 1000; ++i) {
     MotionLimits limits;

@@ -59,7 +59,7 @@ TEST_CASE("a path is planned again only when target or robot has left the plan")
   CHECK(target_left > 20);
 }
 
-TEST_CASE("the carrot runs ahead on the path, never back, and ends at its end") {
+TEST_CASE("the carrot only moves forward along the path, and stops at its end") {
   PathFollower follower = path_follower_test::follower();
   CHECK((follower.carrot({10, 3}) - Vec2(30, 0)).norm() < 1e-9);
   CHECK((follower.carrot({90, -2}) - Vec2(100, 10)).norm() < 1e-9);

@@ -15,7 +15,7 @@ Time in_period(int number) { return Time(number * kPeriod + kPeriod / 2); }
 
 }  // namespace
 
-TEST_CASE("right of way: among moving robots, each of two goes first in every second period") {
+TEST_CASE("right of way: of two moving robots, each goes first in every second period") {
   for (int period = 0; period < 4; ++period) {
     CAPTURE(period);
     CHECK(has_right_of_way(3, 7, in_period(period), kPeriod) == (period % 2 == 0));

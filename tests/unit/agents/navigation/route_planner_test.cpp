@@ -196,7 +196,7 @@ TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to i
   CHECK(covered > 5);
 }
 
-TEST_CASE("a goal that is nearer to an obstacle than preferred is reached") {
+TEST_CASE("a robot reaches a goal that is nearer to an obstacle than the preferred clearance") {
   const Vec2 goal(0, 0.2 + kRadius_m + kMargin_m + 0.01);
   PlannerInWorld planner(shortest(), {Circle{{0, 0}, 0.2}}, kField, kRadius_m, kMargin_m, 0.03, goal);
   const auto route = planner.route_from({0, -1}, random());
@@ -281,7 +281,7 @@ TEST_CASE("a robot too near an obstacle may leave it but not drive through it") 
   CHECK((route->waypoint_m - near).dot(near) >= 0);
 }
 
-TEST_CASE("of two equally long routes the robot keeps one while it drifts sideways") {
+TEST_CASE("a robot keeps one of two equally long routes while it drifts sideways") {
   const Circle middle{{0, 0}, 0.3};
   PlannerInWorld planner(shortest(), {middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   Vec2 here(-1.5, 1e-3);
@@ -337,7 +337,7 @@ TEST_CASE("routes keep the extra clearance where it is available, and do without
     CHECK((narrow_route->waypoint_m - disc.centre_m).norm() >= disc.radius_m + kRadius_m + kMargin_m - 1e-9);
 }
 
-TEST_CASE("a start in obstacles that overlap is left towards the nearest free position") {
+TEST_CASE("a robot that starts in overlapping obstacles leaves them towards the nearest free position") {
   // On the line between both centres, every way out of one circle first leads deeper into the other.
   PlannerInWorld planner(shortest(),
                          {Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}}, kField,

@@ -166,7 +166,7 @@ TEST_CASE("evidence saturates and decays") {
   CHECK(f.grid.state(crossed) == CellState::kUnknown);
 }
 
-TEST_CASE("the time for which a cell has been occupied restarts after it was not") {
+TEST_CASE("the time for which a cell has been occupied restarts after the cell was free") {
   Fixture f;
   for (int i = 0; i <= 20; ++i) f.scan(2.02F);
   const Cell hit = f.grid.cell_at({2.02, 0.001});
@@ -199,7 +199,7 @@ TEST_CASE("the window moves by whole cells and forgets what leaves it") {
   CHECK(f.grid.state_at({-998.97, 777.72}) == CellState::kOccupied);
 }
 
-TEST_CASE("the occupied cells of a box are those that checking each cell finds") {
+TEST_CASE("the occupied cells of a box agree with a check of each cell") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

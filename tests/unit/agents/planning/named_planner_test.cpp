@@ -88,7 +88,7 @@ TEST_CASE("planners that keep a graph of one world, or use all the time, cannot 
   CHECK_THROWS_AS(make_driving_planner("dijkstra"), std::invalid_argument);
 }
 
-TEST_CASE("OMPL's namesakes sample uniformly, remember nothing and do not try the straight line") {
+TEST_CASE("planners named after OMPL's sample uniformly, remember nothing and do not try the straight line") {
   const std::string name = GENERATE(as<std::string>(), "rrt", "rrt-connect");
   CAPTURE(name);
   const PlanWorld empty = make_world("empty", 20, 1), u = make_world("u", 5, 1);

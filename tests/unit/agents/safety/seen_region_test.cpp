@@ -83,7 +83,7 @@ TEST_CASE("a robot at rest needs no region, and neither does a moving robot if a
   CHECK(is_passively_safe_from_unseen(leaving, {}, 0.1));
 }
 
-TEST_CASE("obstacles that do not move leave the region as it is") {
+TEST_CASE("a region does not shrink if obstacles do not move") {
   const SeenRegion seen{{0, 0}, 1, kBegin, 0};
   CHECK(seen.radius_at_m(kBegin + from_seconds(100)) == 1);
   Trajectory braking(kBegin + from_seconds(100), {{0.7, 0}, {1, 0}});
@@ -92,7 +92,7 @@ TEST_CASE("obstacles that do not move leave the region as it is") {
   CHECK_FALSE(is_passively_safe_from_unseen(braking, seen, 0.25));
 }
 
-TEST_CASE("a region that is limited by another lies in both, at every time") {
+TEST_CASE("a region that is limited by another one is contained in both at all times") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);

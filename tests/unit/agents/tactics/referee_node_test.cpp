@@ -96,7 +96,7 @@ TEST_CASE("HALT is ordered at once, and ends with the next command") {
   CHECK(system.log == std::vector<std::string>{"FORCE_START", "HALT", "STOP", "FORCE_START"});
 }
 
-TEST_CASE("a referee's program that is restarted ends what it ordered before") {
+TEST_CASE("a referee program that is restarted ends the orders that it gave before") {
   System system;
   Order hold{msg::OrderKind::ORDER_HOLD, kAllRobots, static_cast<ClientId>(Sender::kReferee), 1000};
   system.book.merge({hold});

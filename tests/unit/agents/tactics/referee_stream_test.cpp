@@ -14,7 +14,7 @@ const Time kBegin = time_from_ns(1'000'000'000'000);
 
 league::RefereePacket packet(RefereeCommand command, Duration sent) { return {sent, command, 0, {}, {}}; }
 
-TEST_CASE("packets that arrive late do not count, except for HALT") {
+TEST_CASE("packets that arrive late are ignored, except for HALT") {
   RefereeStream stream;
   CHECK(stream.add(packet(RefereeCommand::kForceStart, 10s), kReferee, kBegin) == Outcome::kAccepted);
   CHECK(stream.add(packet(RefereeCommand::kHalt, 11s), kReferee, kBegin + 1ms) == Outcome::kAccepted);
@@ -24,7 +24,7 @@ TEST_CASE("packets that arrive late do not count, except for HALT") {
   CHECK(stream.add(packet(RefereeCommand::kStop, 11s), kReferee, kBegin + 5ms) == Outcome::kAccepted);
 }
 
-TEST_CASE("a referee whose clock was set back counts again after a silence") {
+TEST_CASE("a referee whose clock was set back is accepted again after a silence") {
   RefereeStream stream;
   REQUIRE(stream.add(packet(RefereeCommand::kStop, 1000s), kReferee, kBegin) == Outcome::kAccepted);
   Time now = kBegin;
@@ -37,7 +37,7 @@ TEST_CASE("a referee whose clock was set back counts again after a silence") {
   CHECK(stream.add(packet(RefereeCommand::kStop, 2100ms), kReferee, now + 100ms) == Outcome::kAccepted);
 }
 
-TEST_CASE("another sender counts only after the referee has been silent") {
+TEST_CASE("another sender is accepted only after the referee has been silent") {
   RefereeStream stream;
   REQUIRE(stream.add(packet(RefereeCommand::kStop, 10s), kReferee, kBegin) == Outcome::kAccepted);
   CHECK(stream.add(packet(RefereeCommand::kHalt, 20s), kOther, kBegin + 100ms) == Outcome::kForeign);

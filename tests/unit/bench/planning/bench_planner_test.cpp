@@ -59,7 +59,7 @@ TEST_CASE("every planner of the benchmark answers with a valid path and its time
   }
 }
 
-TEST_CASE("a planner gives a query up when its time is over") {
+TEST_CASE("a planner gives up a query when its time is over") {
   // The positions are separated by a wall.
   PlanWorld closed;
   closed.obstacles = {Box{{-0.1, -6}, {0.1, 6}}};
@@ -90,7 +90,7 @@ TEST_CASE("namesakes need as many iterations as their peers") {
   }
 }
 
-TEST_CASE("planted planners are what they are called, and others are refused") {
+TEST_CASE("planted planners have the faults that their names state, and other names are refused") {
   const BenchmarkWorld world(make_world("u", 8, 1));
   const QueryFunction invalid = planted_planner("invalid-path").prepare(world, 1);
   const QueryFunction weak = planted_planner("weak-namesake").prepare(world, 1);

@@ -5,11 +5,11 @@
 
 namespace sidestep::replan_bench_test {
 
-TEST_CASE("replans of planners are valid among circles that move") {
+TEST_CASE("planners replan valid paths among moving circles") {
   CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache", "estar", "nf1"}, 60, 1).empty());
 }
 
-TEST_CASE("planners that keep a world are not asked in one that moves") {
+TEST_CASE("planners that rely on a fixed world are left out if the world moves") {
   CHECK(bench_replanning({"visibility", "prm"}, 10, 1).empty());
 }
 

@@ -122,7 +122,7 @@ TEST_CASE("a zone is over when it is accepted, and the next zone with its number
   CHECK(client.state(other)->phase == OrderPhase::kAccepted);
 }
 
-TEST_CASE("callbacks are told of every change and may give orders, but do not wait") {
+TEST_CASE("callbacks are called for every change and may give orders, and waiting in them returns at once") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -141,7 +141,7 @@ TEST_CASE("callbacks are told of every change and may give orders, but do not wa
   client.on_change(nullptr);
 }
 
-TEST_CASE("threads may use a client at the same time") {
+TEST_CASE("several threads can use a client at the same time") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -201,7 +201,7 @@ TEST_CASE("invalid orders are refused without a coordinator") {
   CHECK(client.wait(client.go(kAllRobots, {{0, 0}}), kTimeout)->refusal == Refusal::kUnknownRobot);
 }
 
-TEST_CASE("wrong settings of a client are named") {
+TEST_CASE("invalid settings of a client are named") {
   Settings settings;
   CHECK_THROWS_WITH(Client(settings), ContainsSubstring("name"));
   settings.name = "test";

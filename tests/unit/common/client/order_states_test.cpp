@@ -38,7 +38,7 @@ TEST_CASE("a thread waits until its order is over, whatever happens to other ord
   CHECK(seen == kArrived);
 }
 
-TEST_CASE("an order that is over for waiting threads may change until it is final") {
+TEST_CASE("the state of an order may still change after waiting threads have returned, until it is final") {
   OrderStates states;
   const OrderId zone = states.add();
   const OrderState accepted{OrderPhase::kAccepted, Refusal::kNone, 0, true};

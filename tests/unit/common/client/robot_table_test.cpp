@@ -105,7 +105,7 @@ TEST_CASE("a robot that is no longer heard or seen is not free") {
   CHECK_FALSE(table.robots(silent)[0].is_free());
 }
 
-TEST_CASE("hostile statuses and worlds leave the table as it is") {
+TEST_CASE("hostile statuses and worlds do not change the table") {
   RobotTable table(kSelf);
   msg::OrderStatus foreign = status_of(3);
   foreign.header().sender(4);

@@ -15,7 +15,7 @@ std::vector<Shape> obstacles(const std::string& list, std::size_t max_count = 10
   return read_obstacles(map, max_count);
 }
 
-TEST_CASE("obstacles of every kind are read, and their text reads the same") {
+TEST_CASE("obstacles of every kind are read, and reading their written text gives the same obstacles") {
   const std::vector<Shape> read = obstacles(
       "  - {centre_m: [1, 2], radius_m: 0.5}\n"
       "  - circle: {centre_m: [-1, 2], radius_m: 0.25}\n"
@@ -64,7 +64,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("wrong obstacles are refused with the line and the reason") {
+TEST_CASE("invalid obstacles are refused with the line and the reason") {
   const auto [list, line, why] = GENERATE(table<std::string, int, std::string>({
       {"  - {}\n", 2, "expected one of circle, box, polygon, segment, wall"},
       {"  - {circle: {centre_m: [0, 0], radius_m: 1}, box: {min_m: [0, 0], max_m: [1, 1]}}\n", 2,

@@ -69,7 +69,7 @@ TEST_CASE(
   for (const auto& [direction, count] : directions) CHECK(count > 200);
 }
 
-TEST_CASE("a number may have one plus in front, whatever is read from it") {
+TEST_CASE("a number may have one leading plus, whatever type is read") {
   const Scenario s = parse_scenario(
       "robots: [{id: +7, start_m: [+1, -2], heading_rad: +.5, goals_m: [[+1.5, +1e-1, +3]]}]\n"
       "margin_m: +0.02\n",

@@ -23,7 +23,7 @@ int exit_code_of(Work work) {
 
 }  // namespace
 
-TEST_CASE("what is printed to a full disk or a pipe without a reader is lost, and nothing else happens") {
+TEST_CASE("output to a full disk or to a pipe without a reader is lost without other effects") {
   const int code = exit_code_of([] {
     std::signal(SIGPIPE, SIG_IGN);
     int ends[2];
@@ -38,7 +38,7 @@ TEST_CASE("what is printed to a full disk or a pipe without a reader is lost, an
   CHECK(code == 0);
 }
 
-TEST_CASE("what is printed is in the file at once") {
+TEST_CASE("output reaches the file immediately") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   std::FILE* const stream = fdopen(ends[1], "w");

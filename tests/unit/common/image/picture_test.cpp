@@ -91,7 +91,7 @@ TEST_CASE("data that is not a picture is refused, and so is a damaged picture") 
                     "/nowhere/a.png: cannot be read: No such file or directory");
 }
 
-TEST_CASE("the size that a picture states is read without decoding it") {
+TEST_CASE("a picture's stated size is read without decoding the picture") {
   const auto size = [](std::string_view text) -> std::string {
     const auto found = stated_size(text);
     return found ? std::to_string(found->width_px) + " x " + std::to_string(found->height_px) : "none";

@@ -66,7 +66,7 @@ TEST_CASE("problems with keys are explained in plain words") {
     fs::permissions(folder + "/key.pem", fs::perms::group_read, fs::perm_options::add);
     CHECK_THAT(problem(), ContainsSubstring("other users may read or change this private key; chmod 600"));
   }
-  SECTION("the private key of another") {
+  SECTION("the private key of another process") {
     fs::copy_file(keys.folder_of("agent 4") + "/key.pem", folder + "/key.pem",
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("this private key is not that of the certificate"));
@@ -105,7 +105,7 @@ std::string permissions_of(const TestKeys& keys, Time from, Time until) {
       .sign(permissions_text(identity, "CN=agent 3,O=Sidestep", from, until));
 }
 
-TEST_CASE("keys that are not valid yet are not wrong usage, because the clock may still be set") {
+TEST_CASE("keys that are not valid yet are no usage error, because the clock may still be set") {
   const TestKeys keys({"agent", "3"});
   const Time now = keys.now(), before = now - hours(1), later = now + hours(1);
   const auto check = [&](const std::string& folder, Time time, const std::string& what) {
@@ -149,7 +149,7 @@ TEST_CASE("keys that Fast DDS would refuse without a reason are named") {
     CHECK_THAT(problem_of(with_file(keys, key_files::kPermissions, permissions), now),
                ContainsSubstring("permissions.p7s: the permissions of agent 3 expired on"));
   }
-  SECTION("permissions of another") {
+  SECTION("permissions of another process") {
     const std::string folder = keys.folder_of("agent 3");
     fs::copy_file(keys.folder_of("agent 4") + "/permissions.p7s", folder + "/permissions.p7s",
                   fs::copy_options::overwrite_existing);

@@ -52,7 +52,8 @@ TEST_CASE("probabilities follow map_server's rules") {
         "..###/");
 }
 
-TEST_CASE("the grey of map savers is unknown regardless of the thresholds, and blocked unless allowed") {
+TEST_CASE(
+    "the grey that map savers write is unknown regardless of the thresholds, and blocked unless allowed") {
   const MapFolder folder;
   // Free, unknown, likely free, likely occupied, occupied.
   const std::string image = row_of(std::string("\xfe\xcd\xd2\x80\0", 5));
@@ -192,7 +193,7 @@ TEST_CASE("errors of an image name it on the line of its key") {
   check("", "not a regular file");
 }
 
-TEST_CASE("a map of a mobile robot is read") {
+TEST_CASE("a map recorded by a mobile robot is read") {
   const char* const maps = std::getenv("SIDESTEP_MAPS");
   if (maps == nullptr) {
     WARN("skipped: SIDESTEP_MAPS is not a folder with tb3_sandbox.yaml of ROS's nav2_bringup");

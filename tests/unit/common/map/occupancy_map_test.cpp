@@ -174,7 +174,7 @@ TEST_CASE("walls and solid areas are single boxes") {
   CHECK(count({{20, 1}, {21, 2}}) == 1);
 }
 
-TEST_CASE("a call that returns false ends the boxes") {
+TEST_CASE("a callback that returns false ends the listing of boxes") {
   const OccupancyMap map = drawn({"#.#",  //
                                   "...",  //
                                   "#.#"});

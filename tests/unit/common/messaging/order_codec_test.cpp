@@ -119,7 +119,7 @@ TEST_CASE("a memory of any size survives on as many pages as necessary") {
   CHECK(encode(std::span<const RememberedOrder>(), true, false).size() == 1);
 }
 
-TEST_CASE("scenarios only send robots to their own goals, and coordinators only hold robots") {
+TEST_CASE("a scenario may only order robots to their own goals, and a coordinator may only hold robots") {
   const auto page_with = [](const Order& order) {
     const RememberedOrder remembered{order};
     msg::OrderMemory message = encode({&remembered, 1}, true, false).front();

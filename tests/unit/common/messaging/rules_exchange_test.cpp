@@ -48,8 +48,7 @@ struct Process {
 
 SimNetwork lossless() { return {1, time_from_ns(1'000'000'000'000), NetworkSpec{}}; }
 
-TEST_CASE(
-    "messages from a process with different rules are refused on both sides, and both name the difference") {
+TEST_CASE("two processes with different rules refuse each other's messages, and both name the difference") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01), b(network, 10001, 0.02);
   for (int i = 0; i < 200; ++i) {
@@ -106,7 +105,7 @@ TEST_CASE("one refused message is enough for both sides to name the difference")
             "refuses coordinator, which works by other rules: margin_m is 0.01 instead of 0.02"});
 }
 
-TEST_CASE("of any number of invented processes, 256 are named, and then one every ten seconds") {
+TEST_CASE("however many processes are invented, 256 are named, and then one every ten seconds") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01);
   a.bus.subscribe(topics::kRegistration, [](const msg::Registration&) {});

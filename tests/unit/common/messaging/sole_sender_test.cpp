@@ -43,7 +43,7 @@ TEST_CASE("a single message from another process has no effect") {
 }
 
 TEST_CASE(
-    "if two processes both keep sending, no message is used from their second cycle on, until one is gone") {
+    "if two processes both keep sending, no messages are used from the second cycle until one is gone") {
   const std::uint64_t first = GENERATE(kOne, kThree);
   SoleSender sender;
   Time now = kBegin;
@@ -105,7 +105,7 @@ TEST_CASE("a process that starts while two are sending trusts neither, whichever
   CHECK(reported == 1);
 }
 
-TEST_CASE("after the receiver's clock was set back, senders are trusted and followed as before") {
+TEST_CASE("a receiver whose clock was set back trusts and follows senders as before") {
   const Duration listening = GENERATE(Duration{0}, SoleSender::kListening);
   CAPTURE(to_seconds(listening));
   const Duration ahead = 436s;
@@ -248,7 +248,7 @@ TEST_CASE("another process is found even after very many messages from invented 
   CHECK(first.others == std::vector<Incarnation>{200});
 }
 
-TEST_CASE("there may be several processes with the id of an agent") {
+TEST_CASE("several processes may have the id of the same agent") {
   SimNetwork network(1, kBegin, {});
   Part first(network, 3, 100), second(network, 3, 200);
   for (int i = 0; i < 5; ++i) {

@@ -92,7 +92,7 @@ TEST_CASE("a refused value is reported with its option") {
   CHECK_THAT(f.error_of(arguments), ContainsSubstring(option));
 }
 
-TEST_CASE("a refused value is named with what is permitted") {
+TEST_CASE("a refused value is reported with the permitted values") {
   const auto [arguments, expected] = GENERATE(table<std::vector<std::string>, std::string>({
       {{"--speed", "5.1"}, "--speed: expected a number in [0, 5], got \"5.1\""},
       {{"--speed", "fast"}, "--speed: expected a number in [0, 5], got \"fast\""},
@@ -119,7 +119,7 @@ TEST_CASE("a refused value is named with what is permitted") {
   CHECK(f.error_of(arguments) == expected);
 }
 
-TEST_CASE("a number is decimal, also with a zero or a plus in front") {
+TEST_CASE("a number is decimal, even with a leading zero or plus") {
   Fixture f;
   std::uint64_t seed = 0;
   f.line.root().add_option("--seed", seed);

@@ -48,7 +48,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a process adopts its host's clock some seconds after it was set, if its references agree") {
+TEST_CASE("a process adopts its host's clock some seconds after that was set, if its references agree") {
   const ClockReference reference = GENERATE(ClockReference::kCoordinators, ClockReference::kRobots);
   const bool uses_heartbeats = reference == ClockReference::kCoordinators;
   CAPTURE(uses_heartbeats);

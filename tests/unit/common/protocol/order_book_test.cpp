@@ -156,7 +156,8 @@ RememberedOrder removal(ClientId client, std::uint32_t zone_number, OrderNumber 
 }
 
 TEST_CASE(
-    "a zone stays until it is removed, each client has its own numbers, and each client's room is bounded") {
+    "a zone stays until it is removed, each client numbers its own zones, and a client's zones are bounded "
+    "in number") {
   OrderBook book;
   book.merge(zone(kAnna, 1, 10));
   book.merge(zone(kBert, 1, 11));
@@ -175,7 +176,7 @@ TEST_CASE(
   CHECK(book.is_held(1));
 }
 
-TEST_CASE("of two orders with the same number, the one of the client with the higher id counts") {
+TEST_CASE("of two orders with the same number, that of the client with the higher id wins") {
   for (const auto kind : {msg::OrderKind::ORDER_GO, msg::OrderKind::ORDER_CANCEL}) {
     const RememberedOrder of_anna = order(kind, 3, kAnna, 10), of_bert = go(3, kBert, 10);
     OrderBook first, second;
@@ -190,7 +191,9 @@ TEST_CASE("of two orders with the same number, the one of the client with the hi
   }
 }
 
-TEST_CASE("a resume lifts only holds with lower numbers: an operator's with the number of a hold does not") {
+TEST_CASE(
+    "a resume lifts only holds with lower numbers, so an operator's resume does not lift a hold with its own "
+    "number") {
   for (const bool hold_is_first : {true, false}) {
     for (const RobotId scope : {RobotId{3}, kAllRobots}) {
       OrderBook book;
@@ -241,7 +244,7 @@ TEST_CASE("the owner of a hold can lift it, one by one or all at once, however m
   }
 }
 
-TEST_CASE("an operator's resume of all robots leaves nothing of what clients have held and lifted") {
+TEST_CASE("an operator's resume of all robots removes all holds and resumes of clients") {
   OrderBook book;
   for (RobotId robot = 0; robot < 200; ++robot) {
     book.merge(hold(robot, kAnna, 10 + robot));

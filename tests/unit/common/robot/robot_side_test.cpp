@@ -177,8 +177,7 @@ TEST_CASE("a robot whose motors obey at once ignores motion under way in its own
   CHECK(side.executing().inflation_m == 0);
 }
 
-TEMPLATE_TEST_CASE("a robot whose estimate of its place or motion is no number has no pose", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("a robot whose estimated pose or velocity is not finite has no pose", "", float, double) {
   using Number = std::numeric_limits<TestType>;
   const TestType bad = GENERATE(Number::quiet_NaN(), Number::infinity(), -Number::infinity());
   const int field = GENERATE(range(0, 7));
@@ -219,19 +218,19 @@ TEMPLATE_TEST_CASE("a robot whose estimate of its place or motion is no number h
   CHECK(side.executing().x_m == 2);
 }
 
-TEMPLATE_TEST_CASE("a robot that does not know how far it may be off stops, inflated by the most", "", float,
-                   double) {
+TEMPLATE_TEST_CASE("a robot that does not know how far off it may be stops with the maximum inflation", "",
+                   float, double) {
   const TestType nan = std::numeric_limits<TestType>::quiet_NaN();
   TestMemory memory;
   RobotSide<TestType> side({}, {});
   side.begin_at_rest(0, 0);
   Estimate<TestType> estimate;
-  SECTION("because its error is no number") {
+  SECTION("because its error is not finite") {
     estimate.position_m.x = TestType(0.004);  // within the bound, if nothing were uncertain
     estimate.position_error_rms_m = nan;
     REQUIRE(side.needs_uncertainty(at_ms(1), estimate.position_m));
   }
-  SECTION("because its displacement is no number") {
+  SECTION("because its displacement is not finite") {
     estimate.position_m.x = TestType(0.0031);
     estimate.jump_m = nan;
   }
@@ -296,7 +295,8 @@ TEST_CASE("a robot without a pose accepts no version") {
 }
 
 TEST_CASE(
-    "a robot whose clock is set back makes a stop of its own by the new time, above all that it received") {
+    "a robot whose clock is set back makes an own stop by the new time, numbered above all that it "
+    "received") {
   const std::int64_t back_ns = GENERATE(1'000'000, 5'000'000'000, 3'500'000'000'000);
   CAPTURE(back_ns);
   TestMemory memory;

@@ -20,7 +20,8 @@ TEST_CASE("a version that the robot side repeats equals the one that it received
 }
 
 TEST_CASE(
-    "in double precision the robot side follows a version exactly as everybody else, in single within 3 um") {
+    "the robot side follows a version exactly as other processes do in double precision, within 3 um in "
+    "single") {
   Rng rng(22);
   for (int i = 0; i < 300; ++i) {
     const Version version = test::random_version(7, 100, rng);

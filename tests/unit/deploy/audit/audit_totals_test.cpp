@@ -50,7 +50,7 @@ TEST_CASE("an audit that covers 95 % judges, one that covers 94.9 % does not") {
   }
 }
 
-TEST_CASE("every share of the coverage below the minimum leaves a run not judged, with its reason") {
+TEST_CASE("a run is not judged, with the reason, if any share of its coverage is below the minimum") {
   AuditTotals totals = covered();
   std::string reason;
   SECTION("messages") {
@@ -125,7 +125,7 @@ TEST_CASE("the coverage is the smallest of its shares") {
   }
 }
 
-TEST_CASE("a share of nothing counts as complete") {
+TEST_CASE("a share of zero expected items counts as complete") {
   CHECK(share_of(0, 0) == 1);
   CHECK(share_of(0, 1) == 0);
   CHECK(share_of(0, 4) == 0);

@@ -33,7 +33,7 @@ TEST_CASE("an epoch memory agrees with a set of all epochs about the sixteen hig
   }
 }
 
-TEST_CASE("an own stop is in the epoch whose ledger listed it, whatever was registered") {
+TEST_CASE("an own stop belongs to the epoch whose ledger listed it, whatever was registered") {
   KnownVersion known;
   for (Epoch epoch = 10; epoch <= 200; epoch += 10) known.registered_in.add(epoch);
   known.granted_in = 3;

@@ -39,7 +39,7 @@ TEST_CASE("the last eight of many simultaneous contacts are known") {
   CHECK(shown.auditor.totals().unidentified_contacts == unidentified);
 }
 
-TEST_CASE("crashes of moving robots are reported, those that are not listed together") {
+TEST_CASE("crashes of moving robots are reported, and those beyond the list are reported together") {
   Shown shown;
   shown.run(50ms);
   SECTION("one") {
@@ -106,7 +106,7 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
     (void)shown.header("truth", 30'000, shown.incarnation);
   }
   SECTION("nothing was missed") { undecided = 0; }
-  SECTION("a message of an agent was missed, which tells of no disturbance") {
+  SECTION("a message of an agent was missed, which cannot announce a disturbance") {
     (void)shown.header("registration", 0, Stage::kAgent);
     shown.register_versions(0, {shown.rest(0)});
     REQUIRE(shown.auditor.totals().missed == 1);
@@ -135,7 +135,7 @@ TEST_CASE(
   CHECK(shown.count(AuditRule::kContact) == (apart_m < 0.181 ? 0 : 1));
 }
 
-TEST_CASE("the counters of every simulator start again from zero") {
+TEST_CASE("every simulator's counters start at zero") {
   Shown shown;
   shown.run(20ms);
   shown.touch(0, 1);
@@ -144,17 +144,17 @@ TEST_CASE("the counters of every simulator start again from zero") {
   shown.run(50ms);
   REQUIRE(shown.violations.size() == 3);
   CHECK(shown.count(AuditRule::kFirmwareMonitor) == 1);
-  SECTION("the same counters of the next simulator are of new events") {
+  SECTION("equal counts of the next simulator are new events") {
     ++shown.incarnation;
     shown.run(50ms);
     CHECK(shown.violations.size() == 6);
   }
-  SECTION("higher counters of the same simulator are") {
+  SECTION("higher counts of the same simulator are new events") {
     shown.truth.firmware_violations(3);
     shown.run(50ms);
     CHECK(shown.count(AuditRule::kFirmwareMonitor) == 2);
   }
-  SECTION("lower counters are not") {
+  SECTION("lower counts are not") {
     shown.truth.contacts(0);
     shown.truth.crashes_while_moving(0);
     shown.truth.firmware_violations(0);

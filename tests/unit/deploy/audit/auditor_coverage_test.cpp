@@ -176,7 +176,7 @@ TEST_CASE("missed facts leave no doubt if all versions that the robot executed m
   CHECK(totals.coverage.messages < 1);
 }
 
-TEST_CASE("messages of processes with other rules are refused and counted") {
+TEST_CASE("messages of processes with different rules are refused and counted") {
   const Scenario& scenario = crossing().scenario;
   SimSystem system(scenario, 4);
   Scenario changed = scenario;

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-TEST_CASE("a run in which everything is as it should be breaks no rule") {
+TEST_CASE("a correct run breaks no rule") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();
@@ -215,7 +215,7 @@ TEST_CASE("a grant before a robot has registered is reported once for each such 
   CHECK(stage.violations.size() == stage.count(AuditRule::kAllRegistered));
 }
 
-TEST_CASE("one run of one coordinator grants in an epoch") {
+TEST_CASE("only one run of one coordinator grants in an epoch") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();

@@ -179,7 +179,7 @@ TEST_CASE("an auditor on a bus hears orders, and who remembers them") {
     run.confirm();
     run.report(true);
   }
-  SECTION("of an agent that tells the order") {
+  SECTION("of an agent that announces the order") {
     run.confirm();
     run.tell();
   }
@@ -191,7 +191,7 @@ TEST_CASE("an auditor on a bus hears orders, and who remembers them") {
   CHECK(run.forgotten() == expected);
 }
 
-TEST_CASE("for an auditor on a bus time passes without messages") {
+TEST_CASE("time passes for an auditor on a bus even without messages") {
   Listening run;
   for (const RobotId robot : {0u, 1u}) {
     msg::Feedback robot_report;

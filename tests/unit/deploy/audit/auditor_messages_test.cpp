@@ -76,7 +76,7 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
                                           : msg::DisturbanceKind::DISTURBANCE_PUSH);
     stage.auditor.on_disturbance(disturbance, stage.now);
   }
-  SECTION("facts that are no numbers") {
+  SECTION("facts with impossible numbers") {
     msg::Feedback robot_report = stage.robot_reports[0];
     SECTION("x") { robot_report.x_m(INFINITY); }
     SECTION("y") { robot_report.y_m(NAN); }
@@ -141,7 +141,7 @@ TEST_CASE("robots may have every number up to 1023") {
   CHECK(auditor.totals().invalid == 0);
 }
 
-TEST_CASE("a version number stands for one version of one agent") {
+TEST_CASE("a version number identifies one version of one agent") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();

@@ -32,7 +32,7 @@ TEST_CASE("an auditor that is so overloaded that all facts reach it late raises 
   require_no_violation(audit_delayed<msg::Feedback>(crossing(), delay));
 }
 
-TEST_CASE("an auditor that all messages of any one kind reach late raises no false alarm") {
+TEST_CASE("an auditor that receives all messages of one kind late raises no false alarm") {
   SECTION("verdicts") { require_no_violation(audit_delayed<msg::Verdict>(crossing(), 150ms)); }
   SECTION("pages of the ledger") { require_no_violation(audit_delayed<msg::LedgerPage>(crossing(), 150ms)); }
   SECTION("proposals") { require_no_violation(audit_delayed<msg::Proposal>(crossing(), 150ms)); }
@@ -73,7 +73,7 @@ TEST_CASE(
   CHECK(count(totals, AuditRule::kAllRegistered) == 0);
 }
 
-TEST_CASE("two agents may give their proposals one number, and an auditor may hear one of them only") {
+TEST_CASE("two agents may use the same proposal number, and an auditor may hear only one of them") {
   History history = crossing();
   const Switch s = example_switch(history);
   // As if a restarted agent had proposed the same number, and been granted its second candidate.

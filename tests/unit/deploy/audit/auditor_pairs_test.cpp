@@ -223,7 +223,7 @@ TEST_CASE("an audit that hears of no grant reports exactly the pairs that were e
   check_reported(expected, reported_pairs(history, kComplete));
 }
 
-TEST_CASE("facts of a robot whose clock is out of bound prove no pair") {
+TEST_CASE("facts of a robot whose clock is out of bounds prove no pair") {
   const std::size_t place = GENERATE(0u, 1u);
   History history = too_close(0.15);
   history.remove_if<msg::Verdict>([](const msg::Verdict&) { return true; });

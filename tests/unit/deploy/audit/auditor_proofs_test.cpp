@@ -59,7 +59,7 @@ TEST_CASE("a version that comes too close to what is registered is reported when
   CHECK(narrow.violations.size() == 1);
 }
 
-TEST_CASE("a verdict that is repeated does not make the grant later") {
+TEST_CASE("repeating a verdict does not change the time of the grant") {
   Narrow narrow(kComplete);
   narrow.grant(narrow.closer);
   narrow.advance(1ms);
@@ -119,7 +119,7 @@ TEST_CASE("a robot's own stop that comes too close is not a violation") {
   CHECK(narrow.too_close() == 0);
 }
 
-TEST_CASE("versions with much inflation conflict far away") {
+TEST_CASE("versions with large inflations conflict even far apart") {
   Stage stage;
   for (msg::Feedback& robot_report : stage.robot_reports) robot_report.executing().inflation_m(0.4);
   stage.begin();
@@ -294,7 +294,7 @@ TEST_CASE("pages prove that the ledger held a registered version before it grant
     narrow.grant(narrow.closer);
     narrow.page(after);
   }
-  SECTION("the pages came to be in the other order") {
+  SECTION("the pages were made in the other order") {
     narrow.grant(narrow.closer);
     narrow.advance(10ms);
     narrow.page(after);

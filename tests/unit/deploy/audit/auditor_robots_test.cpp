@@ -76,7 +76,7 @@ TEST_CASE("a fact of an earlier time is reported only if no clock was set back i
     (void)stage.header("feedback", 0);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("the last fact was of a clock that is out of bound") {
+  SECTION("the last fact was of a clock that is out of bounds") {
     stage.robot_reports[0].valid_at_ns(to_ns(stage.now) + 100'000'000);
     stage.report(0);
   }
@@ -326,7 +326,7 @@ TEST_CASE(
     report_errors(inflated, repeated(0.02 + tracking_m + 1e-6, 3));
     CHECK(inflated.count(AuditRule::kTracking) > 0);
   }
-  SECTION("by a clock that is out of bound") {
+  SECTION("by a clock that is out of bounds") {
     for (int i = 0; i < 50; ++i) {
       stage.advance(1ms);
       stage.robot_reports[0].tracking_error_m(1);

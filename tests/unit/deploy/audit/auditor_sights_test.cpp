@@ -131,7 +131,7 @@ TEST_CASE("only uninterrupted displacements count") {
     (void)seen.header("feedback", 0);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("interrupted by a clock that is out of bound") {
+  SECTION("interrupted by a clock that is out of bounds") {
     seen.advance(16ms);
     seen.show();
     seen.robot_reports[0].valid_at_ns(to_ns(seen.now + 50ms));
@@ -160,7 +160,7 @@ TEST_CASE("an announced disturbance excuses displacements while it lasts and unt
     seen.disturb(1, msg::DisturbanceKind::DISTURBANCE_PUSH);
     expected = 1;
   }
-  SECTION("a camera that takes it for another robot") {
+  SECTION("a camera that mistakes it for another robot") {
     seen.disturb(0, msg::DisturbanceKind::DISTURBANCE_SEEN_AS, 5s, 1);
   }
   SECTION("a long slip that is over for the most part") {
@@ -184,7 +184,7 @@ TEST_CASE("an announced disturbance excuses displacements while it lasts and unt
   CHECK((seen.auditor.totals().excused_displacements > 0) == (expected == 0));
 }
 
-TEST_CASE("with ground truth the simulator tells whether a robot is disturbed, not the message") {
+TEST_CASE("with ground truth the simulator states whether a robot is disturbed, not the operator's message") {
   Seen seen;
   msg::GroundTruth truth;
   truth.robots().resize(1);
@@ -205,7 +205,7 @@ TEST_CASE("with ground truth the simulator tells whether a robot is disturbed, n
   CHECK(seen.position() == 1);
 }
 
-TEST_CASE("once ground truth has replaced vision, vision is not used any more") {
+TEST_CASE("once ground truth has replaced vision, vision is no longer used") {
   Seen seen;
   seen.run(2s);
   msg::GroundTruth truth;

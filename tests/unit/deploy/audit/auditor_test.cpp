@@ -333,7 +333,7 @@ TEST_CASE("a version that was granted stays granted if a later agent proposes it
   CHECK(totals.violations == 0);
 }
 
-TEST_CASE("an operator's attestation of absence stands for a robot's registration") {
+TEST_CASE("an operator's attestation of absence replaces a robot's registration") {
   const AuditTotals totals = audit_of_tampered([](History& h) {
     h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
     h.remove_if<msg::Feedback>([](const msg::Feedback& f) { return f.robot() == 3; });
@@ -343,7 +343,7 @@ TEST_CASE("an operator's attestation of absence stands for a robot's registratio
   CHECK(count(totals, AuditRule::kAllRegistered) == 0);
 }
 
-TEST_CASE("an attested absence stays valid in its epoch, however the agent registers in an older one") {
+TEST_CASE("an attested absence stays valid in its epoch, even if the agent registers in an older one") {
   const bool is_in_time = GENERATE(true, false);
   CAPTURE(is_in_time);
   const AuditTotals totals = audit_of_tampered([&](History& h) {

@@ -185,7 +185,8 @@ TEST_CASE("a robot that a coordinator names as displaced is excused if it was ev
 }
 
 TEST_CASE(
-    "a moving robot is excused until it can have braked, 0.2 s after it can have heard of a disturbance") {
+    "a moving robot is excused until it could have braked, 0.2 s after it could have heard of a "
+    "disturbance") {
   const auto is_excused_after = [](Duration duration) {
     Shown shown;
     shown.truth.robots()[1].vx_mps(1);

@@ -76,7 +76,7 @@ TEST_CASE("a robot rests where a disturbance has left it until it moves or is ba
   CHECK_FALSE(floor.disturbances.rests_where_left(0));
 }
 
-TEST_CASE("a robot whose clock has jumped is excused until it rests, even if it drives in place") {
+TEST_CASE("a robot whose clock has jumped is excused until it rests, even if it drives on its reference") {
   Floor floor;
   floor.robots[0]->speed_mps = 1;
   floor.disturbances.announce(0, Disturbances::kClockCause);
@@ -154,7 +154,7 @@ TEST_CASE("no excuse lasts for ever") {
   CHECK_FALSE(floor.contact(0, std::nullopt));
 }
 
-TEST_CASE("an excuse lasts little longer than a minute, whatever end or clock is reported") {
+TEST_CASE("an excuse never lasts much longer than a minute, whatever end or clock is reported") {
   Floor floor;
   floor.push(0, 1h);
   SECTION("an end in an hour") {}

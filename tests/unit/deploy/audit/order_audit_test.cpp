@@ -133,7 +133,7 @@ TEST_CASE(
   CHECK(held(10s) == 0);
 }
 
-TEST_CASE("a confirmed order that a coordinator remembers no more, without a later one, breaks a rule") {
+TEST_CASE("a coordinator that no longer remembers a confirmed order, without a later one, breaks a rule") {
   const auto forgotten = [](const msg::RememberedOrder& order, std::vector<msg::RememberedOrder> kept) {
     return violations(AuditRule::kForgottenOrder, [&](History& h) {
       confirm(h, order);
@@ -230,7 +230,7 @@ void forget(History& h, msg::OrderKind kind) {
   });
 }
 
-TEST_CASE("an order that an agent remembers, and a new coordinator does not, breaks a rule") {
+TEST_CASE("a new coordinator that does not remember an order which an agent remembers breaks a rule") {
   CHECK(violations_after_takeover([](History&) {}) == 0);
   for (const auto kind : {msg::OrderKind::ORDER_HOLD, msg::OrderKind::ORDER_GO}) {
     CAPTURE(static_cast<int>(kind));

@@ -34,7 +34,7 @@ TEST_CASE(
 
 TEST_CASE("a version that was not granted while the hold was in force breaks no rule") {
   Run run;
-  SECTION("a grant before the hold was told") {
+  SECTION("a grant before the hold was announced") {
     run.grant(kFirst, 4, 31);
     run.remember(kFirst, {hold(4, 100)});
   }
@@ -129,7 +129,7 @@ TEST_CASE("a memory counts only if all of its pages were received in one sequenc
     run.audit.on_memory(run.page(kFirst, {}, 2, 3));
     is_whole = true;
   }
-  SECTION("begun anew") {
+  SECTION("started over") {
     run.audit.on_memory(run.page(kFirst, {}, 0, 2));
     run.audit.on_memory(run.page(kFirst, holds, 0, 2));
     run.audit.on_memory(run.page(kFirst, {}, 1, 2));

@@ -23,7 +23,7 @@ struct Succession : Run {
   msg::RememberedOrder lost = hold(4, 100);
 };
 
-TEST_CASE("a new coordinator that was told an order and does not remember it is reported") {
+TEST_CASE("a new coordinator that does not remember an order announced to it is reported") {
   Succession run;
   run.begin();
   run.learn();
@@ -35,13 +35,13 @@ TEST_CASE("a new coordinator that was told an order and does not remember it is 
         "nothing has replaced it");
 }
 
-TEST_CASE("a new coordinator is reported only if it is certain that an agent has told it the order") {
+TEST_CASE("a new coordinator is reported only if an agent has certainly announced the order to it") {
   const bool is_complete = GENERATE(true, false);
   Succession run(is_complete);
   run.begin();
   std::size_t expected = 0;
   SECTION("no agent knows the order") { run.succeed(); }
-  SECTION("not all messages are received, so it may have been told otherwise") {
+  SECTION("not all messages are received, so the agent may have learned something else") {
     run.learn();
     run.succeed();
     expected = is_complete ? 1 : 0;

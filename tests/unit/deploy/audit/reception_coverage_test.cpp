@@ -23,13 +23,11 @@ ReceptionCoverage one_second(std::size_t sources) {
   return time;
 }
 
-TEST_CASE("a source that is heard often is heard all the time") {
+TEST_CASE("a source that is heard often counts as heard all the time") {
   CHECK(one_second(1).share(at(1s), true) == 1);
 }
 
-TEST_CASE("a source that is never heard leaves nothing covered") {
-  CHECK(one_second(2).share(at(1s), true) == 0);
-}
+TEST_CASE("if a source is never heard, nothing is covered") { CHECK(one_second(2).share(at(1s), true) == 0); }
 
 TEST_CASE("a time that has not begun or is empty is not covered") {
   ReceptionCoverage time(1);
@@ -114,7 +112,7 @@ TEST_CASE("the share of several sources agrees with counting milliseconds") {
   }
 }
 
-TEST_CASE("however many silences there are, too little is never counted") {
+TEST_CASE("no silence is left out, however many there are") {
   ReceptionCoverage time(1);
   time.begin(kBegin);
   for (int i = 1; i <= 1000; ++i) {

@@ -31,7 +31,7 @@ struct Frames {
   std::int64_t at_ns = 1'000'000'000;
 };
 
-TEST_CASE("robots that overlap in two observations are in contact, once until they part") {
+TEST_CASE("robots that overlap in two observations count as one contact until they part") {
   Frames frames;
   CHECK(frames.show_apart(0.179) == 0);
   CHECK(frames.show_apart(0.179) == 1);
@@ -41,7 +41,7 @@ TEST_CASE("robots that overlap in two observations are in contact, once until th
   CHECK(frames.show_apart(0.179) == 1);
 }
 
-TEST_CASE("a contact tells when the two were seen apart, if ever") {
+TEST_CASE("a contact states when the two were last seen apart, if ever") {
   Frames frames;
   const auto touch = [&](const Vec2& second_m) {
     std::vector<SeenContact> began;

@@ -44,7 +44,7 @@ TEST_CASE("a base first moves after its latency, and brakes when no more command
   CHECK(base.body.velocity_mps().norm() < 0.01);
 }
 
-TEST_CASE("a base moves in its own frame, or in the world's, and keeps its acceleration and braking") {
+TEST_CASE("a base obeys velocities in its own frame or the world's, within its acceleration and braking") {
   BaseSettings settings;
   settings.latency = 0ms;
   Base base(settings);

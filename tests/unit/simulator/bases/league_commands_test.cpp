@@ -57,7 +57,7 @@ TEST_CASE("feedback says whether the ball is at the dribbler, and a kick moves i
   CHECK(world.ball()->state().velocity_mps.x() > 2.5);
 }
 
-TEST_CASE("a teleport moves the robot of its own team, and commands for numbers that nobody has move none") {
+TEST_CASE("a teleport moves the robot of the named team, and commands for unassigned numbers move none") {
   Scenario scenario = one_robot();
   scenario.robots.emplace_back();
   scenario.robots.back().id = 20;

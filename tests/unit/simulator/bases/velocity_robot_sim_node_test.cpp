@@ -22,7 +22,7 @@ Scenario one_robot() {
 
 }  // namespace
 
-TEST_CASE("cameras see a floor of bases after their delay, and ground truth says what is true") {
+TEST_CASE("cameras see a floor of bases after their delay, and ground truth shows the actual state") {
   SimNetwork network(1, kBegin, {});
   SimBus bus(network), observer(network);
   std::vector<std::pair<Time, msg::DetectionFrame>> frames;

@@ -42,7 +42,7 @@ Vec2 projected(const league::CameraCalibration& camera, const Vec3& point_m) {
   return camera.principal_point_px + camera.focal_length_px * Vec2(seen.x() / seen.z(), seen.y() / seen.z());
 }
 
-TEST_CASE("frames become packets with both teams and all data that a receiver needs") {
+TEST_CASE("frames are converted to packets with both teams and all data that a receiver needs") {
   const Scenario scenario = two_teams();
   const Cameras cameras(scenario, kNow, 1);
   LeagueFrames frames(scenario, cameras.views());

@@ -21,7 +21,7 @@ TEST_CASE("lines are where the league's rules place them") {
   CHECK(a.distance_m(Vec2(0, 4.6)) == Approx(0.095));
 }
 
-TEST_CASE("light falls off to its share at the far end") {
+TEST_CASE("light falls off to the specified fraction at the far end") {
   RenderSpec spec;
   spec.far_light = 0.6;
   const Field field{12, 9};

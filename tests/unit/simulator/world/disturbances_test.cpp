@@ -261,20 +261,20 @@ TEST_CASE("a robot that forgets its pose brakes, reports nothing, and stops itse
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a robot without a pose that is lifted or switched off and on behaves as others do") {
+TEST_CASE("a robot without a pose that is lifted or switched off and on behaves like any other robot") {
   const Scenario scenario = separated_robots(1);
   World world(scenario, kBegin, 1);
   Time now = kBegin + milliseconds(10);
   world.advance(now);
   const auto disturb = [&](msg::DisturbanceKind kind) { return world.disturb(0, disturbance(0, kind), now); };
   REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
-  SECTION("the hand that lifts it tells it so") {
+  SECTION("it knows that it is lifted") {
     REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_LIFT));
     REQUIRE(world.may_report(0));
     CHECK(world.robot_report(0, now).is_lifted);
     CHECK_FALSE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
   }
-  SECTION("power does not bring the pose back") {
+  SECTION("switching it on does not restore the pose") {
     REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF));
     CHECK_FALSE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
     world.advance(now += milliseconds(100));

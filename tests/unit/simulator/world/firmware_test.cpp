@@ -207,7 +207,8 @@ TEST_CASE("a new incarnation continues from the executed version") {
   CHECK(robot.robot_report(at(40)).executing.number == 201);
 }
 
-TEST_CASE("a robot reports for ever whether it has executed a granted version, and own stops are none") {
+TEST_CASE(
+    "a robot always reports whether it has ever executed a granted version, and own stops do not count") {
   auto robot = firmware();
   robot.reboot();
   (void)robot.tick(at(5), {});

@@ -61,7 +61,7 @@ TEST_CASE("cameras see robots wrongly for a while, and ground truth reports it i
   }
 }
 
-TEST_CASE("a robot that cameras have misled is disturbed until it gets a fix that is right") {
+TEST_CASE("a robot that cameras have misled counts as disturbed until it gets a correct fix") {
   const Scenario scenario = separated_robots(1);
   World world(scenario, kBegin, 1);
   Time now = kBegin + milliseconds(30);

@@ -7,7 +7,7 @@
 
 namespace sidestep::joint_planning_study_test {
 
-TEST_CASE("the quick study of explicit planning solves its scenes without faults by every method") {
+TEST_CASE("the quick study of joint planning solves its scenes without faults by every method") {
   StudyFolder folder;
   StudyOptions options;
   options.folder = folder.path();

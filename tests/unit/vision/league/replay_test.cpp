@@ -73,7 +73,7 @@ TEST_CASE("a replay starts at the reader's position") {
   CHECK(replayed(reader, 1) == std::vector<Sent>{{2, 0}, {3, 10}, {4, 20}});
 }
 
-TEST_CASE("times that run backwards or jump by years delay only the rest of the log") {
+TEST_CASE("timestamps that run backwards or jump by years only delay the rest of the log") {
   const Log log({1000, 0, 1010, 5});
   league::LogReader reader = log.reader();
   CHECK(replayed(reader, 1) == std::vector<Sent>{{0, 0}, {1, 0}, {2, 10}, {3, 10}});

@@ -176,7 +176,7 @@ TEST_CASE("a simulation that restarts at zero after a silence is accepted") {
   scene.run(seconds(3), milliseconds(4));
 }
 
-TEST_CASE("single frames with absurd times change nothing") {
+TEST_CASE("single frames with absurd timestamps change nothing") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Scene scene({kBegin.time_since_epoch()}, seed);

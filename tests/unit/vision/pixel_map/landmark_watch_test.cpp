@@ -54,7 +54,7 @@ Image random_view(const CameraModel& camera, Rng& rng) {
   return renderer.render({robots, cylinders});
 }
 
-TEST_CASE("a camera in its place is known, whatever stands on the floor and however the light falls") {
+TEST_CASE("a camera that has not moved counts as known, whatever is on the floor and whatever the light") {
   LandmarkWatch watch(camera_over_field(), kField);
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Rng rng(seed);

@@ -8,7 +8,9 @@ namespace sidestep::incomplete_frames_test {
 
 using namespace sidestep::test;
 
-TEST_CASE("what a frame left out may be nearer by its speed, its error and the distance of other robots") {
+TEST_CASE(
+    "obstacles that a frame left out may be nearer by their motion, their error and the distance of other "
+    "robots") {
   const std::uint64_t seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);
   Rng rng(seed);

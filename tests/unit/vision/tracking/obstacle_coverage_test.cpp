@@ -101,7 +101,7 @@ TEST_CASE("obstacles that pass through each other stay within the discs in which
                                   << 1e3 * largest_m << " mm");
 }
 
-TEST_CASE("a track is at once as large as the obstacle that was observed last") {
+TEST_CASE("a track takes the size of the latest observation at once") {
   ObstacleTracker tracker({.max_speed_mps = kMaxSpeed_mps, .position_noise_m = kNoise_m});
   Frame frame;
   msg::ObstacleList list;

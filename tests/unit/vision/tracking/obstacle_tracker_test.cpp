@@ -126,7 +126,7 @@ TEST_CASE("late and duplicate frames change no track and start none") {
   CHECK(list.obstacles()[0].vx_mps() == Approx(1.5).margin(0.1));
 }
 
-TEST_CASE("an invalid obstacle is dropped alone, and an invalid count with its frame") {
+TEST_CASE("an invalid obstacle is dropped alone, an invalid count drops the whole frame") {
   auto message = empty_frame(0, kBegin);
   add_obstacle(message, {1, 2});
   Frame frame;

@@ -40,7 +40,7 @@ TEST_CASE("an observation belongs to a track within the gate, and not a milliont
   CHECK_FALSE(accepts(gate_m * (1 + 1e-6)));
 }
 
-TEST_CASE("of two observations away from a track, the nearer one is its candidate, wherever the track is") {
+TEST_CASE("of two observations away from a track, the one nearer to the track becomes its candidate") {
   TrackModel model;
   model.displaced_hits = 100;
   const Vec2 place_m(2, 1), far_m(1, 1), near_m(2.5, 1);
@@ -53,7 +53,7 @@ TEST_CASE("of two observations away from a track, the nearer one is its candidat
   CHECK(three.candidate.position.position() == near_m);
 }
 
-TEST_CASE("a displaced robot is where two observations show it, of which no mean with the others is taken") {
+TEST_CASE("a displaced robot is where two observations show it, without averaging in others") {
   const TrackModel model;
   const Vec2 place_m(2, 1), displaced_m(2.05, 1);
   const TrackState state = resting(place_m, model);

@@ -63,7 +63,8 @@ TEST_CASE("a robot that no camera sees is lost, and reported when it is seen aga
   CHECK(f.events->all().back().robot == 0);
 }
 
-TEST_CASE("refused frames are reported with the reason, ever more rarely, and that there is no other") {
+TEST_CASE(
+    "refused frames are reported ever more rarely with the reason, as are cameras without any usable frame") {
   Fixture f({2, 3});
   f.run(20'000 * kMs, 2, true, 3000 * kMs);
   CAPTURE(f.events->text());

@@ -175,7 +175,8 @@ TEST_CASE("the node publishes a list of obstacles with every world, complete onc
 }
 
 // As with the league's packets and with images.
-TEST_CASE("the list is complete only while every configured camera watches, and no other matters") {
+TEST_CASE(
+    "the list is complete only while every configured camera watches, and other cameras do not matter") {
   SimNetwork net(351, kBegin, {});
   SimBus vision_bus(net), listener_bus(net);
   const bool are_given = GENERATE(false, true);
@@ -248,7 +249,7 @@ TEST_CASE("a node with frames from its caller ignores the bus and calls its list
   CHECK((position_of(latest.robots()[0]) - Vec2(1, 2)).norm() < 1e-3);
 }
 
-TEST_CASE("vision sees robots again although its clock and the cameras' have been ahead") {
+TEST_CASE("vision sees robots again after its clock and the cameras' were ahead") {
   const Duration ahead = std::chrono::milliseconds(GENERATE(50, 5000, 3'500'000));
   CAPTURE(to_seconds(ahead));
   Rng rng(3);

@@ -52,7 +52,7 @@ TEST_CASE("a robot descends around a post to its goal") {
   }
 }
 
-TEST_CASE("in a U, the robot is stuck in a local minimum, which is reported") {
+TEST_CASE("in a U-shaped obstacle the robot gets stuck in a local minimum, which is reported") {
   //      +------+
   //  robot →    |    goal
   //      +------+
@@ -72,7 +72,7 @@ TEST_CASE("in a U, the robot is stuck in a local minimum, which is reported") {
   CHECK(field.force(end, {2, 0}, free(end, 0)).norm() < 0.5);
 }
 
-TEST_CASE("a rotational field leads around a wall that the plain field is stuck at") {
+TEST_CASE("a rotational field leads around a wall at which the plain field gets stuck") {
   std::vector<Vec2> points;
   add_wall({1, 0.3}, {1, -0.3}, points);
   PotentialField plain(kRadius_m), rotational(kRadius_m, {.rotation = 1});
@@ -81,7 +81,7 @@ TEST_CASE("a rotational field leads around a wall that the plain field is stuck 
   CHECK(around.end == DescentEnd::kArrived);
 }
 
-TEST_CASE("descents end at contacts and when their steps are spent") {
+TEST_CASE("a descent ends at a contact, or when its steps are used up") {
   const std::vector<Vec2> post{{0.05, 0}};
   PotentialField field(kRadius_m);
   CHECK(field.descend({0, 0}, {2, 0}, obstacles_of(post), 100).end == DescentEnd::kTouching);

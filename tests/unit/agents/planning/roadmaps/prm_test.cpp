@@ -63,7 +63,7 @@ TEST_CASE("roadmaps find valid paths in all worlds, the same ones from the same 
   }
 }
 
-TEST_CASE("a roadmap's path is its shortest one, also after obstacles have moved") {
+TEST_CASE("a query returns the roadmap's shortest path, even after obstacles have moved") {
   const auto seed = GENERATE(1u, 2u, 3u);
   const PlanWorld world = make_world("circles", 30, seed);
   ObstacleWorld obstacles(world.obstacles);
@@ -166,7 +166,8 @@ TEST_CASE("a dynamic roadmap uses a gap that was closed when the roadmap was bui
 }
 
 TEST_CASE(
-    "with all blocked motions, an old roadmap is as good as a new one of its nodes once obstacles leave") {
+    "an old roadmap that keeps all blocked motions is as good as a new one on its nodes once obstacles "
+    "leave") {
   const auto seed = GENERATE(1u, 2u, 3u);
   PlanWorld world = make_world("circles", 15, seed);
   ObstacleWorld obstacles(world.obstacles);

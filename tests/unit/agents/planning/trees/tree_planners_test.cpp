@@ -76,7 +76,7 @@ TEST_CASE("two trees find valid paths in all worlds, the same ones from the same
   plan_all_worlds<BidirectionalErrt<DiscDomain>>(BidirectionalErrtSettings{.bridges = 4}, seed, 0.9);
 }
 
-TEST_CASE("trees plan in any domain") {
+TEST_CASE("tree planners work in any domain") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(seed);
   const BallDomain domain = divided_cube(true);
@@ -92,7 +92,8 @@ TEST_CASE("trees plan in any domain") {
   }
 }
 
-TEST_CASE("a planner whose budget is spent returns a path as near to the goal as it reached") {
+TEST_CASE(
+    "a planner that runs out of budget returns a path to the nearest point to the goal that it reached") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(seed);
   const BallDomain domain = divided_cube(false);

@@ -161,7 +161,7 @@ TEST_CASE("a flood of made-up participants delays a genuine one, and does not ke
   CHECK(admitted == 0);
 }
 
-TEST_CASE("a certificate counts only while it is valid") {
+TEST_CASE("a certificate is accepted only while it is valid") {
   Fixture f;
   const Certificate agent = f.issue("agent 3", 60s);
   const ParticipantId id = id_with(agent);

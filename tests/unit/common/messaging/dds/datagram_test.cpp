@@ -72,7 +72,7 @@ TEST_CASE("a departure is an announcement of its sender only") {
   CHECK_FALSE(is_plain);
 }
 
-TEST_CASE("announcements to processes that have shown their keys are announcements, too") {
+TEST_CASE("announcements to processes that have shown their keys are recognised as announcements") {
   // The reader and the writer follow the headers and the first two fields of the only submessage.
   constexpr std::size_t kReader = 20 + 4 + 4, kWriter = kReader + 4;
   Datagram departure = departure_of(kSender);

@@ -214,7 +214,7 @@ TEST_CASE("a watched descriptor wakes a sleeping loop, and a closed one does not
   CHECK(std::clock() - cpu_before < CLOCKS_PER_SEC / 20);
 }
 
-TEST_CASE("an idle run_until() returns at its time") {
+TEST_CASE("an idle run_until() returns on time") {
   EventLoop loop;
   const Time until = loop.now() + 2 * kMillisecond;
   loop.run_until(until);

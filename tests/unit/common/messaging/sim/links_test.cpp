@@ -236,7 +236,7 @@ struct ReliablePair {
   void run_for(Duration duration) { network.run_until(network.now() + duration); }
 };
 
-TEST_CASE("processes of which one hears the other after less than six seconds keep reliable messages") {
+TEST_CASE("reliable messages survive a silence of less than six seconds in one direction") {
   ReliablePair pair;
   pair.set_cut(true);
   pair.send(1);
@@ -289,7 +289,7 @@ TEST_CASE("a short cut right after a start delays discovery, a later one does no
   CHECK(received == std::vector<std::uint64_t>{2, 3});
 }
 
-TEST_CASE("reliable messages do not change the losses and delays of others") {
+TEST_CASE("reliable messages do not change the losses and delays of other messages") {
   const auto run = [](bool with_heartbeats) {
     SimNetwork network(1, kBegin, {0.3, 0.1, 1ms, 20ms});
     SimBus sender(network), receiver(network);

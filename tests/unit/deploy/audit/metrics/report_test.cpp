@@ -220,7 +220,7 @@ TEST_CASE("excused contacts do not fail a run, other contacts do") {
   CHECK(report.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE("a run whose audit covered too little did neither pass nor fail") {
+TEST_CASE("a run whose audit covered too little neither passes nor fails") {
   Report report = example();
   report.arrived = report.robots;
   report.audit = covered();
@@ -243,7 +243,7 @@ TEST_CASE("a run whose audit covered too little did neither pass nor fail") {
   CHECK_THAT(summary(report), EndsWith("\nfailed: 1 of 2 arrived\n"));
 }
 
-TEST_CASE("a report states what the audit covered, by what reference, and what it excused why") {
+TEST_CASE("a report states what the audit covered, by what reference, and what it excused and why") {
   Report report = example();
   report.audit = covered();
   report.audit->coverage = {0.99, 0.98, 0.97, 0.96, 1};

@@ -414,7 +414,7 @@ TEST_CASE(
   CHECK_THAT(summary(report), ContainsSubstring("refused: 100 other_rules by simulator\n"));
 }
 
-TEST_CASE("counters of ever new processes, incarnations and robots take a limited amount of memory") {
+TEST_CASE("counters of ever more processes, incarnations and robots take a limited amount of memory") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);
@@ -428,7 +428,7 @@ TEST_CASE("counters of ever new processes, incarnations and robots take a limite
   CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 5000);
 }
 
-TEST_CASE("a process that has been restarted very often is still counted, and nothing of it twice") {
+TEST_CASE("a process that has been restarted very often is still counted, and nothing is counted twice") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);

@@ -71,7 +71,8 @@ TEST_CASE("bag info lists topics, attachments and metadata") {
   CHECK_THAT(text, Catch::Matchers::Matches("[^]*feedback/1 +sidestep::msg::Feedback +101 +100\\.0 [^]*"));
 }
 
-TEST_CASE("bag cut keeps the messages of an interval and of topics, and is not complete any more") {
+TEST_CASE(
+    "bag cut keeps the messages of an interval and of some topics, and marks the result as incomplete") {
   const TemporaryFolder folder;
   record(folder.file("a.mcap"), 1000, 2000);
   CHECK(PlaybackBus(folder.file("a.mcap")).header().is_complete);

@@ -162,7 +162,7 @@ TEST_CASE("reading a damaged MCAP file ends without harm, and reports the damage
   }
 }
 
-TEST_CASE("sizes that an MCAP file only claims take no memory") {
+TEST_CASE("sizes that an MCAP file merely claims allocate no memory") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const std::string magic(kMcapMagic.begin(), kMcapMagic.end());

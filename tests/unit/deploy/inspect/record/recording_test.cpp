@@ -107,7 +107,7 @@ TEST_CASE("a recording that was compressed plays back the same messages, and is 
   CHECK(contents(compressed).size() < contents(plain).size() / 2);
 }
 
-TEST_CASE("a recording in a building holds the map") {
+TEST_CASE("a recording in a building contains the map") {
   const TemporaryFolder folder;
   const std::string file = folder.file("run.mcap");
   const std::string house = SIDESTEP_SOURCE_DIR "/deploy/scenarios/house.yaml";

@@ -13,7 +13,8 @@ std::vector<std::string> texts(const std::vector<std::string>& words) {
   return result;
 }
 
-TEST_CASE("identities stand one after another, and ranges of processes are single keys") {
+TEST_CASE(
+    "identities are listed one after another, and a range gives one key per process, except for robots") {
   using Texts = std::vector<std::string>;
   CHECK(texts({"agent", "3"}) == Texts{"agent 3"});
   CHECK(texts({"agent 3"}) == Texts{"agent 3"});

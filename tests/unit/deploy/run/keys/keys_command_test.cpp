@@ -63,7 +63,7 @@ TEST_CASE("a scenario's keys are made at once, and those that exist stay") {
   CHECK(Certificate::load(keys + "/enclaves/agent-3/cert.pem").serial() == first);
 }
 
-TEST_CASE("wrong uses are explained") {
+TEST_CASE("usage errors are explained") {
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys");
   CHECK_THAT(run({"keys", "issue", "vision", "--keys", keys}),

@@ -24,7 +24,7 @@ std::string permissions_of(const char* identity) {
                           time_from_ns(1'800'000'000'000'000'000), time_from_ns(1'831'536'000'000'000'000));
 }
 
-TEST_CASE("permissions name whose they are, how long they are valid, and deny everything else") {
+TEST_CASE("permissions state their owner and how long they are valid, and deny everything else") {
   const std::string text = permissions_of("agent 3");
   CHECK_THAT(text, ContainsSubstring("<subject_name>CN=agent 3,O=Sidestep</subject_name>"));
   CHECK_THAT(text, ContainsSubstring("<not_before>2027-01-15T08:00:00</not_before>"));

@@ -98,7 +98,7 @@ TEST_CASE("a local process is started directly, one in a namespace by ip netns e
         expected);
 }
 
-TEST_CASE("agents give way where other processes run, and not on computers of robots") {
+TEST_CASE("agents run at low priority where other processes run, but not on computers of robots") {
   const Fixture fixture;
   ProcessSpec vision = agent_spec(fixture);
   vision.program = "sidestep-vision";

@@ -100,7 +100,7 @@ TEST_CASE("the processor time and memory of children add up over their restarts"
   CHECK(group.resource_use().at("busy").cpu_s > 1.2 * once.cpu_s);
 }
 
-TEST_CASE("a child gives way to others as far as it should") {
+TEST_CASE("a child runs at the requested priority") {
   ProcessGroup group(log_path());
   ChildSpec spec = shell("polite", "nice; exec sleep 60");
   spec.niceness = 3;
@@ -147,7 +147,7 @@ TEST_CASE("a child with `restart` is started again after each death, as a new pr
   CHECK(group.poll(0ms).empty());
 }
 
-TEST_CASE("a child that dies again and again is started less and less often, but soon after a long life") {
+TEST_CASE("a child that keeps dying is restarted less and less often, but promptly after a long life") {
   ProcessGroup group(log_path());
   pid_t pid = group.start(shell("mortal", "exec sleep 1000", true));
   const auto restart_delay = [&] {
@@ -255,7 +255,7 @@ TEST_CASE("a child gets more input than its stdin holds, and one that does not r
   CHECK(group.last_lines("closed") == std::vector<std::string>{"closed", "end"});
 }
 
-TEST_CASE("a child that prints a lot does not stall, and only its last lines are kept") {
+TEST_CASE("a child that prints a lot does not block, and only its last lines are kept") {
   ProcessGroup group(log_path());
   group.start(shell("chatter", "i=0; while [ $i -lt 20000 ]; do echo line $i; i=$((i+1)); done"));
   CHECK(next_event(group).reason == "exit code 0");

@@ -84,7 +84,7 @@ TEST_CASE("processes continue when their director dies, and the next director ta
   CHECK_THAT(f.text("log"), ContainsSubstring("signal 6 (SIGABRT)") && ContainsSubstring("from the third"));
 }
 
-TEST_CASE("each director hears of the processes that have died for good") {
+TEST_CASE("each director learns which processes have died permanently") {
   Fixture f;
   const int code = f.keep([&](Processes& processes, const Deaths& deaths) {
     const pid_t pid = processes.start(shell("simulator", "echo last words; exit 5"));
@@ -120,7 +120,7 @@ TEST_CASE("a failed request of a director throws an exception in the director") 
   CHECK(code == 0);
 }
 
-TEST_CASE("a director that is asked to end may do its work, and one that dies then is lost") {
+TEST_CASE("a director that is asked to end may finish its work, and if it dies instead it is lost") {
   Fixture f;
   const pid_t self = getpid();
   const auto ends_well = [&](Processes& processes, const Deaths&) {

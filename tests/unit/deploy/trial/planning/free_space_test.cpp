@@ -149,7 +149,7 @@ TEST_CASE("free space connects what a flood fill joins and separates what a floo
   CHECK(undecided < joined / 10);
 }
 
-TEST_CASE("free space tells a gap that is a nanometre too narrow from one that is wide enough") {
+TEST_CASE("free space distinguishes a gap that is a nanometre too narrow from one that is wide enough") {
   PlanWorld world;
   world.radius_m = 0.1;
   for (const double excess_m : {-1e-9, 1e-9}) {
@@ -175,14 +175,14 @@ TEST_CASE("a closed ring separates its inside from its outside and an open one d
                   ".#####.", ".#.a.#.", ".#....b", ".#####."}));
 }
 
-TEST_CASE("a wall from side to side separates, boxes that meet at corners included") {
+TEST_CASE("a wall from side to side separates, even one of boxes that meet at corners") {
   CHECK_FALSE(connects({"a.#....",  //
                         "..#....", "...#...", "....#.b"}));
   CHECK(connects({"a.#....",  //
                   "..#....", ".......", "....#.b"}));
 }
 
-TEST_CASE("two islands in one ring, and rings around both positions, are told apart") {
+TEST_CASE("two islands in one ring are distinguished from rings around both positions") {
   CHECK(connects({"#########",  //
                   "#.......#", "#a.#.#.b#", "#.......#", "#########"}));
   CHECK_FALSE(connects({"#########",  //

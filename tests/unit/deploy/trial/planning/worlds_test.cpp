@@ -8,7 +8,7 @@
 
 namespace sidestep::worlds_test {
 
-TEST_CASE("worlds come from their seed and all queries are solvable") {
+TEST_CASE("a seed determines its world, and all queries are solvable") {
   const std::string name = GENERATE(from_range(world_names()));
   const auto seed = GENERATE(1u, 9u);
   CAPTURE(name, seed);

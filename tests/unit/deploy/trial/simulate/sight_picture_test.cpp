@@ -49,7 +49,7 @@ TEST_CASE("a picture of a laser's view shows the scan, where people may step out
   CHECK(count(svg, ">7</text>") == 1);
 }
 
-TEST_CASE("there is no such picture of a robot without a laser") {
+TEST_CASE("a robot without a laser has no picture of its view") {
   Scenario scenario = scene();
   CHECK_THROWS_WITH(SightPicture(scenario, 8), "the scenario has no robot 8");
   scenario.laser.reset();

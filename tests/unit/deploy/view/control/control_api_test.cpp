@@ -107,7 +107,7 @@ TEST_CASE("requests without the right to command have no effect") {
   CHECK(run.bookmarks.empty());
 }
 
-TEST_CASE("bodies and paths that are wrong are refused with what is wrong") {
+TEST_CASE("invalid request bodies and paths are refused with the reason") {
   ControlledRun run;
   const auto error = [&](const std::string& path, const std::string& body) {
     const WebResponse answer = run.request("POST", path, body);

@@ -29,7 +29,7 @@ class FakeClient : public WebSocket {
   std::vector<Json> texts;
 };
 
-TEST_CASE("the client that Lichtblick uses decodes the messages of a run by the schemas that it gets") {
+TEST_CASE("the client that Lichtblick uses decodes the messages of a run with the schemas that it receives") {
   const TemporaryFolder folder;
   for (const char* name : {"package.json", "package-lock.json", "check.mjs"})
     std::filesystem::copy_file(std::string(SIDESTEP_CLIENT_DIR "/") + name, folder.file(name));
@@ -128,7 +128,7 @@ TEST_CASE("a client gets messages of the channels that it subscribes to only") {
   publish();
 }
 
-TEST_CASE("messages of clients that make no sense are told apart, and writing is not supported") {
+TEST_CASE("meaningless messages of clients are refused, and writing is not supported") {
   FoxgloveServer server;
   FakeClient client;
   server.add(client);

@@ -8,7 +8,7 @@
 
 namespace sidestep::closest_pair_test {
 
-TEST_CASE("the closest pair is that of a comparison of all pairs") {
+TEST_CASE("the closest pair agrees with a comparison of all pairs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   INFO("seed " << seed);
   Rng rng(seed);

@@ -100,7 +100,7 @@ TEST_CASE("changes of robots, agents, orders and coordinators are events, repeti
   CHECK(w.kinds() == "off reference hold restart epoch blocked free ");
 }
 
-TEST_CASE("values that no message should have do no harm") {
+TEST_CASE("impossible values in messages do no harm") {
   Watched w;
   msg::Feedback feedback;
   feedback.robot(4'000'000'000);
@@ -143,7 +143,7 @@ TEST_CASE("a flood of orders of invented senders causes few events") {
   CHECK(w.log.count() == before + 1);
 }
 
-TEST_CASE("a flood of invented senders with other rules causes few events, and hides no later one") {
+TEST_CASE("a flood of invented senders with different rules causes few events, and hides no later one") {
   Watched w;
   for (std::uint32_t i = 0; i < 100'000; ++i) {
     w.watch.on_refused(1'000'000 + i, w.now);

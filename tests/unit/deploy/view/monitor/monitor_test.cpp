@@ -96,7 +96,7 @@ struct MonitoredRun {
   const Json& promise() const { return viewer.states.at("panels").at("promise"); }
 };
 
-TEST_CASE("viewers see robots where they are, what they execute and what panels say of them") {
+TEST_CASE("viewers see where robots are, what they execute, and what panels say about them") {
   MonitoredRun run;
   run.system.run_for(2s);
   CHECK(run.viewer.frames >= 60);
@@ -170,7 +170,7 @@ TEST_CASE("a run that breaks the guarantee is an event and changes the lamp") {
   CHECK(run.promise().at("state") == "broken");
 }
 
-TEST_CASE("a viewer seeks back while the run goes on") {
+TEST_CASE("a viewer can seek back while the run continues") {
   MonitoredRun run;
   run.system.run_for(5s);
   const double end_s = run.viewer.time_s();
@@ -208,7 +208,7 @@ TEST_CASE("a viewer gets all messages of the channel that it inspects, and of no
   CHECK(run.viewer.inspected == before);
 }
 
-TEST_CASE("messages of viewers that make no sense are told apart") {
+TEST_CASE("meaningless messages of viewers are refused") {
   MonitoredRun run;
   run.system.run_for(500ms);
   for (const char* bad :

@@ -61,7 +61,7 @@ TEST_CASE("the roadmap stays while obstacles move, and shows what is blocked") {
   CHECK(states[2] > states[1]);  // only what the search needed was checked again
 }
 
-TEST_CASE("messages that make no sense change nothing") {
+TEST_CASE("meaningless messages change nothing") {
   PlanningScene scene(1);
   const std::string before = scene.json().dump();
   for (const char* bad : {"3", "{}", R"({"op":"move"})", R"({"op":"move","what":"start","x":99,"y":0})",

@@ -35,7 +35,7 @@ TEST_CASE("only requests with the token may command") {
   CHECK_FALSE(command_refusal(without, {"", "", "Bearer "}).empty());
 }
 
-TEST_CASE("tokens differ") {
+TEST_CASE("every token is different") {
   std::set<std::string> tokens;
   for (int i = 0; i < 100; ++i) tokens.insert(random_token());
   CHECK(tokens.size() == 100);

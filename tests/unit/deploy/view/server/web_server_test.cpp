@@ -124,7 +124,7 @@ TEST_CASE("a web server survives requests that are not HTTP") {
   CHECK(http_request(server.port(), "GET", "/").status == 200);
 }
 
-TEST_CASE("viewers get messages, and agree on a protocol") {
+TEST_CASE("viewers negotiate a protocol and get messages") {
   TestServer server;
   SocketClient viewer(server.port(), "three, two");
   viewer.send("hello");
@@ -155,7 +155,7 @@ TEST_CASE("a viewer whose messages make no sense or are too long is disconnected
   CHECK(wait_until([&] { return server.closed == 3; }));
 }
 
-TEST_CASE("an exception of a handler ends one answer or one viewer, and nothing else") {
+TEST_CASE("an exception in a handler ends only that answer or that viewer") {
   TestServer server;
   SocketClient other(server.port(), "one"), viewer(server.port(), "one");
   viewer.send("throw");

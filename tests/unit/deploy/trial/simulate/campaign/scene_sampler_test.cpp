@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-TEST_CASE("about half of the random scenes have the usual planner, and all that reach goals occur") {
+TEST_CASE("about half of the random scenes use the default planner, and every driving planner occurs") {
   std::map<std::string, int> scenes, robots;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     Rng rng(seed);

@@ -94,13 +94,13 @@ TEST_CASE("a trial fails for each of its reasons, and says which") {
     judged.progress[1].agent_state.reset();
     judged.check_fails("robots 1 do not drive");
   }
-  SECTION("a clock out of bound that nobody notices") {
+  SECTION("a clock out of bounds that nobody notices") {
     const RobotEnd end = GENERATE(RobotEnd::kClockOutOfBound, RobotEnd::kClockLeftBound);
     judged.end(1, end, msg::AgentState::AGENT_DRIVING);
     judged.progress[1].grants = 0;
     judged.check_fails("the agents of robots 1 do not detect");
   }
-  SECTION("a robot that is driven although its clock is far out of bound") {
+  SECTION("a robot that is driven although its clock is far out of bounds") {
     judged.end(1, RobotEnd::kClockOutOfBound, msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
     judged.trial.scenario.robots[1].clock_offset = 30s;
     judged.check_fails("robots 1 were driven");

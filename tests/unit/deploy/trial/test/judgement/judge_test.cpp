@@ -116,7 +116,7 @@ TEST_CASE("at rest: within the span, and for as long as expected") {
   check_fails(ExpectAtRest{kBoth, {4.2, 5}, 0}, history, 5, "robot 2 still moved at 0.500 m/s");
 }
 
-TEST_CASE("at rest is not judged without ground truth, for robots off the floor, or after the end") {
+TEST_CASE("at rest: not judged without ground truth, for robots off the floor, or after the end") {
   RunHistory history = run();
   remove_truth(history, 3, 4.5);
   check_not_judged(ExpectAtRest{kOne, {2, 4}, 0}, history, "ground truth is missing after 2.9");
@@ -209,7 +209,7 @@ TEST_CASE("arrivals: which robot has not arrived, or too late") {
   check_not_judged(ExpectNotArrived{{{2}, false}}, run_until(5, "interrupted"), "aborted");
 }
 
-TEST_CASE("other rules: the process is named, or others are") {
+TEST_CASE("different rules: the expected process is named, or only others are") {
   RunHistory history = run();
   check_fails(ExpectMismatch{"agent 1"}, history, 10, "no process is reported");
   history.end.mismatches["agent 2"] = "margin_m is 0.02 instead of 0.01";

@@ -86,7 +86,8 @@ TEST_CASE("states of superseded coordinators and of standbys are ignored") {
   CHECK(run.history().granting_coordinator() == 1);
 }
 
-TEST_CASE("contacts are recorded with their robots, each once, more than a message lists are counted") {
+TEST_CASE(
+    "contacts are recorded with their robots, each once, and those beyond a message's list are counted") {
   Fixture run;
   run.send_truth(1);  // before the first grant
   run.send_state(0, 40, kGranting);
@@ -102,7 +103,7 @@ TEST_CASE("contacts are recorded with their robots, each once, more than a messa
   CHECK(run.history().unidentified_contacts == 5);
 }
 
-TEST_CASE("notices of coordinators and agents are recorded, and the last heartbeat tells who is missing") {
+TEST_CASE("notices of coordinators and agents are recorded, and the last heartbeat shows who is missing") {
   Fixture run;
   msg::RobotNotice notice;
   notice.robot(4);

@@ -96,7 +96,7 @@ TEST_CASE("disturbances of robots, and what the coordinator says of them") {
       "expect: [{named: 1, as: displaced, within_s: 1}, {not_arrived: 1}, {arrived: 2}]\n");
 }
 
-TEST_CASE("a standby with other rules is named, a later restart with the test's own rules is accepted") {
+TEST_CASE("a standby with different rules is named, a later restart with the test's own rules is accepted") {
   const FaultTest test =
       parse_fault_test("coordinators: 2\n" + kLanes +
                            "faults:\n  - {at_s: 0.5, restart: coordinator 1, scenario: ../crossing.yaml}\n"
