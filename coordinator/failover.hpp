@@ -104,9 +104,9 @@ class Failover {
   std::set<RobotId> missing_;  // robots missing according to the active coordinator's last heartbeat
   Time active_since_{};
   Time unheard_at_;                    // last time at which robots were not heard
-  std::optional<Time> serving_since_;  // since when this coordinator grants and no agent asks in vain
+  std::optional<Time> serving_since_;  // since when it has granted with no agent left unserved
   bool has_served_ = false;            // whether serving_since_ was ever set since it became active
-  bool has_risen_ = false;             // it has begun an epoch above an obeyed one since it became active
+  bool has_risen_ = false;             // since it became active, it has begun an epoch above an obeyed one
   int failures_ = 0;                   // number of consecutive times that it was active without serving
   Epoch epoch_ = 0, highest_ = 0;      // own epoch, and highest known epoch
   RoleCause cause_;

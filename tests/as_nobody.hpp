@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// The text that `work` returns in a process of user nobody. Needs root.
+/// Runs `work` in a process of user nobody, and returns its text. Needs root.
 inline std::string as_nobody(const std::function<std::string()>& work) {
   constexpr uid_t kNobody = 65534;
   std::array<int, 2> ends{};

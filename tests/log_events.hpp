@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// The events that nodes report.
+/// Collects the events that nodes report.
 class LogEvents {
  public:
   template <typename Node>
@@ -20,7 +20,7 @@ class LogEvents {
   LogEvents& operator=(const LogEvents&) = delete;
 
   const std::vector<LogEvent>& all() const { return events_; }
-  /// How many events contain this text.
+  /// Number of events that contain this text.
   std::ptrdiff_t count(const std::string& text) const {
     return std::ranges::count_if(
         events_, [&](const LogEvent& event) { return event.text.find(text) != std::string::npos; });

@@ -30,7 +30,7 @@ DriveSettings drive_settings(const Scenario& scenario, Duration latency);
 /// A robot that a driver moves. It consists of the robot's side of the protocol in single precision, the
 /// estimate of its pose, and the control of its velocity. The base obeys after a latency, so the robot
 /// predicts where it will be by then and steers towards its reference's position at that time. It refuses
-/// versions that arrive too late for this.  It starts without a pose, and stands still until fixes agree on
+/// versions that arrive too late for this. It starts without a pose, and stays at rest until fixes agree on
 /// where it is. All times are by the process's clock, which never goes back.
 class DrivenRobot {
  public:

@@ -19,7 +19,7 @@ class OdometryDates {
 
   explicit OdometryDates(Duration max_error) : max_error_(max_error) {}
 
-  /// Whether the report's date is believed. Call it once for each report, in order of arrival.
+  /// Whether the report's timestamp is trusted. Call it once for each report, in order of arrival.
   [[nodiscard]] bool admit(Time measured_at, Time arrived_at);
 
  private:

@@ -19,7 +19,7 @@ struct IntentToFollow {
   State at_start;       ///< the robot's state when the motion starts
   double length_m = 0;  ///< distance that the robot may drive before it stops
   MotionLimits limits{};
-  double standstill_mps = 0;  ///< an intended speed below this counts as standing still
+  double standstill_mps = 0;  ///< an intended speed below this counts as being at rest
   HoldBounds hold{};
 };
 

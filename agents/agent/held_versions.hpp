@@ -18,7 +18,7 @@ class HeldVersions {
     int lost = 0;               ///< number of forwarded versions that the robot did not activate
   };
 
-  /// A version that starts later than this was proposed by a wrong clock. Agents propose beside it.
+  /// A version that starts later than this was proposed by a wrong clock. Agents keep proposing despite it.
   static constexpr Duration kMaxAhead{2'000'000'000};
 
   explicit HeldVersions(VersionNumber next_number) : next_number_(next_number) {}

@@ -48,11 +48,11 @@ class IntentPlanner {
   Intent steer(const Query& query, const RouteToTarget& routes, Neighbours& neighbours);
   /// Like steer(), but uses the planner's local methods. Fills preferred_mps_.
   Intent steer_locally(Query query, const RouteToTarget& routes, Neighbours& neighbours);
-  /// Adds the nearby robots that this one steers around to the steering.
+  /// Adds to the steering the nearby robots that this one steers around.
   void add_robots(const Query& query, Neighbours& neighbours);
   /// Adds the obstacles near a position to the steering.
   void add_obstacles(const Vec2& position_m, const ZoneMap& zones);
-  /// Adds the walls of the map that a robot at a position would see to the steering.
+  /// Adds to the steering the walls of the map that a robot at a position would see.
   void add_walls(const Vec2& position_m);
   /// The direction of the route, turned right by deadlock recovery as far as obstacles allow.
   Vec2 recovery_direction(const Query& query, const RouteToTarget& routes) const;

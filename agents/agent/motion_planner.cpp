@@ -15,7 +15,7 @@ namespace {
 constexpr Duration kMinHold{16'000'000};
 /// A goal that is unreachable for longer than this is reported as blocked.
 constexpr Duration kBlockedAfter{300'000'000};
-constexpr double kStandstill_mps = 0.01;  ///< intended speeds below this count as standing still
+constexpr double kStandstill_mps = 0.01;  ///< intended speeds below this count as being at rest
 
 std::span<const double> extra_clearances_m(const Scenario& scenario) {
   if (scenario.laser) return kClearancesInSight_m;

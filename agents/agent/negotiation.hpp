@@ -71,7 +71,7 @@ class Negotiation {
   }
   /// Whether the coordinator may grant a proposal at this time.
   bool may_propose(Time now) const { return wait_reason(now) == WaitReason::kNone; }
-  /// Why it may not, as far as the negotiation knows.
+  /// Why the coordinator may not grant a proposal, as far as the negotiation knows.
   WaitReason wait_reason(Time now) const;
   /// Whether the coordinator has registered this agent in the epoch, as far as is known.
   bool is_registered() const {

@@ -48,11 +48,11 @@ class OccludedCorners {
     Time since{};
   };
   /// Measures how long the robot has crept near one place. Returns whether it has for the full time, which
-  /// then starts anew.
+  /// then starts over.
   bool measure_standstill(const Approach& approach, Time now);
   /// The nearest place ahead of the robot where a person may appear.
   std::optional<Vec2> corner_ahead_m(const Approach& approach, const HiddenSpace& hidden) const;
-  /// Whether a person or another robot stands at the corner.
+  /// Whether a person or another robot is at the corner.
   bool is_body(const Vec2& corner_m, const RobotLaser& laser) const;
 
   double radius_m_;  // the robot's

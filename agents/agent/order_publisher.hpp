@@ -15,10 +15,10 @@ class OrderPublisher {
  public:
   OrderPublisher(Bus& bus, RobotId robot);
 
-  /// Takes in a page of a coordinator that the agent has handled, and publishes what it calls for.
+  /// Processes a coordinator's page that the agent has already handled, and publishes what it requires.
   void on_page(const OrderPage& page, Agent& agent);
-  /// Repeats the orders that coordinators have announced: they answer a client once another process remembers
-  /// its order.
+  /// Repeats the orders that coordinators have announced, because they answer a client only once another
+  /// process remembers its order.
   void confirm_orders(const Agent& agent);
   /// Publishes the order's status if it has changed, and once a second.
   void publish_status(const Agent& agent);

@@ -9,8 +9,8 @@ namespace sidestep {
 
 /// Preferred clearance in addition to the required one.
 inline constexpr double kExtraClearance_m = 0.03;
-/// The same for robots with lasers, in descending order. The wider a robot passes a corner, the earlier it
-/// sees what is behind it.
+/// Preferred additional clearances of robots with lasers, in descending order. The wider a robot passes a
+/// corner, the earlier it sees what is behind it.
 inline constexpr std::array<double, 4> kClearancesInSight_m{0.35, 0.2, 0.1, 0.03};
 /// A robot whose version ends this close to its goal stays there.
 inline constexpr double kAtGoal_m = 0.001;

@@ -35,20 +35,20 @@ class SentProposals {
   SentProposal* find_unanswered(VersionNumber number);
   /// The latest proposal; nullptr before the first.
   const SentProposal* newest() const;
-  /// The number of the latest consecutive proposals that have the same start.
+  /// Number of consecutive proposals, up to the latest, that have the same start.
   int attempts() const { return attempts_; }
   /// Whether a proposal for a start soon after `now` awaits its verdict.
   bool has_upcoming(Time now) const;
 
-  /// Forwards no grant of them any more.
+  /// From now on, grants of these proposals are not forwarded.
   void close();
-  /// Closes the proposals that start from a version to which the robot cannot get. Returns whether there were
-  /// any.
+  /// Closes the proposals that start from a version that the robot can no longer reach. Returns whether there
+  /// were any.
   bool close_unreachable(const HeldVersions& held);
-  /// Closes those that have started: their verdict would arrive too late. Returns the number of cycles that
-  /// the last of them was for, 0 if there were none.
+  /// Closes the proposals whose start has passed, because their verdicts would arrive too late. Returns the
+  /// lead of the last of them in cycles; 0 if there were none.
   int close_started(Time now);
-  /// Forgets them all: a verdict for them is unexpected.
+  /// Forgets all proposals, so a verdict on one of them is unexpected.
   void discard();
 
  private:

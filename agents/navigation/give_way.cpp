@@ -15,7 +15,7 @@ constexpr double kProgress_m = 0.1;
 constexpr Duration kRetryAfter{500'000'000};
 /// A place is given up if the robot comes no nearer to it for this long.
 constexpr Duration kUnreachableAfter{3'000'000'000};
-/// After a longer time without decisions, progress is measured anew.
+/// After a longer time without decisions, progress is measured from the start.
 constexpr Duration kMaxPause{1'000'000'000};
 /// Places up to this distance are searched first, later ones up to twice as far.
 constexpr double kFirstRange_m = 1;

@@ -18,7 +18,7 @@ struct LaserSightSettings {
   // bound.
   double position_error_m = SafetyBudget{}.tracking_bound_m;
   double heading_error_rad = 0.02;
-  /// Number of squares with unknown standing obstacles, the nearest ones first.
+  /// Number of squares with unknown stationary obstacles, the nearest ones first.
   std::size_t max_unknown = 48;
 };
 
@@ -26,7 +26,7 @@ struct LaserSightSettings {
 /// obstacles are not on the map. Only obstacles that the rules contain limit where people may be.
 class LaserSight {
  public:
-  /// Side of the squares that report unknown standing obstacles.
+  /// Side of the squares that report unknown stationary obstacles.
   static constexpr double kUnknownCell_m = 0.2;
   static constexpr Duration kUnknownAfter{500'000'000};  ///< cells occupied for longer are stationary
 

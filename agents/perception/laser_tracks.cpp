@@ -4,8 +4,8 @@
 namespace sidestep {
 namespace {
 
-constexpr double kExplainedWithin_m = 0.12;  ///< a hit this near to something standing belongs to it
-/// Cells that have been occupied for this long count as standing.
+constexpr double kExplainedWithin_m = 0.12;  ///< a hit this near to something stationary belongs to it
+/// Cells that have been occupied for this long count as stationary.
 constexpr Duration kStandingAfter{2'000'000'000};
 constexpr double kJoin_m = 0.15;          ///< hits this near to each other belong to one object
 constexpr int kMinHits = 2;               ///< minimum number of hits in a cluster

@@ -92,7 +92,7 @@ class LocalGrid {
   bool is_empty_ = true;
   Time updated_at_{};
   std::uint32_t scan_ = 0;
-  // Indexed by a ring buffer in both directions.
+  // Ring buffer in both directions.
   std::vector<float> log_odds_;
   std::vector<Time> occupied_since_;  // only for occupied cells
   std::vector<Time> crossed_at_;

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// The disc of the floor in which every obstacle that vision sees is known. An unknown obstacle may stand
-/// just beyond its edge and approach, so the disc shrinks at the obstacles' maximum speed.
+/// The disc of the floor in which every obstacle that vision sees is known. An unknown obstacle may be just
+/// beyond its edge and approach, so the disc shrinks at the obstacles' maximum speed.
 struct SeenRegion {
   Vec2 centre_m{0, 0};
   /// Radius at observed_at; infinite: all obstacles are known.

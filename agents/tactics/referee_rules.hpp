@@ -65,8 +65,8 @@ class RefereeRules {
   std::array<Zone, 2> areas_;
 };
 
-/// Whether one zone can stand in for the other: they are equal except that corners may be up to
-/// kZoneTolerance_m apart.
+/// Whether one zone can replace the other: they are equal except that corners may be up to kZoneTolerance_m
+/// apart.
 bool are_close(const Zone& a, const Zone& b);
 
 }  // namespace sidestep

@@ -8,7 +8,7 @@
 namespace sidestep {
 
 /// Guards a channel that only one process at a time may write (TopicInfo::is_sole), such as a robot's facts.
-/// Two processes that speak for the same robot contradict each other, and nothing tells which one is right.
+/// Two processes that speak for the same robot contradict each other, and nothing shows which one is right.
 /// Therefore all messages of both are ignored while both are heard. To the protocol these messages are lost,
 /// which stops robots and is safe.
 class SoleSender {

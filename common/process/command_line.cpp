@@ -263,8 +263,7 @@ CommandLine::~CommandLine() = default;
 
 namespace {
 
-/// Names the word that stands where a command is expected; the library would only say that a command is
-/// missing.
+/// Names the word found where a command is expected; the library would only say that a command is missing.
 std::optional<CLI::ParseError> unknown_command(const CLI::App& root) {
   const CLI::App* app = &root;
   while (!app->get_subcommands().empty()) app = app->get_subcommands().front();

@@ -41,7 +41,7 @@ struct Program {
   std::function<std::uint32_t()> process;
   /// Creates the nodes on the bus; run_process() keeps them until the bus has stopped. May throw; it throws
   /// std::invalid_argument if an option does not fit the scenario. Called again, with a higher incarnation on
-  /// a new bus, if the process starts anew with its host's clock.
+  /// a new bus, if the process restarts with its host's clock.
   std::function<RunningNodes(DdsBus&, const Scenario&, Incarnation)> start;
   ClockReference clock_reference = ClockReference::kCoordinators;
 };

@@ -60,7 +60,7 @@ void log_step(Duration host_ahead) {
           to_seconds(host_ahead)));
 }
 
-/// Runs the program on one bus. Returns whether it must start anew with the host's clock.
+/// Runs the program on one bus. Returns whether it must restart with the host's clock.
 bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSettings& dds,
                 Incarnation incarnation, StopRequest& stop) {
   DdsBus bus(dds);

@@ -196,7 +196,7 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
 
 inline constexpr std::size_t kDropReasonCount = kDropReasons.size();
 
-/// Whether every row of the table stands at the index that its reason's number requires.
+/// Whether every row of the table is at the index that its reason's number requires.
 constexpr bool are_drop_reasons_in_order() {
   for (std::size_t i = 0; i < kDropReasonCount; ++i) {
     if (static_cast<std::size_t>(kDropReasons[i].reason) != i) return false;

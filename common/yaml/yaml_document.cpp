@@ -26,7 +26,7 @@ constexpr std::size_t kMaxValues = 400'000;
 class FirstReading : public YAML::EventHandler {
  public:
   int line = 1;
-  bool has_merge_key = false;  ///< may be true in vain: some text is "<<"
+  bool has_merge_key = false;  ///< may be true without need: some text may contain "<<"
 
   explicit FirstReading(const std::string& file_name) : file_name_(file_name) {}
 
@@ -78,7 +78,7 @@ class FirstReading : public YAML::EventHandler {
   const std::string& file_name_;
   std::size_t values_ = 0;
   std::vector<std::pair<YAML::anchor_t, std::size_t>> open_;  // with the number of values before the anchor
-  // Number of values by anchor; 0 stands for no anchor.
+  // Number of values by anchor; 0 means no anchor.
   std::map<YAML::anchor_t, std::size_t> values_of_;
 };
 

@@ -69,7 +69,7 @@ struct AuditTotals {
   std::uint64_t undecided_crashes = 0;
   std::uint64_t excused_displacements = 0;  ///< number of position errors of disturbed robots
   double pair_s = 0;                        ///< observed time, summed over all pairs of robots on the floor
-  double excused_pair_s = 0;                ///< the part of it in which a contact would have been excused
+  double excused_pair_s = 0;  ///< the part of this time in which a contact would have been excused
 
   double excused_time_share() const { return pair_s > 0 ? excused_pair_s / pair_s : 0; }
   AuditVerdict verdict() const;

@@ -219,7 +219,7 @@ class Auditor {
   /// Whether everything that may excuse a contact of this robot was received. `apart_ns` is the last time at
   /// which vision saw the robot apart from what it touches.
   bool are_excuses_known(std::optional<std::size_t> robot, std::int64_t apart_ns = kAlways) const;
-  /// Whether a contact is excused; if so, it is counted. nullopt stands for an obstacle.
+  /// Whether a contact is excused; if so, it is counted. nullopt means an obstacle.
   bool is_excused_contact(RobotId first, std::optional<RobotId> second, Time at,
                           std::int64_t apart_ns = kAlways);
   void record_positions(const msg::GroundTruth& truth);

@@ -120,7 +120,7 @@ void Auditor::on_robot_report(const msg::Feedback& feedback, Time now) {
     check_obeyed_epochs(*robot, executing, feedback, reception);
     if (executing.is_own_stop && !executing.was_executed)
       check_own_stop(*robot, executing, feedback.lead_ns());
-    // The times of a clock that is out of bound prove nothing, even after the clock has been set.
+    // The times of a clock that is out of bounds prove nothing, even after the clock has been set.
     if (is_clock_sound(feedback, reception)) {
       KnownVersion* base = robot->find(executing.version.base());
       if (base && base->was_executed && robot->last_report && robot->last_report->executing == base->number)
@@ -152,7 +152,7 @@ void Auditor::check_report_order(const AuditedRobot& robot, const msg::Feedback&
   const auto fail = [&](const std::string& detail) {
     report(AuditRule::kFacts, robot.id, robot.find(number), feedback.obeyed_epoch(), detail);
   };
-  // A clock that was out of bound may be set back.
+  // A clock that was out of bounds may be set back.
   const bool was_clock_sound = has_sound_clock_[index_of(robot)] && (input_.is_complete || reception.is_next);
   if (feedback.valid_at_ns() < last.at_ns && was_clock_sound)
     fail(

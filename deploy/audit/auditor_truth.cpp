@@ -39,7 +39,7 @@ void Auditor::check_position(AuditedRobot& robot, const msg::Feedback& feedback,
   if (feedback.valid_at_ns() < at_ns) return;
   const Observation observation = std::exchange(pending, Observation());
   if (!input_.is_complete && !reception.is_next) {
-    // What the robot did meanwhile is unknown.
+    // It is unknown what the robot did in that time.
     seen_displacements_[index] = {};
     return;
   }

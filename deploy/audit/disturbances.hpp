@@ -44,9 +44,8 @@ class Disturbances {
   void announce(std::size_t robot, std::string_view cause);
   /// The robot is disturbed until `end`; Time::max() if the end is unknown. Repetitions count once.
   void disturb(std::size_t robot, Time end, Time now);
-  /// A contact began; nullopt stands for anything other than a robot. Returns the cause if the contact is
-  /// excused. A robot pushed by a disturbed one counts as disturbed by the same cause for as long as they
-  /// touch.
+  /// A contact began; nullopt means anything other than a robot. Returns the cause if the contact is excused.
+  /// A robot pushed by a disturbed one counts as disturbed by the same cause for as long as they touch.
   [[nodiscard]] std::optional<std::string_view> on_contact(std::optional<std::size_t> first,
                                                            std::optional<std::size_t> second, Time now);
   /// Updates with the robots on the floor at this time.

@@ -8,17 +8,17 @@
 
 namespace sidestep::arguments {
 
-/// What became of a program.
+/// How a program ended, and what it printed.
 struct ProgramRun {
   int exit_code = 0;   ///< -N: ended by signal N
   std::string errors;  ///< what it has printed on stderr
   double processor_s = 0;
   double wall_s = 0;
-  double max_mb = 0;  ///< most memory that was resident at once
+  double max_mb = 0;  ///< peak resident memory
 };
 
-/// Runs a program that is built beside this one, in `folder`, without input, and waits for its end. After
-/// `patience` it gets `signal`, and after as much again SIGKILL.
+/// Runs a program from the same build, in `folder`, without input, and waits for its end. After `patience` it
+/// gets `signal`, and after as much again SIGKILL.
 [[nodiscard]] ProgramRun run_program(const std::vector<std::string>& command, const std::string& folder,
                                      std::chrono::milliseconds patience, int signal);
 

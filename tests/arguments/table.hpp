@@ -7,10 +7,10 @@
 
 namespace sidestep::arguments {
 
-/// A command line, and what must become of it.
+/// A command line and the expected result.
 struct Row {
   int exit_code = 2;
-  std::vector<std::string> messages;  ///< parts of what is printed on stderr
+  std::vector<std::string> messages;  ///< texts that stderr must contain
   std::vector<std::string> command;   ///< the program's name and its arguments
 };
 

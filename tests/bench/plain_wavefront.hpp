@@ -7,7 +7,8 @@
 
 namespace sidestep {
 
-/// The peer of E*: fast marching with the same kernel, arrays and queue, but nothing for replanning.
+/// The baseline for E*: fast marching with the same kernel, arrays and queue, but without support for
+/// replanning.
 class PlainWavefront {
  public:
   struct Start {

@@ -14,11 +14,11 @@
 
 namespace sidestep {
 
-/// The files of a participant's keys, of whatever origin.
+/// The key files of a participant, whoever made them.
 struct AttackerKeys {
   std::string identity_authority, certificate, private_key, permissions_authority, governance, permissions;
 
-  /// Those of an identity, as `sidestep keys` has made them.
+  /// The files of an identity that `sidestep keys` has made.
   static AttackerKeys of(const std::string& folder);
 };
 
@@ -27,10 +27,10 @@ struct AttackerSettings {
   std::optional<AttackerKeys> keys{};  ///< nullopt: no security
   /// Its user data, by its id.
   std::function<std::vector<std::uint8_t>(const ParticipantId&)> announced{};
-  std::optional<CertifiedPrefix> prefix{};  ///< how its id begins; nullopt: chosen by Fast DDS
+  std::optional<CertifiedPrefix> prefix{};  ///< prefix of its id; nullopt: chosen by Fast DDS
 };
 
-/// A participant of Fast DDS that checks nothing and is checked by nobody but its own library.
+/// A Fast DDS participant that checks nothing, and that only its own library checks.
 class Attacker {
  public:
   /// Throws std::runtime_error if its own library refuses the keys.
@@ -44,7 +44,7 @@ class Attacker {
   void write(const Topic<Message>& topic, std::uint32_t robot, Message message) {
     write(static_cast<const TopicInfo&>(topic), robot, &message);
   }
-  /// Readers that its writers of all topics have found.
+  /// Number of readers that its writers have found, over all topics.
   int readers() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sidestep audit` beside a run of real processes.
+// `sidestep audit` alongside a run of real processes.
 #include <filesystem>
 #include <fstream>
 
@@ -10,7 +10,7 @@ using namespace sidestep;
 
 namespace {
 
-/// How an audit by a scenario file ends after six seconds.
+/// Audits the run for six seconds with a scenario file, and returns how the audit ended.
 std::string audit(LaunchedRun& run, const std::string& scenario_file) {
   std::vector<std::string> arguments{"audit", scenario_file, "--seconds", "6"};
   for (const std::string& word : run.dds_arguments()) arguments.push_back(word);

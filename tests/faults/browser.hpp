@@ -32,7 +32,7 @@ class Browser {
   /// Waits until a JavaScript expression is true, at most 20 s, and calls `meanwhile` again and again.
   bool wait_until(
       const std::string& expression, const std::function<void()>& meanwhile = [] {});
-  /// What the page has complained of: errors of scripts and of loading.
+  /// Errors that the page has logged, of scripts and of loading.
   std::string complaints();
   /// Writes a PNG.
   void save_screenshot(const std::string& path);

@@ -7,7 +7,7 @@
 
 namespace sidestep::client_faults_test {
 
-/// Starts an example beside the run.
+/// Starts an example alongside the run.
 void start(LaunchedRun& run, const std::string& name, std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), run.dds_arguments()[1]);
   run.start(name, "sidestep-" + name, arguments);
@@ -21,7 +21,7 @@ int count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Ends the run as a user does.
+/// Ends the run like a user, with Ctrl-C.
 void finish(LaunchedRun& run) {
   REQUIRE(kill(run.pid(), SIGINT) == 0);
   CHECK(run.wait_for_end() == "exit code 0");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sidestep beside another vendor's DDS. The peer shares nothing with Sidestep but the IDL.
+// Sidestep together with another vendor's DDS. The peer shares only the IDL with Sidestep.
 #include <cstdio>
 #include <cstdlib>
 #include <fmt/format.h>

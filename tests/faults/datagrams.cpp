@@ -47,7 +47,7 @@ void send_to(int socket, in_addr address, std::uint16_t port, std::span<const st
   to.sin_family = AF_INET;
   to.sin_addr = address;
   to.sin_port = htons(port);
-  // Whether it arrives is the receiver's affair.
+  // Whether the datagram arrives is up to the receiver.
   (void)!sendto(socket, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
 }
 

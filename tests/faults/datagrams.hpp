@@ -21,7 +21,7 @@ struct CapturedDatagram {
 /// The UDP ports of a DDS domain on which processes of this network namespace listen (RTPS 2.2, 9.6.1.1).
 std::vector<std::uint16_t> open_ports(int domain);
 
-/// How many UDP datagrams the processes of this network namespace have read so far.
+/// Number of UDP datagrams that the processes of this network namespace have read so far.
 std::uint64_t datagrams_read();
 
 /// Captures the datagrams of a DDS domain on the loopback interface from its construction on. Needs root.
@@ -47,7 +47,7 @@ class Capture {
   std::thread thread_;
 };
 
-/// A datagram of a process of DDS as somebody who has no keys may alter it: single bytes, the kind, length or
+/// A DDS process's datagram as an attacker without keys may alter it: single bytes, the kind, length or
 /// content of a submessage, its end cut off, or submessages of another datagram behind it.
 std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::span<const std::uint8_t> other,
                                   Rng& rng);

@@ -12,13 +12,13 @@
 
 namespace sidestep {
 
-/// `sidestep run --driver league` on a floor that another process simulates and that the run knows by the
-/// league's protocol only, over UDP on the loopback interface. The simulator is ours, so that there is ground
+/// `sidestep run --driver league` on a floor that another process simulates. The run talks to it only by the
+/// league's protocol, over UDP on the loopback interface. The simulator is ours, so that there is ground
 /// truth, and no process outlives this object.
 class ForeignFloor {
  public:
-  /// `has_truth`: the run hears the ground truth; otherwise vision has to judge, as with a simulator of
-  /// others.
+  /// `has_truth`: the run hears the ground truth; otherwise it is judged by vision, as with a third-party
+  /// simulator.
   explicit ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options = {},
                         const std::vector<std::string>& run_options = {}, bool has_truth = true);
 

@@ -20,13 +20,13 @@ std::string outcome(const nlohmann::json& report) {
          report["cycles"].dump() + " cycles";
 }
 
-/// Drives the yellow team at random, below a speed, for as long as this object exists.
+/// Drives the yellow team at random, up to a maximum speed, during this object's lifetime.
 class RandomTeam {
  public:
   RandomTeam(const league::Endpoint& port, std::uint32_t robots, double max_mps, std::uint64_t seed)
       : port_(port), rng_(seed), moves_(robots), max_mps_(max_mps) {}
 
-  /// To be called often.
+  /// Must be called often.
   void act(Time now) {
     if (now < due_) return;
     due_ = now + 15ms;

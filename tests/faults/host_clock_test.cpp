@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 constexpr const char* kBeginsAnew = ": begins anew: the host's clock has been set";
 constexpr const char* kIsSet = ": the host's clock has been set";
 
-/// Where the processes of the crossing run, and how far the clock of the late host is ahead at first.
+/// Which host runs which processes of the crossing, and how far the late host's clock is ahead initially.
 struct LateStart {
   const char* late;
   const char* right;
@@ -23,8 +23,8 @@ struct LateStart {
   Duration ahead;
 };
 
-/// Starts the run, sets the late host's clock right once all its processes have started, and requires that
-/// they begin anew, and that all robots arrive.
+/// Starts the run, corrects the late host's clock once all its processes have started, and requires that they
+/// restart and that all robots arrive.
 void check_recovery(const LateStart& start) {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
   const LateHost host(start.late, start.right, start.ahead);

@@ -42,13 +42,13 @@ inline std::vector<std::string> all_identities() {
           "judge", "viewer", "operator",    "client", "forklift"};
 }
 
-/// A run with keys whose robots stand.
+/// A run with keys whose robots are at rest.
 struct KeyedRun {
   explicit KeyedRun(const std::vector<std::string>& extra_arguments = {})
       : keys(all_identities()), run(kThreeWaitingRobots, arguments(extra_arguments)) {
     INFO(run.output());
     REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
-    // Agents that do not answer yet are asked again.
+    // Asks again, because agents may not answer yet.
     REQUIRE(run.wait_until([&] { return command({"status", "--once"}) == "exit code 0"; }));
   }
 
@@ -60,7 +60,8 @@ struct KeyedRun {
       arguments.insert(arguments.end(), {"--keys", keys.folder()});
     return run.command(arguments);
   }
-  /// A participant that has these keys, and announces them as our processes do, with a start this long ago.
+  /// A participant with these keys. It announces them like our processes, and states that it started this
+  /// long ago.
   AttackerSettings with_keys(const std::string& folder, Duration age = {}) const {
     const auto announced = [folder, age](const ParticipantId& id) {
       return credentials(Certificate::load(folder + "/" + key_files::kCertificate),
@@ -71,7 +72,7 @@ struct KeyedRun {
   }
   int domain() const { return std::stoi(run.dds_arguments()[1]); }
 
-  /// The operator's own orders still count, and nothing has touched.
+  /// The operator's own orders still take effect, and there was no contact.
   void check_unharmed() {
     CHECK(command({"go", "0", "0,-1", "--wait"}) == "exit code 0");
     check_safe();

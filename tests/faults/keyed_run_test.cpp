@@ -29,7 +29,7 @@ Result drive_22(bool has_keys) {
   const double duration_s = to_seconds(run.bus().now() - began);
   const std::string ended = run.wait_for_end();
   INFO(run.output());
-  // Two cores hardly suffice for 26 processes with keys, so that the audit may miss too much.
+  // Two cores are barely enough for 26 processes with keys, so the audit may miss too much.
   check_passed_or_missed_messages(run, ended);
   const auto report = run.report();
   require_no_violations(report);
@@ -67,7 +67,7 @@ void print(const char* name, const std::vector<Result>& results) {
 void compare(int runs) {
   std::vector<Result> open, keyed;
   for (int i = 0; i < runs; ++i) {
-    // Whichever is first has no advantage over the other.
+    // So that neither has the advantage of always being first.
     for (const bool has_keys : {i % 2 == 0, i % 2 != 0})
       (has_keys ? keyed : open).push_back(drive_22(has_keys));
   }

@@ -30,7 +30,7 @@ class Strangers {
     for (const char* identity : {"agent 0", "coordinator 0", "vision", "simulator"}) {
       const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of(identity), kFormerAge);
       const Certificate certificate = Certificate::load(genuine.keys->certificate);
-      // Those of former processes, too.
+      // Includes the announcements of earlier processes.
       for (std::uint8_t i = 0; i < kFormerProcesses; ++i) {
         const ParticipantId id = certificate.guid_prefix({i});
         genuine_.emplace_back(id, genuine.announced(id));
@@ -116,7 +116,7 @@ void check_flood(Duration duration) {
       standing_s += is_standing ? step_s : 0;
       current_s = is_standing ? current_s + step_s : 0;
       longest_s = std::max(longest_s, current_s);
-      // A delay of this process is not made up for at once.
+      // If this process was delayed, it does not catch up in one burst.
       count = std::max(count, static_cast<int>(to_seconds(now - begin) * kPerSecond) - kPerSecond / 10);
       for (; count < to_seconds(now - begin) * kPerSecond; ++count, ++sent) strangers.send(ports);
       return now - begin > length;
@@ -158,7 +158,7 @@ void check_flood(Duration duration) {
   for (const auto& [process, counts] : report["counters"].items())
     refused += counts.value("refused_participant", 0);
   WARN(refused << " announcements refused");
-  CHECK(refused > sent);  // each of some processes hears what is sent to all
+  CHECK(refused > sent);  // what is sent to all is heard by several processes
 }
 
 TEST_CASE("a flood of packets from strangers on every port costs time, but neither safety nor memory",

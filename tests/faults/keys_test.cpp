@@ -103,7 +103,7 @@ std::unique_ptr<Attacker> heard_attacker(LaunchedRun& run, const AttackerSetting
   return nullptr;
 }
 
-/// A client who is refused as the operator.
+/// A client who is refused in the operator's name.
 std::unique_ptr<Attacker> heard_client(KeyedRun& keyed) {
   LaunchedRun& run = keyed.run;
   const msg::Order order = order_as(static_cast<std::uint32_t>(Sender::kOperator), run);
@@ -144,7 +144,7 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]
   const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of("operator"));
 
   check_refused(run, {keyed.domain()}, "a process at 127.0.0.1 that announces no key");
-  // Without keys, but with the operator's announcement.
+  // Has no keys, but repeats the operator's announcement.
   const CertifiedPrefix prefix = Certificate::load(genuine.keys->certificate).prefix();
   check_refused(run, {keyed.domain(), std::nullopt, genuine.announced, prefix},
                 "a process that announces itself as operator");
@@ -152,13 +152,13 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]
   AttackerSettings foreign = keyed.with_keys(others.folder_of("judge"));
   use_own_permissions(foreign, others);
   check_refused(run, foreign, "a process at 127.0.0.1, whose key another authority has issued");
-  // Authorities name their processes alike, so that their participants have the same prefix.
+  // Different authorities use the same process names, so their participants have the same prefix.
   foreign = keyed.with_keys(others.folder_of("vision"));
   foreign.announced = keyed.with_keys(keyed.keys.folder_of("vision")).announced;
   use_own_permissions(foreign, others);
   check_refused(run, foreign, "a process that announces itself as vision");
 
-  // A viewer who lets himself write everything.
+  // A viewer who grants himself permission to write everything.
   AttackerSettings viewer = keyed.with_keys(keyed.keys.folder_of("viewer"));
   use_own_permissions(viewer, others);
   check_refused(run, viewer, "a process that announces itself as viewer");
@@ -202,7 +202,7 @@ TEST_CASE("with keys, no process can speak for another") {
       {fmt::format(fmt::runtime(refused), "registration"), fmt::format(fmt::runtime(refused), "proposal"),
        fmt::format(fmt::runtime(refused), "order_status")});
 
-  // A client gives its own orders, and none of the operator's.
+  // A client may give its own orders, but none in the operator's name.
   const auto orderer = heard_client(keyed);
   Attacker& client = *orderer;
   CHECK_FALSE(attack(run, client));
@@ -267,7 +267,7 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
       [&] { return run.logged("keys: refuses client brief at 127.0.0.1, whose key has expired"); }));
   CHECK_FALSE(attack(run, *brief, seconds(3), client_id("brief")));
 
-  // The robot of a revoked agent stays, and others drive on.
+  // The robot of a revoked agent stays at rest, and the others drive on.
   REQUIRE(revoke({"agent", "2"}) == "exit code 0");
   REQUIRE(
       run.wait_until([&] { return run.logged("keys: refuses agent 2 at 127.0.0.1, whose key is revoked"); }));
@@ -308,7 +308,7 @@ TEST_CASE("keys that are revoked during a run are also refused on other hosts") 
   REQUIRE(attack(run, client, seconds(20), client_id("forklift")));
   REQUIRE(run.command({"keys", "revoke", "--keys", keyed.keys.folder(), "client", "forklift"}) ==
           "exit code 0");
-  // That process has the list of another host.
+  // That process uses the list of another host.
   REQUIRE(run.wait_until([&] {
     return run.logged("coordinator: keys: refuses client forklift at 127.0.0.1, whose key is revoked");
   }));
@@ -339,7 +339,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   const std::map<std::string, pid_t> processes = run.children();
   const Capture capture(keyed.domain());
   Shuttle shuttle(keyed);
-  // A replay repeats what was accepted before, and also what has been answered since.
+  // A replay repeats datagrams that were accepted before, including ones that have been answered since.
   const Time captured_until = run.bus().now() + seconds(5);
   REQUIRE(run.wait_until([&] { return shuttle.drive() > 3 && run.bus().now() > captured_until; }));
   const std::vector<CapturedDatagram> captured = capture.datagrams();
@@ -364,7 +364,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
       return run.bus().now() - part_begin > seconds(10);
     }));
   }
-  // They reached processes, in addition to what these sent to each other.
+  // Processes received these in addition to what they sent to each other.
   const std::uint64_t read = datagrams_read() - read_before;
   CHECK(read > static_cast<std::uint64_t>(replayed + changed));
   CHECK(run.children() == processes);

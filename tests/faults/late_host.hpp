@@ -19,7 +19,7 @@ class LateHost {
   LateHost& operator=(const LateHost&) = delete;
 
   std::string hosts_file() const { return (folder_ / "hosts.yaml").string(); }
-  /// Sets the host's clock; it is then this far ahead.
+  /// Sets the host's clock so that it is this far ahead.
   void set_clock(Duration ahead) const;
 
  private:

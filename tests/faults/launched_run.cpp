@@ -248,7 +248,7 @@ std::string shuttles(int times, const std::string& extra_keys) {
 void check_passed_or_missed_messages(const LaunchedRun& run, const std::string& end) {
   if (end == "exit code 0") return;
   CHECK(end == "exit code " + std::to_string(kExitNotJudged));
-  // A version lacks something if one of the few messages about it was missed.
+  // A version is incomplete if one of the few messages about it was missed.
   CHECK((run.printed("of the messages were missed") || run.printed("of the executed versions lack a")));
 }
 

@@ -19,7 +19,7 @@ namespace sidestep {
 /// The path of the shipped hosts file.
 std::string three_hosts_file();
 
-/// `sidestep run` as a user starts it, in its own DDS domain, observed through its output, the ground truth
+/// `sidestep run` as started by a user, in its own DDS domain, observed through its output, the ground truth
 /// on the bus and its report. No process of the run outlives this object. A sanitizer error in any of them
 /// fails the test.
 class LaunchedRun {
@@ -50,9 +50,9 @@ class LaunchedRun {
   }
   /// Waits for the end of the run and returns the reason, e.g. "exit code 0"; empty on timeout.
   std::string wait_for_end();
-  /// Starts another Sidestep program beside the run; its output goes to the same log.
+  /// Starts another Sidestep program alongside the run; its output goes to the same log.
   pid_t start(const std::string& name, const std::string& program, const std::vector<std::string>& arguments);
-  /// How that program ended, e.g. "exit code 0"; none: it is running.
+  /// How that program ended, e.g. "exit code 0"; nullopt: it is still running.
   std::optional<std::string> exit_reason(const std::string& name) const;
   /// Runs `sidestep` with these arguments to its end and returns the reason, e.g. "exit code 0"; empty on
   /// timeout.
@@ -69,7 +69,7 @@ class LaunchedRun {
   std::map<std::string, pid_t> children() const;
   /// The robots whose agents were started on the host.
   std::vector<RobotId> robots_on(const std::string& host) const;
-  /// Whether the launcher or a program beside it has printed this text.
+  /// Whether the launcher or a program started alongside has printed this text.
   bool printed(const std::string& text) const;
   /// Whether a process of the run has printed this text.
   bool logged(const std::string& text) const;
@@ -99,7 +99,7 @@ class LaunchedRun {
   std::optional<ScopedNamespace> visit_;
   std::unique_ptr<DdsBus> bus_;
   msg::GroundTruth truth_;
-  std::map<std::string, std::string> exit_reasons_;  ///< of the programs beside the run
+  std::map<std::string, std::string> exit_reasons_;  ///< of the programs alongside the run
   std::optional<std::string> exit_;                  ///< of the run
   pid_t pid_ = 0;
 };

@@ -15,7 +15,7 @@ using namespace sidestep;
 
 namespace {
 
-/// Two namespace hosts; each programs folder may be empty, for the programs beside this test.
+/// Two namespace hosts. An empty programs folder means the programs next to this test.
 std::string hosts_file(const std::string& floor_programs, const std::string& agent_programs) {
   const auto programs = [](const std::string& folder) {
     return folder.empty() ? std::string() : "    programs: " + folder + "\n";
@@ -35,8 +35,8 @@ std::string with_two_coordinators(std::string scenario) {
   return scenario;
 }
 
-/// Kills the active coordinator while robots drive through 5 % packet loss; returns after how many
-/// milliseconds a robot executes a version that the standby granted.
+/// Kills the active coordinator while robots drive through 5 % packet loss; returns the time in milliseconds
+/// until a robot executes a version that the standby granted.
 double drive_and_kill_coordinator(const std::string& hosts) {
   const auto run =
       LaunchedRun::on_namespaces(with_two_coordinators(shipped_scenario("two-teams-22")), {}, hosts);

@@ -21,7 +21,7 @@ namespace sidestep::monitor_load_test {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-/// Seeks back by this time while the run goes on.
+/// Seeks back by this time while the run continues.
 void seek_back(double back_s) {
   LaunchedRun run(kWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
@@ -53,7 +53,7 @@ void seek_back(double back_s) {
   CHECK(frames >= (back_s + 1) * 30);
   std::vector<double> delays_ms;
   for (int i = 0; i < 20; ++i) {
-    const double wanted_s = first_s + 0.05 * i + (i % 2 ? back_s / 2 : 0);  // far from the one before
+    const double wanted_s = first_s + 0.05 * i + (i % 2 ? back_s / 2 : 0);  // far from the previous one
     const auto asked = std::chrono::steady_clock::now();
     viewer.send(fmt::format(R"({{"op":"seek","at_s":{:.6f}}})", wanted_s));
     while (std::abs(receive_frame() - wanted_s) > 0.06) {
@@ -73,7 +73,7 @@ TEST_CASE("a viewer can seek back while the run continues", "[both-cores]") { se
 
 TEST_CASE("a viewer can seek 60 seconds back while the run continues", "[.figures][slow]") { seek_back(60); }
 
-/// The scenario two-teams-22, whose teams change sides again and again.
+/// The scenario two-teams-22, whose teams change sides repeatedly.
 std::string two_teams_for(int changes) {
   const Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/two-teams-22.yaml");
   std::string text =
@@ -93,7 +93,7 @@ std::string two_teams_for(int changes) {
   return text;
 }
 
-/// A viewer that counts what it gets, in a thread of its own.
+/// A viewer in its own thread that counts what it receives.
 class CountingViewer {
  public:
   explicit CountingViewer(std::uint16_t port)
@@ -117,7 +117,7 @@ class CountingViewer {
 };
 
 TEST_CASE("a run serves its page to the browser, and continues without the monitor") {
-  // Any free port: that of a monitor which has just ended.
+  // Any free port, for example that of a monitor which has just ended.
   std::uint16_t port = 0;
   {
     LaunchedRun first(kWaitingRobots);
@@ -128,7 +128,7 @@ TEST_CASE("a run serves its page to the browser, and continues without the monit
   CHECK(Json::parse(http_request(port, "GET", "/api/state").body).at("robots").size() == 3);
   CHECK(http_request(port, "GET", "/").body.find("<title>Sidestep monitor</title>") != std::string::npos);
   CHECK(run.wait_for_end() == "exit code 0");
-  // The port is taken: the run says so.
+  // If the port is taken, the run says so.
   LaunchedRun holder(kWaitingRobots);
   const MonitorProcess taken(holder);
   LaunchedRun other(kWaitingRobots, {fmt::format("--monitor={}", taken.port()), "--seconds", "2"});
@@ -181,7 +181,7 @@ TEST_CASE("a monitor with three viewers costs little more than a subscriber", "[
   watch_three_times(30s);
 }
 
-/// A viewer that takes 10 kB a second from its connection.
+/// A viewer that reads only 10 kB per second from its connection.
 class SlowViewer {
  public:
   explicit SlowViewer(std::uint16_t port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -224,7 +224,7 @@ TEST_CASE("slow, numerous or hostile viewers harm neither the run nor the monito
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
-  // What the monitor needs beside the frames that it remembers.
+  // Memory that the monitor needs in addition to the frames that it remembers.
   const auto memory_mb = [&] {
     return usage_of(monitor.pid()).memory_mb - monitor.state().at("history_bytes").get<double>() * 1e-6;
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The monitor's page in a real browser, beside real processes.
+// The monitor's page in a real browser, with real processes.
 #include <chrono>
 #include <fmt/format.h>
 #include <fstream>
@@ -29,7 +29,7 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   CHECK(page.text("lamp-text") == "promise kept");
   CHECK(page.text("connection") == "connected");
 
-  // Where robots are, as ground truth says.
+  // The robots' positions according to ground truth.
   REQUIRE(page.wait_until("monitor.frame.sections.robots.rows === 3"));
   (void)run.wait_until([&] { return run.truth().robots().size() == 3; });
   for (const msg::TrueRobotState& robot : run.truth().robots()) {
@@ -80,10 +80,10 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
       if (r.robot() == robot) return std::hypot(r.x_m() - x_m, r.y_m() - y_m) < 0.05;
     return false;
   };
-  // What the selected robot could plan by.
+  // The fields that the selected robot could plan with.
   for (const char* layer : {"navigation", "band", "local"}) page.click(std::string("layer-") + layer);
   page.run("document.querySelector('#panel-robots [data-key=\"1\"]').click()");
-  // The monitor knows the robot's goal when it has heard of the order.
+  // The monitor knows the robot's goal once it has heard of the order.
   Json fields;
   REQUIRE(run.wait_until([&] {
     fields = Json::parse(http_request(monitor.port(), "GET", "/api/fields/1").body);
@@ -127,7 +127,7 @@ TEST_CASE(
   CHECK(page.wait_until(
       "monitor.panels.coordinators.filter((c) => c.mode === 'granting' && c.age_s < 1).length === 1"));
 
-  // Without --control nothing commands.
+  // Without --control no request can command.
   CHECK(page.run("return document.getElementById('tab-control')").is_null());
   CHECK(http_request(monitor->port(), "POST", "/api/hold", {{"Authorization", "Bearer "}}).status == 401);
 
@@ -292,7 +292,7 @@ TEST_CASE("the page draws 22 robots with all layers and 1,000 robots", "[both-co
         "window.monitor && monitor.scene && monitor.panels && monitor.panels.promise.cycles > 0 || "
         "window.monitor && monitor.scene && (document.getElementById('live').click(), false)"));
     page.run("for (const box of document.querySelectorAll('#layers input')) if (!box.checked) box.click()");
-    // Played again and again, from a third on.
+    // Plays the recording repeatedly, starting after a third of it.
     page.run(
         "document.getElementById('time').value = document.getElementById('time').max / 3; "
         "document.getElementById('time').dispatchEvent(new Event('input'));");

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// A monitor beside a run, as a process.
+/// A monitor process that watches a run.
 class MonitorProcess {
  public:
   explicit MonitorProcess(LaunchedRun& run, const std::vector<std::string>& extra_arguments = {},
@@ -29,7 +29,7 @@ class MonitorProcess {
   pid_t pid_ = 0;
 };
 
-/// Keeps the bus of the run from falling behind while a browser is waited for.
+/// Keeps the bus of the run from falling behind while the test waits for a browser.
 std::function<void()> polling(LaunchedRun& run);
 
 /// Receives messages of the run for this long.

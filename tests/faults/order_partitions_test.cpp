@@ -22,7 +22,7 @@ constexpr int kRobots = 6;
 constexpr double kAtRest_mps = 0.03;
 constexpr Duration kBraking = milliseconds(1500);
 
-/// As the launcher distributes the agents.
+/// The host on which the launcher puts the robot's agent.
 std::string host_of(RobotId robot) { return std::array{"floor", "east", "west"}[robot % 3]; }
 
 /// Robots without goals, each in a row of its own.
@@ -39,7 +39,7 @@ struct Totals {
   int rounds = 0, holds = 0, killed = 0, long_cuts = 0;
   int moved = 0;       ///< robots that moved although they were held
   int accepted = 0;    ///< rounds in which a coordinator accepted the holds
-  int unanswered = 0;  ///< rounds in which none did, although it could reach the agents
+  int unanswered = 0;  ///< rounds in which no coordinator accepted them, although one could reach the agents
   int lost = 0;        ///< drive orders that were not carried out after the resume
 };
 

@@ -44,7 +44,7 @@ class RandomClient {
     open_.push_back(client_.go(robot, {{position}}));
     ++sent_;
   }
-  /// Forgets orders that are over. Whether there are no others.
+  /// Forgets orders that are over. Returns whether none remain.
   bool is_over() {
     std::erase_if(open_, [this](OrderHandle number) {
       const OrderPhase phase = client_.find(number)->phase;

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// What a process uses, as the kernel counts it.
+/// The resources that a process uses, as counted by the kernel.
 struct ProcessUsage {
   double memory_mb = 0;  ///< resident
   double cpu_s = 0;      ///< since the process's start
@@ -19,7 +19,7 @@ struct ProcessUsage {
 /// Throws std::runtime_error if no process has this id.
 ProcessUsage usage_of(pid_t pid);
 
-/// The usage of every process of the run by name, the launcher included.
+/// The resources used by every process of the run, including the launcher, by name.
 std::map<std::string, ProcessUsage> usage_of(const LaunchedRun& run);
 
 struct MemorySample {

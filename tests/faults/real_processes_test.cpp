@@ -141,7 +141,7 @@ TEST_CASE("if a robot is silent when an epoch begins, the others wait until an o
   CHECK(run.logged("an operator attests that robot 7 is absent"));
   const auto report = run.report();
   INFO(report["audit"].dump(2));
-  // Robot 7 rolls out when it is switched off, and may touch a neighbour.
+  // Robot 7 rolls on when it is switched off, and may touch a neighbour.
   CHECK(report["contacts"] == report["audit"]["excused_contacts"]);
   for (const auto& excused : report["audit"]["excused"]) {
     CHECK(excused["robots"].dump().find('7') != std::string::npos);
@@ -262,7 +262,7 @@ TEST_CASE(
         "refuses coordinator 1, which works by other rules: robots.blue is 0-6 instead of 0-7");
   }));
   WARN("named " << to_seconds(run.bus().now() - begin) << " s after the start of its process");
-  // Both sides name the robots that they know.
+  // Both sides name the robots in their scenario.
   CHECK(run.wait_until([&] {
     return run.printed(
         "coordinator-1: refuses coordinator, which works by other rules: robots.blue is 0-7 instead of 0-6");

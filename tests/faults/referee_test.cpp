@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr double kMaxSpeed_mps = 1.5, kMinDistance_m = 0.5;  // of the league's rules for STOP
-constexpr double kAtRest_mps = 0.03;                         // beyond the noise of a robot that rests
+constexpr double kAtRest_mps = 0.03;                         // above the noise of a robot at rest
 
 std::string pair(const Vec2& v) { return fmt::format("[{:g}, {:g}]", v.x(), v.y()); }
 
@@ -56,10 +56,10 @@ class RefereedRun {
   pid_t referee() const { return referee_; }
   double max_speed_mps() const { return max_speed_mps_; }
   double min_distance_m() const { return min_distance_m_; }
-  /// When the robots came to rest, after the beginning of the last command.
+  /// Time from the start of the last command until the robots came to rest.
   double rest_s() const { return rest_s_; }
 
-  /// Repeats a command; false if the run ends meanwhile. The maximum and minimum are those since `delay`.
+  /// Repeats a command; false if the run ends first. The maximum and minimum are those since `delay`.
   bool play(RefereeCommand command, Duration duration, Duration delay) {
     const Time begin = next_packet_ = run_.bus().now();
     rest_s_ = 0;

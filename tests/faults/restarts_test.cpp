@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Memory of each process of the run, and its share of a core during some seconds.
+/// Each process's memory, and the share of a core that it uses during some seconds.
 struct Load {
   double memory_mb = 0;
   double cpu_percent = 0;
@@ -53,8 +53,8 @@ Aftermath kill_agent(int times, Duration window) {
   LaunchedRun run(scenario);
   std::uint64_t heard_incarnation = 0;
   std::vector<Duration> matching;
-  // An agent sends commands in every cycle from its start on. Its incarnation is the time when its bus
-  // started.
+  // An agent sends commands in every cycle from its start onwards. Its incarnation is the start time of its
+  // bus.
   run.bus().subscribe(topics::kCommand, 6, std::function([&](const msg::Command& command) {
                         if (command.header().incarnation() <= heard_incarnation) return;
                         heard_incarnation = command.header().incarnation();

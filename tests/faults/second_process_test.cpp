@@ -16,7 +16,7 @@ std::vector<std::string> arguments_for(const LaunchedRun& run) {
   return result;
 }
 
-/// Starts a program beside the run, waits until it has ended by itself, and until robots drive again.
+/// Starts a program alongside the run, waits until it has ended by itself, and until robots drive again.
 void check_ends(LaunchedRun& run, const std::string& program, const std::string& kind) {
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   run.start("second", program, arguments_for(run));

@@ -19,14 +19,14 @@ using namespace std::chrono_literals;
 
 struct SoakSettings {
   Duration duration;       ///< from when the robots drive
-  Duration warm_up;        ///< its samples do not count, because caches and pools are filling
+  Duration warm_up;        ///< samples in it are ignored, because caches and pools are still filling
   Duration sample_period;  ///< between two samples of memory
   bool has_keys = false;
 };
 
 /// One process of the run.
 struct Record {
-  ProcessUsage begin, end;  ///< at the ends of the time after the warm-up
+  ProcessUsage begin, end;  ///< at the start and the end of the time after the warm-up
   std::vector<MemorySample> samples;
 
   double slope_mb_per_h() const { return memory_slope_mb_per_h(samples); }
@@ -73,7 +73,7 @@ void print_table(const Soak& soak) {
              100 * soak.coverage());
 }
 
-/// Eight agents drive to and fro until they are interrupted.
+/// Eight agents drive back and forth until they are interrupted.
 Soak soak(const SoakSettings& settings) {
   // More goals than a robot reaches, because each is more than two seconds away.
   const int goals = static_cast<int>(to_seconds(settings.duration + 1min) / 2);
@@ -121,7 +121,7 @@ TEST_CASE("the growth rate of a process that leaks memory shows how much it leak
     kept.emplace_back(kStep_bytes, 'x');
     samples.push_back({i * 3600.0, usage_of(getpid()).memory_mb});
   }
-  // The allocator may take the first steps from memory that was freed before.
+  // The allocator may serve the first allocations from memory that was freed earlier.
   CHECK(memory_slope_mb_per_h(samples) == Approx(1).margin(0.3));
 }
 

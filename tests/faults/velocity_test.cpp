@@ -73,7 +73,7 @@ class RosReader {
   std::filesystem::path path_;
 };
 
-/// Starts simulated bases beside a run.
+/// Starts simulated bases alongside a run.
 void start_bases(LaunchedRun& run, const std::vector<std::string>& options) {
   std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--velocity", "--latency-ms", "40"};
   arguments.insert(arguments.end(), options.begin(), options.end());

@@ -27,8 +27,8 @@ using View = std::span<const std::uint8_t>;
 /// Each `NAME_fuzz.cpp` defines these two for the code that it tests.
 
 /// Passes an input to code that reads untrusted bytes. Ends the program if that code accepts what it must
-/// refuse. Only what callers of that code catch is caught. Returns whether the input was accepted, at least
-/// in part.
+/// refuse. Only exceptions that the callers of that code catch are caught. Returns whether the input was
+/// accepted, at least in part.
 bool try_input(View input);
 
 /// Valid inputs of every kind; try_input() accepts each of them.

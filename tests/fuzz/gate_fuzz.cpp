@@ -87,7 +87,7 @@ void check_passed(View passed) {
     SIDESTEP_REQUIRE(stated > 0 && stated <= content.size() - 4);
     SIDESTEP_REQUIRE(code.size() == 20);
   }
-  // Nothing is left to be removed.
+  // Nothing remains to be removed.
   SIDESTEP_REQUIRE(checked_datagram(passed).size() == passed.size());
   SIDESTEP_REQUIRE(without_statistics(passed).size() == passed.size());
 }
@@ -119,7 +119,7 @@ void try_announcement(const ParticipantId& sender, View datagram) {
   SIDESTEP_REQUIRE(sender == agent_id());
 }
 
-/// Returns whether they are such notices.
+/// Returns whether they are valid notices.
 bool try_presence(const ParticipantId& sender, View datagram) {
   const auto notices = presence_notices(datagram);
   if (!notices) return false;

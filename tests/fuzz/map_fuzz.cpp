@@ -63,7 +63,7 @@ void check_use(const LoadedMap& map, const TemporaryFolder& folder) {
   SIDESTEP_REQUIRE(again.cells.grid().origin_m == grid.origin_m);
 }
 
-/// A map that is used on a floor, with its distances and rectangles.
+/// Uses a map on a floor, with its distances and rectangles.
 void try_floor(const LoadedMap& map) {
   try {
     const FloorMap floor(map.cells, "map");

@@ -10,12 +10,12 @@
 namespace sidestep::fuzz {
 namespace {
 
-/// No answer grows beyond what a browser draws, and none holds a number that is not finite.
+/// No answer exceeds what a browser can draw, and none contains a number that is not finite.
 void check_answer(const PlanningScene& scene) {
   const nlohmann::ordered_json answer = scene.json();
   SIDESTEP_REQUIRE(answer.at("obstacles").size() <= PlanningScene::kMaxObstacles);
   SIDESTEP_REQUIRE(answer.at("nodes").size() <= 10'000);
-  SIDESTEP_REQUIRE(answer.dump().find("null") == std::string::npos);  // as JSON shows what is not finite
+  SIDESTEP_REQUIRE(answer.dump().find("null") == std::string::npos);  // JSON's form of NaN and infinity
 }
 
 }  // namespace

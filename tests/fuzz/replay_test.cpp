@@ -67,7 +67,7 @@ TEST_CASE("seed inputs are accepted, and random mutations of them break nothing"
     const std::size_t begin = rng.below(seeds.size()), part = rng.below(seeds.size());
     accepted += fuzz::try_input(mutated(seeds[begin], seeds[part], rng));
   }
-  // Enough of both kinds: neither is everything refused, nor everything accepted.
+  // Enough inputs are accepted and enough are refused.
   CAPTURE(accepted);
   CHECK(accepted > SIDESTEP_REPLAYED_INPUTS / 100);
   CHECK(accepted < SIDESTEP_REPLAYED_INPUTS * 19 / 20);

@@ -14,7 +14,7 @@ constexpr const char* kFile = "fuzz.yaml";
 
 #define SIDESTEP_REQUIRE_WITHIN(value, low, high) SIDESTEP_REQUIRE((value) >= (low) && (value) <= (high))
 
-/// The keys `map` of all inputs stand for this map, so that no input reads files.
+/// The key `map` of every input refers to this map, so that no input reads files.
 const OccupancyMap& cells() {
   static const OccupancyMap map = [] {
     MapGrid grid;

@@ -128,7 +128,7 @@ bool try_control(const std::vector<std::string>& parts, bool may_command) {
   return response->status == 200;
 }
 
-/// Whether all messages of a viewer made sense.
+/// Whether all messages of a viewer were valid.
 bool try_foxglove(const std::vector<std::string>& messages) {
   static FoxgloveServer server;
   static const FloorState floor;

@@ -14,8 +14,8 @@ namespace planted {
 
 inline constexpr int kMaxFaults = 4096;
 
-/// If SIDESTEP_PLANTED_REACHED names a file, the program writes to it the numbers of all faults that it could
-/// execute.
+/// If SIDESTEP_PLANTED_REACHED names a file, the program writes to it the numbers of all faults that it
+/// reached.
 struct Reached {
   const char* file = std::getenv("SIDESTEP_PLANTED_REACHED");
   std::bitset<kMaxFaults> faults;
@@ -54,14 +54,14 @@ concept Matrix = requires(T value) {
   typename T::PlainObject;
 };
 
-/// For bounds of what is counted.
+/// For bounds on counts.
 template <typename T>
 requires std::integral<std::remove_cvref_t<T>> || Duration<std::remove_cvref_t<T>> || requires(T time) {
   time.time_since_epoch();
 }
 const T& discrete(const T& value) { return value; }
 
-/// A constant that is larger, or smaller, by a fifth.
+/// A constant that is a fifth larger or smaller.
 template <typename T>
 requires Number<T> || Duration<T> T changed(int fault, T value, int sign) {
   if (!on(fault)) return value;

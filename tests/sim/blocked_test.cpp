@@ -38,7 +38,7 @@ TEST_CASE("a robot waits beside another one that rests on its goal, and goes on 
   CHECK(distance(run, 0, place) < 2 * kRadius_m + kNear_m);
   run.system.run_for(seconds(3));
   CHECK(rests_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
-  // A third one waits beside both.
+  // A third robot waits next to both.
   const auto third = run.send(msg::OrderKind::ORDER_GO, 2, kClient, {{place}});
   REQUIRE(rests_blocked(run, 2, msg::BlockReason::BLOCK_ROBOT));
   run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{0, 0}}});

@@ -28,7 +28,7 @@ struct History {
   Duration agree_at{0};  ///< from this time on, all clocks agree
 };
 
-/// 1 ms to an hour, forth or back.
+/// 1 ms to an hour, forward or back.
 Duration sample_offset(Rng& rng) {
   const double size_s = 0.001 * std::pow(3.59e6, rng.uniform());
   return from_seconds(rng.chance(0.5) ? size_s : -size_s);
@@ -42,7 +42,7 @@ History sample(std::uint64_t seed) {
     clocks.push_back("robot " + std::to_string(robot.id));
   history.agree_at = from_seconds(rng.uniform(2.5, 9));
   const std::uint64_t count = rng.chance(0.4) ? 1 : 2 + rng.below(5);
-  // A host's clock that is set takes several with it.
+  // Setting a host's clock moves the clocks of several processes.
   const bool is_common = rng.chance(0.3);
   const Duration common = sample_offset(rng);
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -64,7 +64,7 @@ void apply(const Jump& jump, SimSystem& system) {
   system.disturb(message);
 }
 
-/// The time after which all robots drive, in seconds after all clocks agree.
+/// Seconds from the agreement of all clocks until all robots drive.
 double run(std::uint64_t seed) {
   const History history = sample(seed);
   for (const Jump& jump : history.jumps)
@@ -93,8 +93,8 @@ double run(std::uint64_t seed) {
   const Report report = system.metrics().report();
   CHECK(report.unexcused_contacts() == 0);
   CHECK(report.firmware_violations == 0);
-  // Ground truth has the simulator's clock. While that is wrong, the audit compares places of different
-  // times.
+  // Ground truth is timestamped by the simulator's clock. While that is wrong, the audit compares positions
+  // at different times.
   const bool is_truth_misdated =
       std::ranges::any_of(history.jumps, [](const Jump& jump) { return jump.clock == "simulator"; });
   const std::uint64_t misjudged =
@@ -149,7 +149,7 @@ TEST_CASE("an agent whose clock was ahead hears its robot again although epochs 
   SimSystem system(shuttles(3, 2), 1, {}, kBegin);
   MotionWatch motion(system);
   system.run_for(std::chrono::seconds(1));
-  // The coordinator that begins an epoch meanwhile numbers it by this clock.
+  // The coordinator that begins the next epoch numbers it by this clock.
   system.set_clock("coordinator", std::chrono::seconds(3400));
   system.kill("coordinator 1");
   system.kill("coordinator");
@@ -161,7 +161,7 @@ TEST_CASE("an agent whose clock was ahead hears its robot again although epochs 
   system.set_clock("agent 1", from_seconds(ahead_s));
   system.run_for(std::chrono::seconds(1));
   system.set_clock("agent 1", Duration{0});
-  // Motions that are still under way end meanwhile.
+  // Waits until motions that are still under way have ended.
   system.run_for(kMaxRecovery);
   motion.begin();
   system.run_for(std::chrono::seconds(2));

@@ -78,7 +78,7 @@ TEST_CASE("a healthy robot with Sidestep's firmware conforms") {
   CHECK(report.is_conformant());
 }
 
-// Measured by the first examination; see "the latency that is measured".
+// Measured in the first examination; see the test of the measured latency.
 constexpr Duration kObeysAfter = 118ms;
 
 TEST_CASE("a third-party base that is driven in single precision conforms") {
@@ -137,7 +137,7 @@ TEST_CASE("a robot that ignores fences fails the check of fences") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const Scenario scenario = lone_league_robot();
   SimNetwork network(seed, kBegin, scenario.network);
-  // It takes every command for one of the latest agent and epoch.
+  // It treats every command as one from the latest agent and epoch.
   const auto ignore_fences = [latest =
                                   std::pair<std::uint64_t, std::uint64_t>()](msg::Command& command) mutable {
     const Time now = kBegin + 300s;

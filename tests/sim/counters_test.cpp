@@ -40,7 +40,7 @@ class Stranger {
   template <typename Message>
   void send(const Topic<Message>& topic, Message message, std::optional<Time> stamp = {}) {
     auto writer = bus_.advertise(topic, kRobot);
-    // Until all readers have found the writer.
+    // Waits until all readers have found the writer.
     if (topic.qos == Qos::kEvent) system_.run_for(200ms);
     writer.publish(message, stamp.value_or(now()));
   }
@@ -384,12 +384,12 @@ const std::set<DropReason> kElsewhere{
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
     DropReason::kMalformedLeaguePacket,  // league/league_source_test, like the next three
     DropReason::kRepeatedLeagueFrame, DropReason::kUndatedLeagueFrame, DropReason::kUnusedLeagueDetection,
-    DropReason::kUnsentLeaguePacket,  // needs a network that does not work
+    DropReason::kUnsentLeaguePacket,  // needs a broken network
     DropReason::kUnstoredCommand,     // adapters/robot_driver_node_test
     DropReason::kMalformedOdometry,   // adapters/velocity_driver_test
     DropReason::kMisdatedOdometry,    // adapters/robot_driver_node_test
     DropReason::kRejectedByBase,      // adapters/league_driver_test
-    DropReason::kImplausibleEpoch,    // failover_test: codecs refuse such messages before it
+    DropReason::kImplausibleEpoch,    // failover_test: codecs refuse such messages earlier
 };
 
 TEST_CASE("each reason to drop a message is counted where it happens") {

@@ -63,7 +63,7 @@ Moment moment_of(const msg::GroundTruth& truth) {
   return moment;
 }
 
-/// The straight path of a body that nothing controls, by its distance along it.
+/// The straight path of an uncontrolled body, parametrised by distance.
 struct BodyPath {
   Vec2 from_m, direction;
   double speed_mps, deceleration_mps2;
@@ -115,7 +115,7 @@ bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const
 struct Fault {
   RobotId robot = 0;
   Time switched_off{};
-  Time moved{};  ///< time at which its body begins to move without control
+  Time moved{};  ///< time at which its body begins its uncontrolled motion
   bool is_carried = false;
   Vec2 target_m{0, 0};
   Duration duration{0};
@@ -150,15 +150,15 @@ struct Run {
 
 struct Totals {
   int cases = 0;
-  int judged = 0;          ///< robots that could stop clear of the body
+  int judged = 0;          ///< robots that could stop without touching the body
   int touched = 0;         ///< number of those that touched
-  int other_contacts = 0;  ///< number of contacts of two robots that nothing displaced
+  int other_contacts = 0;  ///< number of contacts between two robots that were not displaced
   int unnamed = 0;         ///< bodies not named within a second
   int wrongly_named = 0;   ///< robots named before the fault
   Duration slowest_name{0};
 };
 
-/// Chooses the fault in a run that is not disturbed. The run ends when the body begins to move.
+/// Chooses the fault in an undisturbed run. The run ends when the body begins to move.
 Fault choose_fault(Run& run, const Scenario& scenario, Rng& rng, bool is_carried) {
   Fault fault;
   fault.is_carried = is_carried;
@@ -243,7 +243,7 @@ void run_case(std::uint64_t seed, bool is_carried, Totals& totals) {
   run.system.disturb(off);
   if (is_carried) {
     run.system.run_until(fault.moved);
-    run.named.erase(fault.robot);  // named because it has rolled
+    run.named.erase(fault.robot);  // named as displaced because it has rolled
     auto carry = disturbance(fault.robot, msg::DisturbanceKind::DISTURBANCE_CARRY);
     carry.x_m(fault.target_m.x());
     carry.y_m(fault.target_m.y());

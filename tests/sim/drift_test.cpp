@@ -13,7 +13,7 @@ TEST_CASE("robots that are seen rarely and late drive slowly enough to stay on t
   std::uint64_t own_stops = 0;
   double max_position_error_m = 0;
   Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/two-teams-22.yaml");
-  // Messages are quick: on a slow network the clocks would allow less speed than dead reckoning does.
+  // The network is fast. On a slow one the clocks would limit the speed more than dead reckoning does.
   scenario.vision.rate_hz = 10;
   scenario.vision.delay = 100ms;
   scenario.odometry.scale_error = 0.01;

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// The bus of robots with a defect: it changes their commands.
+/// A bus that simulates defective robots by changing their commands.
 class DefectiveBus : public SimBus {
  public:
   DefectiveBus(SimNetwork& network, std::function<void(msg::Command&)> defect)

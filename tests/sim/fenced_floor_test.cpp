@@ -96,7 +96,7 @@ class FencedFloor {
   struct Agent {
     std::unique_ptr<SimBus> bus;
     std::unique_ptr<AgentNode> node;
-    ~Agent() { bus.reset(); }  // first, so that it calls nobody any more
+    ~Agent() { bus.reset(); }  // first, so that it makes no more calls
     Agent(std::unique_ptr<SimBus> agent_bus, std::unique_ptr<AgentNode> agent)
         : bus(std::move(agent_bus)), node(std::move(agent)) {}
     Agent(Agent&&) = default;

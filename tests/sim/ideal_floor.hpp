@@ -36,7 +36,7 @@ class IdealFloor {
 
   /// Runs for some seconds. Returns the minimum clearance between any two robots in that time.
   double run(double seconds);
-  /// How often a robot executed a version that was not in the ledger of the coordinator that grants. A
+  /// Number of times that a robot executed a version missing from the ledger of the granting coordinator. A
   /// robot's own stop off its reference counts only once the coordinator knows of it.
   int unknown_versions() const { return unknown_versions_; }
   /// Rule violations found by the audit.

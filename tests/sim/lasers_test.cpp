@@ -102,7 +102,7 @@ TEST_CASE("a robot takes another way around a corner that leaves no safe speed, 
 
 TEST_CASE("a robot stops while scans of its laser fail to arrive, and goes on with the next one") {
   const Scenario scenario = one_robot({-4, 0}, {4, 0});
-  Scenario rarely = scenario;  // how often a laser scans is not one of the rules that processes compare
+  Scenario rarely = scenario;  // the laser's scan rate is not one of the rules that processes compare
   rarely.laser->rate_hz = 0.5;
   SimSystem system(scenario, 1);
   system.kill("simulator");

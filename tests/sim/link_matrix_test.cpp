@@ -34,8 +34,8 @@ using Matrix = std::map<std::pair<std::string, std::string>, Link>;
 
 bool is_coordinator(const std::string& process) { return process.starts_with("coordinator"); }
 
-/// Samples how bad the link is. Links that robots need whichever coordinator is active are rarely cut,
-/// because then no coordinator can help.
+/// Samples the quality of a link. Links that robots need under any coordinator are rarely cut, because no
+/// coordinator can make up for them.
 Link sample_link(const std::string& from, const std::string& to, double share, Rng& rng) {
   const bool is_of_coordinator = is_coordinator(from) || is_coordinator(to);
   if (!rng.chance(is_of_coordinator ? share : 0.05 * share)) return Link::kGood;
@@ -168,7 +168,7 @@ TEST_CASE(
   run_all(1, 1000);
 }
 
-/// Cuts links of one process in one direction, and checks that all robots drive on for long.
+/// Cuts links of one process in one direction, and checks that all robots keep driving for a long time.
 void require_motion(int coordinators, const std::vector<std::pair<std::string, std::string>>& cuts) {
   const Scenario scenario = shuttles(3, coordinators);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

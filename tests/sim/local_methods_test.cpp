@@ -15,7 +15,7 @@ void require_safe(const SimSystem& system) {
   CHECK(report.audit->verdict() == AuditVerdict::kPassed);
 }
 
-/// Robots whose ways cross among posts and boxes.
+/// Robots whose paths cross among posts and boxes.
 Scenario random_crossing(const std::string& planner, std::uint64_t seed) {
   Rng rng(seed);
   std::string text = "planner: " + planner + "\nfield: {length_m: 6, width_m: 5}\nobstacles:\n";

@@ -104,7 +104,7 @@ TEST_CASE("robots that meet in a corridor as wide as one of them let each other 
   require_safe(system);
 }
 
-/// A building of 2,000 by 2,000 cells, written as a user does it.
+/// A building of 2,000 by 2,000 cells, written to files as a user would.
 Scenario large_building(const std::string& kind, std::uint64_t seed) {
   const auto folder = std::filesystem::temp_directory_path() / ("sidestep-maps-" + std::to_string(getpid()));
   BuildingOptions options;

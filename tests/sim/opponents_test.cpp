@@ -67,8 +67,8 @@ RobotSpec robot_with_goal(std::size_t index, const Vec2& start_m, const Vec2& go
   return robot;
 }
 
-/// Four robots cross the paths of four opponents at full speed. Fifty-six more stand along the sides, and
-/// come first or last in the scenario.
+/// Four robots cross the paths of four opponents at full speed. Fifty-six more are stationary along the
+/// sides, and are listed first or last in the scenario.
 Scenario crowded_scene(std::uint64_t seed, bool standing_first) {
   Rng rng(seed);
   Scenario scenario;

@@ -17,7 +17,7 @@ namespace sidestep {
 
 inline constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
 inline constexpr ClientId kClient = 1'000'001, kOtherClient = 1'000'002;
-inline constexpr double kAtRest_mps = 0.02;  // beyond the noise of a robot that holds its place
+inline constexpr double kAtRest_mps = 0.02;  // above the noise of a robot that holds its position
 
 /// Robots without goals, on two sides of the field.
 inline Scenario waiting_robots(int count, int coordinators = 1, const std::string& more = "") {
@@ -40,7 +40,7 @@ struct OrderedSystem {
   std::map<RobotId, State> bodies;  ///< true states
   Vec2 ball_m{0, 0};                ///< true position
   OrderNumber number = 0;
-  Time moved_at{};  ///< when a robot was in motion last
+  Time moved_at{};  ///< last time at which a robot was in motion
 
   OrderedSystem(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {
     system.on_order_status([this](const msg::OrderStatus& status) {
@@ -95,7 +95,7 @@ struct OrderedSystem {
     quality.is_cut = is_cut;
     system.set_client_link(process, quality);
   }
-  /// Kills everything but the simulator and vision at once, and starts it again.
+  /// Kills all processes except the simulator and vision at once, and restarts them.
   void restart_everything() {
     const auto names = system_process_names(scenario);
     for (const std::string& process : names)

@@ -136,7 +136,7 @@ TEST_CASE("no order is lost while agents and coordinators are killed") {
       }
       run.system.run_for(milliseconds(rng.below(500)));
     }
-    // Each robot carries out the last order that it was given, or rests as near to the goal as others permit.
+    // Each robot carries out its last order, or rests as near to the goal as others permit.
     run.run_until(seconds(40), [&] {
       return std::ranges::all_of(latest, [&](const auto& l) { return run.arrived.contains(l.second); });
     });

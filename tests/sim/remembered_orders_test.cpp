@@ -40,7 +40,7 @@ struct Fleet : OrderedSystem {
     send(msg::OrderKind::ORDER_GO, robot, kOtherClient, {{{2, 1}}});
     CHECK_FALSE(moves(seconds(10)));
     CHECK(statuses[robot].is_held());
-    // Nothing but the hold stops it.
+    // Only the hold stops it.
     const auto resume = send(msg::OrderKind::ORDER_RESUME, robot, kClient);
     CHECK(run_until(seconds(3), [&] { return answers.contains(resume); }));
     CHECK(run_until(seconds(5), [&] { return max_speed_mps() > 0.5; }));
@@ -110,7 +110,7 @@ TEST_CASE(
   run.require_held(0);
 }
 
-// Coordinator 0 hears everybody, but nobody hears it but the client.
+// Coordinator 0 hears everybody, but only the client hears it.
 TEST_CASE("a coordinator that no agent hears confirms no hold") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
@@ -154,7 +154,7 @@ TEST_CASE("after a restart of everything robots are held, even if none has moved
   CAPTURE(coordinators, seed);
   OrderedSystem run(waiting_robots(3, coordinators), seed);
   run.system.run_for(seconds(2));
-  const bool is_held = GENERATE(true, false);  // nobody knows whether one was
+  const bool is_held = GENERATE(true, false);  // it is unknown whether one was
   if (is_held) {
     const auto hold = run.send(msg::OrderKind::ORDER_HOLD, 0, kOperator);
     REQUIRE(run.run_until(seconds(3), [&] { return run.answers.contains(hold); }));
@@ -238,7 +238,7 @@ TEST_CASE("no confirmed hold is lost in random partitions and crashes") {
     });
     if (!run.answers.contains(hold)) continue;
     run.system.run_for(milliseconds(rng.below(3000)));
-    // An agent that has heard the hold lives on.
+    // An agent that has heard the hold stays alive.
     const std::string survivor = agent_process(robot);
     for (int i = 0; i < 6; ++i) {
       cut_some();

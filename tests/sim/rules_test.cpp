@@ -25,7 +25,7 @@ void replace(SimSystem& system, const std::string& process, const Scenario& scen
   system.restart(process);
 }
 
-/// The rules that this process was reported to differ in.
+/// The rules in which this process was reported to differ.
 std::vector<std::string> differing_keys(const Report& report, const std::string& process) {
   std::vector<std::string> keys;
   const auto found = report.mismatches.find(process);

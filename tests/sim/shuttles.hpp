@@ -51,7 +51,7 @@ class MotionWatch {
     const double last_s = to_seconds(system_.now() - last_motion(robot));
     return std::max(longest_rest_s_[robot], last_s);
   }
-  /// How long after begin() a robot moved first; nullopt: it did not.
+  /// Time from begin() to a robot's first motion; nullopt: it did not move.
   std::optional<double> first_motion_s(RobotId robot) const {
     const auto found = first_s_.find({robot, begin_});
     return found == first_s_.end() ? std::nullopt : std::optional(found->second);

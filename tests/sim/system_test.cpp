@@ -51,7 +51,7 @@ struct MonitoredSystem {
   }
 };
 
-/// Counts the stops that robots make by themselves.
+/// Counts the robots' own stops.
 void count_own_stops(SimSystem& system, int& own_stops) {
   system.on_event(LogLevel::kWarning, [&own_stops](const std::string&, const LogEvent& event) {
     own_stops += event.text.find("makes its own stop") != std::string::npos;
@@ -154,8 +154,8 @@ TEST_CASE(
     run.require_safe();
     arrived += run.system.metrics().arrived();
   }
-  // A system without motion would be safe, too. Clocks are known within tens of milliseconds here, so robots
-  // are slow, and keep far from those that are silent.
+  // A system without motion would be safe, too. Here clocks are known only within tens of milliseconds, so
+  // robots are slow, and keep far away from silent ones.
   CHECK(arrived > 120);
 }
 

@@ -39,7 +39,7 @@ TEST_CASE("if two agents of one robot run, the later one drives it, and clearanc
       floor.start_agent(3);
       clearance = std::min(clearance, floor.run(rng.uniform(0.01, 0.6)));
       if (twin == 1) floor.kill_coordinator(0);
-      // The first agent may receive nothing for a while, and so not notice the new one.
+      // The first agent may receive nothing for a while, so it does not notice the new one.
       FaultyBus& earlier = *floor.agent_buses(3).front();
       earlier.block_incoming(rng.chance(0.5));
       clearance = std::min(clearance, floor.run(rng.uniform(0.01, 0.6)));

@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// A template for new drivers. As it stands, it drives ideal bases, which move exactly as commanded and
-/// report their motion.
+/// A template for new drivers. Unchanged, it drives ideal bases, which move exactly as commanded and report
+/// their motion.
 class SkeletonDriver : public Driver {
  public:
   /// `now` returns the process's time.

@@ -48,7 +48,7 @@ class Bridges {
   struct Bridge {
     Node start_node, goal_node;
   };
-  /// The end of a bridge in one of the trees; index bridges_.size() stands for the tree's root.
+  /// The end of a bridge in one of the trees; index bridges_.size() means the tree's root.
   struct End {
     bool in_goal_tree = false;
     std::size_t bridge = 0;

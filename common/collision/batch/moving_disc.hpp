@@ -6,7 +6,7 @@
 namespace sidestep::collision {
 namespace {
 
-constexpr float kMinLength2_m2 = 1e-24f;  // a shorter motion counts as standing still
+constexpr float kMinLength2_m2 = 1e-24f;  // a shorter motion counts as being at rest
 
 /// A disc that moves along a segment, relative to the origin.
 struct MovingDisc {

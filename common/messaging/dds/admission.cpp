@@ -225,7 +225,7 @@ std::vector<Identity> Admission::newly_unproven(Time now) {
     if (participant.is_proven || participant.is_reported || now - participant.admitted < kMaxUnproven)
       continue;
     participant.is_reported = true;
-    // A participant that has ended meanwhile may have been too short-lived to authenticate.
+    // A participant that has since ended may have been too short-lived to authenticate.
     if (id == self_id_ || now - participant.last_heard > kMaxUnproven / 2) continue;
     result.push_back(participant.known->identity);
   }

@@ -163,7 +163,7 @@ class Keeper {
  public:
   explicit Keeper(ProcessGroup& group) : group_(group) {}
 
-  /// A new director is told again about processes that have died for good.
+  /// A new director is informed again about processes that have died permanently.
   void begin() {
     events_ = ended_;
     is_ending_ = false;

@@ -19,7 +19,7 @@ struct Kill {
 /// Sends SIGSTOP, and SIGCONT at the end.
 struct Pause {
   ProcessNames processes;
-  /// On SimBus: maximum number of messages that wait for each process meanwhile, as in the buffer of a
+  /// On SimBus: maximum number of messages that are queued for each paused process, as in the buffer of a
   /// socket; further ones are lost.
   std::size_t max_queued = 1000;
 };

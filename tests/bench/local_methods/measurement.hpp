@@ -13,7 +13,7 @@ namespace sidestep {
 inline constexpr std::uint64_t kBenchSeed = 1;
 inline constexpr std::size_t kBenchScenes = 1200, kBeams = 360;
 
-/// One way to do something, measured on scenes; `run` returns a checksum.
+/// One of the methods to compare, measured on scenes; `run` returns a checksum.
 struct Contestant {
   std::string name;
   std::size_t scenes;
@@ -25,7 +25,7 @@ struct Contestant {
 void print_header(const char* title);
 void print_row(const std::string& name, const Distribution& times_us, double mean_result);
 
-/// Measures every contestant on every scene, in a random order, and prints the times.
+/// Measures every method on every scene, in random order, and prints the times.
 void measure(std::vector<Contestant>& contestants, Rng& rng);
 
 // Each prints a table, and returns false if a result is wrong.

@@ -10,7 +10,7 @@ namespace {
 
 /// In the unit square.
 Vec2 sample_position(Rng& rng) {
-  // y first: the order of arguments would be unspecified.
+  // y is drawn first, because the evaluation order of arguments is unspecified.
   const double y = rng.uniform(), x = rng.uniform();
   return {x, y};
 }

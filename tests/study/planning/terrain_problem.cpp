@@ -63,7 +63,7 @@ TerrainProblem::TerrainProblem(std::size_t squares, std::size_t flight_count, st
   const TerrainTree terrain(points_m, triangles);
   constexpr double kSky_m = 1000;
   while (flights.size() < flight_count) {
-    // y first: the order of arguments would be unspecified.
+    // y is drawn first, because the evaluation order of arguments is unspecified.
     const double y = rng.uniform(-0.4, 0.4) * kSide_m, x = rng.uniform(-0.4, 0.4) * kSide_m;
     Vec3 from(x, y, kSky_m);
     from.z() -= terrain.min_height_m(from, from) - rng.uniform(0.1, kMaxStartHeight_m);

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// A method that tells the robot where to drive.
+/// A method that decides where the robot drives.
 struct FieldMethod {
   enum class Kind { kPotential, kNf1, kEStar };
   Kind kind = Kind::kPotential;

@@ -28,7 +28,7 @@ std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& r
   std::vector<Version> versions;
   for (int i = 0; i < robots; ++i) {
     const Vec2 corner = -0.5 * cell_m * (columns - 1) * Vec2(1, 1);
-    // y first: the order of arguments would be unspecified.
+    // y is drawn first, because the evaluation order of arguments is unspecified.
     const double y = rng.uniform(-jitter_m, jitter_m), x = rng.uniform(-jitter_m, jitter_m);
     const Vec2 position = corner + cell_m * Vec2(i % columns, i / columns) + Vec2(x, y);
     Trajectory trajectory = Trajectory::resting(kNow, position);

@@ -179,7 +179,7 @@ TEST_CASE("an agent that registers nobody receives all orders, and nothing count
     floor.send(topics::kRegistration, asking);
     floor.run_for(std::chrono::milliseconds(60));
   }
-  // It tells them once a second anyway.
+  // It announces them once a second anyway.
   REQUIRE(floor.network.now() - begin < std::chrono::seconds(3));
   CHECK(told >= 8);
   CHECK(floor.verdicts.size() == verdicts);
@@ -524,7 +524,7 @@ TEST_CASE("an order that changes nothing, or is refused, is answered at once") {
   floor.send(topics::kOrder, encode(Order{msg::OrderKind::ORDER_CANCEL, 99, 1'000'001, 1000}));
   REQUIRE(answers.size() == 1);
   CHECK(answers[0].result() == msg::OrderResult::RESULT_UNKNOWN_ROBOT);
-  // The operator's later resume lifts all that this one would.
+  // The operator's later resume already lifts everything that this one would lift.
   floor.send(topics::kOrder, encode(Order{msg::OrderKind::ORDER_RESUME, kAllRobots,
                                           static_cast<ClientId>(Sender::kOperator), 2000}));
   answers.clear();

@@ -54,7 +54,7 @@ struct Standby {
       update(failover, after_ms(now_ms));
     }
   }
-  /// Runs until it takes over; the time of that in ms.
+  /// Runs until it takes over, and returns the time of the takeover in ms.
   double run_until_takeover_ms() {
     const double begin = now_ms;
     while (!failover.is_active() && now_ms < begin + 100'000) run_until(now_ms);

@@ -20,7 +20,7 @@ TEST_CASE(
   CHECK_FALSE(reception.hears_robots(after_ms(100)));
   reception.on_robot_report(2, 5, false, after_ms(100));
   CHECK(reception.hears_robots(after_ms(100)));
-  // Robots that have been silent for long do not count.
+  // Robots that have been silent for a long time do not count.
   reception.on_robot_report(4, 5, false, after_ms(10'200));
   CHECK(reception.hears_robots(after_ms(10'200)));
 }
@@ -29,7 +29,7 @@ TEST_CASE("a fleet counts as served while robots begin to execute granted versio
   FleetReception reception(kPeriod);
   const Duration lately = std::chrono::milliseconds(60);
   reception.on_robot_report(1, 5, true, after_ms(0));
-  CHECK_FALSE(reception.is_fleet_served(lately, after_ms(0)));  // it may have executed it for long
+  CHECK_FALSE(reception.is_fleet_served(lately, after_ms(0)));  // it may have begun long ago
   reception.on_robot_report(1, 5, true, after_ms(10));
   CHECK_FALSE(reception.is_fleet_served(lately, after_ms(10)));
   reception.on_robot_report(1, 9, false, after_ms(20));  // a stop of its own
@@ -48,7 +48,7 @@ TEST_CASE("an agent asks for a coordinator as long as it repeats its registratio
   CHECK(reception.request_duration(1, after_ms(650)) == std::chrono::milliseconds(600));
   CHECK(reception.time_since_first_request(1, after_ms(650)) == std::chrono::milliseconds(650));
   CHECK(reception.request_duration(1, after_ms(1000)) == Duration{0});
-  // One a second is a measurement of the clock.
+  // Agents register once a second only to measure the clock.
   for (int ms = 2000; ms <= 9000; ms += 1000) {
     reception.on_registration(1, after_ms(ms));
     CHECK(reception.request_duration(1, after_ms(ms)) == Duration{0});

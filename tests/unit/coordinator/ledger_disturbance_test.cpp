@@ -61,7 +61,7 @@ double min_distance_m(const Trajectory& a, const Trajectory& b, Time from) {
   return std::min(min_distance, (a.rest_position_m() - b.rest_position_m()).norm());
 }
 
-/// By how much two robots' versions may violate their required separation; 0 if they are clear.
+/// The amount by which two robots' versions violate their required separation; 0 if they are clear.
 double shortfall_m(const Ledger& ledger, RobotId i, RobotId j, double min_separation_m) {
   double worst = 0;
   for (const Version& v : ledger.versions(i)) {

@@ -116,10 +116,10 @@ TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and re
   CHECK(two.report(unknown, 100) == ReportOutcome::kContradiction);
   unknown.number = 999;
   CHECK(two.report(unknown, 100) == ReportOutcome::kContradiction);
-  // A known number with other contents.
+  // A known number with different content.
   other.trajectory = continued(two.a, 10, 1, {2.9, 0}).trajectory;
   CHECK(two.report(other, 100) == ReportOutcome::kContradiction);
-  // The version that the robot reported last is kept besides.
+  // The version that the robot reported last is kept in addition.
   REQUIRE(two.ledger.versions(1).size() == 4);
   CHECK(two.ledger.versions(1)[3].trajectory.rest_position_m() == other.trajectory.rest_position_m());
   CHECK(two.ledger.is_quarantined(1));

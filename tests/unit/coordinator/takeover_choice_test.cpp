@@ -52,7 +52,7 @@ struct Coordinator {
   void run(double seconds) {
     for (const Time end = now + from_seconds(seconds); now < end;) step();
   }
-  /// How long it takes to become active; `limit_s` if it does not.
+  /// Time until it becomes active; `limit_s` if it does not.
   double takeover_s(double limit_s) {
     const Time begin = now;
     while (!failover.is_active() && now < begin + from_seconds(limit_s)) step();
@@ -186,7 +186,7 @@ TEST_CASE("a coordinator that could not serve waits longer, a bounded time, unti
     be_superseded();
   }
   CHECK(last_s > 7);
-  // While no robot moves, a vain attempt costs nothing.
+  // While no robot moves, a failed attempt costs nothing.
   c.is_fleet_served = false;
   CHECK(c.takeover_s(30) < 2.2);
   c.other = 0;
@@ -208,7 +208,7 @@ TEST_CASE(
     c.failover.on_obeyed_epoch(own + 1000, false, c.now, 1, EpochHolder::kRobot);
     const Epoch risen = c.failover.epoch();
     CHECK(risen > own + 1000);
-    // A rival has begun above it.
+    // A rival has begun a higher epoch.
     c.failover.on_obeyed_epoch(risen + 1000, false, c.now, 1, EpochHolder::kRobot);
     CHECK_FALSE(c.failover.is_active());
   }

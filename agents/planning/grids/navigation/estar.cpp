@@ -152,7 +152,7 @@ template <typename Kernel>
 void EStar::raise(std::uint32_t at) {
   const float before = raised_from_[at], value = value_from_lower<Kernel>(at, before);
   // Neighbours that are lower than this do not depend on the cell. The value is lower than the old one if a
-  // neighbour has been lowered meanwhile but has not been expanded yet.
+  // neighbour has been lowered since, but has not been expanded yet.
   const float lowest = std::min(before, value);
   values_[at] = value;
   raised_from_[at] = kBlocked;

@@ -261,7 +261,7 @@ void McapWriter::close() {
   encoder.record(Kind::kDataEnd, [&] { encoder.number(checksum_); });
   write(bytes);
 
-  // The summary: a group of records of each kind, then where each group lies.
+  // The summary: a group of records of each kind, followed by the position of each group.
   bytes.clear();
   const std::uint64_t summary_at = size_;
   McapBytes offsets;

@@ -114,7 +114,7 @@ class Encoder {
 
   static double real(const Json* json, const std::string& name) {
     if (!json) return 0;
-    if (json->is_null()) return std::nan("");  // as JSON shows what is not finite
+    if (json->is_null()) return std::nan("");  // JSON's form of NaN and infinity
     if (!json->is_number()) fail(name, "a number", *json);
     return json->get<double>();
   }

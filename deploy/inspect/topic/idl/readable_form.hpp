@@ -15,8 +15,8 @@ namespace sidestep {
 /// Returns what people read instead of a decoded value.
 using Rewrite = nlohmann::ordered_json (*)(const nlohmann::ordered_json& value);
 
-/// Rewrites of values whose meaning the IDL does not tell, indexed by a struct, "sidestep::msg::Header", or
-/// by one of its members, "sidestep::msg::Header.rules".
+/// Rewrites of values whose meaning does not follow from the IDL, indexed by a struct,
+/// "sidestep::msg::Header", or by one of its members, "sidestep::msg::Header.rules".
 using Rewrites = std::map<std::string, Rewrite>;
 
 /// What people read of the messages of a type. Enumerators become words: the lower-case name without the

@@ -88,8 +88,8 @@ struct TimedFault {
 
 /// The state of a robot at the end of a run if its fault is not corrected.
 enum class RobotEnd {
-  kClockOutOfBound,   ///< its clock was out of bound throughout, so it must not move
-  kClockLeftBound,    ///< its clock is so far out of bound that its agent must report it
+  kClockOutOfBound,   ///< its clock was out of bounds throughout, so it must not move
+  kClockLeftBound,    ///< its clock is so far out of bounds that its agent must report it
   kClockBeyondBound,  ///< its clock has left the bound by a smaller amount
   kLifted,            ///< it is off the floor
   kTakenAway,         ///< it is off the floor and has no power

@@ -153,7 +153,7 @@ class FaultSampler {
     plan_.add(times_.after(at, dead_s), Start{victim});
   }
 
-  /// Makes a process work with other rules for a while. A standby may do so for good if there is another
+  /// Makes a process work with different rules for a while. A standby may do so for good if there is another
   /// coordinator.
   void sample_other_rules() {
     const double u = rng_.uniform();
@@ -216,7 +216,7 @@ class FaultSampler {
       plan_.add(at, Partition{rest, {second}}, length);
     }
     plan_.add(plan_.healed_at - Duration{1}, Kill{second});
-    // If it was started again meanwhile, it was the later one, and has ended.
+    // If it has been restarted since, it was the later one, and has ended.
     plan_.add(plan_.healed_at - Duration{1}, Start{first});
   }
 

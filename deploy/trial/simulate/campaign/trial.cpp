@@ -35,9 +35,9 @@ std::string list(const std::vector<RobotId>& robots) { return fmt::format("{}", 
 /// Robots whose agents are in a wrong state at the end, long after the last fault.
 struct UnexpectedStates {
   std::vector<RobotId> not_driving;
-  /// Robots whose clock is out of bound, but whose agent does not report it.
+  /// Robots whose clock is out of bounds, but whose agent does not report it.
   std::vector<RobotId> undetected_clock;
-  /// Robots whose clock is out of bound, but to which versions were granted.
+  /// Robots whose clock is out of bounds, but to which versions were granted.
   std::vector<RobotId> driven;
   std::vector<RobotId> not_absent;  ///< robots off the floor whose agent does not report it
 };
@@ -134,7 +134,7 @@ void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress
     fail(
         fmt::format("robots {} were driven although their clocks are out of bound", list(unexpected.driven)));
   }
-  // Robots that must not move may stand at the goals of others.
+  // Robots that must not move may be at the goals of others.
   const bool may_block = std::ranges::any_of(trial.plan.ends, [](const auto& entry) {
     return entry.second != RobotEnd::kLifted && entry.second != RobotEnd::kTakenAway;
   });

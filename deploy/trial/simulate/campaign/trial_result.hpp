@@ -20,7 +20,7 @@ struct TrialResult {
   std::uint64_t excused_contacts = 0;
   std::map<std::string, std::uint64_t> excused_by_cause;  ///< the same contacts, by cause
   double pair_s = 0;          ///< observed time, summed over all pairs of robots on the floor
-  double excused_pair_s = 0;  ///< the part of it in which a contact would have been excused
+  double excused_pair_s = 0;  ///< the part of this time in which a contact would have been excused
   /// Whether the audit judges the trial. It does not if a process believed a second simulator, because it had
   /// not heard the first one for a while: what that process does then breaks rules, which the audit reports
   /// (PROTOCOL.md, "Processes that must be alone").

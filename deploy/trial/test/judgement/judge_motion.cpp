@@ -12,7 +12,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kMoving_mps = 0.05;
-// A robot that is not heard from for longer may have moved meanwhile.
+// A robot that is not heard from for longer may have moved in that time.
 constexpr double kMaxUnheardRest_s = 0.25;
 
 Judgement not_on_floor(RobotId robot, double from_s, double to_s) {

@@ -78,7 +78,7 @@ void LaunchedFaults::end(std::size_t fault) {
   if (const auto* partition = std::get_if<Partition>(&action)) partitions_->end(*partition);
   if (const auto* impairment = std::get_if<ImpairmentFault>(&action))
     impair(impairment->target, kUnimpairedLink, 0);
-  // A process that was killed meanwhile is not stopped.
+  // A process that has been killed since is not stopped.
   for (const std::string& process : paused_[fault]) (void)launcher_.send_signal(process, SIGCONT);
 }
 

@@ -118,7 +118,7 @@ double drive_and_measure(Scene& scene, const std::function<void()>& step) {
 }  // namespace
 
 TEST_CASE("with its base's odometry a driven robot knows where it is although the base obeys only partly") {
-  // Reports are dated between the periods of the control.
+  // The timestamps of reports lie between control periods.
   const auto [report_every, ago] = GENERATE(table<int, Duration>({{1, 0ms}, {1, 3ms}, {1, 7ms}, {2, 5ms}}));
   CAPTURE(report_every, ago.count());
   Scene scene;
@@ -142,7 +142,7 @@ TEST_CASE("with its base's odometry a driven robot knows where it is although th
 TEST_CASE("fixes that are newer than the odometry are used once the odometry has arrived") {
   Scene scene;
   scene.run(1500ms);
-  // The base is pushed, of which its odometry knows nothing.
+  // The base is pushed, which its odometry does not show.
   for (int i = 0; i < 10; ++i) {
     scene.step();
     scene.report_odometry();

@@ -16,7 +16,7 @@ using test::DrivenScene;
 
 constexpr double kTrackingBound_m = SafetyBudget{}.tracking_bound_m;
 
-/// Runs for a while, and returns how far the body leaves the version that the facts state.
+/// Runs for a while, and returns the body's maximum deviation from the version that the facts state.
 double run_and_measure(DrivenScene& scene, Duration duration) {
   double largest_m = 0;
   for (const Time end = scene.now + duration; scene.now < end;) {
@@ -52,7 +52,8 @@ TEST_CASE("a new agent does not make a robot leave the version that it executes"
   scene.run(scene.start - before_start - scene.now);
   scene.agent = 101;
   scene.send(std::nullopt);
-  // The motors have been sent its beginning: it stays, and the new agent is acknowledged together with it.
+  // The motors have already received its beginning, so it stays, and the new agent is acknowledged together
+  // with it.
   CHECK(scene.robot_report().obeyed_incarnation == 100);
   CHECK_FALSE(scene.robot_report().command);
   CHECK(scene.robot.side().obeyed_incarnation() == 101);
@@ -202,7 +203,7 @@ TEST_CASE("whichever agents restart, a robot executes what is expected, and its 
         is_waiting = scene.robot_report().obeyed_incarnation != scene.agent;
         deferred += is_waiting;
       }
-      // An agent that the robot does not obey any more may go on.
+      // An agent that the robot no longer obeys may continue.
       const bool is_alive = acknowledged == scene.agent || is_twin;
       if (!is_alive || scene.now < next) continue;
       const Duration ahead = latency + 10ms + from_seconds(rng.uniform(0, 0.03));

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A base's path by commands that each hold for a while.
+/// A base's path under commands that are each held for a while.
 std::vector<PathPoint> path_of(const std::vector<Vec2>& velocities_mps, Duration period) {
   std::vector<PathPoint> path{{Duration{0}, {1, 2}}};
   for (const Vec2& velocity : velocities_mps)
@@ -22,7 +22,7 @@ std::vector<PathPoint> path_of(const std::vector<Vec2>& velocities_mps, Duration
   return path;
 }
 
-/// The largest distance of the motion from the path, by small steps.
+/// The largest distance of the motion from the path, measured in small steps.
 double sampled_error_m(const std::vector<PathPoint>& path, const robot::MotionUnderWay<float>& motion) {
   robot::Version version;
   version.x_m = path.front().position_m.x();
@@ -133,7 +133,7 @@ TEST_CASE(
     REQUIRE(sampled_m <= motion.error_m);
     if (motion.error_m > 0.001) worst_ratio = std::max(worst_ratio, motion.error_m / sampled_m);
   }
-  // The bound is not much larger than what it bounds.
+  // The bound is not much larger than the actual error.
   CHECK(worst_ratio < 1.2);
 }
 

@@ -14,7 +14,8 @@ using test::beyond_m;
 using test::continuation;
 using test::DrivenScene;
 
-/// How far the body leaves the robot's first own stop after `before`, beyond its inflation, within a second.
+/// The body's maximum deviation from the robot's first own stop after `before`, minus its inflation, within a
+/// second.
 struct Excursion {
   std::optional<Version> stop;
   double beyond_m = 0;

@@ -33,7 +33,7 @@ class IdleDriver : public Driver {
   std::function<void(const OdometryReport&)> report;
 };
 
-/// Two robots that stand, and their agents.
+/// Two robots at rest, and their agents.
 struct Scene {
   Scene() {
     for (const RobotId id : {4u, 7u}) {
@@ -157,7 +157,7 @@ TEST_CASE("robots that restart remember whom they obey, and count what they cann
     scene.command(1, 100, 9);
     scene.run(20ms);
   }
-  scene.robot_bus.reset();  // first, so that it calls nobody any more
+  scene.robot_bus.reset();  // first, so that it makes no more calls
   scene.node.reset();
   SimBus second_bus(scene.network);
   RobotDriverNode second(second_bus, scene.scenario, roster_of(scene.scenario), 56, DriveSettings{},

@@ -56,13 +56,13 @@ TEST_CASE("velocities go out as twists, and odometry comes in with its time of m
   CHECK(scene.reports[0].measured_at == measured);
   CHECK(scene.reports[0].position_m == Vec2(1, 2));
   CHECK(scene.reports[0].heading_rad == Approx(1.2));
-  // A base whose clock is wrong by less than a second: whether to believe it is decided elsewhere.
+  // A base whose clock is wrong by less than a second. Whether it is trusted is decided elsewhere.
   ros::Odometry misdated = scene.odometry();
   misdated.nanosec += 100'000'000;
   scene.report(misdated);
   REQUIRE(scene.reports.size() == 2);
   CHECK(scene.reports[1].measured_at > scene.network.now());
-  // A base of another time, such as a simulator's.
+  // A base with a different time, such as a simulator's.
   ros::Odometry old = scene.odometry();
   old.sec = 17;
   const Time sent = scene.network.now();

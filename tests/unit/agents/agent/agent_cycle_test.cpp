@@ -40,7 +40,7 @@ msg::OrderMemory memory_of(const RememberedOrder& order, bool is_announcement) {
 
 /// An agent's node, and one process that is its robot at rest, vision and the coordinator, with a network
 /// that takes 0.1 ms. The coordinator grants nothing. By default it answers registrations but no proposal.
-/// Answers without the time of the request measure no clock.
+/// Answers that do not echo the request's time measure no clock.
 struct Floor {
   Scenario scenario = one_robot();
   SimNetwork network{1, kBegin, scenario.network};

@@ -110,9 +110,9 @@ struct NodeFixture {
   }
   /// Runs until the next status has arrived.
   void run() { network.run_until(network.now() + Duration{250'000'000}); }
-  /// What the node and its bus have dropped.
+  /// The messages that the node and its bus have dropped.
   std::uint64_t dropped() const { return drops_of(node).total() + drops_of(agent_bus).total(); }
-  /// Sends one message. Returns how many are counted as dropped in addition.
+  /// Sends one message. Returns the increase in the number of dropped messages.
   template <typename Message>
   std::uint64_t send(const Topic<Message>& topic, Message message) {
     auto writer = other_bus.advertise(topic, kRobot);
@@ -282,7 +282,7 @@ TEST_CASE("only an invalid placement of the agent's own robot is counted") {
   msg::Disturbance push = placement(kRobot, kNan);
   push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
   CHECK(f.send(topics::kDisturbance, push) == 0);
-  // Only an operator says where a robot was put.
+  // Only an operator may say where a robot was put down.
   msg::Disturbance forged = placement(kRobot, 1);
   forged.header().sender(kRobot);
   CHECK(f.send(topics::kDisturbance, forged) == 1);

@@ -290,7 +290,7 @@ TEST_CASE(
   agent.on_robot_report(resting_at({0, 0}, 0.5));
   become_ready(agent, 0.6, 0.6);
   agent.on_world_state(observation(0, 0.6), at_s(0.61));
-  // Something unknown stands all around.
+  // There are unknown objects all around.
   const std::vector<float> ranges_m(static_cast<std::size_t>(scenario.laser->settings.beams), 1.5F);
   agent.on_scan({{0, 0}, 0, at_s(0.55), ranges_m}, at_s(0.61));
   const auto plan = agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));

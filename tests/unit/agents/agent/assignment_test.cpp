@@ -19,7 +19,7 @@ RememberedOrder of_kind(msg::OrderKind kind, ClientId client, OrderNumber number
   return {{kind, 3, client, number}};
 }
 
-/// All that a coordinator remembers.
+/// The complete memory of a coordinator.
 OrderPage memory(std::vector<RememberedOrder> orders) {
   return {kCoordinator, true, 0, 1, std::move(orders)};
 }
@@ -159,13 +159,13 @@ TEST_CASE("an agent knows whether a coordinator has announced every order that i
   CHECK(r.assignment.is_told_by(kActive, 1));
   CHECK_FALSE(r.assignment.is_told_by(kActive, 2));  // it has forgotten all
   CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
-  // Partitioned meanwhile: its memory claims to be complete, too.
+  // This coordinator was partitioned in the meantime. Its memory claims to be complete, too.
   r.hear(told_by(kStandby, 1, memory({})));
   CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
   REQUIRE(r.assignment.take_missing().size() == 1);
   r.hear(told_by(kStandby, 1, memory({})));
   CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
-  CHECK(r.assignment.take_missing().size() == 1);  // told again
+  CHECK(r.assignment.take_missing().size() == 1);  // announced again
   r.hear(told_by(kStandby, 1, memory({hold_of(8, 5)})));
   CHECK(r.assignment.is_told_by(kStandby, 1));
   CHECK(r.assignment.take_missing().empty());

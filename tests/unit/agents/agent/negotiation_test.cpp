@@ -144,7 +144,7 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
     CHECK(f.n.executing().number == 9000);
     f.n.on_robot_report(report_of(2, own_stop(7000, 10), 9));
     CHECK(f.n.executing().number == 9000);
-    // Robots never go back: the fact before was false.
+    // Robots never return to an earlier incarnation, so the previous fact was false.
     f.n.on_robot_report(report_of(2, own_stop(7000, 10), 11));
     CHECK(f.n.executing().number == 7000);
   }
@@ -209,7 +209,7 @@ TEST_CASE("an agent continues although a version starts much later because of a 
   REQUIRE(next);
   CHECK(f.n.has_upcoming_version(at_s(1.0)));
   CHECK(next->base == f.initial.number);
-  // It may still execute either.
+  // It may still be executing either of them.
   CHECK(f.n.registration().versions->versions().size() == 3);
   f.n.on_robot_report(make_report(*next, 1.2));
   CHECK(f.n.registration().versions->versions().size() == 1);

@@ -188,7 +188,7 @@ TEST_CASE(
   Fixture f;
   f.receive(5, 1, 3600, 3600.02);
   REQUIRE(f.obstacles.complete_at() == at_s(3600));
-  // The clocks are right from now on.
+  // From now on the clocks are correct.
   f.receive(List(10).add(6, 2, 10), 10.02);
   CHECK(f.obstacles.complete_at() == Time{});
   REQUIRE(f.obstacles.recent(at_s(10.02)).size() == 1);

@@ -76,7 +76,7 @@ TEST_CASE("a list with an impossible number is refused as a whole, because it wo
     CHECK(is_refused([=](List&, Obstacle& o) { o.position_variance_m2(bad); }));
     CHECK(is_refused([=](List& l, Obstacle&) { l.complete_within_m(bad); }));
   }
-  // The bounds themselves are possible.
+  // Numbers exactly at the bounds are accepted.
   for (const double sign : {-1.0, 1.0}) {
     for (const double m : {kMaxCoordinate_m, 1.001 * kMaxCoordinate_m}) {
       CHECK(is_refused([=](List&, Obstacle& o) { o.x_m(sign * m); }) == (m > kMaxCoordinate_m));

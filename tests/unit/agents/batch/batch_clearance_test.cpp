@@ -12,7 +12,7 @@ namespace sidestep::batch_clearance_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 
-/// A version as agents propose it, which starts at about the same time as the others.
+/// A typical proposed version, which starts at about the same time as the others.
 Trajectory typical_trajectory(Rng& rng) {
   const Vec2 position = random_vector(rng, 0.6), velocity = random_velocity(rng, 2, 3.2);
   Trajectory trajectory(kBegin + from_seconds(rng.uniform(-0.03, 0.03)), {position, velocity});

@@ -60,7 +60,7 @@ TEST_CASE("a robot that is stuck in a corridor backs out into the nearest bay, u
   CHECK(std::abs(place->x() - bay_x_m) < 0.2);
   CHECK(place->y() >= kSeparation_m);
   CHECK_FALSE(fixed.touches(*place, kRequired_m));
-  // It stays as long as the other one is under way, and continues once that has passed.
+  // It stays as long as the other robot is under way, and continues once it has passed.
   CHECK(robot.decide(7, *place, {coming_from(bay_x_m + 0.5, -4.9)}, fixed) == place);
   CHECK_FALSE(robot.decide(8, *place, {coming_from(bay_x_m - 0.5, -4.9)}, fixed));
 }
@@ -141,7 +141,7 @@ TEST_CASE("a robot gives way until the other has passed, even while the other is
 }
 
 TEST_CASE("robots that only together block a door give way") {
-  // A wall with a door as wide as two robots, in which two stand side by side.
+  // A wall with a door as wide as two robots, in which two robots are side by side.
   const ObstacleWorld fixed({Box{{-0.05, -2}, {0.05, -0.24}}, Box{{-0.05, 0.24}, {0.05, 2}}});
   const OtherRobot beside{1, true, {0, -0.125}};
   Robot robot;

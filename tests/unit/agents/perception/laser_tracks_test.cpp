@@ -31,7 +31,7 @@ class Drive {
       person.step(scene_, rng_, kScan_s);
       discs_.push_back(person.disc());
     }
-    // A little of the pose is wrong, too.
+    // The pose is slightly wrong, too.
     LaserScan scan = scene_.scan(robot_->at_m(), robot_->heading_rad(), at_s(now_s_), discs_, kNoise, rng_);
     scan.at_m += 0.005 * Vec2(rng_.uniform(-1, 1), rng_.uniform(-1, 1));
     scan.heading_rad += rng_.uniform(-0.003, 0.003);
@@ -89,7 +89,7 @@ TEST_CASE("walls do not appear to move while the robot drives and turns") {
   }
   CHECK(driven_m > 100);
   CHECK(turned_rad > 100);
-  // Without a map, parts of walls that are new are tracked, but known not to move.
+  // Without a map, newly seen parts of walls are tracked, but recognised as stationary.
   if (!has_map) CHECK(tracks > 1000);
   WARN("map " << has_map << ": " << tracks << " tracks of walls, " << moving << " moving");
 }

@@ -143,7 +143,7 @@ TEST_CASE("a gap is closed if it is too narrow and both of its sides are station
   CHECK(loose.visibility.closed_gaps().empty());
   CHECK(loose.frontier_m(0.3) < 3.2);
   CHECK(loose.visibility.was_seen_free({2.9, 0}));
-  // It takes both sides: here, only one is known.
+  // Both sides must be known; here only one is.
   const ObstacleWorld half({Segment{{3, -3}, {3, 0}}});
   Visibility lone(settings);
   lone.update(fence.beams, [&](const Vec2& p, double within_m) {

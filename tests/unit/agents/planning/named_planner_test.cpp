@@ -15,7 +15,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return times;
 }
 
-/// A planner with a world that it plans in.
+/// A planner and the world that it plans in.
 class Planning {
  public:
   Planning(const std::string& planner, const PlanWorld& world)

@@ -141,7 +141,7 @@ TEST_CASE("no hidden person can touch a robot that moves as the check allows") {
                << " would have been touched, " << walls << " would have reached a wall");
   CHECK(allowed > 150);
   CHECK(refused > 100);
-  // It does not refuse much more than necessary.
+  // The check does not refuse much more than necessary.
   CHECK(touched + walls > refused / 4);
 }
 

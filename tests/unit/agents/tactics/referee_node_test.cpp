@@ -13,7 +13,7 @@ using league::RefereeCommand;
 
 constexpr league::Endpoint kReferee{0x7f000001, 4000}, kOther{0x7f000002, 4000};
 
-/// The referee's node, vision, and a process that remembers what is ordered.
+/// The referee's node, vision, and a process that records the orders.
 struct System {
   SimNetwork network{1, time_from_ns(1'000'000'000'000), NetworkSpec{}};
   SimBus bus{network}, other_bus{network};

@@ -9,7 +9,7 @@
 
 namespace sidestep::camera_model_test {
 
-/// The projection as ssl-vision writes it: quaternion products, and Cardano's formula for the cubic.
+/// The projection as implemented by ssl-vision: quaternion products, and Cardano's formula for the cubic.
 Vec2 reference_pixel(const CameraParameters& c, const Vec3& point_m) {
   const Eigen::Quaterniond q = c.rotation;
   const Eigen::Quaterniond v(0, point_m.x(), point_m.y(), point_m.z());

@@ -193,7 +193,7 @@ TEST_CASE("an order that one coordinator lists is sent again to another one that
   CHECK(system.received[0].number == system.client.find(go)->order.number);
   CHECK(system.book.drive_order(0, Rank::kClient));
   CHECK(system.client.find(go)->phase == OrderPhase::kAccepted);
-  // Some process remembers the order all the time.
+  // At all times some process remembers the order.
   CHECK(system.phases.empty());
 }
 

@@ -89,7 +89,7 @@ TEST_CASE("problems with keys are explained in plain words") {
 /// Keys of agent 3 of which one file is replaced by `text`.
 std::string with_file(const TestKeys& keys, const char* name, const std::string& text) {
   const std::string folder = keys.folder_of("agent 3");
-  fs::remove(folder + "/" + name);  // perhaps a link to a file of all
+  fs::remove(folder + "/" + name);  // possibly a link to a file shared by all
   write_file(folder + "/" + name, text);
   return folder;
 }
@@ -207,7 +207,7 @@ TEST_CASE("a process uses its own keys from a folder with those of several proce
   CHECK(own("robot 2-7") == keys.folder() + "/enclaves/robot-0-10");
   CHECK_THROWS_WITH(own("robot 9-11"), ContainsSubstring("has no keys of robot 9-11"));
   CHECK_THROWS_WITH(own("agent 4"), ContainsSubstring("sidestep keys issue"));
-  // If somebody names the folder of one identity, that identity is meant.
+  // A path to the folder of one identity means that identity.
   CHECK(own_key_folder(keys.folder_of("vision"), {Role::kViewer}) == keys.folder_of("vision"));
   CHECK_THROWS_WITH(key_folder_of(keys.folder_of("vision"), {Role::kVision}),
                     ContainsSubstring("sidestep keys init"));

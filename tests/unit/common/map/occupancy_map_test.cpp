@@ -99,7 +99,7 @@ TEST_CASE("moving discs touch whatever they come near enough to") {
     if (rng.chance(0.7)) to = from + rng.uniform(0, 0.2) * (to - from);
     if (rng.chance(0.1)) to.y() = from.y();
     const double distance_m = slow_distance(from, to, map);
-    // Often within a hair of contact.
+    // Often very close to contact.
     const double radius_m = rng.chance(0.5) ? std::max(0.0, distance_m + rng.uniform(-3e-9, 3e-9))
                                             : rng.uniform(0, 2 * map.grid().resolution_m);
     CAPTURE(from.x(), from.y(), to.x(), to.y(), radius_m, distance_m);

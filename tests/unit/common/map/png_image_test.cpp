@@ -122,7 +122,7 @@ TEST_CASE("an image whose gamma would change its values is refused") {
 
 TEST_CASE("damaged PNG images are refused") {
   const std::string png = grey(40, 30, std::vector<png_byte>(1200, 200));
-  // All that is needed ends with the compressed pixels, before the checksum and the chunk IEND.
+  // The necessary data ends with the compressed pixels, before the checksum and the chunk IEND.
   for (std::size_t size = 2; size + 16 < png.size(); ++size) {
     CAPTURE(size);
     CHECK_THAT(error_of(png.substr(0, size)), StartsWith("it is"));

@@ -16,7 +16,7 @@ namespace sidestep::corrupted_messages_test {
 
 using namespace random_messages;
 
-/// Eight bytes as a hostile sender would choose them.
+/// Eight bytes that a hostile sender might choose.
 std::uint64_t hostile_word(Rng& rng) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr std::array kNumbers{std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, 1e300, -1.0};

@@ -12,12 +12,12 @@
 
 namespace sidestep {
 
-/// What becomes of messages on a reliable topic (Qos::kEvent), as tests that run on the simulated network and
-/// over DDS, so that the two behave alike. A rig has one process that writes and one that reads:
+/// Tests of messages on a reliable topic (Qos::kEvent). They run on the simulated network and over DDS, so
+/// that the two behave alike. A rig has one process that writes and one that reads:
 ///
 ///     void start_writer(), kill_writer(), start_reader(), kill_reader()   a process; killed as by kill -9
-///     void write(number, key)            has the writer publish a message; returns when it has
-///     std::vector<std::uint64_t> received     the numbers that the reader has received, but for 0
+///     void write(number, key)            makes the writer publish a message, and waits until it has
+///     std::vector<std::uint64_t> received     the numbers that the reader has received, except 0
 ///     int markers                             how often it has received 0
 ///     void cut(), heal()                 what the writer sends does not arrive
 ///     void lose(fraction)                at random
@@ -111,7 +111,7 @@ void history_of_two_keys(Rig& rig) {
   rig.run_for(milliseconds(300));
   rig.heal();
   REQUIRE(rig.wait_until([&] { return rig.received.size() >= 2 * kEventDepth; }));
-  // Fast DDS gives a reader what waits for it key by key.
+  // Fast DDS delivers waiting messages to a reader key by key.
   const auto is_even = [](std::uint64_t number) { return number % 2 == 0; };
   Numbers received = rig.received;
   std::ranges::stable_partition(received, is_even);

@@ -132,7 +132,7 @@ TEST_CASE("a command with one hostile field is refused") {
     CHECK(is_refused([=](Message& m) { m.fix().x_m(bad); }));
     CHECK(is_refused([=](Message& m) { m.fix().y_m(bad); }));
   }
-  // Parts that a command does not have are not read.
+  // The unused parts of a command are not read.
   CHECK_FALSE(is_refused([](Message& m) { m.has_fix(false), m.fix().x_m(kNan); }));
   CHECK_FALSE(is_refused([](Message& m) { m.has_version(false), m.version().x_m(kNan); }));
   CHECK_FALSE(is_refused([](Message& m) { m.fix().captured_at_ns(to_ns(Time::min())); }));

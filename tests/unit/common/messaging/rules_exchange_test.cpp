@@ -120,7 +120,7 @@ TEST_CASE("however many processes are invented, 256 are named, and then one ever
   }
   CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 5000);
   CHECK(a.mismatches.size() == 257);
-  // A process that really works by other rules is named too, within twice that time.
+  // A process that really has different rules is named too, within twice that time.
   Process b(network, 10001, 0.02);
   const auto is_b = [](const std::string& text) { return text.find("coordinator 1") != std::string::npos; };
   for (int i = 0; i < 2000 && std::ranges::none_of(a.mismatches, is_b); ++i) {

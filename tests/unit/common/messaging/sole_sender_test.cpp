@@ -115,7 +115,7 @@ TEST_CASE("a receiver whose clock was set back trusts and follows senders as bef
     Time now = kBegin;
     for (; now < kBegin + listening; now += kCycle) (void)sender.receive(kOne, now);
     CHECK(sender.receive(kOne, now + kCycle) == Outcome::kCounts);
-    // The process ends, and another one follows it.
+    // The process ends, and another one takes its place.
     now += SoleSender::kGoneAfter + kCycle;
     (void)sender.receive(kTwo, now);
     CHECK(sender.receive(kTwo, now + listening + kCycle) == Outcome::kCounts);

@@ -307,14 +307,14 @@ TEST_CASE("clients can release every robot of a large fleet from their holds of 
   CHECK(held_in(book) == 0);
   for (const RememberedOrder& order : book.all()) other.merge(order);
   CHECK(held_in(other) == 0);
-  // One client more finds no room, says so, and resumes all.
+  // Another client finds no room, reports this, and resumes all robots.
   if (clients < 2) return;
   book.admit(hold(kAllRobots, third, ++number).order);
   CHECK(book.admit(resume(3, third, ++number).order) == OrderBook::Outcome::kFull);
   CHECK(held_in(book) == static_cast<int>(kMaxRobots));
   CHECK(book.admit(resume(kAllRobots, third, ++number).order) == OrderBook::Outcome::kStored);
   CHECK(held_in(book) == 0);
-  // Room is given back with the hold.
+  // Lifting the hold frees its room.
   CHECK(book.admit(resume(kAllRobots, kAnna, ++number).order) == OrderBook::Outcome::kStored);
   book.admit(hold(kAllRobots, third, ++number).order);
   CHECK(book.admit(resume(3, third, ++number).order) == OrderBook::Outcome::kStored);

@@ -8,7 +8,7 @@ namespace sidestep {
 
 /// Both coordinates are standard normal.
 inline Vec2 normal_vector(Rng& rng) {
-  // y first: the order of arguments would be unspecified.
+  // y is drawn first, because the evaluation order of arguments is unspecified.
   const double y = rng.normal(), x = rng.normal();
   return {x, y};
 }

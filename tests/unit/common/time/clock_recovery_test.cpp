@@ -26,7 +26,7 @@ struct Scene {
     }
   }
   bool end_period() { return recovery.end_period(host_ahead - own_ahead, is_in_use); }
-  /// Whether it adopts after this many periods with a reference.
+  /// Whether it adopts the host's clock after this many periods with a reference.
   bool adopts(Duration reference_ahead, Duration delay = 1ms, int periods = ClockRecovery::kPeriods) {
     bool result = false;
     for (int i = 0; i < periods; ++i) {

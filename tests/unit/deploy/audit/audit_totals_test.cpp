@@ -105,7 +105,7 @@ TEST_CASE("a run is not judged, with the reason, if any share of its coverage is
   }
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
   CHECK(verdict_line(totals) == "not judged: " + reason);
-  // What was found counts, however little was covered.
+  // Violations that were found count, however little was covered.
   totals.violations = 1;
   CHECK(totals.verdict() == AuditVerdict::kFailed);
 }

@@ -50,7 +50,7 @@ TEST_CASE("an own stop belongs to the epoch whose ledger listed it, whatever was
   }
 }
 
-/// A memory of versions that copies and sorts at every step.
+/// A slow reference for the memory of versions, which copies and sorts at every step.
 struct SlowVersions {
   struct Entry {
     bool is_excluded = false;
@@ -148,7 +148,7 @@ void propose(AuditedRobot& robot, std::uint64_t number, std::int64_t stamp_ns, I
   record.stamp_ns = stamp_ns;
   record.count = 3;
   for (std::size_t i = 0; i < 4; ++i) {
-    // The fourth one is of a former proposal.
+    // The fourth one belongs to an earlier proposal.
     record.candidates[i].version_number(number + i);
     record.candidates[i].incarnation(incarnation);
   }
@@ -194,7 +194,7 @@ TEST_CASE("the newest of the last sixteen proposals that matches is found") {
   CHECK(robot.max_evicted_proposal == 200);
 }
 
-/// What a fact rules out, by the rules one after the other.
+/// The versions that a fact rules out, by applying one rule after the other.
 Exclusion slow_exclusion(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& v) {
   const bool begins_later = v.has_content && v.path.start_ns() > robot_report.at_ns;
   if (robot_report.is_lifted && robot_report.executing == 0) {

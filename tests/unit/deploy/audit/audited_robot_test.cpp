@@ -86,7 +86,7 @@ TEST_CASE("after a robot is lifted, only versions that were granted to it for la
   lifted.at_ns = 100;
   lifted.is_lifted = true;
   lifted.last_executed = 7;
-  add_content(robot, 0, 0, 101);  // the rest in which it was switched on
+  add_content(robot, 0, 0, 101);  // its initial rest
   add_content(robot, 8, 0, 101);
   add_content(robot, 9, 8, 101);
   add_content(robot, 10, 0, 100);

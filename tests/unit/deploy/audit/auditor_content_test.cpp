@@ -11,7 +11,8 @@ namespace sidestep::auditor_content_test {
 
 using namespace std::chrono_literals;
 
-/// Calls back for the state at many times of a version, also right before and after the ends of its phases.
+/// Calls back with the state at many times of a version, including just before and after the ends of its
+/// phases.
 void each_sample(const msg::Version& version, const std::function<void(const AuditPath::Node&)>& use) {
   const AuditPath path(version);
   for (int i = 0; i < path.phase_count(); ++i) {
@@ -21,7 +22,8 @@ void each_sample(const msg::Version& version, const std::function<void(const Aud
   use(path.at_s(path.duration_s()));
 }
 
-/// The largest acceleration relative to the limit: an ellipse whose half against the velocity is longer.
+/// The largest acceleration relative to the limit, which is an ellipse with a longer half against the
+/// velocity.
 double effort(const AuditPath::Node& n, const MotionLimits& limits) {
   const Vec2 v(n.vx, n.vy), a(n.ax, n.ay);
   if (v.norm() < 1e-3) return 0;
@@ -174,7 +176,7 @@ TEST_CASE("a robot outside the field may return in steps, but not leave farther"
   CHECK(stage.count(AuditRule::kRest) == 0);
 }
 
-/// How far the robot must keep from edges.
+/// The distance that the robot must keep from edges.
 double separation_m(const Scenario& scenario) { return scenario.radius_m + scenario.margin_m; }
 
 TEST_CASE("versions that come too near an obstacle are reported, unless their base was as near") {
@@ -213,7 +215,7 @@ TEST_CASE("versions that come too near an obstacle are reported, unless their ba
 
 TEST_CASE(
     "a robot keeps its inflation and the margin from obstacles, and may use up the inflation of its base") {
-  // Metres closer to the obstacle than the radius and the margin allow.
+  // Distance in metres by which the radius and the margin are violated.
   const auto [closer_m, inflation_m, is_reported] = GENERATE(table<double, double, bool>(
       {{-0.001, 0, false}, {0.001, 0, true}, {-0.021, 0.01, false}, {0.0001, 0.01, true}}));
   CAPTURE(closer_m, inflation_m);
@@ -238,7 +240,7 @@ TEST_CASE("an obstacle at the end of a fast straight path is found") {
   scenario.obstacles.push_back(Circle{{-1, 1.5}, 0.2});
   Stage stage(scenario);
   stage.begin();
-  // Starts at full speed, which is not continuous, so that the path is as long as its speed allows.
+  // Starts at full speed, although that is not continuous, so that the path is as long as possible.
   msg::Version version = stage.next(stage.rest(0), 1);
   version.vy_mps(1);
   append(version, 1.3 - separation_m(scenario) + closer_m - 0.125, {0, 0});

@@ -90,7 +90,7 @@ TEST_CASE("an audit that no longer hears one kind of message does not pass, alth
 
 TEST_CASE("pairs whose possible excuse is not known lower the coverage") {
   History history = crossing();
-  // As if all versions had been granted with 5 cm too little margin, on bases that nobody has heard of.
+  // A history in which all versions were granted with 5 cm too little margin, on unknown bases.
   history.scenario.margin_m += 0.05;
   history.each_version([](msg::Version& version) {
     if (version.version_number() != 0) version.base(version.version_number() - 1);
@@ -145,7 +145,7 @@ TEST_CASE("a robot that sends nothing is covered, but a robot whose facts are mi
     // Closes the gap in the message numbers, as if the robot had not sent the removed messages.
     if (is_of_robot && !were_sent)
       feedback->header().message_number(feedback->header().message_number() - removed);
-    // What it executed meanwhile remains unknown.
+    // It remains unknown what the robot executed in the meantime.
     const auto* command = std::get_if<msg::Command>(&received.message);
     if (command && command->robot() == 2 && received.at >= from - 100ms && received.at < until) continue;
     const auto* proposal = std::get_if<msg::Proposal>(&received.message);

@@ -222,7 +222,7 @@ TEST_CASE("facts of a robot's earlier incarnation are ignored, until it has been
   };
   report(Stage::kLife + 1'000'000, -1);
   stage.advance(was_silent ? 1s : 999ms);
-  // A robot that rests elsewhere is on another floor, if the fact counts.
+  // If the fact is used, a robot at rest elsewhere is on another floor.
   report(before, -2);
   CHECK(stage.violations.empty());
   report(before, -2.5);
@@ -242,7 +242,7 @@ TEST_CASE("a robot of a later simulator is on a new floor, one whose firmware ha
   robot_report.executing().x_m(-2);
   stage.auditor.on_robot_report(robot_report, stage.now);
   CHECK(stage.count(AuditRule::kUniqueVersion) == (is_new_floor ? 0 : 1));
-  // The ledger may still tell of the former floor.
+  // The ledger may still contain versions from the former floor.
   if (!is_new_floor) return;
   msg::Version former = stage.next(stage.rest(0), 7);
   stage.show_page({former, stage.rest(1)});

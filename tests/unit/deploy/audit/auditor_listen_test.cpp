@@ -9,7 +9,7 @@ namespace sidestep::auditor_listen_test {
 
 using namespace std::chrono_literals;
 
-/// A bus that delivers what a test gives it, at once.
+/// A bus that immediately delivers what a test gives it.
 class ManualBus : public Bus {
  public:
   Time now() const override { return now_; }
@@ -101,7 +101,7 @@ TEST_CASE("an auditor on a bus hears every topic, of every robot of the roster")
   CHECK(run.auditor.totals().received == received + 1);
 }
 
-/// Orders of which the second coordinator is told by the agent of robot 1.
+/// Orders that robot 1's agent announces to the second coordinator.
 struct Succession : Listening {
   template <typename Message>
   Message from(std::uint32_t sender) {

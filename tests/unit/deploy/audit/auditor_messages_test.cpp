@@ -227,7 +227,7 @@ TEST_CASE("a coordinator that still misses registrations after it has granted is
       msg::CoordinatorState late = state(stage, kMode, {1});
       late.header().stamp_ns(to_ns(stage.now) - 1);
       stage.auditor.on_coordinator(late, stage.now);
-      // The auditor's own clock tells it if it receives every message at once.
+      // An auditor that receives every message immediately knows this from its own clock.
       expected = is_complete ? 1 : 0;
     }
   }

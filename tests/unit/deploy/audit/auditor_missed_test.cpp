@@ -9,7 +9,7 @@ namespace sidestep::auditor_missed_test {
 
 using namespace std::chrono_literals;
 
-/// The audit of a history of which all messages of one type arrive later.
+/// The audit of a history in which all messages of one type arrive late.
 template <typename Late>
 AuditTotals audit_delayed(const History& history, Duration delay) {
   std::vector<Delivery> deliveries;
@@ -76,7 +76,7 @@ TEST_CASE(
 TEST_CASE("two agents may use the same proposal number, and an auditor may hear only one of them") {
   History history = crossing();
   const Switch s = example_switch(history);
-  // As if a restarted agent had proposed the same number, and been granted its second candidate.
+  // Adds a restarted agent that proposes the same number and is granted its second candidate.
   std::optional<ReceivedMessage> grant;
   for (const ReceivedMessage& received : history.messages) {
     const auto* verdict = std::get_if<msg::Verdict>(&received.message);

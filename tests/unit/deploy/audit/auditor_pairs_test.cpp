@@ -14,7 +14,7 @@ namespace sidestep::auditor_pairs_test {
 /// Two versions, of the robot with the lower id first.
 using Pair = std::array<std::pair<RobotId, VersionNumber>, 2>;
 
-/// What a history says of one version. Times are those of the messages.
+/// The facts about one version in a history. Times are those of the messages.
 struct Past {
   Version version;
   bool is_registered = false;
@@ -90,7 +90,7 @@ Trajectory remainder(const Trajectory& whole, Time from) {
   return rest;
 }
 
-/// Of a borderline pair rounding decides.
+/// The judgement of a pair; rounding decides whether a borderline pair is reported.
 enum class Judgement : std::uint8_t { kClear, kTooClose, kBorderline };
 
 class SlowJudge {

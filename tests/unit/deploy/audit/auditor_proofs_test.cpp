@@ -195,7 +195,7 @@ TEST_CASE("times of two robots are compared only while both clocks are sound") {
   narrow.report(0);
   narrow.report(1);
   narrow.advance(500ms);
-  // What the first robot executes until now is proven; then its clock jumps.
+  // It is proven what the first robot has executed up to now. Then its clock jumps.
   narrow.report(first);
   msg::Feedback late = narrow.robot_reports[first];
   narrow.advance(1ms);

@@ -210,7 +210,7 @@ TEST_CASE("a robot's own stop brakes at D after the motion that its motors have 
   Stage stage;
   stage.begin();
   stage.advance(1ms);
-  // The motion under way drives on at F for the time of the lead.
+  // The motion under way continues at F for the duration of the lead.
   const double lead_s = std::max(0.0, to_seconds(lead)), speed_mps = 1 + 2 * lead_s;
   const double braking_s = speed_mps / stage.scenario.limits.deceleration_mps2 * excess;
   msg::Version stop = stage.next(stage.rest(0), 1, 0ms);
@@ -254,7 +254,7 @@ TEST_CASE("a version that was sent is not an own stop, even if a robot off its r
   CHECK(stage.violations.empty());
 }
 
-/// Reports these errors, a millisecond one after the other.
+/// Reports these errors one after another, a millisecond apart.
 void report_errors(Stage& stage, const std::vector<double>& errors_m) {
   for (const double error_m : errors_m) {
     stage.advance(1ms);

@@ -23,7 +23,7 @@ struct Seen : Stage {
       place(robot, scenario.robots[robot].start_m);
     }
     begin();
-    // The run counts from now on.
+    // The run is judged from now on.
     msg::CoordinatorState state;
     state.header(header("coordinator", kCoordinator));
     state.epoch(epoch);

@@ -58,7 +58,7 @@ TEST_CASE("the inflations of both robots add to the distance that versions must 
     history.each_version([&](msg::Version& version) { version.inflation_m(inflation_m); });
     return count(audit_of(history, kComplete), AuditRule::kClearance) > 0;
   };
-  // The distance that the closest versions keep beyond the margin.
+  // The distance between the closest versions, minus the margin.
   double slack_m = 0, too_much_m = 0.05;
   REQUIRE_FALSE(is_too_close(slack_m, 0));
   REQUIRE(is_too_close(too_much_m, 0));
@@ -67,7 +67,7 @@ TEST_CASE("the inflations of both robots add to the distance that versions must 
     (is_too_close(middle_m, 0) ? too_much_m : slack_m) = middle_m;
   }
   CAPTURE(slack_m);
-  // Together they exceed the slack of 1 mm, each alone does not.
+  // Together they exceed the slack of 1 mm, but neither does alone.
   const double more_m = slack_m - 0.001;
   CHECK_FALSE(is_too_close(more_m, 0.00045));
   CHECK(is_too_close(more_m, 0.00055));
@@ -375,7 +375,7 @@ TEST_CASE("an attested absence stays valid in its epoch, even if the agent regis
 
 TEST_CASE("a coordinator that resumes after many epochs keeps what was registered with it") {
   const AuditTotals totals = audit_of_tampered([](History& h) {
-    // As if forty coordinators had succeeded each other: every agent registered with all of them.
+    // Adds forty coordinators that succeed each other, with all of which every agent registers.
     std::vector<ReceivedMessage> messages;
     for (const ReceivedMessage& received : h.messages) {
       messages.push_back(received);

@@ -7,7 +7,7 @@ namespace sidestep::auditor_vision_test {
 
 using namespace std::chrono_literals;
 
-/// The crossing as a system without ground truth sees it.
+/// The crossing as seen by a system without ground truth.
 History seen_crossing() {
   History history = crossing();
   history.remove_if<msg::GroundTruth>([](const msg::GroundTruth&) { return true; });

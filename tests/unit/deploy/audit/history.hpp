@@ -43,7 +43,8 @@ struct History {
   }
   /// An operator announces a push of this robot at `at`, and ground truth from then on reports it.
   void push(RobotId robot, Time at);
-  /// Ground truth from `at` on reports one contact more; without a second robot: with an obstacle.
+  /// From `at` onwards, ground truth reports one more contact; without a second robot, it is one with an
+  /// obstacle.
   void touch(RobotId first, std::optional<RobotId> second, Time at);
   /// Visits every copy of the version in any message.
   void each_mention(RobotId robot, VersionNumber number, const std::function<void(msg::Version&)>& use);
@@ -67,7 +68,7 @@ History history_of(const Scenario& scenario, std::uint64_t seed, Duration durati
 History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act);
 
 AuditTotals audit_of(const History& history, const AuditInput& input);
-/// Calls back for each violation in the history, also beyond those that totals keep.
+/// Calls back for each violation in the history, including those beyond what the totals keep.
 AuditTotals audit_of(const History& history, const AuditInput& input,
                      const std::function<void(const Violation&)>& on_violation);
 

@@ -31,7 +31,7 @@ void add(msg::OrderMemory& page, const msg::RememberedOrder& order) {
   page.order_count(static_cast<std::uint8_t>(page.order_count() + 1));
 }
 
-/// As if the coordinator had remembered these orders all the time.
+/// Adds memories of the coordinator that contain these orders all the time.
 void remember(History& h, const std::vector<msg::RememberedOrder>& orders) {
   h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time) {
     if (page.process() < kCoordinator || page.page_count() == 0) return;
@@ -39,7 +39,7 @@ void remember(History& h, const std::vector<msg::RememberedOrder>& orders) {
   });
 }
 
-/// As if a client had given an order early in the run, and the coordinator had confirmed it.
+/// Adds an order that a client gives early in the run and that the coordinator confirms.
 void confirm(History& h, const msg::RememberedOrder& order) {
   msg::CoordinatorState state;
   h.each<msg::CoordinatorState>([&](msg::CoordinatorState& s, Time) {
@@ -218,7 +218,7 @@ std::uint64_t violations_after_takeover(const std::function<void(History&)>& tam
   return count(totals, AuditRule::kForgottenOrder);
 }
 
-/// As if coordinator 1 had never remembered the client's orders of this kind.
+/// Removes the client's orders of this kind from all memories of coordinator 1.
 void forget(History& h, msg::OrderKind kind) {
   h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time) {
     if (page.process() != kCoordinator + 1) return;
@@ -235,7 +235,7 @@ TEST_CASE("a new coordinator that does not remember an order which an agent reme
   for (const auto kind : {msg::OrderKind::ORDER_HOLD, msg::OrderKind::ORDER_GO}) {
     CAPTURE(static_cast<int>(kind));
     CHECK(violations_after_takeover([&](History& h) { forget(h, kind); }) == 1);
-    // Nobody is known to have announced the order to it, because the agents have restarted.
+    // No agent is known to have announced the order to it, because the agents have restarted.
     CHECK(violations_after_takeover([&](History& h) {
             forget(h, kind);
             h.remove_if<msg::OrderStatus>([](const msg::OrderStatus&) { return true; });

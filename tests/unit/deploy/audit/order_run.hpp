@@ -97,7 +97,7 @@ struct Run {
     std::copy(orders.begin(), orders.end(), memory.orders().begin());
     return memory;
   }
-  /// A whole memory, on as many pages as it needs.
+  /// A complete memory, on as many pages as necessary.
   void remember(std::uint32_t process, const std::vector<msg::RememberedOrder>& orders) {
     const std::size_t pages = std::max<std::size_t>(1, (orders.size() + 31) / 32);
     for (std::size_t i = 0; i < pages; ++i) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which messages prove that an agent has told a new coordinator an order.
+// Which messages prove that an agent has announced an order to a new coordinator.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/order_run.hpp"
 
 namespace sidestep::order_memory_test {
 
-/// An order that the first coordinator has confirmed, that an agent has told the second one, and that the
-/// second one does not remember.
+/// An order that the first coordinator has confirmed, that an agent has announced to the second one, and that
+/// the second one does not remember.
 struct Succession : Run {
   using Run::Run;
   void begin() { confirm(kFirst, lost); }

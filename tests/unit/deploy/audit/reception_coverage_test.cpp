@@ -73,7 +73,7 @@ TEST_CASE("messages heard before the beginning do not count") {
   CHECK(time.share(at(2s), false) == Approx(0.5));
 }
 
-/// By milliseconds: in which of them every source was heard.
+/// For each millisecond, whether every source was heard in it.
 double slow_share(const std::vector<std::vector<Duration>>& heard_at, Duration end) {
   int covered = 0;
   const auto count = static_cast<int>(end / 1ms);

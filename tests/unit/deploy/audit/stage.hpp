@@ -13,8 +13,8 @@ namespace sidestep {
 /// Robots 0 and 1 at rest on an empty floor of 6 m by 4 m, 2 m apart.
 Scenario stage_scenario();
 
-/// A run that a test makes message by message, and its audit. Each call is one message, which the auditor
-/// receives at once. By default everything is as the protocol demands.
+/// A run that a test composes message by message, with its audit. Each call is one message, which the auditor
+/// receives immediately. By default everything follows the protocol.
 class Stage {
  public:
   static constexpr std::uint32_t kCoordinator = 10'000;  ///< the sender's id
@@ -27,7 +27,7 @@ class Stage {
 
   /// Every robot reports its rest, and its agent registers that.
   void begin();
-  /// The rest in which a robot is switched on, version 0.
+  /// A robot's initial rest, version 0.
   msg::Version rest(RobotId robot) const;
   /// A version at rest where `base` is, with this number, that starts after `in`.
   msg::Version next(const msg::Version& base, VersionNumber number,
@@ -69,7 +69,7 @@ class Stage {
 /// Checks that only this rule was broken, and how often.
 void check_only(const Stage& stage, AuditRule rule, std::uint64_t expected);
 
-/// The version, made to gain this speed along x within a second, and to brake in another second.
+/// Changes the version so that it reaches this speed along x within a second, and brakes in another second.
 msg::Version moving(msg::Version version, double speed_mps);
 
 }  // namespace sidestep

@@ -16,7 +16,7 @@ const msg::Header& header_of(const AuditedMessage& message) {
   return std::visit([](const auto& m) -> const msg::Header& { return m.header(); }, message);
 }
 
-/// The losses of one stream of messages: each by itself, or in bursts (Gilbert 1960).
+/// The losses of one stream of messages: independent, or in bursts (Gilbert 1960).
 class Stream {
  public:
   Stream(double loss, double mean_burst, Rng rng) : loss_(loss), mean_burst_(mean_burst), rng_(rng) {}
@@ -85,7 +85,7 @@ class Thinning {
     result_.losses += fmt::format(", {} outages", outages_.size());
   }
 
-  /// As by a receiver that is overloaded: some topics wait in queues all the time.
+  /// Simulates an overloaded receiver: some topics are always delayed in queues.
   void delay() {
     jitter_s_ = rng_.chance(0.5) ? 0.02 : 0.001;
     for (double& delay_s : delay_s_) delay_s = rng_.chance(0.3) ? rng_.uniform(0, 0.2) : 0;

@@ -119,7 +119,7 @@ TEST_CASE("without robot or target, or with two of them, none is reported") {
     CAPTURE(count);
     CHECK(blobs.robot.has_value() == (count == 1));
     CHECK_FALSE(blobs.target.has_value());
-    // Robots that cannot be told apart are obstacles.
+    // Robots that cannot be distinguished are obstacles.
     CHECK(blobs.obstacles.empty() == (count < 2));
   }
 }

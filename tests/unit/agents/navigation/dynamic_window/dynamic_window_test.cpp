@@ -39,7 +39,7 @@ Admissible by_index(const WindowChoice& choice, const DifferentialDrive& drive) 
   return result;
 }
 
-/// The admissible velocities while the robot goes, computed slowly from the definitions.
+/// The admissible velocities while the robot drives, computed slowly from the definitions.
 Admissible reference(const DifferentialDrive& drive, const DynamicWindowSettings& settings,
                      const WindowQuery& query) {
   const Hull outline(padded(kHull, settings.padding_m));
@@ -100,7 +100,7 @@ TEST_CASE("the exact window agrees with a slow reference") {
     WindowQuery query;
     query.points_m = points;
     query.wheels = {rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5)};
-    query.goal.position_m = {2, 0.1};  // ahead, so the robot goes
+    query.goal.position_m = {2, 0.1};  // ahead, so the robot drives
     query.window_s = seed % 3 == 0 ? 10 : 0.2;
     const WindowChoice& choice = window.choose(query);
     CHECK(choice.state == DriveState::kGo);

@@ -12,7 +12,7 @@ namespace sidestep::quantiser_test {
 
 constexpr float kHorizon_s = 1;
 
-/// Times that crowd around two values, and some beyond the horizon.
+/// Times clustered around two values, and some beyond the horizon.
 std::vector<float> random_times(Rng& rng, int count) {
   std::vector<float> times;
   for (int i = 0; i < count; ++i) {
@@ -42,7 +42,7 @@ TEST_CASE("stored times are never later than true ones") {
     for (const float time : times) {
       const float stored = quantiser.decode(quantiser.encode(time));
       REQUIRE(stored <= time);
-      // Storing a stored time changes nothing.
+      // Quantising a quantised time again does not change it.
       REQUIRE(quantiser.decode(quantiser.encode(stored)) == stored);
     }
     CHECK(quantiser.decode(quantiser.encode(2 * kHorizon_s)) == kHorizon_s);
@@ -72,7 +72,7 @@ TEST_CASE("the Lloyd-Max levels separate two clusters of times") {
   const std::vector<float> times = random_times(rng, 20'000);
   const Quantiser fitted = Quantiser::lloyd_max(times, kHorizon_s, 4);
   CHECK(fitted.size() == 4);
-  // The crowds around 0.2 and 0.7 have an interval each.
+  // The clusters around 0.2 and 0.7 have one interval each.
   CHECK(fitted.encode(0.1F) == fitted.encode(0.35F));
   CHECK(fitted.encode(0.55F) == fitted.encode(0.9F));
   CHECK(fitted.encode(0.2F) != fitted.encode(0.7F));

@@ -160,7 +160,7 @@ TEST_CASE("the trapezoids do not depend on the order of insertion") {
   second.build(segments, {40, 40}, other_order);
   REQUIRE(first.trapezoids()[0].left != second.trapezoids()[0].left);
   CHECK(sorted_trapezoids(first) == sorted_trapezoids(second));
-  // It can be built again.
+  // The map can be rebuilt.
   const auto before = sorted_trapezoids(second);
   second.build(std::vector<GridSegment>{{{0, 0}, {1, 1}}}, {40, 40}, order);
   CHECK(sorted_trapezoids(second).size() == 4);
@@ -214,7 +214,7 @@ TEST_CASE("locating a point takes a logarithmic number of steps, whatever the se
     CHECK(mean < 12 * harmonic);
     CHECK(mean > std::log2(static_cast<double>(size)) / 2);
     CHECK(slowest < 2 * mean);
-    // 16 times the segments add a number of steps.
+    // With 16 times the segments, the number of steps grows only by a constant.
     if (small_steps > 0) CHECK(mean < small_steps + 5 * std::log(16.0));
     small_steps = mean;
   }

@@ -163,7 +163,7 @@ TEST_CASE("a textbook structure compares few of many obstacles") {
       });
       for (const Slot slot : store.slots())
         if (store.touches(slot, sweep)) REQUIRE(candidates.count(slot) == 1);
-      // It ends with the first for which the test holds.
+      // It ends with the first one that satisfies the predicate.
       std::size_t first = 0;
       const bool found = set.any_candidate(sweep, [&](Slot) { return ++first > 0; });
       REQUIRE(found == !candidates.empty());

@@ -105,7 +105,7 @@ TEST_CASE("announcements of random bytes, or with a changed bit, are refused") {
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 500; ++i) {
-    f.now += 1s;  // so that checks of signatures are not used up
+    f.now += 1s;  // so that the limit on signature checks is not reached
     std::vector<std::uint8_t> changed = genuine;
     // The text of the version is not signed.
     const std::size_t bit = 8 * 10 + rng.below(8 * (genuine.size() - 10));
@@ -123,7 +123,7 @@ TEST_CASE("an announcement is valid for one participant only") {
     return f.admission.on_announcement(who, announced, f.now).refusal;
   };
   CHECK(refusal(other, f.announced(id, agent)) == Refusal::kOtherSignature);
-  // Neither the key of another nor another start.
+  // The signature fits neither another key nor another start.
   CHECK(refusal(id, credentials(agent, f.keys.at(thief.serial()), kVersion, id, f.now)) ==
         Refusal::kOtherSignature);
   std::vector<std::uint8_t> later = f.announced(id, agent);
@@ -259,7 +259,7 @@ TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
       admitted += f.announce(id_with(robot, static_cast<std::uint16_t>(i)), robot) == Refusal::kNone;
     return admitted;
   };
-  // One that is genuine stays, whatever the strangers do.
+  // A genuine participant stays, whatever the strangers do.
   const ParticipantId twin = id_with(robot, 50'000), restarted = id_with(robot, 50'001);
   REQUIRE(f.announce(twin, robot, kVersion, kBegin + 1s) == Refusal::kNone);
   f.admission.on_authenticated(twin);
@@ -324,7 +324,7 @@ TEST_CASE("a start time that a wrong clock puts far ahead does not count as the 
   f.now += 30min;
   for (std::uint16_t i = 2; i < 100; ++i) static_cast<void>(f.announce(id_with(robot, i), robot));
   CHECK(f.announce(id_with(robot, 200), robot, kVersion, f.now) == Refusal::kNone);
-  // Times that no clock shows do no harm either.
+  // Impossible times do no harm either.
   for (const auto ns : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()})
     CHECK(f.announce(id_with(robot, 300), robot, kVersion, time_from_ns(ns)) == Refusal::kTooMany);
 }

@@ -198,7 +198,7 @@ struct Pair {
       }
       for (; !side.arrived.empty(); side.arrived.pop_front()) side.arrived.front()();
       if (std::exchange(side.was_stopped, false)) {
-        // It reads what waits in its sockets soon, but not in the order of sending.
+        // It soon reads what is waiting in its sockets, but not in the order of sending.
         for (auto& [when, what] : std::exchange(side.late, {})) side.late.emplace(soon(), std::move(what));
       }
       for (; !side.late.empty() && side.late.begin()->first <= now; side.late.erase(side.late.begin()))

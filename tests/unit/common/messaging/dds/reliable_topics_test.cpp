@@ -41,7 +41,7 @@ TEST_CASE("publishes reliable messages on request", "[.reliable_writer][slow]") 
   bus.run();
 }
 
-/// A child process that publishes what it is told to, until it is killed.
+/// A child process that publishes what the test requests, until it is killed.
 class WriterProcess {
  public:
   WriterProcess() {

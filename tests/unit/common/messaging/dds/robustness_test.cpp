@@ -157,7 +157,7 @@ TEST_CASE("a datagram that would end Fast DDS by an assertion is dropped and cou
       bus));
 }
 
-/// Adds enough readers that announcing them takes several messages.
+/// Adds so many readers that announcing them takes several messages.
 void subscribe_to_many(DdsBus& bus) {
   for (std::uint32_t robot = 2; robot < 30; ++robot)
     bus.subscribe<msg::Verdict>(topics::kVerdict, robot, [](const msg::Verdict&) {});
@@ -214,7 +214,7 @@ struct Victim {
   Victim& operator=(const Victim&) = delete;
   /// kill -9; true if the process was alive until then.
   bool kill_now() { return WIFSIGNALED(end(SIGKILL)); }
-  /// Asks it to end; true if it does so without error, or did not yet listen.
+  /// Asks it to end. True if it does so without an error, or was not listening yet.
   bool leave() {
     const int status = end(SIGTERM);
     return status == 0 || (WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
@@ -287,7 +287,7 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
     std::vector<Time> until;
     for (std::size_t i = 0; i < count; ++i) {
       REQUIRE(kill(victims[i]->pid, SIGSTOP) == 0);
-      // The first one sleeps long enough to be forgotten for certain, the others may be about to be.
+      // The first one sleeps long enough to be certainly forgotten; the others may only be close to that.
       until.push_back(bus.now() + kSilenceLimit +
                       (i == 0 ? from_seconds(2) : from_seconds(rng.uniform(-1, 4))));
     }

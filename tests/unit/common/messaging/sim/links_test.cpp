@@ -253,7 +253,7 @@ TEST_CASE("processes forget each other after a silence of six seconds in one dir
   pair.set_cut(true);
   pair.send(1);
   pair.run_for(6100ms);
-  pair.send(2);  // b has forgotten a, so a does not get it either
+  pair.send(2);  // b has forgotten a, so a receives nothing either
   pair.run_for(100ms);
   pair.set_cut(false);
   pair.send(3);  // they have not found each other again

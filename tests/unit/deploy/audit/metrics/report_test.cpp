@@ -195,7 +195,7 @@ TEST_CASE("audit violations fail a run and are included in its report") {
              ContainsSubstring("late-switch (firmware, S-05): robot 3 version 17: is executed"));
 }
 
-/// The audit of a run of which everything was heard.
+/// The audit of a run in which every message was heard.
 AuditTotals covered() {
   AuditTotals totals;
   totals.received = 100;

@@ -466,7 +466,7 @@ TEST_CASE("without ground truth a robot has arrived when its agent says so and v
   CHECK(metrics.arrived() == 1);
   metrics.on_status(status(3, 2, msg::AgentState::AGENT_DRIVING));
   CHECK(metrics.arrived() == 0);
-  // Ground truth comes first, once there is some.
+  // Ground truth takes precedence once there is any.
   metrics.on_status(status(3, 3, msg::AgentState::AGENT_ARRIVED));
   metrics.on_truth(truth(1, 4, {body(3, 0.5, 0)}));
   metrics.on_world_state(world(5, 1, 0));

@@ -59,7 +59,7 @@ TEST_CASE("an independent reader of recordings agrees on every field of every to
   CHECK(run("node check.mjs all.mcap all.json") == 0);
   CHECK_THAT(output(), Matches(fmt::format("{} messages of {} topics, [0-9]{{5,}} fields agree\n",
                                            40 * topics, topics)));
-  // It does compare: a changed digit is found.
+  // The comparison works: a changed digit is found.
   CHECK(run("sed -i '0,/\"robot\":[0-9]/s//\"robot\":9/' all.json && node check.mjs all.mcap all.json") != 0);
   CHECK_THAT(output(), ContainsSubstring("Sidestep has 9"));
 }

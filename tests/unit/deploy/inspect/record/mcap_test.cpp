@@ -172,7 +172,7 @@ TEST_CASE("sizes that an MCAP file merely claims allocate no memory") {
   CHECK_THAT(read(file).damage, ContainsSubstring("claims a size of"));
   write(file, magic + large);
   CHECK_THAT(read(file).damage, ContainsSubstring("middle of a record"));
-  // A chunk of 200 MB when it is decompressed, of which the file holds none.
+  // A chunk that claims to decompress to 200 MB, none of which is in the file.
   const std::string chunk = std::string("\x06\x28\0\0\0\0\0\0\0", 9) + std::string(16, '\0') +
                             std::string("\x00\x00\x80\x0c\0\0\0\0", 8) + std::string(16, '\0');
   write(file, magic + chunk);

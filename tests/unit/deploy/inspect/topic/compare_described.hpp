@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Fails the test unless a message that somebody else has decoded is the same as what describe() shows of it,
-/// which has words for enumerators, leaves out the unused elements of arrays, and sums up histograms.
+/// Fails the test unless a message decoded by somebody else equals the output of describe(), which has words
+/// for enumerators, leaves out the unused elements of arrays, and sums up histograms.
 inline void require_same_fields(const nlohmann::ordered_json& described,
                                 const nlohmann::ordered_json& decoded) {
   if (described.is_object() && !described.contains("p50_us")) {

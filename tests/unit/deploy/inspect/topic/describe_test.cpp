@@ -63,7 +63,7 @@ std::vector<std::string> idl_enumerators(const std::string& idl, const std::stri
   return last_words(idl_body(idl, "enum " + name), ',');
 }
 
-/// "REASON_NOT_EVALUATED" with prefix "REASON_" as "not evaluated".
+/// Turns "REASON_NOT_EVALUATED" with the prefix "REASON_" into "not evaluated".
 std::string to_lines(std::string enumerator, const std::string& prefix) {
   enumerator.erase(0, prefix.size());
   for (char& c : enumerator) c = c == '_' ? ' ' : static_cast<char>(std::tolower(c));

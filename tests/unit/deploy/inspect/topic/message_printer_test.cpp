@@ -15,7 +15,7 @@ const Json kMessage = {{"robot", 3},
                        {"name", "a, \"b\""},
                        {"positions", {{{"x_m", 0.5}}, {{"x_m", 1.5}}}}};
 
-/// The lines for this message, and the same one of robots 4 and 5.
+/// The lines for this message, and for the same message from robots 4 and 5.
 Lines print(const std::vector<std::string>& filters, bool is_csv = false, std::uint64_t count = 0) {
   MessagePrinterSettings settings{{}, is_csv, count};
   for (const std::string& filter : filters) settings.filters.push_back(parse_message_filter(filter));

@@ -16,7 +16,7 @@ struct Scene {
   ClockSurvey survey{kClient};
   Time now = time_from_ns(1'700'000'000'000'000'000);
 
-  /// A probe and its answer, by a clock that is so far ahead; both messages take `delay`.
+  /// A probe and the answer from a clock that is this far ahead; both messages take `delay`.
   void ask(std::uint32_t process, Duration ahead, Duration delay = 100us, Incarnation incarnation = 1) {
     ClockAnswer answer{process, incarnation, kClient, now,       now + delay + ahead, now + delay + ahead,
                        0s,      0.0005,      "host",  "scenario"};

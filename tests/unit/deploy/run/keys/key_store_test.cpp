@@ -87,7 +87,7 @@ TEST_CASE("several identities are revoked at once, whether or not some of them a
   const std::vector<Identity> all{
       {Role::kAgent, 0, 0}, {Role::kAgent, 2, 2}, {Role::kAgent, 3, 3}, {Role::kVision}};
   CHECK(keys.revoke(all[1]) == 1);
-  // What a killed process has left, and something that is not a certificate.
+  // The leftovers of a killed process, and a file that is not a certificate.
   write_file(keys.folder() + "/public/issued/ab.pem.4711.tmp", "half");
   write_file(keys.folder() + "/public/issued/77.pem", "none");
   const auto done = keys.store().revoke(all, keys.now());
@@ -108,7 +108,7 @@ TEST_CASE("several identities are revoked at once, whether or not some of them a
   CHECK(unreadable == std::vector<std::string>{"77"});
 }
 
-/// Does something at random to a folder of keys that processes change at once. Reports the
+/// Performs random operations on a folder of keys that several processes change concurrently. Reports the
 /// serial numbers of keys that it has revoked on a pipe.
 void act_at_random(const std::string& folder, Time now, Rng& rng, int report) {
   KeyStore store(folder);
@@ -135,8 +135,8 @@ void act_at_random(const std::string& folder, Time now, Rng& rng, int report) {
   }
 }
 
-/// Processes issue, revoke and list at once, and are killed at random. Whatever one has reported as revoked
-/// stays revoked, and the folder can always be read.
+/// Processes issue, revoke and list concurrently, and are killed at random. Keys reported as revoked stay
+/// revoked, and the folder can always be read.
 void interleave(int rounds, std::uint64_t seed) {
   constexpr int kAtOnce = 3;
   CAPTURE(seed);

@@ -105,7 +105,7 @@ TEST_CASE("agents run at low priority where other processes run, but not on comp
   CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kLocal, ""), "").niceness == 15);
   CHECK(child_spec(agent_spec(fixture), host_of(HostTransport::kNamespace, "east"), "e").niceness == 15);
   CHECK(child_spec(vision, host_of(HostTransport::kLocal, ""), "").niceness == 0);
-  // Over ssh the remote program gives way, not the connection.
+  // Over ssh the remote program has the low priority, not the connection.
   for (const bool is_shared : {false, true}) {
     HostSpec host = host_of(HostTransport::kSsh, "robot@far");
     host.programs = fixture.folder.string();
@@ -144,7 +144,7 @@ TEST_CASE("over ssh the scenario is copied, and the process ends when the launch
 TEST_CASE("over ssh the process gets its own keys, and nobody else can read them there") {
   const Fixture fixture;
   HostSpec host = host_of(HostTransport::kSsh, "robot@far");
-  host.programs = fs::relative(fixture.folder).string();  // from the folder in which ssh begins
+  host.programs = fs::relative(fixture.folder).string();  // relative to the initial folder of ssh
   TestKeys keys({"agent", "3-4"});
   ProcessSpec process = agent_spec(fixture);
   process.keys = keys.folder_of("agent 3");

@@ -162,7 +162,7 @@ TEST_CASE("a director that ends its processes is not asked to end again, and may
     wait_for([] { return is_asked_to_end != 0; });
     signal(SIGTERM, SIG_DFL);
     const bool has_ended = processes.terminate(5s).empty();
-    (void)processes.poll(0ms);  // so that the keeping process has gone on meanwhile
+    (void)processes.poll(0ms);  // so that the keeping process has continued in the meantime
     return has_ended ? 3 : 4;
   };
   CHECK(f.keep(ends_slowly) == 3);

@@ -18,7 +18,7 @@ TEST_CASE("an attestation is repeated until the coordinator no longer waits for 
   CHECK(exchange.state() == State::kPending);
   CHECK_FALSE(exchange.update(false, kBegin + 300ms));
   CHECK(exchange.state() == State::kAccepted);
-  // A new epoch may wait for the robot again, but the operator has to look again.
+  // A new epoch may await the robot again, but then the operator must check again.
   CHECK_FALSE(exchange.update(true, kBegin + 1s));
   CHECK(exchange.state() == State::kAccepted);
 }

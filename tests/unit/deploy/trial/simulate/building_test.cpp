@@ -31,7 +31,8 @@ BuildingOptions small_building(const Folder& folder) {
   return options;
 }
 
-/// Cells that are connected with one, over edges of cells whose centres are as far from walls as a robot's.
+/// The cells that are connected with a cell, by way of cells whose centres are far enough from walls for a
+/// robot.
 class FloodFill {
  public:
   FloodFill(const Scenario& scenario, const Vec2& from) : map_(scenario.map->cells()) {

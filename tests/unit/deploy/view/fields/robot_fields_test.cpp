@@ -77,7 +77,7 @@ TEST_CASE("the local grid of a robot with a laser shows walls of its map") {
   Run run("house-laser.yaml");
   run.system.run_for(1s);
   const RobotId robot = run.scenario.robots[0].id;
-  (void)run.json(robot);  // from now on, somebody looks
+  (void)run.json(robot);  // from now on, there is a viewer
   run.system.run_for(2s);
   const Json json = run.json(robot);
   const Json& local = json.at("local");

@@ -19,7 +19,7 @@ namespace sidestep::foxglove_test {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-/// Remembers what it gets.
+/// Remembers what it receives.
 class FakeClient : public WebSocket {
  public:
   void send_state(unsigned, WebMessage message) override { received.push_back(*message.payload); }
@@ -87,7 +87,7 @@ TEST_CASE("the client that Lichtblick uses decodes the messages of a run with th
   const double x_m = arrived.at("truth").at("last").at("robots")[0].at("x_m");
   CHECK(std::abs(x_m) < 4.5);
   CHECK(x_m != 0);
-  // Where the scene and the transforms have the robots.
+  // Positions of the robots in the scene and in the transforms.
   const Json& cylinders = arrived.at("scene_update").at("last").at("entities")[0].at("cylinders");
   REQUIRE(cylinders.size() == scenario.robots.size());
   CHECK(cylinders[0].at("pose").at("position").at("x") == Approx(x_m).margin(0.1));
@@ -142,7 +142,7 @@ TEST_CASE("meaningless messages of clients are refused, and writing is not suppo
     CHECK_FALSE(server.on_message(client, bad));
   CHECK(server.on_message(client, R"({"op":"advertise","channels":[]})"));
   CHECK(client.texts.back().at("op") == "status");
-  // The answer quotes the operation up to half of a character.
+  // The answer quotes the operation, cut off in the middle of a character.
   CHECK(server.on_message(client, R"({"op":")" + std::string(99, 'a') + "\u00e9\"}"));
   CHECK(client.texts.back().at("op") == "status");
 }

@@ -37,11 +37,11 @@ TEST_CASE("each contact is one event, even if several are reported at once") {
   w.hear(truth);
   CHECK(w.kinds() == "contact contact contact ");
   CHECK(w.log.since(2)[0].text == "robot 0 touches an obstacle");
-  // Of more contacts than a message names, the last ones.
+  // If there are more contacts than a message lists, the last ones are events.
   truth.contacts(1'000'000);
   w.hear(truth);
   CHECK(w.log.count() == 3 + msg::MAX_CONTACTS);
-  // Another simulator counts anew.
+  // Another simulator starts its counts from zero.
   truth.header().incarnation(2);
   truth.contacts(1);
   truth.crashes_while_moving(1);

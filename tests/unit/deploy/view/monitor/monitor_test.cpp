@@ -14,7 +14,7 @@ namespace sidestep::monitor_test {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-/// A viewer that remembers the last of each state, and all events.
+/// A viewer that remembers the latest message of each state, and all events.
 class FakeViewer : public WebSocket {
  public:
   void send_state(unsigned slot, WebMessage message) override {

@@ -44,7 +44,7 @@ class SocketClient {
   /// The next message; nullopt: none within `timeout`, or disconnected.
   std::optional<Message> receive(Duration timeout = std::chrono::seconds(10));
   bool is_connected() const;
-  /// What the server gave as its reason to disconnect.
+  /// The server's reason for disconnecting.
   std::string close_reason() const;
 
  private:

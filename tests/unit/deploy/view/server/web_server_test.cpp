@@ -82,7 +82,7 @@ bool wait_until(const std::function<bool()>& condition) {
   return condition();
 }
 
-/// A connection that sends these bytes, and reads what comes within a second.
+/// Sends these bytes on a connection, and returns what arrives within a second.
 std::string raw_exchange(std::uint16_t port, const std::string& bytes) {
   const int fd = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -177,7 +177,7 @@ TEST_CASE("a viewer that reads slowly gets the newest state, and the server's me
     socket.send_state(0, {std::make_shared<const std::string>(state), true});
   };
   SocketClient viewer(server.port(), "one");
-  // Reads only after the server has made 20 MB of states.
+  // Starts reading only after the server has produced 20 MB of states.
   CHECK(wait_until([&] { return sent > 200; }));
   int received = 0, number = 0;
   const int begin = sent;
@@ -187,7 +187,7 @@ TEST_CASE("a viewer that reads slowly gets the newest state, and the server's me
     number = std::stoi(message->text);
     ++received;
   }
-  // Old states are only what the kernel has buffered for the connection.
+  // The only old states are those that the kernel has buffered for the connection.
   CHECK(received < 60);
 }
 

@@ -48,7 +48,7 @@ TEST_CASE("both byte orders and both versions of the encoding are decoded") {
 }
 
 TEST_CASE("the sizes that version 2 states are skipped") {
-  // An appendable struct, and a list of structs; not a list of numbers.
+  // An appendable struct and a sequence of structs begin with their size; a sequence of numbers does not.
   const std::string idl =
       "@final struct P { octet x; }; @appendable struct T { sequence<P> parts; octet raw[2]; };";
   CHECK(decode(idl, {0, 9, 0, 0, 14, 0, 0, 0, 6, 0, 0, 0, 2, 0, 0, 0, 7, 8, 1, 2}) ==

@@ -109,7 +109,7 @@ TEST_CASE("wrong IDL is refused with the file, the line and the reason") {
   check("const long N = 9223372036854775807 + 1;", "1: a number is too large");
   check("const long N = -9223372036854775807 - 1; const long M = -N;", "1: a number is too large");
   check("struct A : B { long x; };", "1: there is no struct 'B'");
-  // A message of no bytes would have any number of them.
+  // A list of empty structs could claim any number of elements.
   check("struct E {}; struct A { E x[9000000]; };", "1: a list of elements that hold nothing");
   check("struct E {}; struct F { E e; }; struct A { sequence<F> x; };",
         "1: a list of elements that hold nothing");

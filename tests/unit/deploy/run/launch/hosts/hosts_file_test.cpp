@@ -96,7 +96,7 @@ TEST_CASE("an invalid hosts file is refused with the line and the expected value
   check_refused(with(kTwoHosts, "{ssh: robot@far.example}", "{namespace: ../x}"),
                 "hosts.yaml:9: ", "expected letters");
   check_refused(with(kTwoHosts, "10.1.0.2", "far.example"), "hosts.yaml:10: ", "IPv4 address");
-  // A C function would see the part before the zero byte only.
+  // A C function would see only the part before the zero byte.
   check_refused(with(kTwoHosts, "10.1.0.2", R"("10.1.0.2\0 x")"), "hosts.yaml:10: ", "without zero bytes");
   check_refused(with(kTwoHosts, "/opt/sidestep/bin", R"("/opt\0/bin")"),
                 "hosts.yaml:11: ", "without zero bytes");

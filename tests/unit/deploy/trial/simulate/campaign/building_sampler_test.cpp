@@ -8,8 +8,8 @@
 
 namespace sidestep::building_sampler_test {
 
-/// The share of the places free for a disc that belongs to their largest part. Neighbours of the grid are
-/// connected if the disc fits in between.
+/// The largest connected part of the places that are free for a disc, as a fraction of all of them. Grid
+/// neighbours are connected if the disc fits between them.
 double largest_part(const OccupancyMap& map, const Field& field, double radius_m, double step_m) {
   const int columns = static_cast<int>(field.length_m / step_m),
             rows = static_cast<int>(field.width_m / step_m);

@@ -28,7 +28,7 @@ using Kind = msg::DisturbanceKind;
 constexpr int kPlans = 3000;
 constexpr Duration kHealedAt{48'000'000'000}, kDuration{60'000'000'000};
 
-/// How many of some samples have each property.
+/// Counts the samples that have each property.
 class Shares {
  public:
   void begin() { ++samples_; }

@@ -24,7 +24,7 @@ using Kind = msg::DisturbanceKind;
 
 constexpr Duration kHealedAt{48'000'000'000}, kDuration{60'000'000'000};
 
-/// Smallest and largest of some values, by name.
+/// The smallest and the largest of several values, by name.
 class Extremes {
  public:
   void add(const std::string& name, double value) {
@@ -38,7 +38,7 @@ class Extremes {
   void add(const std::string& name, Duration value) { add(name, to_seconds(value)); }
   /// The values lie between both limits, and come as near to them as a hundredth to a thirtieth of the range.
   void check(const std::string& name, double low, double high) const { check(name, low, high, high - low); }
-  /// Like the above, for values whose orders of magnitude are equally likely.
+  /// Like check(), for values whose orders of magnitude are equally likely.
   void check_log(const std::string& name, double low, double high) const {
     const auto& [min, max] = found_.at(name);
     CAPTURE(name, min, max);

@@ -8,7 +8,7 @@ namespace sidestep::trial_test {
 
 using namespace std::chrono_literals;
 
-/// A trial with three robots that passes, and what it is judged by.
+/// A trial with three robots that passes, and the data that it is judged by.
 struct Judged {
   Trial trial{
       1,

@@ -89,7 +89,7 @@ TEST_CASE("no contact is not judged if ground truth is missing at the end, or th
                    "the run was aborted: interrupted");
   remove_truth(history, 0, 100);
   check_not_judged(ExpectNoContact{kBoth, {}}, history, "no ground truth was heard");
-  // What was missed meanwhile is in the totals.
+  // The totals include what was missed in that time.
   RunHistory gap = run();
   remove_truth(gap, 3, 5);
   check_passes(ExpectNoContact{kBoth, {}}, gap);
@@ -121,7 +121,7 @@ TEST_CASE("at rest: not judged without ground truth, for robots off the floor, o
   remove_truth(history, 3, 4.5);
   check_not_judged(ExpectAtRest{kOne, {2, 4}, 0}, history, "ground truth is missing after 2.9");
   history = run();
-  // A robot that was not heard of may have moved.
+  // A robot that was not heard from may have moved.
   remove_truth(history, 6, 6.5);
   check_not_judged(ExpectAtRest{kOne, {5, 5.5}, 2}, history, "ground truth is missing after 5.9");
   check_not_judged(ExpectAtRest{{{7}, false}, {2, 4}, 0}, run(), "robot 7 was not on the floor");
