@@ -54,7 +54,7 @@ struct AuditTotals {
   std::uint64_t undecided_pairs = 0;
   Coverage coverage;
   bool is_cut_off = false;  ///< the messages come from a recording that lacks an unknown part of the run
-  /// Duration of the part of the run in which silence counts, see Auditor::begin_run.
+  /// Duration of the part of the run in which silence counts, see RunCoverage::begin_run.
   double run_s = 0;
   AuditReference reference = AuditReference::kNone;
   /// Largest distance of a robot on its reference from that reference.

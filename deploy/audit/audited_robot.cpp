@@ -112,6 +112,20 @@ bool AuditedRobot::continues(VersionNumber from, VersionNumber to) const {
   return false;
 }
 
+const KnownVersion* AuditedRobot::executed_at(VersionNumber latest, std::int64_t at_ns) const {
+  const KnownVersion* executed = find(latest);
+  while (executed && executed->has_content && executed->path.start_ns() > at_ns && executed->number != 0)
+    executed = find(executed->version.base());
+  return executed && executed->has_content ? executed : nullptr;
+}
+
+double AuditedRobot::distance_from_version_m(const Vec2& position_m, std::int64_t at_ns) const {
+  const KnownVersion* const executed = last_report ? executed_at(last_report->executing, at_ns) : nullptr;
+  if (!executed) return INFINITY;
+  const AuditPath::Node place = executed->path.at_ns(at_ns);
+  return std::hypot(position_m.x() - place.x, position_m.y() - place.y);
+}
+
 void AuditedRobot::ExecutedVersions::add(const KnownVersion& version, std::int64_t from_ns) {
   const bool is_of_agent = version.number != 0 && !version.is_own_stop;
   if (!version.was_executed || !is_of_agent || version.path.start_ns() <= from_ns) return;
@@ -164,6 +178,7 @@ void AuditedRobot::reset() {
 void AuditedRobot::forget_times() {
   if (last_report) last_report->at_ns = kAlways;
   drifted_since_ns = beyond_bound_since_ns = kNever;
+  observation = {};
   for (KnownVersion& version : versions) {
     version.executed_until_ns = kAlways;
     // According to the clock that was ahead. A message may arrive before the first fact that uses the

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/geometry/vec2.hpp"
 #include "common/motion/version.hpp"
 #include "deploy/audit/audit_path.hpp"
 #include "deploy/inspect/senders/message_trace.hpp"
@@ -51,7 +52,7 @@ struct KnownVersion {
   Epoch granted_in = 0;                      ///< for an own stop: the epoch whose ledger page contained it
   std::int64_t granted_by_ns = kNever;       ///< latest sending time of the verdict, or of that page
   std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
-  /// Lower bound of the time until which the ledger contained it, see Auditor::granter_time_ns.
+  /// Lower bound of the time until which the ledger contained it, see MessageTimes::granter_time_ns.
   std::int64_t alive_until_ns = kAlways;
   std::int64_t excluded_ns = kNever;
   // What the pages of the ledger show, by the coordinator's clock. Unused if the auditor receives every
@@ -111,8 +112,7 @@ class AuditedRobot {
   static constexpr std::size_t kMaxProposals = 16;
 
   RobotId id = 0;
-  std::deque<KnownVersion>
-      versions;  ///< sorted by number; mostly appended at the end and removed at the front
+  std::deque<KnownVersion> versions;  ///< sorted by number; mostly appended, and removed at the front
   std::array<ProposalRecord, kMaxProposals> proposals;
   std::uint64_t proposal_count = 0;
   std::array<EarlyVerdict, 8> early_verdicts;
@@ -129,7 +129,7 @@ class AuditedRobot {
   struct ReceivedReport {
     std::uint64_t robot_incarnation = 0;  ///< incarnation of the robot
     std::int64_t at_ns = 0;
-    std::int64_t earliest_ns = kAlways, latest_ns = kAlways;  ///< bounds of its sending time
+    bool is_clock_sound = false;  ///< the robot's clock was within its bound
     VersionNumber executing = 0;
     Incarnation obeyed_incarnation = 0;
     Epoch obeyed_epoch = 0;
@@ -141,8 +141,7 @@ class AuditedRobot {
   };
   std::optional<ReceivedReport> last_report;
   Time heard_at{};  ///< when it arrived
-  /// Since these times, all facts have reported an error beyond the drift bound, or beyond the tracking
-  /// bound.
+  /// Since when all facts have reported an error beyond the drift bound, or beyond the tracking bound.
   std::int64_t drifted_since_ns = kNever, beyond_bound_since_ns = kNever;
 
   /// The latest registration.
@@ -156,6 +155,13 @@ class AuditedRobot {
     bool is_reported = false;  ///< ensures that a violation is reported only once
   };
   std::optional<Registered> registered;
+
+  /// The latest position in the reference that has not yet been compared with feedback.
+  struct Observation {
+    std::int64_t at_ns = kNever;
+    double x = 0, y = 0, reference_error_m = 0;  ///< the error is according to ground truth
+  };
+  Observation observation;
   EpochMemory registered_in;
   /// The latest page of the ledger that listed versions of the robot, by the coordinator's clock.
   struct Listing {
@@ -163,8 +169,7 @@ class AuditedRobot {
     std::int64_t at_ns = kAlways;
   };
   Listing listed;
-  /// Offset of the robot's clock according to its last fact. Exact only if the auditor receives everything
-  /// immediately.
+  /// Offset of the robot's clock by its last fact; exact only if every message is received at once.
   std::int64_t clock_ahead_ns = 0;
   /// An operator has attested its absence: epochs up to this one may have begun without its registration.
   Epoch attested_until = 0;
@@ -188,6 +193,10 @@ class AuditedRobot {
   /// Whether all versions that the robot executed from one version to another, which may be the same, are
   /// known.
   bool continues(VersionNumber from, VersionNumber to) const;
+  /// The version executed at a time by the robot's clock, before or as `latest` was; nullptr: unknown.
+  const KnownVersion* executed_at(VersionNumber latest, std::int64_t at_ns) const;
+  /// Distance of a position from the version that the robot executes; infinite if that is unknown.
+  double distance_from_version_m(const Vec2& position_m, std::int64_t at_ns) const;
   /// The counts over the robot's whole life.
   ExecutedVersions executed_versions() const;
   /// The version's record, inserted if it is new. If there is no room, evicts the least relevant record.
@@ -201,8 +210,7 @@ class AuditedRobot {
   const ProposalRecord* find_proposal_of(const msg::Version& candidate) const;
   /// Removes versions that were excluded before `before_ns`.
   void forget(std::int64_t before_ns);
-  /// Advances first_recent past versions excluded before `since_ns`: they are no longer compared with other
-  /// robots' versions.
+  /// Advances first_recent past versions excluded before `since_ns`: they are not compared any more.
   void advance_recent(std::int64_t since_ns);
   /// Moves first_recent back to this version, so that it is compared again using what is now known about it.
   void make_recent(VersionNumber number);
@@ -210,7 +218,7 @@ class AuditedRobot {
   ProposalRecord& add_proposal();
   /// Forgets everything except the id and the counters, because a new simulator starts with a new floor.
   void reset();
-  /// Forgets the times of facts, because the robot's clock was set back.
+  /// Forgets the times of facts and of the observation, because the robot's clock was set back.
   void forget_times();
 
  private:
@@ -221,8 +229,7 @@ class AuditedRobot {
 [[nodiscard]] Exclusion exclusion_by(const AuditedRobot::ReceivedReport& robot_report,
                                      const KnownVersion& version);
 
-/// The part of a version that decides whether it must be compared with another robot's version; compact in
-/// memory.
+/// The part of a version that decides whether it is compared with another one; compact in memory.
 struct LiveVersion {
   double x = 0, y = 0, reach_m = 0;
   std::int64_t start_ns = 0, executed_until_ns = kAlways,

@@ -1,309 +1,176 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/audit/auditor.hpp"
 
-#include <algorithm>
-#include <fmt/format.h>
-
 #include "common/config/shared_rules.hpp"
 #include "common/messaging/robot_notices.hpp"
 
 namespace sidestep {
-namespace {
-
-constexpr std::size_t kMaxEpochs = 64;
-constexpr Duration kAdvancePeriod = std::chrono::milliseconds(100);
-// Robots in contact may appear this far apart, because their positions are sampled.
-constexpr double kContactTolerance_m = 0.001;
-// Time for messages and a few cycles, in addition to braking itself.
-constexpr Duration kReactionTime = std::chrono::milliseconds(200);
-
-DisturbanceSettings disturbance_settings(const Scenario& scenario, bool is_complete) {
-  const double braking_s = scenario.limits.speed_mps / scenario.limits.deceleration_mps2;
-  return {2 * scenario.radius_m + kContactTolerance_m, 2 * scenario.radius_m + scenario.margin_m,
-          from_seconds(braking_s) + kReactionTime, is_complete};
-}
-
-/// How far a robot may appear to be from its version because of errors of vision and clocks.
-double sight_allowance_m(const Scenario& scenario) {
-  return position_error_m(scenario.vision) + 2 * scenario.clock_bound_s * scenario.limits.speed_mps;
-}
-
-}  // namespace
 
 Auditor::Auditor(const Scenario& scenario, const AuditInput& input)
-    : scenario_(scenario),
-      obstacles_(scenario.obstacles.begin(), scenario.obstacles.end()),
-      input_(input),
-      tracking_bound_m_(scenario.tracking_bound_m),
-      clock_bound_ns_(from_seconds(scenario.clock_bound_s).count()),
-      sight_allowance_m_(sight_allowance_m(scenario)),
-      trace_(input.is_complete ? Duration{0} : input.min_latency_bound),
-      agent_trace_(input.is_complete ? Duration{0} : input.min_latency_bound),
-      report_coverage_(scenario.robots.size()),
-      sights_(scenario.robots.size()),
-      seen_displacements_(scenario.robots.size()),
-      observed_(scenario.robots.size()),
-      seen_contacts_(scenario),
-      disturbances_(scenario.robots.size(), disturbance_settings(scenario, input.is_complete)),
-      index_(kMaxRobots, scenario.robots.size()),
-      orders_(roster_of(scenario), input.is_complete, stamps_,
+    : run_{scenario, input},
+      times_(run_),
+      robots_(run_, findings_),
+      coverage_(run_, robots_, findings_),
+      content_(run_, robots_, findings_),
+      pairs_(run_, robots_, findings_),
+      epochs_(run_, times_, robots_, findings_),
+      orders_(roster_of(scenario), input.is_complete, times_.stamps(),
               [this](AuditRule rule, RobotId robot, VersionNumber version, Epoch epoch, std::string detail) {
-                Violation violation;
-                violation.rule = rule;
-                violation.robot = robot;
-                violation.version = version;
-                violation.epoch = epoch;
-                violation.detail = std::move(detail);
-                report(std::move(violation));
-              }) {
-  for (const RobotSpec& spec : scenario.robots) {
-    index_.at(spec.id) = robots_.size();
-    robots_.emplace_back().id = spec.id;
-  }
-  bounds_.resize(robots_.size());
-  live_versions_.resize(robots_.size());
-  observations_.resize(robots_.size());
-  has_sound_clock_.resize(robots_.size());
+                findings_.report({rule, {}, robot, {}, version, 0, epoch, std::move(detail)});
+              }),
+      grants_(run_, times_, robots_, epochs_, content_, pairs_, orders_, findings_),
+      ledger_(run_, times_, robots_, epochs_, content_, pairs_, findings_),
+      facts_(run_, robots_, epochs_, content_, pairs_, findings_),
+      reference_(run_, robots_, coverage_, findings_) {}
+
+AuditedRobot* Auditor::known_robot(RobotId robot) {
+  AuditedRobot* const known = robots_.find(robot);
+  if (!known) ++findings_.totals.invalid;
+  return known;
 }
 
-void Auditor::report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch,
-                     std::string detail) {
-  Violation violation;
-  violation.rule = rule;
-  violation.robot = robot;
-  violation.version = known ? known->number : 0;
-  violation.epoch = epoch;
-  violation.detail = std::move(detail);
-  report(std::move(violation));
-}
-
-void Auditor::report(Violation violation) {
-  violation.detected = now_;
-  ++totals_.violations;
-  ++totals_.by_rule[static_cast<std::size_t>(violation.rule)];
-  if (totals_.first.size() < AuditTotals::kMaxKept) totals_.first.push_back(violation);
-  if (on_violation_) on_violation_(violation);
-}
-
-AuditedRobot* Auditor::robot_of(std::uint32_t robot, const msg::Header& header) {
-  if (robot < kMaxRobots && index_[robot] < robots_.size() && header.sender() == robot)
-    return &robots_[index_[robot]];
-  ++totals_.invalid;
-  return nullptr;
+AuditedRobot* Auditor::sender_of(RobotId robot, const msg::Header& header) {
+  AuditedRobot* const sender = header.sender() == robot ? robots_.find(robot) : nullptr;
+  if (!sender) ++findings_.totals.invalid;
+  return sender;
 }
 
 Reception Auditor::trace(Kind kind, std::uint32_t key, const msg::Header& header) {
-  const bool is_of_agent = kind == kProposalKind || kind == kRegistrationKind || kind == kCommandKind;
-  MessageTrace& messages = is_of_agent ? agent_trace_ : trace_;
-  const Reception reception = messages.record(channel_of(kind, key), header, now_);
-  stamps_.record(channel_of(kind, key), header);
-  if (!input_.is_complete && !is_of_agent && reception.missed > 0) disturbances_.on_missed();
+  const Reception reception = times_.record(kind, key, header, findings_.now);
+  if (!run_.is_complete() && !MessageTimes::is_of_agent(kind) && reception.missed > 0) reference_.on_missed();
   return reception;
 }
 
-std::int64_t Auditor::granter_time_ns(const msg::Header& header, const Reception& reception) const {
-  return input_.is_complete ? reception.latest_ns : header.stamp_ns();
-}
-
-KnownVersion* Auditor::store(AuditedRobot& robot, const msg::Version& version) {
-  if (version.robot() != robot.id || !is_sane(version)) {
-    ++totals_.invalid;
-    return nullptr;
-  }
-  KnownVersion& known = robot.find_or_insert(version.version_number());
-  // A later agent, or another floor: what the auditor would have forgotten if it had received every message.
-  const bool is_another = known.has_content && (known.version.incarnation() != version.incarnation() ||
-                                                (known.number == 0 && !(known.version == version)));
-  if (!input_.is_complete && is_another) {
-    known = KnownVersion();
-    known.number = version.version_number();
-  }
-  if (!known.has_content) {
-    known.has_content = true;
-    known.version = version;
-    known.path = AuditPath(version);
-    known.is_content_checked = known.is_pair_checked = input_.is_complete;
-    max_inflation_m_ = std::max(max_inflation_m_, version.inflation_m());
-    // An earlier fact may exclude the version.
-    if (robot.last_report) known.exclusion = exclusion_by(*robot.last_report, known);
-    known.excluded_ns = known.exclusion == Exclusion::kNone ? kNever : to_ns(now_);
-    robot.make_recent(known.number);
-  } else if (!(known.version == version)) {
-    report(AuditRule::kUniqueVersion, robot.id, &known, 0,
-           fmt::format("one message has a start at {} ns and ({:.6f}, {:.6f}) m, another one at {} ns and "
-                       "({:.6f}, {:.6f}) m",
-                       known.version.start_ns(), known.version.x_m(), known.version.y_m(), version.start_ns(),
-                       version.x_m(), version.y_m()));
-  }
-  return &known;
-}
-
-Auditor::EpochRecord& Auditor::epoch_record(Epoch epoch) {
-  const auto entry = epochs_.try_emplace(epoch).first;
-  if (epochs_.size() > kMaxEpochs)
-    epochs_.erase(entry == epochs_.begin() ? std::next(entry) : epochs_.begin());
-  return entry->second;
-}
-
 void Auditor::on_proposal(const msg::Proposal& proposal, Time now) {
-  now_ = now;
-  AuditedRobot* robot = robot_of(proposal.robot(), proposal.header());
+  findings_.now = now;
+  AuditedRobot* robot = sender_of(proposal.robot(), proposal.header());
   if (!robot) return;
-  (void)trace(kProposalKind, proposal.robot(), proposal.header());
-  if (proposal.candidate_count() == 0 || proposal.candidate_count() > msg::MAX_CANDIDATES) {
-    ++totals_.invalid;
-    return;
-  }
-  const std::uint64_t number = proposal.candidates().front().version_number();
-  const ProposalRecord* same_number = robot->find_proposal(number);
-  const std::uint64_t incarnation = proposal.candidates().front().incarnation();
-  if (same_number && same_number->candidates.front().incarnation() == incarnation) return;
-  ProposalRecord& record = robot->add_proposal();
-  record.number = number;
-  record.stamp_ns = proposal.header().stamp_ns();
-  record.epoch = proposal.epoch();
-  record.count = proposal.candidate_count();
-  for (std::size_t i = 0; i < record.count; ++i) {
-    record.candidates[i] = proposal.candidates()[i];
-    // The verdict may have overtaken the proposal.
-    const VersionNumber candidate = record.candidates[i].version_number();
-    KnownVersion* known = robot->find(candidate);
-    const auto is_grant = [&](const EarlyVerdict& v) {
-      return v.granted == candidate && v.request_stamp_ns == record.stamp_ns;
-    };
-    const bool is_this = input_.is_complete ||
-                         (known && known->has_content ? known->version.incarnation() == incarnation
-                                                      : std::ranges::any_of(robot->early_verdicts, is_grant));
-    if (!known || !is_this) continue;
-    known->is_proposed = true;
-    if (known->has_content || known->granted_in == 0) continue;
-    if (KnownVersion* stored = store(*robot, record.candidates[i])) {
-      check_content(*robot, *stored);
-      check_new_pairs(*robot, *stored);
-    }
-  }
-  for (const EarlyVerdict& verdict : robot->early_verdicts) {
-    const bool is_answer =
-        verdict.proposal == number && (input_.is_complete || verdict.request_stamp_ns == record.stamp_ns);
-    if (is_answer) decide(*robot, record, verdict.epoch, verdict.granted);
-  }
+  (void)trace(Kind::kProposalKind, proposal.robot(), proposal.header());
+  if (proposal.candidate_count() == 0 || proposal.candidate_count() > msg::MAX_CANDIDATES)
+    ++findings_.totals.invalid;
+  else
+    grants_.on_proposal(*robot, proposal);
+}
+
+void Auditor::on_verdict(const msg::Verdict& verdict, Time now) {
+  findings_.now = now;
+  AuditedRobot* robot = known_robot(verdict.robot());
+  if (!robot) return;
+  const Reception reception = trace(Kind::kVerdictKind, robot->id, verdict.header());
+  if (verdict.proposal_number() == 0) return;
+  if (verdict.granted_version() != 0) coverage_.begin_run();
+  grants_.on_verdict(*robot, verdict, reception);
 }
 
 void Auditor::on_registration(const msg::Registration& registration, Time now) {
-  now_ = now;
-  AuditedRobot* robot = robot_of(registration.robot(), registration.header());
+  findings_.now = now;
+  AuditedRobot* robot = sender_of(registration.robot(), registration.header());
   if (!robot) return;
-  const Reception reception = trace(kRegistrationKind, registration.robot(), registration.header());
-  const Epoch epoch = registration.epoch();
-  if (registration.version_count() > msg::MAX_REGISTERED_VERSIONS || epoch == 0) {
-    ++totals_.invalid;
+  const Reception reception = trace(Kind::kRegistrationKind, registration.robot(), registration.header());
+  if (registration.version_count() > msg::MAX_REGISTERED_VERSIONS || registration.epoch() == 0) {
+    ++findings_.totals.invalid;
     return;
   }
   // Such a registration registers nobody, and only informs a coordinator of the epoch.
   if (registration.version_count() == 0 && !registration.is_absent()) return;
   orders_.on_registration(registration);
-  AuditedRobot::Registered registered;
-  registered.epoch = epoch;
-  registered.incarnation = registration.header().incarnation();
-  registered.earliest_ns = reception.earliest_ns;
-  registered.latest_ns = reception.latest_ns;
-  registered.stamp_ns = registration.header().stamp_ns();
-  registered.is_absent = registration.is_absent();
-  for (std::size_t i = 0; i < registration.version_count(); ++i) {
-    KnownVersion* known = store(*robot, registration.versions()[i]);
-    if (!known) return;
-    registered.versions.push_back(known->number);
-    known->registered_in.add(epoch);
-  }
-  robot->registered_in.add(epoch);
-  // The attestation stays valid in the epochs that had begun.
-  robot->attested_until = std::min(robot->attested_until, std::max(epoch, robot->attested_in));
-  if (!robot->registered || epoch >= robot->registered->epoch) robot->registered = std::move(registered);
+  epochs_.on_registration(*robot, registration, reception);
 }
 
 void Auditor::on_coordinator(const msg::CoordinatorState& state, Time now) {
-  now_ = now;
-  const Reception reception = trace(kCoordinatorKind, 0, state.header());
-  newest_epoch_ = std::max(newest_epoch_, state.epoch());
+  findings_.now = now;
+  const Reception reception = trace(Kind::kCoordinatorKind, 0, state.header());
   if (state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING) {
-    begin_run();
-    named_displaced_ = displaced_robots(state);
+    coverage_.begin_run();
+    reference_.positions().on_displaced(displaced_robots(state));
   }
-  const auto known = epochs_.find(state.epoch());
-  if (known == epochs_.end() || known->second.is_reported) return;
-  const std::vector<RobotId> missing = missing_robots(state);
-  if (missing.empty()) return;
-  const std::int64_t sent_ns = input_.is_complete ? reception.earliest_ns : state.header().stamp_ns();
-  if (known->second.granter_incarnation != state.header().incarnation() ||
-      sent_ns <= known->second.first_grant_ns || !are_times_comparable(state.header()))
+  epochs_.on_coordinator(state, reception);
+}
+
+void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
+  findings_.now = now;
+  const Reception reception = trace(Kind::kLedgerKind, 0, page.header());
+  if (page.versions().size() > 256 || page.epoch() == 0) {
+    ++findings_.totals.invalid;
     return;
-  known->second.is_reported = true;
-  report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),
-         fmt::format("{} robots' registrations are missing, although the coordinator has granted",
-                     missing.size()));
+  }
+  coverage_.begin_run();
+  ledger_.on_page(page, reception);
+}
+
+void Auditor::on_command(const msg::Command& command, Time now) {
+  findings_.now = now;
+  AuditedRobot* robot = sender_of(command.robot(), command.header());
+  if (!robot) return;
+  const Reception reception = trace(Kind::kCommandKind, command.robot(), command.header());
+  epochs_.on_command(*robot, command, reception);
+  if (command.has_version()) grants_.on_command(*robot, command, reception);
+}
+
+void Auditor::on_robot_report(const msg::Feedback& feedback, Time now) {
+  findings_.now = now;
+  AuditedRobot* robot = sender_of(feedback.robot(), feedback.header());
+  if (!robot) return;
+  const Reception reception = trace(Kind::kRobotReportKind, feedback.robot(), feedback.header());
+  const auto robot_report = facts_.check(*robot, feedback, reception);
+  if (!robot_report) return;
+  coverage_.hear_robot_report(*robot, robot_report->executing, reception);
+  reference_.positions().check(*robot, *robot_report, reception);
+  facts_.keep(*robot, *robot_report);
+}
+
+void Auditor::on_truth(const msg::GroundTruth& truth, Time now) {
+  findings_.now = now;
+  reference_.on_truth(truth, trace(Kind::kTruthKind, truth.simulator(), truth.header()));
+}
+
+void Auditor::on_world_state(const msg::WorldState& world, Time now) {
+  findings_.now = now;
+  if (coverage_.has_ground_truth()) return;
+  reference_.on_world_state(world, trace(Kind::kWorldKind, world.vision(), world.header()));
+}
+
+void Auditor::on_disturbance(const msg::Disturbance& disturbance, Time now) {
+  findings_.now = now;
+  reference_.on_disturbance(disturbance);
+}
+
+void Auditor::on_attestation(const msg::AbsenceAttestation& attestation, Time now) {
+  findings_.now = now;
+  AuditedRobot* robot = known_robot(attestation.robot());
+  if (!robot) return;
+  coverage_.expect_silence(*robot);
+  epochs_.on_attestation(*robot);
 }
 
 void Auditor::on_order(const msg::Order& order, Time now) {
-  now_ = now;
+  findings_.now = now;
   orders_.on_order(order);
 }
 
 void Auditor::on_order_answer(const msg::OrderAnswer& answer, Time now) {
-  now_ = now;
-  stamps_.record(channel_of(kOrderAnswerKind, 0), answer.header());
+  findings_.now = now;
+  times_.record_stamp(Kind::kOrderAnswerKind, 0, answer.header());
   orders_.on_answer(answer);
 }
 
 void Auditor::on_order_memory(const msg::OrderMemory& memory, Time now) {
-  now_ = now;
-  stamps_.record(channel_of(kOrderMemoryKind, 0), memory.header());
+  findings_.now = now;
+  times_.record_stamp(Kind::kOrderMemoryKind, 0, memory.header());
   orders_.on_memory(memory);
 }
 
 void Auditor::on_order_status(const msg::OrderStatus& status, Time now) {
-  now_ = now;
-  stamps_.record(channel_of(kOrderStatusKind, 0), status.header());
+  findings_.now = now;
+  times_.record_stamp(Kind::kOrderStatusKind, 0, status.header());
   orders_.on_status(status);
 }
 
-void Auditor::on_command(const msg::Command& command, Time now) {
-  now_ = now;
-  AuditedRobot* robot = robot_of(command.robot(), command.header());
-  if (!robot) return;
-  const Reception reception = trace(kCommandKind, command.robot(), command.header());
-  auto& streams = agent_epochs_[robot->id];
-  auto stream = std::ranges::find(streams, command.header().incarnation(), &AgentStream::incarnation);
-  if (stream == streams.end()) {
-    if (streams.size() >= 8) streams.erase(streams.begin());
-    stream = streams.insert(streams.end(), {command.header().incarnation(), command.epoch()});
-  }
-  if (reception.is_newest && command.epoch() < stream->epoch) {
-    report(AuditRule::kEpochRegression, robot->id, nullptr, command.epoch(),
-           fmt::format("follows commands under epoch {}", stream->epoch));
-  }
-  if (reception.is_newest) stream->epoch = std::max(stream->epoch, command.epoch());
-  if (!command.has_version()) return;
-
-  KnownVersion* known = store(*robot, command.version());
-  if (!known) return;
-  known->sent_ns = std::min(known->sent_ns, reception.earliest_ns);
-  known->sent_epoch = std::max(known->sent_epoch, command.epoch());
-  check_forwarded(*robot, known->number);
-}
-
-void Auditor::check_forwarded(AuditedRobot& robot, VersionNumber number) {
-  KnownVersion* known = robot.find(number);
-  if (!known || known->sent_ns == kNever || known->is_reported_unsent) return;
-  const ProposalRecord* proposal = robot.find_proposal_of(known->version);
-  const bool was_denied = proposal && proposal->is_decided && proposal->granted != number;
-  const bool was_never_granted =
-      input_.is_complete && known->granted_in == 0 && known->number > robot.max_evicted_version;
-  if (!was_denied && !was_never_granted) return;
-  known->is_reported_unsent = true;
-  report(AuditRule::kForwarded, robot.id, known, known->sent_epoch,
-         was_denied ? fmt::format("the verdict on proposal {} granted version {}", proposal->number,
-                                  proposal->granted)
-                    : "no verdict has granted it");
+AuditTotals Auditor::totals() const {
+  AuditTotals totals = findings_.totals;
+  coverage_.add_to(totals, times_);
+  reference_.add_to(totals);
+  return totals;
 }
 
 void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
@@ -331,6 +198,7 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
     subscribe(topics::kFeedback, &Auditor::on_robot_report, robot.id);
   }
   // Advances also when no message arrives.
+  constexpr Duration kAdvancePeriod = std::chrono::milliseconds(100);
   call_periodically(bus, kAdvancePeriod, [&bus, &auditor] { auditor.advance(bus.now()); });
 }
 

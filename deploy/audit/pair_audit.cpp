@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clearance checks between the versions of two robots.
+#include "deploy/audit/pair_audit.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-
-#include "deploy/audit/auditor.hpp"
 
 namespace sidestep {
 namespace {
@@ -15,16 +14,21 @@ std::int64_t entry_ns(const KnownVersion& known, Epoch epoch) {
 
 }  // namespace
 
-Auditor::Evidence Auditor::evidence_of(const KnownVersion& known) {
-  return {known.alive_until_ns, known.executed_until_ns, known.was_executed};
+PairAudit::PairAudit(const AuditedRun& run, const RobotRecords& robots, AuditFindings& findings)
+    : run_(run),
+      robots_(robots),
+      findings_(findings),
+      clock_bound_ns_(run.clock_bound_ns()),
+      bounds_(robots.all().size()),
+      live_versions_(robots.all().size()) {}
+
+double PairAudit::min_separation_m(const KnownVersion& a, const KnownVersion& b) const {
+  return 2 * run_.scenario.radius_m + run_.scenario.margin_m + a.version.inflation_m() +
+         b.version.inflation_m();
 }
 
-double Auditor::min_separation_m(const KnownVersion& a, const KnownVersion& b) const {
-  return 2 * scenario_.radius_m + scenario_.margin_m + a.version.inflation_m() + b.version.inflation_m();
-}
-
-std::optional<Epoch> Auditor::common_epoch(const KnownVersion& a, const Evidence& a_state,
-                                           const KnownVersion& b, const Evidence& b_state) const {
+std::optional<Epoch> PairAudit::common_epoch(const KnownVersion& a, const Evidence& a_state,
+                                             const KnownVersion& b, const Evidence& b_state) const {
   // Proof by a ledger: when both versions had been granted, in whichever order, no fact had excluded either
   // of them.
   for (const KnownVersion* granted : {&a, &b}) {
@@ -41,9 +45,9 @@ std::optional<Epoch> Auditor::common_epoch(const KnownVersion& a, const Evidence
   return 0;
 }
 
-bool Auditor::was_checked_against(const KnownVersion& granted, const KnownVersion& other) const {
+bool PairAudit::was_checked_against(const KnownVersion& granted, const KnownVersion& other) const {
   const Epoch epoch = granted.granted_in;
-  if (!input_.is_complete) {
+  if (!run_.is_complete()) {
     // Pages show that the ledger held both. Two granted versions were checked, in whichever order. Others
     // enter the ledger unchecked: own stops, and versions of robots that register late.
     const bool are_listed = granted.listed_in == epoch && other.listed_in == epoch;
@@ -57,79 +61,92 @@ bool Auditor::was_checked_against(const KnownVersion& granted, const KnownVersio
 }
 
 // Clocks of robots of one process are compared by the times at which it sent their facts.
-bool Auditor::are_clocks_comparable(std::size_t a, std::size_t b) const {
-  if (!has_sound_clock_[a] || !has_sound_clock_[b]) return false;
-  return input_.is_complete ||
-         (robots_[a].last_report && robots_[b].last_report &&
-          robots_[a].last_report->robot_incarnation == robots_[b].last_report->robot_incarnation);
+bool PairAudit::are_clocks_comparable(const AuditedRobot& a, const AuditedRobot& b) const {
+  if (!a.last_report || !b.last_report || !a.last_report->is_clock_sound || !b.last_report->is_clock_sound)
+    return false;
+  return run_.is_complete() || a.last_report->robot_incarnation == b.last_report->robot_incarnation;
 }
 
-bool Auditor::may_conflict(const LiveVersion& mine, const Evidence& before, const LiveVersion& theirs) const {
+bool PairAudit::may_conflict(const LiveVersion& mine, const Evidence& before,
+                             const LiveVersion& theirs) const {
   const bool by_grant = before.alive_until_ns < std::max(mine.granted_by_ns, theirs.granted_by_ns);
   const std::int64_t from_ns = std::max(mine.start_ns, theirs.start_ns) + 2 * clock_bound_ns_;
   const bool by_reports = std::min(before.executed_until_ns, theirs.executed_until_ns) <= from_ns + 1000 &&
                           std::min(mine.executed_until_ns, theirs.executed_until_ns) > from_ns;
   if (!by_grant && !by_reports) return false;
   const double dx = mine.x - theirs.x, dy = mine.y - theirs.y;
-  const double max_distance_m =
-      mine.reach_m + theirs.reach_m + 2 * scenario_.radius_m + scenario_.margin_m + 2 * max_inflation_m_;
+  const double max_distance_m = mine.reach_m + theirs.reach_m + 2 * run_.scenario.radius_m +
+                                run_.scenario.margin_m + 2 * robots_.max_inflation_m();
   return dx * dx + dy * dy <= max_distance_m * max_distance_m;
 }
 
-void Auditor::check_pairs(const AuditedRobot& robot, const std::vector<Evidence>& before) {
-  const std::size_t self = index_of(robot);
+void PairAudit::remember_evidence(const AuditedRobot& robot) {
+  before_.clear();
+  for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i)
+    before_.emplace_back(robot.versions[i]);
+}
+
+void PairAudit::check_changes(const AuditedRobot& robot) {
+  const std::size_t self = robots_.index_of(robot);
   bounds_[self] = collect_live_versions(robot, live_versions_[self]);
   // New proofs can only involve versions with new evidence.
   changed_.clear();
   BoundingDisc mine;
   for (const LiveVersion& own : live_versions_[self]) {
-    if (evidence_of(robot.versions[own.index]) == before[own.index - robot.first_recent]) continue;
+    if (Evidence(robot.versions[own.index]) == before_[own.index - robot.first_recent]) continue;
     changed_.push_back(own);
     mine.add(own);
   }
   if (changed_.empty()) return;
-  const double separation_m = 2 * scenario_.radius_m + scenario_.margin_m + 2 * max_inflation_m_;
-  for (std::size_t i = 0; i < robots_.size(); ++i) {
+  const double separation_m =
+      2 * run_.scenario.radius_m + run_.scenario.margin_m + 2 * robots_.max_inflation_m();
+  for (std::size_t i = 0; i < bounds_.size(); ++i) {
     const BoundingDisc& other = bounds_[i];
     const double max_distance_m = mine.reach_m + other.reach_m + separation_m;
     const double dx = other.x - mine.x, dy = other.y - mine.y;
     if (i == self || other.reach_m < 0 || dx * dx + dy * dy > max_distance_m * max_distance_m) continue;
-    const bool clocks_are_sound = are_clocks_comparable(self, i);
-    for (const LiveVersion& own : changed_) {
-      for (const LiveVersion& live : live_versions_[i]) {
-        if (!may_conflict(own, before[own.index - robot.first_recent], live)) continue;
-        const KnownVersion& known = robot.versions[own.index];
-        const KnownVersion* theirs = robots_[i].find_near(live.index, live.number);
-        if (!theirs || !theirs->has_content) continue;
-        const Evidence state = evidence_of(*theirs);
-        const auto epoch = common_epoch(known, evidence_of(known), *theirs, state);
-        if (!epoch || (*epoch == 0 && !clocks_are_sound)) continue;
-        const auto earlier = common_epoch(known, before[own.index - robot.first_recent], *theirs, state);
-        if (earlier && (*earlier != 0 || clocks_are_sound)) continue;
-        check_pair(robot, known, robots_[i], *theirs, *epoch);
-      }
+    check_changes(robot, i);
+  }
+}
+
+void PairAudit::check_changes(const AuditedRobot& robot, std::size_t other) {
+  const AuditedRobot& other_robot = robots_.all()[other];
+  const bool clocks_are_sound = are_clocks_comparable(robot, other_robot);
+  for (const LiveVersion& own : changed_) {
+    const Evidence& before = before_[own.index - robot.first_recent];
+    for (const LiveVersion& live : live_versions_[other]) {
+      if (!may_conflict(own, before, live)) continue;
+      const KnownVersion& known = robot.versions[own.index];
+      const KnownVersion* theirs = other_robot.find_near(live.index, live.number);
+      if (!theirs || !theirs->has_content) continue;
+      const Evidence state(*theirs);
+      const auto epoch = common_epoch(known, Evidence(known), *theirs, state);
+      if (!epoch || (*epoch == 0 && !clocks_are_sound)) continue;
+      const auto earlier = common_epoch(known, before, *theirs, state);
+      if (earlier && (*earlier != 0 || clocks_are_sound)) continue;
+      check_pair(robot, known, other_robot, *theirs, *epoch);
     }
   }
 }
 
-void Auditor::check_new_pairs(AuditedRobot& robot, KnownVersion& known) {
+void PairAudit::check_new(const AuditedRobot& robot, KnownVersion& known) {
   if (known.alive_until_ns < known.granted_by_ns) return;  // later facts or pages will trigger the comparison
   known.is_pair_checked = true;
-  for (const AuditedRobot& other : robots_) {
+  for (const AuditedRobot& other : robots_.all()) {
     if (&other == &robot) continue;
     for (std::size_t l = other.first_recent; l < other.versions.size(); ++l) {
       const KnownVersion& theirs = other.versions[l];
       if (!theirs.has_content) continue;
-      const auto epoch = common_epoch(known, evidence_of(known), theirs, evidence_of(theirs));
+      const auto epoch = common_epoch(known, Evidence(known), theirs, Evidence(theirs));
       if (epoch && *epoch != 0) check_pair(robot, known, other, theirs, *epoch);
     }
   }
 }
 
-void Auditor::check_pair(const AuditedRobot& ra, const KnownVersion& a, const AuditedRobot& rb,
-                         const KnownVersion& b, Epoch epoch) {
+void PairAudit::check_pair(const AuditedRobot& ra, const KnownVersion& a, const AuditedRobot& rb,
+                           const KnownVersion& b, Epoch epoch) {
   const double required_m = min_separation_m(a, b);
-  ++totals_.compared_pairs;
+  ++findings_.totals.compared_pairs;
   const ClosestApproach near = closest_approach(a.path, b.path, required_m);
   if (near.distance_m >= required_m - kLengthTolerance_m || (a.number == 0 && b.number == 0)) return;
   // A version is excused if its base was already too close and the version comes no closer.
@@ -137,26 +154,25 @@ void Auditor::check_pair(const AuditedRobot& ra, const KnownVersion& a, const Au
              b_excused = is_excused(rb, b, a, near.distance_m);
   if (a_excused.value_or(false) || b_excused.value_or(false)) return;
   if (!a_excused || !b_excused) {
-    ++totals_.undecided_pairs;
+    ++findings_.totals.undecided_pairs;
     return;
   }
-  Violation violation;
-  violation.rule = AuditRule::kClearance;
-  violation.robot = ra.id;
-  violation.version = a.number;
-  violation.other = rb.id;
-  violation.other_version = b.number;
-  violation.epoch = epoch;
-  violation.detail = fmt::format("{:.6f} m apart at {:.6f} s, {:.6f} m required{}", near.distance_m,
-                                 static_cast<double>(near.at_ns) * 1e-9, required_m,
-                                 epoch == 0 ? "; both were executed at the same time" : "");
-  report(std::move(violation));
+  findings_.report({AuditRule::kClearance,
+                    {},
+                    ra.id,
+                    rb.id,
+                    a.number,
+                    b.number,
+                    epoch,
+                    fmt::format("{:.6f} m apart at {:.6f} s, {:.6f} m required{}", near.distance_m,
+                                static_cast<double>(near.at_ns) * 1e-9, required_m,
+                                epoch == 0 ? "; both were executed at the same time" : "")});
 }
 
-std::optional<bool> Auditor::is_excused(const AuditedRobot& robot, const KnownVersion& later,
-                                        const KnownVersion& other, double distance_m) const {
+std::optional<bool> PairAudit::is_excused(const AuditedRobot& robot, const KnownVersion& later,
+                                          const KnownVersion& other, double distance_m) const {
   if (later.is_own_stop || later.number == 0) return false;
-  const KnownVersion* base = base_of(robot, later);
+  const KnownVersion* base = robots_.base_of(robot, later);
   if (!base) return std::nullopt;
   const double required_m = min_separation_m(later, other);
   const ClosestApproach before = closest_approach(base->path, other.path, required_m, later.path.start_ns());

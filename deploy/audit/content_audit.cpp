@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks of the content of granted versions.
+#include "deploy/audit/content_audit.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include "common/config/obstacle_list.hpp"
-#include "deploy/audit/auditor.hpp"
 
 namespace sidestep {
 namespace {
@@ -36,56 +35,57 @@ double largest_effort(const AuditPath::Node& begin, const AuditPath::Node& end, 
 
 }  // namespace
 
-void Auditor::check_content(const AuditedRobot& robot, KnownVersion& known) {
+ContentAudit::ContentAudit(const AuditedRun& run, const RobotRecords& robots, AuditFindings& findings)
+    : run_(run),
+      robots_(robots),
+      findings_(findings),
+      obstacles_(run.scenario.obstacles.begin(), run.scenario.obstacles.end()) {}
+
+void ContentAudit::check(const AuditedRobot& robot, KnownVersion& known) {
   check_limits(robot, known);
   check_against_base(robot, known);
 }
 
-void Auditor::check_against_base(const AuditedRobot& robot, KnownVersion& known) {
+void ContentAudit::check_against_base(const AuditedRobot& robot, KnownVersion& known) {
   // A robot may leave the field, or come near obstacles, as far as its base does. A rest version on base 0
   // has no base if the robot was lifted, which may have been missed.
   const bool may_rest = known.version.base() == 0 && known.path.reach_m() == 0;
-  if (!input_.is_complete && (may_rest || !base_of(robot, known))) return;
+  const KnownVersion* base = robots_.base_of(robot, known);
+  if (!run_.is_complete() && (may_rest || !base)) return;
   known.is_content_checked = true;
-  check_field(robot, known);
-  check_obstacles(robot, known);
+  check_field(robot, known, base);
+  check_obstacles(robot, known, base);
   check_base(robot, known);
 }
 
-const KnownVersion* Auditor::base_of(const AuditedRobot& robot, const KnownVersion& known) const {
-  const KnownVersion* base = robot.find(known.version.base());
-  if (!base || !base->has_content) return nullptr;
-  const bool is_certain =
-      input_.is_complete || base->was_executed || base->version.incarnation() == known.version.incarnation();
-  return is_certain ? base : nullptr;
-}
-
-void Auditor::check_limits(const AuditedRobot& robot, const KnownVersion& known) {
+void ContentAudit::check_limits(const AuditedRobot& robot, const KnownVersion& known) {
   for (int i = 0; i <= known.path.phase_count(); ++i) {
     const AuditPath::Node& n = known.path.phase(i);
     const double speed = std::hypot(n.vx, n.vy);
     const bool lasts = i < known.path.phase_count() && known.path.phase(i + 1).elapsed_s > n.elapsed_s;
-    if (speed > scenario_.limits.speed_mps + kSpeedTolerance_mps) {
-      report(AuditRule::kLimits, robot.id, &known, known.granted_in,
-             fmt::format("{:.6f} m/s in phase {}; {:.6f} m/s allowed", speed, i, scenario_.limits.speed_mps));
+    if (speed > run_.scenario.limits.speed_mps + kSpeedTolerance_mps) {
+      findings_.report(AuditRule::kLimits, robot.id, &known, known.granted_in,
+                       "{:.6f} m/s in phase {}; {:.6f} m/s allowed", speed, i,
+                       run_.scenario.limits.speed_mps);
     } else if (lasts) {
-      const double most = largest_effort(n, known.path.phase(i + 1), scenario_.limits);
+      const double most = largest_effort(n, known.path.phase(i + 1), run_.scenario.limits);
       if (most <= 1 + kEffortTolerance) continue;
-      report(AuditRule::kLimits, robot.id, &known, known.granted_in,
-             fmt::format("acceleration ({:.4f}, {:.4f}) m/s2 in phase {} is {:.4f} times the limit", n.ax,
-                         n.ay, i, most));
+      findings_.report(AuditRule::kLimits, robot.id, &known, known.granted_in,
+                       "acceleration ({:.4f}, {:.4f}) m/s2 in phase {} is {:.4f} times the limit", n.ax, n.ay,
+                       i, most);
     }
   }
   const AuditPath::Node& end = known.path.last();
   if (std::hypot(end.vx, end.vy) > kSpeedTolerance_mps) {
-    report(AuditRule::kRest, robot.id, &known, known.granted_in,
-           fmt::format("ends at {:.6f} m/s", std::hypot(end.vx, end.vy)));
+    findings_.report(AuditRule::kRest, robot.id, &known, known.granted_in, "ends at {:.6f} m/s",
+                     std::hypot(end.vx, end.vy));
   }
 }
 
-void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) {
-  const double limit_x_m = scenario_.field.length_m / 2 - scenario_.radius_m + kLengthTolerance_m;
-  const double limit_y_m = scenario_.field.width_m / 2 - scenario_.radius_m + kLengthTolerance_m;
+void ContentAudit::check_field(const AuditedRobot& robot, const KnownVersion& known,
+                               const KnownVersion* base) {
+  const double limit_x_m = run_.scenario.field.length_m / 2 - run_.scenario.radius_m + kLengthTolerance_m;
+  const double limit_y_m = run_.scenario.field.width_m / 2 - run_.scenario.radius_m + kLengthTolerance_m;
   const auto distance_outside_m = [&](const AuditPath& path) {
     double most = 0;
     // A coordinate is extreme at the end of a phase or where its velocity changes sign.
@@ -100,44 +100,44 @@ void Auditor::check_field(const AuditedRobot& robot, const KnownVersion& known) 
     return most;
   };
   // A robot that was pushed out of the field may return in several steps.
-  const KnownVersion* base = base_of(robot, known);
   const double allowed = base ? std::max(0.0, distance_outside_m(base->path) + kLengthTolerance_m) : 0;
   if (const double most = distance_outside_m(known.path); most > allowed) {
-    report(AuditRule::kField, robot.id, &known, known.granted_in,
-           fmt::format("{:.6f} m outside the field", most));
+    findings_.report(AuditRule::kField, robot.id, &known, known.granted_in, "{:.6f} m outside the field",
+                     most);
   }
 }
 
-void Auditor::check_obstacles(const AuditedRobot& robot, const KnownVersion& known) {
+void ContentAudit::check_obstacles(const AuditedRobot& robot, const KnownVersion& known,
+                                   const KnownVersion* base) {
   for (std::size_t i = 0; i < obstacles_.size(); ++i)
-    check_obstacle(robot, known, obstacles_[i], scenario_.obstacles[i], false);
-  if (!scenario_.map) return;
+    check_obstacle(robot, known, base, obstacles_[i], run_.scenario.obstacles[i], false);
+  if (!run_.scenario.map) return;
   const double reach_m = known.path.reach_m() + required_separation_m(known);
   const Vec2 start_m(known.version.x_m(), known.version.y_m()), reach(reach_m, reach_m);
-  scenario_.map->cells().for_each_box({start_m - reach, start_m + reach}, [&](const Box& cells) {
-    check_obstacle(robot, known, AuditShape(cells), cells, true);
+  run_.scenario.map->cells().for_each_box({start_m - reach, start_m + reach}, [&](const Box& cells) {
+    check_obstacle(robot, known, base, AuditShape(cells), cells, true);
     return true;
   });
 }
 
 /// The base's distance from an obstacle or, if that is a part of the map, from all of the map: runs of cells
 /// are cut into boxes differently for every path.
-double Auditor::distance_of_base_m(const KnownVersion& base, const AuditShape& obstacle, bool is_map,
-                                   double required_m) const {
+double ContentAudit::distance_of_base_m(const KnownVersion& base, const AuditShape& obstacle, bool is_map,
+                                        double required_m) const {
   double nearest_m = closest_approach(base.path, obstacle, required_m).distance_m;
   if (!is_map) return nearest_m;
   const Vec2 start_m(base.version.x_m(), base.version.y_m());
   const Vec2 reach = Vec2::Constant(base.path.reach_m() + required_m);
-  scenario_.map->cells().for_each_box({start_m - reach, start_m + reach}, [&](const Box& cells) {
+  run_.scenario.map->cells().for_each_box({start_m - reach, start_m + reach}, [&](const Box& cells) {
     nearest_m = std::min(nearest_m, closest_approach(base.path, AuditShape(cells), required_m).distance_m);
     return true;
   });
   return nearest_m;
 }
 
-void Auditor::check_obstacle(const AuditedRobot& robot, const KnownVersion& known, const AuditShape& obstacle,
-                             const Shape& shape, bool is_map) {
-  const KnownVersion* base = base_of(robot, known);
+void ContentAudit::check_obstacle(const AuditedRobot& robot, const KnownVersion& known,
+                                  const KnownVersion* base, const AuditShape& obstacle, const Shape& shape,
+                                  bool is_map) {
   const double required_m = required_separation_m(known);
   if (obstacle.distance_m(known.version.x_m(), known.version.y_m()) > required_m + known.path.reach_m())
     return;
@@ -146,27 +146,27 @@ void Auditor::check_obstacle(const AuditedRobot& robot, const KnownVersion& know
   const bool was_near =
       base && distance_of_base_m(*base, obstacle, is_map, required_m) <= near.distance_m + 1e-6;
   if (was_near) return;
-  report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
-         fmt::format("{:.6f} m from the edge of the obstacle {}, {:.6f} m required", near.distance_m,
-                     obstacle_text(shape), required_m));
+  findings_.report(AuditRule::kObstacle, robot.id, &known, known.granted_in,
+                   "{:.6f} m from the edge of the obstacle {}, {:.6f} m required", near.distance_m,
+                   obstacle_text(shape), required_m);
 }
 
-void Auditor::check_base(const AuditedRobot& robot, const KnownVersion& known) {
+void ContentAudit::check_base(const AuditedRobot& robot, const KnownVersion& known) {
   const KnownVersion* base = robot.find(known.version.base());
   if (known.number <= known.version.base()) {
-    report(AuditRule::kVersionOrder, robot.id, &known, known.granted_in,
-           fmt::format("its base, version {}, has no lower number", known.version.base()));
+    findings_.report(AuditRule::kVersionOrder, robot.id, &known, known.granted_in,
+                     "its base, version {}, has no lower number", known.version.base());
   }
   const bool is_rest_version = known.version.base() == 0 && known.path.reach_m() == 0;
   const bool is_absent = (robot.last_report && robot.last_report->is_lifted) ||
                          (robot.registered && robot.registered->is_absent);
   if (is_rest_version && is_absent) return;
   const bool is_evicted = robot.was_evicted(known.version.base());
-  if (input_.is_complete && !is_evicted &&
+  if (run_.is_complete() && !is_evicted &&
       !(base && (base->may_be_in(known.granted_in) || base->is_own_stop))) {
-    report(AuditRule::kBase, robot.id, &known, known.granted_in,
-           fmt::format("its base, version {}, was neither registered nor granted in the epoch",
-                       known.version.base()));
+    findings_.report(AuditRule::kBase, robot.id, &known, known.granted_in,
+                     "its base, version {}, was neither registered nor granted in the epoch",
+                     known.version.base());
   }
   if (!base || !base->has_content) return;
   const AuditPath::Node& from = known.path.first();
@@ -175,17 +175,17 @@ void Auditor::check_base(const AuditedRobot& robot, const KnownVersion& known) {
   const double jump_mps = std::hypot(from.vx - expected.vx, from.vy - expected.vy);
   const bool is_continuous = jump_m <= kContinuityTolerance && jump_mps <= kContinuityTolerance;
   if (known.path.start_ns() <= base->path.start_ns() || !is_continuous) {
-    report(AuditRule::kContinuity, robot.id, &known, known.granted_in,
-           fmt::format(
-               "starts {:.9f} m and {:.9f} m/s off its base, version {}, {:.6f} s after its base's start",
-               jump_m, jump_mps, base->number,
-               static_cast<double>(known.path.start_ns() - base->path.start_ns()) * 1e-9));
+    findings_.report(
+        AuditRule::kContinuity, robot.id, &known, known.granted_in,
+
+        "starts {:.9f} m and {:.9f} m/s off its base, version {}, {:.6f} s after its base's start", jump_m,
+        jump_mps, base->number, static_cast<double>(known.path.start_ns() - base->path.start_ns()) * 1e-9);
   }
   const bool begins_at_rest = from.vx == 0 && from.vy == 0 && known.version.inflation_m() == 0;
   if (known.version.inflation_m() != base->version.inflation_m() && !begins_at_rest) {
-    report(AuditRule::kInflation, robot.id, &known, known.granted_in,
-           fmt::format("has an inflation of {:.6f} m; its base has {:.6f} m", known.version.inflation_m(),
-                       base->version.inflation_m()));
+    findings_.report(AuditRule::kInflation, robot.id, &known, known.granted_in,
+                     "has an inflation of {:.6f} m; its base has {:.6f} m", known.version.inflation_m(),
+                     base->version.inflation_m());
   }
 }
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "deploy/audit/position_audit.hpp"
+
+namespace sidestep {
+
+/// Decides whether contacts that the reference shows are excused, or may be although nothing received says
+/// so.
+class ContactExcuses {
+ public:
+  ContactExcuses(const AuditedRun& run, const RobotRecords& robots, const RunCoverage& coverage,
+                 const PositionAudit& positions, Disturbances& disturbances, AuditFindings& findings);
+
+  /// From now on no robot is on the floor until it is observed.
+  void begin_observation() { observed_.assign(observed_.size(), std::nullopt); }
+  /// The robot is on the floor. `error_m` is the distance from the place that its version prescribes; up to
+  /// `allowance_m` of it may be an observation error.
+  void observe(const AuditedRobot& robot, const Vec2& position_m, double speed_mps, double error_m,
+               double allowance_m);
+  /// All robots on the floor at this time have been observed.
+  void end_observation(Time at) { disturbances_.update(at, observed_); }
+  /// It is unknown which robots pushed which.
+  void on_unknown_contacts() { are_contacts_unknown_ = true; }
+
+  /// Whether a contact is excused or left undecided, which is then counted. nullopt stands for an obstacle.
+  /// `apart_ns` is the last time at which vision saw the two apart.
+  bool excuses(RobotId first, std::optional<RobotId> second, Time at, std::int64_t apart_ns = kAlways);
+  /// Whether everything that may excuse a contact of this robot was received.
+  bool are_known(std::optional<std::size_t> robot, std::int64_t apart_ns = kAlways) const;
+
+  void add_to(AuditTotals& totals) const;
+
+ private:
+  const AuditedRun& run_;
+  const RobotRecords& robots_;
+  const RunCoverage& coverage_;
+  const PositionAudit& positions_;
+  Disturbances& disturbances_;
+  AuditFindings& findings_;
+  std::vector<std::optional<ObservedRobot>>
+      observed_;  ///< last observed on the floor; parallel to the robots
+  bool are_contacts_unknown_ = false;
+  /// Number of excused contacts, by cause and robots.
+  std::map<std::tuple<std::string_view, RobotId, std::optional<RobotId>>, std::uint64_t> excused_;
+};
+
+}  // namespace sidestep

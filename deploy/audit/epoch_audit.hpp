@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "deploy/audit/message_times.hpp"
+#include "deploy/audit/robot_records.hpp"
+
+namespace sidestep {
+
+/// Checks who grants and obeys in an epoch: one coordinator grants, after all robots have registered, and
+/// robots and agents return to no earlier epoch.
+class EpochAudit {
+ public:
+  EpochAudit(const AuditedRun& run, const MessageTimes& times, RobotRecords& robots, AuditFindings& findings)
+      : run_(run), times_(times), robots_(robots), findings_(findings) {}
+
+  void on_registration(AuditedRobot& robot, const msg::Registration& registration,
+                       const Reception& reception);
+  void on_attestation(AuditedRobot& robot) const;
+  void on_coordinator(const msg::CoordinatorState& state, const Reception& reception);
+  void on_grant(const AuditedRobot& robot, const KnownVersion& known, const msg::Verdict& verdict);
+  void on_command(const AuditedRobot& robot, const msg::Command& command, const Reception& reception);
+  /// Checks a fact about an executed version against the epochs that the robot should obey.
+  void check_obeyed(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
+                    const Reception& reception);
+  /// Whether the page is by the coordinator that grants in its epoch, as far as is known.
+  bool is_of_granter(const msg::LedgerPage& page) const;
+  /// Whether the page is also by the coordinator that has sent the first page of its epoch.
+  bool is_of_first_sender(const msg::LedgerPage& page);
+
+ private:
+  /// What is known about one epoch.
+  struct EpochRecord {
+    std::uint32_t granter = 0;
+    Incarnation granter_incarnation = 0;
+    std::int64_t first_grant_ns = kNever;  ///< upper bound
+    bool is_reported = false;
+    Incarnation page_incarnation = 0;  ///< incarnation of the coordinator whose pages count
+  };
+  struct AgentStream {
+    Incarnation incarnation = 0;
+    Epoch epoch = 0;
+  };
+
+  EpochRecord& epoch_record(Epoch epoch);
+  void check_registration(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback);
+  /// Whether the robot certainly sent the fact after its agent had sent the latest registration.
+  bool is_after_registration(const AuditedRobot& robot, const msg::Feedback& feedback,
+                             const Reception& reception) const;
+
+  const AuditedRun& run_;
+  const MessageTimes& times_;
+  RobotRecords& robots_;
+  AuditFindings& findings_;
+  std::map<Epoch, EpochRecord> epochs_;
+  Epoch newest_epoch_ = 0;  ///< newest epoch that a coordinator has announced
+  std::map<RobotId, std::vector<AgentStream>> streams_;
+};
+
+}  // namespace sidestep

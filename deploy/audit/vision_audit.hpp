@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "deploy/audit/contact_excuses.hpp"
+#include "deploy/audit/seen_contacts.hpp"
+#include "idl/vision.hpp"
+
+namespace sidestep {
+
+/// Takes positions and contacts from what vision sees, for systems without ground truth.
+class VisionAudit {
+ public:
+  VisionAudit(const AuditedRun& run, RobotRecords& robots, RunCoverage& coverage, Disturbances& disturbances,
+              ContactExcuses& excuses, AuditFindings& findings)
+      : run_(run),
+        robots_(robots),
+        coverage_(coverage),
+        disturbances_(disturbances),
+        excuses_(excuses),
+        findings_(findings),
+        sights_(robots.all().size()),
+        seen_contacts_(run.scenario) {}
+
+  void on_world_state(const msg::WorldState& world, const Reception& reception);
+
+ private:
+  void record_sights(const msg::WorldState& world);
+  /// Makes vision the reference if it has shown robots for a while without any ground truth being received.
+  /// Returns whether it is the reference.
+  bool become_reference();
+  void check_contacts(Time at);
+  void record_positions(const msg::WorldState& world);
+
+  const AuditedRun& run_;
+  RobotRecords& robots_;
+  RunCoverage& coverage_;
+  Disturbances& disturbances_;
+  ContactExcuses& excuses_;
+  AuditFindings& findings_;
+  std::vector<Sight> sights_;  ///< parallel to the robots
+  SeenContacts seen_contacts_;
+  std::optional<Time> first_sight_at_;
+};
+
+}  // namespace sidestep
