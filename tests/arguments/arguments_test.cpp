@@ -136,7 +136,7 @@ TEST_CASE("broken YAML is refused by all commands that read YAML, with file, lin
     std::ofstream(runner.file(name), std::ios::binary) << text;
     files.emplace_back(runner.file(name), expected);
   };
-  add("deep.yaml", std::string(16'000'000, '['), "1: expected at most 500 brackets");
+  add("deep.yaml", std::string(16'000'000, '['), "1: expected at most 500 nested brackets");
   add("binary.yaml",
       std::string("\x7f"
                   "ELF\x02\x01\x01\0\0\0",

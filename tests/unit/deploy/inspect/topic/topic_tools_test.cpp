@@ -330,7 +330,7 @@ TEST_CASE("topic echo prints topics of other programs by the IDL that the user n
   const Outcome wrong = topic(
       {"echo", "world", "--idl", folder.file("world.idl"), "--type", "sidestep::msg::GroundTruth", "--once"});
   CHECK(wrong.exit_code == kExitFailure);
-  CHECK_THAT(wrong.err, ContainsSubstring("a message of 'world' is no sidestep::msg::GroundTruth"));
+  CHECK_THAT(wrong.err, ContainsSubstring("a message of 'world' is not a valid sidestep::msg::GroundTruth"));
   CHECK_THROWS_WITH(topic({"echo", "world", "--idl", folder.file("world.idl"), "--type", "Nothing"}),
                     ContainsSubstring("has no struct 'Nothing', expected one of: ") &&
                         ContainsSubstring("sidestep::msg::WorldState"));
@@ -361,7 +361,7 @@ TEST_CASE("topic pub publishes messages of our topics") {
 }
 
 TEST_CASE("topic pub says what is wrong with a message, and when nobody reads it") {
-  CHECK_THROWS_WITH(topic({"pub", "disturbance", "{"}), ContainsSubstring("no valid JSON"));
+  CHECK_THROWS_WITH(topic({"pub", "disturbance", "{"}), ContainsSubstring("is not valid JSON"));
   CHECK_THROWS_WITH(topic({"pub", "disturbance", R"({"robot": -1})"}),
                     ContainsSubstring("robot: expected a whole number"));
   CHECK_THROWS_WITH(topic({"pub", "nothing", "{}"}), ContainsSubstring("name its type by --type"));
