@@ -32,7 +32,7 @@ bool Agent::on_robot_report(const RobotReport& robot_report) {
 void Agent::update_goal(const RobotReport& robot_report) {
   if (negotiation_.is_absent()) return orders_.on_absence();
   if (!robot_report.is_lifted) placement_m_.reset();  // the robot has been put down
-  if (orders_.on_execution(negotiation_.executing().trajectory, robot_report.valid_at))
+  if (orders_.on_execution(negotiation_.held().executing().trajectory, robot_report.valid_at))
     planner_.on_new_goal();
 }
 
@@ -54,8 +54,7 @@ bool Agent::is_unserved(Time now) const {
 
 Registration Agent::registration() {
   Registration registration = negotiation_.registration();
-  const Epoch former = negotiation_.former_epoch();
-  registration.has_moved = observations_.own().has_moved() || (former != 0 && former != registration.epoch);
+  registration.has_moved |= observations_.own().has_moved();
   registration.knows_orders = assignment().is_known();
   return registration;
 }
@@ -92,12 +91,12 @@ WaitReason Agent::wait_reason(Time now) const {
 
 std::optional<MotionPlan> Agent::plan(Time now, Time start, double max_speed_mps, Duration max_lag) {
   if (wait_reason(now) != WaitReason::kNone || negotiation_.is_absent()) return std::nullopt;
-  return planner_.plan({now, start, negotiation_.base_at(start), negotiation_.lead(), max_speed_mps, max_lag,
-                        assignment(), observations_, rng_});
+  return planner_.plan({now, start, negotiation_.held().base_at(start), negotiation_.lead(), max_speed_mps,
+                        max_lag, assignment(), observations_, rng_});
 }
 
 std::optional<Proposal> Agent::search(const MotionPlan& plan, Time now) {
-  const Version& base = negotiation_.base_at(plan.query.start);
+  const Version& base = negotiation_.held().base_at(plan.query.start);
   const SearchResult result = search_.find(plan.query, base, observations_.neighbours(), rng_);
   planner_.on_search(plan, result.desired_is_clear, now);
   if (result.count == 0) return std::nullopt;
@@ -127,39 +126,6 @@ AgentActivity Agent::activity(Time now) const {
           negotiation_.is_registered(), negotiation_.epoch(),         wait_reason(now),
           assignment().goal_index(),    orders_.has_arrived(),        planner_.is_recovering(),
           search_.is_escaping()};
-}
-
-msg::AgentState Agent::state(Time now) const {
-  using enum msg::AgentState;
-  if (!negotiation_.is_fenced()) return AGENT_FENCING;
-  if (negotiation_.needs_registration()) return AGENT_REGISTERING;
-  if (negotiation_.is_absent()) return AGENT_ABSENT;
-  if (assignment().is_held()) return AGENT_HELD;
-  if (!assignment().is_known()) return AGENT_WAITING;
-  if (orders_.has_arrived()) return AGENT_ARRIVED;
-  if (!assignment().goal()) return AGENT_WITHOUT_ORDER;
-  return negotiation_.may_propose(now) ? AGENT_DRIVING : AGENT_WAITING;
-}
-
-msg::AgentStatus Agent::status(Time now) const {
-  const OwnReports& own = observations_.own();
-  const Negotiation::Counts& counts = negotiation_.counts();
-  msg::AgentStatus status;
-  status.robot(robot_.id);
-  status.agent_state(state(now));
-  status.goal_index(static_cast<std::uint32_t>(assignment().goal_index()));
-  if (const Goal* goal = assignment().goal())
-    status.distance_to_go_m((goal->position_m - own.estimate().position_m).norm());
-  status.speed_mps(own.estimate().velocity_mps.norm());
-  status.cycles(counts.cycles);
-  status.missed_cycles(counts.missed);
-  status.reference_losses(own.reference_losses());
-  status.route_changes(planner_.route_changes());
-  status.lost_versions(counts.lost);
-  status.proposals(counts.proposals);
-  status.grants(counts.grants);
-  status.denials(counts.denials);
-  return status;
 }
 
 OrderReport Agent::order_report() const {

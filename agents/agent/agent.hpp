@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
 #include <memory>
 #include <optional>
 
 #include "agents/agent/agent_event_logger.hpp"
+#include "agents/agent/agent_status.hpp"
 #include "agents/agent/motion_planner.hpp"
 #include "agents/agent/negotiation.hpp"
 #include "agents/agent/observations.hpp"
@@ -14,7 +14,6 @@
 #include "agents/agent/proposal_search.hpp"
 #include "common/config/scenario.hpp"
 #include "common/protocol/drop_counters.hpp"
-#include "idl/monitor.hpp"
 
 namespace sidestep {
 
@@ -84,9 +83,7 @@ class Agent {
   /// estimate, and if the coordinator has lost vision, or the agent has had no list of obstacles recently.
   /// `max_speed_mps`: the speed that the clocks allow. `max_lag`: how late the robot may be beyond the clock
   /// bound (ClockMonitor).
-  [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start,
-                                               double max_speed_mps = std::numeric_limits<double>::infinity(),
-                                               Duration max_lag = Duration{0});
+  [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start, double max_speed_mps, Duration max_lag);
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
@@ -118,12 +115,13 @@ class Agent {
 
   void count_drops(DropCounters& drops) const;
   /// The agent's status, without the durations, which the caller measures.
-  msg::AgentStatus status(Time now) const;
+  msg::AgentStatus status(Time now) const {
+    return status_of(robot_.id, negotiation_, observations_.own(), orders_, planner_, now);
+  }
 
  private:
   /// Learns from a report what the robot has reached. Precondition: the robot is fenced.
   void update_goal(const RobotReport& robot_report);
-  msg::AgentState state(Time now) const;
 
   const RobotSpec robot_;
   const std::shared_ptr<PlanningScratch> scratch_;

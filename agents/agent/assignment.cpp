@@ -3,16 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <utility>
 
 namespace sidestep {
 namespace {
 
 constexpr std::array kFromHighestRank{Rank::kOperator, Rank::kReferee, Rank::kClient, Rank::kScenario};
-
-// If there are more pages, they are merged into one.
-constexpr std::size_t kMaxPages = msg::MAX_MEMORY_ORDERS * 8;
 
 bool is_zone(const Order& order) {
   return order.kind == msg::OrderKind::ORDER_ZONE || order.kind == msg::OrderKind::ORDER_REMOVE_ZONE;
@@ -25,9 +21,7 @@ bool is_to_do(const RememberedOrder* order) {
 }  // namespace
 
 Assignment::Assignment(RobotId robot, std::vector<Goal> scenario_goals, std::vector<RobotId> roster)
-    : robot_(robot), scenario_goals_(std::move(scenario_goals)), roster_(std::move(roster)) {
-  std::ranges::sort(roster_);
-}
+    : robot_(robot), scenario_goals_(std::move(scenario_goals)), announced_(std::move(roster)) {}
 
 void Assignment::on_page(std::shared_ptr<const OrderPage> page) {
   if (!is_coordinator(page->process)) return;
@@ -42,100 +36,10 @@ void Assignment::on_page(std::shared_ptr<const OrderPage> page) {
     zones_ = book_.zones();
     ++zone_revision_;
   }
-  if (page->count > 0)
-    add(std::move(page));
-  else
-    add_changes(std::move(page));
+  announced_.on_page(std::move(page), book_);
   if (!concerns_robot) return;
   is_held_ = book_.is_held(robot_);
   choose();
-}
-
-bool Assignment::is_on_roster(const Order& order) const {
-  return roster_.empty() || order.robot == kAllRobots || std::ranges::binary_search(roster_, order.robot);
-}
-
-void Assignment::add_changes(std::shared_ptr<const OrderPage> page) {
-  if (page->orders.empty()) return;
-  std::erase_if(told_by_, [&](const auto& coordinator) { return coordinator.first != page->process; });
-  changes_.push_back(std::move(page));
-  if (changes_.size() <= kMaxPages) return;
-  OrderPage together;
-  together.orders = all();
-  changes_.assign(1, std::make_shared<const OrderPage>(std::move(together)));
-  told_.clear();
-}
-
-void Assignment::add(std::shared_ptr<const OrderPage> page) {
-  Round& round = rounds_[page->process];
-  if (page->index == 0) round.clear();
-  if (page->index != round.size()) return;
-  const bool is_last = page->index + 1 == page->count;
-  round.push_back(std::move(page));
-  if (!is_last) return;
-  const Round whole = std::exchange(round, {});
-  is_known_ |= whole.back()->is_complete;
-  compare(whole);
-}
-
-void Assignment::compare(const Round& round) {
-  const OrderPage& last = *round.back();
-  const bool is_same =
-      changes_.empty() && !has_progressed_ &&
-      std::ranges::equal(round, told_, [](const auto& a, const auto& b) { return have_same_orders(*a, *b); });
-  if (is_same) {
-    told_by_[last.process] = last.incarnation;
-    missing_.clear();
-    return;
-  }
-  const OrderBook remembered = whole_book();
-  OrderBook told, both = remembered;
-  bool is_new = false;
-  for (const auto& page : round) {
-    for (const RememberedOrder& order : page->orders) {
-      told.merge(order);
-      is_new |= !remembered.knows(order.order);
-      both.merge(order);
-    }
-  }
-  missing_ = both.missing_in(told);
-  const auto lacks = [&](const RememberedOrder& order) { return !told.knows(order.order); };
-  if (is_new) told_by_.clear();
-  if (std::ranges::any_of(missing_, lacks))
-    told_by_.erase(last.process);
-  else
-    told_by_[last.process] = last.incarnation;
-  // Orders that this coordinator lacks are kept.
-  told_ = round;
-  changes_.clear();
-  has_progressed_ = false;
-  if (missing_.empty()) return;
-  OrderPage kept;
-  kept.orders = missing_;
-  changes_.push_back(std::make_shared<const OrderPage>(std::move(kept)));
-}
-
-bool Assignment::is_told_by(std::uint32_t coordinator, Incarnation incarnation) const {
-  const auto found = told_by_.find(coordinator);
-  return found != told_by_.end() && found->second == incarnation;
-}
-
-template <typename Use>
-void Assignment::for_each(Use use) const {
-  for (const auto& pages : {std::cref(told_), std::cref(changes_)}) {
-    for (const auto& page : pages.get()) {
-      for (const RememberedOrder& order : page->orders) use(order);
-    }
-  }
-}
-
-OrderBook Assignment::whole_book() const {
-  OrderBook whole;
-  for_each([&](const RememberedOrder& order) {
-    if (is_on_roster(order.order)) whole.merge(order);
-  });
-  for (const RememberedOrder& order : book_.all()) whole.merge(order);
-  return whole;
 }
 
 OrderReport Assignment::report() const {
@@ -149,10 +53,7 @@ bool Assignment::yields_to(const PassageContender& other, Time t, Duration perio
 }
 
 OtherAssignment Assignment::other(RobotId robot) const {
-  OrderBook book;
-  for_each([&](const RememberedOrder& order) {
-    if (order.order.robot == robot || order.order.robot == kAllRobots) book.merge(order);
-  });
+  const OrderBook book = announced_.of(robot);
   OtherAssignment other;
   other.is_held = book.is_held(robot);
   for (const Rank rank : kFromHighestRank) {
@@ -193,7 +94,11 @@ void Assignment::take(const RememberedOrder& order) {
   if (goals_.empty()) return;
   progress_.goal_index = std::min(progress_.goal_index, goals_.size() - 1);
   if (!progress_.is_finished()) progress_.state = msg::OrderState::ORDER_DRIVING;
-  has_progressed_ |= book_.report(robot_, client_, number_, progress_);
+  report_progress();
+}
+
+void Assignment::report_progress() {
+  if (book_.report(robot_, client_, number_, progress_)) announced_.on_progress();
 }
 
 void Assignment::drop() {
@@ -218,7 +123,7 @@ void Assignment::on_arrival() {
   } else {
     progress_.state = msg::OrderState::ORDER_ARRIVED;
   }
-  has_progressed_ |= book_.report(robot_, client_, number_, progress_);
+  report_progress();
 }
 
 }  // namespace sidestep

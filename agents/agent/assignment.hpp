@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "agents/agent/announced_orders.hpp"
 #include "agents/navigation/right_of_way.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/protocol/order_book.hpp"
@@ -40,7 +40,7 @@ class Assignment {
   void choose();
 
   /// Whether a coordinator with a complete memory has been heard. Until then the robot has no orders.
-  bool is_known() const { return is_known_; }
+  bool is_known() const { return announced_.is_known(); }
   bool is_held() const { return is_held_; }
   /// nullptr if the robot has no order.
   const Goal* goal() const { return goals_.empty() ? nullptr : &goals_[progress_.goal_index]; }
@@ -62,48 +62,30 @@ class Assignment {
   /// Whether the other robot goes first where the two cannot pass each other; see may_pass_first().
   bool yields_to(const PassageContender& other, Time t, Duration period) const;
 
-  /// All orders, including those of other robots, whose agents may have restarted together with all
-  /// coordinators. An order that a coordinator's memory lacks is not forgotten, because that coordinator may
-  /// have been cut off.
-  std::vector<RememberedOrder> all() const { return whole_book().all(); }
-  bool remembers_nothing() const { return told_.empty() && changes_.empty() && book_.empty(); }
-  /// Removes and returns the orders of all robots that were missing in the latest memory heard from a
-  /// coordinator.
-  std::vector<RememberedOrder> take_missing() { return std::exchange(missing_, {}); }
-  /// Whether this run of a coordinator has announced every order that is remembered here. It has not
-  /// forgotten any since, because coordinators do not forget orders.
-  bool is_told_by(std::uint32_t coordinator, Incarnation incarnation) const;
+  /// All orders, including those of other robots.
+  std::vector<RememberedOrder> all() const { return announced_.with(book_).all(); }
+  bool remembers_nothing() const { return announced_.is_empty() && book_.empty(); }
+  /// See AnnouncedOrders.
+  std::vector<RememberedOrder> take_missing() { return announced_.take_missing(); }
+  bool is_told_by(std::uint32_t coordinator, Incarnation incarnation) const {
+    return announced_.is_told_by(coordinator, incarnation);
+  }
 
  private:
-  using Round = std::vector<std::shared_ptr<const OrderPage>>;
-  bool is_on_roster(const Order& order) const;
   bool concerns(const RememberedOrder& order) const {
     return order.order.robot == robot_ || order.order.robot == kAllRobots;
   }
-  /// Adds a page of a coordinator's complete memory.
-  void add(std::shared_ptr<const OrderPage> page);
-  void add_changes(std::shared_ptr<const OrderPage> page);
-  /// Compares a coordinator's complete memory with this one.
-  void compare(const Round& round);
-  template <typename Use>
-  void for_each(Use use) const;
-  OrderBook whole_book() const;
   void take(const RememberedOrder& order);
   void drop();
+  void report_progress();
   /// Whether the order is still in force.
   bool stands() const;
 
   const RobotId robot_;
   const std::vector<Goal> scenario_goals_;
-  OrderBook book_;  // orders of all robots
-  bool is_known_ = false, is_held_ = false;
-  std::vector<RobotId> roster_;                   // robot numbers, ascending
-  Round told_;                                    // the last complete memory of a coordinator
-  Round changes_;                                 // orders that told_ lacks, and later changes
-  bool has_progressed_ = false;                   // the robot has progressed since that memory was heard
-  std::map<std::uint32_t, Round> rounds_;         // by coordinator: memories whose pages are still arriving
-  std::map<std::uint32_t, Incarnation> told_by_;  // see is_told_by()
-  std::vector<RememberedOrder> missing_;
+  OrderBook book_;  // the robot's orders, those of all robots included
+  AnnouncedOrders announced_;
+  bool is_held_ = false;
   // The order that the robot carries out or has carried out last.
   ClientId client_ = 0;
   OrderNumber number_ = 0;

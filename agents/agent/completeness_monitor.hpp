@@ -32,7 +32,7 @@ class CompletenessMonitor {
   /// The time of the latest usable list; Time{} if there is none.
   Time complete_at() const { return complete_at_; }
   /// The region for a robot that may be late by `max_lag` beyond the clock bound.
-  SeenRegion seen(Time now, Duration max_lag = Duration{0}) const;
+  SeenRegion seen(Time now, Duration max_lag) const;
 
  private:
   /// A list that is not usable yet.

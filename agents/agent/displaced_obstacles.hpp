@@ -32,7 +32,7 @@ class DisplacedObstacles {
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
   /// The bodies that vision has seen recently enough, for a robot that may be late by `max_lag` beyond the
   /// clock bound. Valid until the next call.
-  std::span<const UncontrolledBody> recent(Time now, Duration max_lag = Duration{0});
+  std::span<const UncontrolledBody> recent(Time now, Duration max_lag);
 
  private:
   RobotId self_;

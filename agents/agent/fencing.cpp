@@ -9,6 +9,7 @@ namespace {
 constexpr int kReportsOfOneIncarnation = 60;
 // If two agents both restart above the same incarnation, they add different increments below this bound.
 constexpr Incarnation kIncarnationSpread = 1'000'003;
+constexpr Duration kMaxUnheard{500'000'000};
 
 }  // namespace
 
@@ -56,6 +57,10 @@ Fencing::ReportUse Fencing::on_robot_report(const RobotReport& robot_report) {
     former_epoch_ = robot_report.obeyed_epoch;
   }
   return use;
+}
+
+bool Fencing::must_ask_robot(Duration cycle) const {
+  return is_superseded() && unheard_cycles_ * cycle > kMaxUnheard;
 }
 
 void Fencing::close_cycle() {

@@ -37,8 +37,10 @@ class Fencing {
   std::optional<Time> fenced_at() const { return fenced_at_; }
   /// Whether the robot obeys a later agent, so that this one stays silent.
   bool is_superseded() const { return superseded_at_.has_value(); }
-  /// Number of cycles since the robot's last report, whomever it obeys.
-  int unheard_cycles() const { return unheard_cycles_; }
+  /// Whether the robot last said that it obeys a later agent, and has then been silent for half a second.
+  /// Commands continue in this case: they carry the fixes without which a robot cannot say whom it obeys. If
+  /// it does obey a later agent, it refuses them.
+  bool must_ask_robot(Duration cycle) const;
   /// Number of cycles since the last report that acknowledges this agent.
   int silent_cycles() const { return silent_cycles_; }
 
@@ -52,7 +54,8 @@ class Fencing {
   Epoch robot_epoch_ = 0, former_epoch_ = 0;
   Incarnation robot_incarnation_ = 0;       // report times of different incarnations are not compared
   int reports_of_earlier_incarnation_ = 0;  // number of consecutive ones
-  int unheard_cycles_ = 0, silent_cycles_ = 0;
+  int unheard_cycles_ = 0;                  // number of cycles since the last report, whomever it obeys
+  int silent_cycles_ = 0;
 };
 
 }  // namespace sidestep

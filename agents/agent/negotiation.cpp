@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/agent/negotiation.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace sidestep {
@@ -9,8 +8,6 @@ namespace {
 
 // An agent that knows no epoch waits for its coordinator to start.
 constexpr Duration kMaxStartTime{2'000'000'000};
-constexpr Duration kMaxUnheard{500'000'000};
-constexpr int kMaxProposalsPerStart = 4;
 // Number of cycles beyond its lead for which an agent keeps proposing without hearing from its robot. It is
 // limited because a robot without power rolls on while others rely on its versions.
 constexpr int kMaxSilentCycles = 1;
@@ -44,10 +41,6 @@ void Negotiation::apply_report(const RobotReport& robot_report, bool is_current)
   if (effect.has_switched) pacing_.on_version_taken();
   for (int i = 0; i < effect.lost; ++i) pacing_.on_version_late();
   counts_.lost += static_cast<std::uint64_t>(effect.lost);
-  check_assumptions();
-}
-
-void Negotiation::check_assumptions() {
   contradicted_ |= proposals_.close_unreachable(held_);
   contradicted_ |= held_.has_unreachable();
 }
@@ -71,10 +64,6 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
   }
   if (heartbeat.epoch > epoch_) adopt_epoch(heartbeat.epoch);
   contact_.on_heartbeat(heartbeat, robot_, now);
-}
-
-bool Negotiation::must_ask_robot() const {
-  return is_superseded() && fencing_.unheard_cycles() * cycle_ > kMaxUnheard;
 }
 
 bool Negotiation::is_unserved(Time now) const {
@@ -101,17 +90,16 @@ bool Negotiation::has_upcoming_version(Time now) const {
 }
 
 std::optional<Time> Negotiation::retry_start(Time now) const {
-  const SentProposal* const last = proposals_.newest();
-  if (!last || proposals_.attempts() >= kMaxProposalsPerStart || held_.last_start(now) > now)
-    return std::nullopt;
-  const bool is_due =
-      last->is_open && now - last->proposed_at >= pacing_.answer_timeout() && last->start() - now > cycle_;
-  return is_due ? std::optional(last->start()) : std::nullopt;
+  if (held_.last_start(now) > now) return std::nullopt;
+  return proposals_.start_to_retry(now, pacing_.answer_timeout(), cycle_);
 }
 
 Registration Negotiation::registration() {
   registration_pending_ = false;
-  return {robot_, incarnation(), epoch_, Time{}, held_.versions()};
+  Registration registration{robot_, incarnation(), epoch_, Time{}, held_.versions()};
+  const Epoch former = fencing_.former_epoch();
+  registration.has_moved = former != 0 && former != epoch_;
+  return registration;
 }
 
 Proposal Negotiation::propose(std::span<const Trajectory> candidates, VersionNumber base, Time now,
@@ -178,9 +166,8 @@ Negotiation::VerdictResult Negotiation::apply_grant(SentProposal& sent, const Ve
 void Negotiation::close_cycle(Time now) {
   fencing_.close_cycle();
   const int missed = proposals_.close_started(now);
-  if (missed == 0) return;
   counts_.missed += static_cast<std::uint64_t>(missed);
-  pacing_.on_version_late();
+  if (missed > 0) pacing_.on_version_late();
 }
 
 }  // namespace sidestep

@@ -50,19 +50,12 @@ class Negotiation {
   /// The epoch sent with commands: 0 before the robot has acknowledged this agent, so that the
   /// acknowledgement shows which epoch the robot obeyed before.
   Epoch command_epoch() const { return is_fenced() ? epoch_ : 0; }
-  /// The epoch that the robot obeyed when it acknowledged this agent. 0: none, or it has not acknowledged it
-  /// yet.
-  Epoch former_epoch() const { return fencing_.former_epoch(); }
-
   bool is_fenced() const { return fencing_.is_fenced(); }
   /// Whether the robot is off the floor and executes nothing. It may still accept a rest version.
   bool is_absent() const { return is_fenced() && !held_.is_executing(); }
   /// Whether the robot obeys a later agent, so that this one stays silent.
   bool is_superseded() const { return fencing_.is_superseded(); }
-  /// Whether the robot last said that it obeys a later agent, and has then been silent for half a second.
-  /// Commands continue in this case: they carry the fixes without which a robot cannot say whom it obeys. If
-  /// it does obey a later agent, it refuses them.
-  bool must_ask_robot() const;
+  bool must_ask_robot() const { return fencing_.must_ask_robot(cycle_); }
   /// Whether the agent must register. It registers only after the robot has acknowledged the epoch. So an
   /// agent that the robot does not obey cannot register for it, and no later agent of the robot can return to
   /// an older coordinator.
@@ -100,12 +93,8 @@ class Negotiation {
   /// A registration without a robot. It asks the coordinator of the epoch to announce all orders, and informs
   /// others of the epoch.
   Registration epoch_notice() const { return {robot_, incarnation(), epoch_, Time{}, std::nullopt}; }
-  /// The version that the robot is expected to execute at a time. Precondition: is_fenced() and not
-  /// is_absent().
-  const Version& base_at(Time start) const { return held_.base_at(start); }
-  /// The version that the robot executes according to its latest fact. Precondition: is_fenced() and not
-  /// is_absent().
-  const Version& executing() const { return held_.executing(); }
+  /// The versions that the robot may be executing. Precondition: is_fenced().
+  const HeldVersions& held() const { return held_; }
   /// Creates a proposal. Precondition: 1 to MAX_CANDIDATES candidates with the same start, all of which
   /// continue `base`; for an absent robot, a rest version on base 0. Candidates have no inflation: if the
   /// base has one, they start at rest.
@@ -121,7 +110,6 @@ class Negotiation {
   /// Whether the robot obeys this agent in the highest known epoch.
   bool is_epoch_obeyed() const { return is_fenced() && epoch_ != 0 && fencing_.robot_epoch() == epoch_; }
   void apply_report(const RobotReport& robot_report, bool is_current);
-  void check_assumptions();
   void adopt_epoch(Epoch epoch);
   /// Forwards the granted candidate if it is in time.
   VerdictResult apply_grant(SentProposal& sent, const Verdict& verdict, Time now);

@@ -31,9 +31,9 @@ class ObservedObstacles {
   void on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now);
   /// The observations that are younger than kMaxObservationAge, for a robot that may be late by `max_lag`
   /// beyond the clock bound. Valid until the next call.
-  std::span<const MovingObstacle> recent(Time now, Duration max_lag = Duration{0});
+  std::span<const MovingObstacle> recent(Time now, Duration max_lag);
   /// The region in which there are no obstacles except the recent ones.
-  SeenRegion seen(Time now, Duration max_lag = Duration{0}) const { return completeness_.seen(now, max_lag); }
+  SeenRegion seen(Time now, Duration max_lag) const { return completeness_.seen(now, max_lag); }
   /// The time for which this is known; Time{} if never.
   Time complete_at() const { return completeness_.complete_at(); }
   /// Number of lists and observations with times in the future.

@@ -4,6 +4,11 @@
 #include <algorithm>
 
 namespace sidestep {
+namespace {
+
+constexpr int kMaxProposalsPerStart = 4;
+
+}  // namespace
 
 const Version* SentProposal::find(VersionNumber number) const {
   const std::span versions(candidates.data(), count);
@@ -31,6 +36,13 @@ SentProposal* SentProposals::find_unanswered(VersionNumber number) {
 
 const SentProposal* SentProposals::newest() const {
   return count_ == 0 ? nullptr : &proposals_[(count_ - 1) % proposals_.size()];
+}
+
+std::optional<Time> SentProposals::start_to_retry(Time now, Duration answer_timeout, Duration cycle) const {
+  const SentProposal* const last = newest();
+  const bool is_due = last && attempts_ < kMaxProposalsPerStart && last->is_open &&
+                      now - last->proposed_at >= answer_timeout && last->start() - now > cycle;
+  return is_due ? std::optional(last->start()) : std::nullopt;
 }
 
 bool SentProposals::has_upcoming(Time now) const {

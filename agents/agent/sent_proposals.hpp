@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "agents/agent/held_versions.hpp"
@@ -33,10 +34,10 @@ class SentProposals {
 
   /// The proposal with this number that has not been answered yet; nullptr if there is none.
   SentProposal* find_unanswered(VersionNumber number);
-  /// The latest proposal; nullptr before the first.
-  const SentProposal* newest() const;
   /// Number of consecutive proposals, up to the latest, that have the same start.
   int attempts() const { return attempts_; }
+  /// The start of the latest proposal if its verdict is overdue and there is time to propose it again.
+  std::optional<Time> start_to_retry(Time now, Duration answer_timeout, Duration cycle) const;
   /// Whether a proposal for a start soon after `now` awaits its verdict.
   bool has_upcoming(Time now) const;
 
@@ -52,6 +53,9 @@ class SentProposals {
   void discard();
 
  private:
+  /// The latest proposal; nullptr before the first.
+  const SentProposal* newest() const;
+
   std::array<SentProposal, 8> proposals_;
   std::size_t count_ = 0;
   int attempts_ = 0;

@@ -68,7 +68,7 @@ struct Driver {
       receive_heartbeat(coordinator, now);
       if (!negotiation.may_propose(now)) continue;
       const Time start = now + kCycle;
-      const Version base = negotiation.base_at(start);
+      const Version base = negotiation.held().base_at(start);
       const Vec2 desired(robot.speed_at(start) < 1 ? 2.9 * direction : 0, 0);
       const Trajectory candidate =
           accelerate_then_stop(start, base.trajectory.state_at(start), desired, kCycle, 5);

@@ -34,7 +34,7 @@ FaultPlayer::FaultPlayer(SimSystem& system, const Scenario& scenario, const Faul
   const auto is_order = [](const TimedFault& timed) {
     return std::holds_alternative<GiveOrder>(timed.fault);
   };
-  if (std::ranges::any_of(plan.faults, is_order)) clients_.emplace(system, scenario.radius_m);
+  if (std::ranges::any_of(plan.faults, is_order)) clients_.emplace(system, scenario);
   for (const ProcessNames& host : plan.hosts) {
     for (const std::string& process : host) host_of_[process] = &host;
     std::ranges::copy(host, std::back_inserter(processes_));

@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 
 #include "common/protocol/process_names.hpp"
+#include "simulator/world/body.hpp"
 
 namespace sidestep {
 namespace {
 
+constexpr double kRestSpeed_mps = 0.01;
 constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
 
 bool drives(const Order& order) {
@@ -18,8 +20,11 @@ bool drives(const Order& order) {
 
 }  // namespace
 
-OrderClients::OrderClients(SimSystem& system, double radius_m)
-    : touching_distance_m_(2 * radius_m + kContactTolerance_m), system_(system), bus_(system.network()) {
+OrderClients::OrderClients(SimSystem& system, const Scenario& scenario)
+    : touching_distance_m_(2 * scenario.radius_m + kContactTolerance_m),
+      time_to_coast_(from_seconds(scenario.limits.speed_mps / Body::kRolling_mps2)),
+      system_(system),
+      bus_(system.network()) {
   bus_.become_observer();
   bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) { on_truth(truth); });
   bus_.subscribe<msg::OrderMemory>(topics::kOrderMemory, [this](const auto& page) { on_memory(page); });
@@ -98,18 +103,27 @@ bool OrderClients::touches_another(const msg::TrueRobotState& body, const msg::G
   });
 }
 
+bool OrderClients::is_disturbed(const msg::TrueRobotState& body, const msg::GroundTruth& truth, Time now) {
+  Disturbance& disturbance = disturbances_[body.robot()];
+  const auto disturb = [&](Time end) {
+    if (end > disturbance.end) disturbance = {end, false};
+  };
+  if (body.disturbance_end_ns() >= 0) disturb(time_from_ns(body.disturbance_end_ns()));
+  // A robot that is carried pushes others.
+  if (touches_another(body, truth)) disturb(now);
+  if (now > disturbance.end && std::hypot(body.vx_mps(), body.vy_mps()) < kRestSpeed_mps)
+    disturbance.has_rested = true;
+  const Duration time_to_rest = disturbance.has_rested ? kTimeToRest : time_to_coast_ + kTimeToRest;
+  return disturbance.end != Time{} && now <= disturbance.end + time_to_rest;
+}
+
 void OrderClients::on_truth(const msg::GroundTruth& truth) {
   const Time now = time_from_ns(truth.valid_at_ns());
   std::map<RobotId, Vec2> rest_m;
   for (const msg::TrueRobotState& body : truth.robots()) {
     const Hold* const hold = hold_of(body.robot());
-    Time& disturbed_until = disturbed_until_[body.robot()];
-    if (body.disturbance_end_ns() >= 0)
-      disturbed_until = std::max(disturbed_until, time_from_ns(body.disturbance_end_ns()));
-    // Somebody may carry another robot into this one.
-    if (touches_another(body, truth)) disturbed_until = std::max(disturbed_until, now);
-    const bool is_disturbed = disturbed_until != Time{} && now <= disturbed_until + kTimeToRest;
-    if (!hold || now < *hold->confirmed_at + kTimeToRest || is_disturbed) continue;
+    const bool may_move = is_disturbed(body, truth, now);
+    if (!hold || now < *hold->confirmed_at + kTimeToRest || may_move) continue;
     const Vec2 position_m(body.x_m(), body.y_m());
     const auto known = rest_m_.find(body.robot());
     rest_m[body.robot()] = known == rest_m_.end() ? position_m : known->second;

@@ -29,8 +29,8 @@ class OrderClients {
   /// Ground truth is sampled, so robots that touch may appear this far apart.
   static constexpr double kContactTolerance_m = 0.01;
 
-  /// `radius_m` is the robots' radius. The system must outlive the clients.
-  OrderClients(SimSystem& system, double radius_m);
+  /// The system runs the scenario, and must outlive the clients.
+  OrderClients(SimSystem& system, const Scenario& scenario);
 
   void give(const Order& order);
   /// Expects nothing of a coordinator that can no longer hear some process.
@@ -52,6 +52,10 @@ class OrderClients {
     std::optional<Time> confirmed_at{};
     std::set<RobotId> released{};  // robots released from a hold of all
   };
+  struct Disturbance {
+    Time end{};
+    bool has_rested = true;  // the robot has come to rest since
+  };
   struct Memory {
     std::uint32_t pages = 0;  // number of pages so far
     std::map<std::pair<RobotId, Rank>, std::pair<OrderNumber, ClientId>> drives;
@@ -60,6 +64,8 @@ class OrderClients {
   void lift(const Order& resume);
   void on_change(ClientId client, const SentOrder& sent);
   void on_truth(const msg::GroundTruth& truth);
+  /// Whether a disturbance may still move the robot at a time.
+  bool is_disturbed(const msg::TrueRobotState& body, const msg::GroundTruth& truth, Time now);
   bool touches_another(const msg::TrueRobotState& body, const msg::GroundTruth& truth) const;
   void on_memory(const msg::OrderMemory& memory);
   /// The confirmed hold of the robot that has lasted longest; null if there is none.
@@ -67,11 +73,12 @@ class OrderClients {
   void check_drives(const Client& client, std::vector<std::string>& failures) const;
 
   const double touching_distance_m_;
+  const Duration time_to_coast_;  // time in which a robot without power comes to rest
   SimSystem& system_;
   SimBus bus_;  // a bus that observes
   std::map<ClientId, std::unique_ptr<Client>> clients_;
   std::vector<Hold> holds_;  // holds that nobody with permission has tried to lift
-  std::map<RobotId, Time> disturbed_until_;
+  std::map<RobotId, Disturbance> disturbances_;
   std::map<RobotId, Vec2> rest_m_;  // positions of robots that must rest
   // Indexed by coordinator: pages of memories that are still arriving, and the last complete memory.
   std::map<std::uint32_t, Memory> arriving_, memories_;

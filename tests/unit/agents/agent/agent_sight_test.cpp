@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a robot with a laser drives where somebody may step out.
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace sidestep::agent_sight_test {
 
 constexpr Incarnation kSelf = 1000;
 constexpr double kCycle_s = 1.0 / 60;
+constexpr double kUnlimited_mps = std::numeric_limits<double>::infinity();
+constexpr Duration kNoLag{0};
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
@@ -73,7 +76,7 @@ struct BeforeWall {
     agent.on_scan({{0, 0}, 0, at_s(0.6), ranges_m}, at_s(0.6));
   }
   Vec2 desired_mps2() {
-    const auto plan = agent.plan(at_s(0.61), at_s(0.61 + kCycle_s));
+    const auto plan = agent.plan(at_s(0.61), at_s(0.61 + kCycle_s), kUnlimited_mps, kNoLag);
     REQUIRE(plan);
     return plan->query.desired_mps2;
   }

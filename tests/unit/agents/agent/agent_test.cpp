@@ -10,6 +10,8 @@ namespace sidestep::agent_test {
 
 constexpr Incarnation kSelf = 1000;
 constexpr double kCycle_s = 1.0 / 60;
+constexpr double kUnlimited_mps = std::numeric_limits<double>::infinity();
+constexpr Duration kNoLag{0};
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
@@ -92,14 +94,16 @@ struct DrivenAgent {
     list.obstacles = {&obstacle, 1};
     agent.on_obstacles(list, at_s(now));
   }
-  bool plans(double now) { return agent.plan(at_s(now), at_s(now + kCycle_s)).has_value(); }
+  bool plans(double now) {
+    return agent.plan(at_s(now), at_s(now + kCycle_s), kUnlimited_mps, kNoLag).has_value();
+  }
 };
 
 TEST_CASE("an agent plans towards its goal as long as vision observes its robot") {
   DrivenAgent d;
   CHECK_FALSE(d.plans(0.6));
   d.observe(0, 0.6, 0.61);
-  const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+  const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);
   REQUIRE(plan);
   CHECK(plan->query.desired_mps2.x() > 2);
   CHECK(plan->query.start == at_s(0.62 + kCycle_s));
@@ -114,8 +118,7 @@ TEST_CASE("a moving obstacle's reach grows by the time that the robot may be lat
   DrivenAgent d;
   d.observe_obstacle(2, 1, 0.6, 0.61);
   const auto planned = [&](Duration lag) {
-    return d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), std::numeric_limits<double>::infinity(), lag)
-        ->query;
+    return d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, lag)->query;
   };
   const SearchQuery on_time = planned(Duration{0});
   REQUIRE(on_time.moving.size() == 1);
@@ -161,7 +164,7 @@ TEST_CASE("a robot that is poorly localised waits until it is observed") {
     robot_report.uncertainty = {position_error_rms_m, 0.01};
     d.agent.on_robot_report(robot_report);
     d.observe(0, 0.6, 0.61);
-    const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+    const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);
     return plan ? plan->query.desired_mps2.norm() : 0;
   };
   CHECK(desired_mps2(0.0002) > 2);
@@ -189,7 +192,7 @@ TEST_CASE("a robot does not drive to a place that an unlisted obstacle could rea
     DrivenAgent d;
     d.observe_self(0, 0.6, 0.61);
     d.agent.on_obstacles(empty_list(0.6, complete_within_m), at_s(0.61));
-    const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+    const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);
     REQUIRE(plan);
     CHECK(plan->query.seen.is_everywhere() == (complete_within_m == kCompleteEverywhere_m));
     return d.agent.search(*plan, at_s(0.62)).has_value();
@@ -293,7 +296,7 @@ TEST_CASE(
   // There are unknown objects all around.
   const std::vector<float> ranges_m(static_cast<std::size_t>(scenario.laser->settings.beams), 1.5F);
   agent.on_scan({{0, 0}, 0, at_s(0.55), ranges_m}, at_s(0.61));
-  const auto plan = agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+  const auto plan = agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);
   REQUIRE(plan);
   const HiddenSpace& hidden = plan->query.hidden;
   CHECK(hidden.observed_at == at_s(0.55));
@@ -343,19 +346,19 @@ TEST_CASE("a robot whose current version ends at its goal proposes nothing") {
   become_ready(agent);
   agent.on_world_state(observation(0, 0.6), at_s(0.61));
   agent.on_obstacles(empty_list(0.6), at_s(0.61));
-  CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64)));
+  CHECK_FALSE(agent.plan(at_s(0.62), at_s(0.64), kUnlimited_mps, kNoLag));
   CHECK(agent.status(at_s(1)).agent_state() == msg::AgentState::AGENT_ARRIVED);
 }
 
 TEST_CASE("nothing is proposed while a moving obstacle is too near, and proposals resume afterwards") {
   DrivenAgent d;
   d.observe_obstacle(0.25, 0, 0.6, 0.61);
-  auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+  auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);
   REQUIRE(plan);
   CHECK_FALSE(d.agent.search(*plan, at_s(0.62)));
   // The obstacle has moved out of the way.
   d.observe_obstacle(0, 1.8, 0.7, 0.71);
-  plan = d.agent.plan(at_s(0.72), at_s(0.72 + kCycle_s));
+  plan = d.agent.plan(at_s(0.72), at_s(0.72 + kCycle_s), kUnlimited_mps, kNoLag);
   REQUIRE(plan);
   CHECK(d.agent.search(*plan, at_s(0.72)));
 }
@@ -363,11 +366,11 @@ TEST_CASE("nothing is proposed while a moving obstacle is too near, and proposal
 TEST_CASE("a robot's route leads around a moving obstacle") {
   DrivenAgent d;
   d.observe_obstacle(0.6, 0.02, 0.6, 0.61);
-  const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s));
+  const auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);
   REQUIRE(plan);
   CHECK(std::abs(plan->query.desired_mps2.y()) > 1);
   d.observe_obstacle(0, 1.8, 0.7, 0.71);
-  const auto straight = d.agent.plan(at_s(0.72), at_s(0.72 + kCycle_s));
+  const auto straight = d.agent.plan(at_s(0.72), at_s(0.72 + kCycle_s), kUnlimited_mps, kNoLag);
   REQUIRE(straight);
   CHECK(straight->query.desired_mps2.x() > 2);
 }

@@ -10,6 +10,7 @@ namespace sidestep::displaced_obstacles_test {
 
 constexpr Time kNow = time_from_ns(1'000'000'000'000);
 constexpr Duration kClockDifference{1'000'000};
+constexpr Duration kNoLag{0};
 
 msg::RobotNotice displaced(RobotId robot, double x, double vx, Time observed_at = kNow) {
   msg::RobotNotice notice;
@@ -40,7 +41,7 @@ TEST_CASE("displaced robots are moving obstacles, but the robot itself is not") 
   missing.robot(8);
   missing.is_missing(true);
   f.receive({displaced(3, 1, 0), displaced(5, 2, 0.5), missing});
-  const auto recent = f.obstacles.recent(kNow);
+  const auto recent = f.obstacles.recent(kNow, kNoLag);
   REQUIRE(recent.size() == 1);
   CHECK(recent[0].reach.position_m.x() == 2);
   CHECK(recent[0].reach.radius_m == Approx(0.09 + 4 * 0.01));
@@ -51,14 +52,14 @@ TEST_CASE("displaced robots are moving obstacles, but the robot itself is not") 
   const Duration max_lag = std::chrono::milliseconds(60);
   CHECK(f.obstacles.recent(kNow, max_lag)[0].reach.observed_at == kNow - kClockDifference - max_lag);
   f.receive({});
-  CHECK(f.obstacles.recent(kNow).empty());
+  CHECK(f.obstacles.recent(kNow, kNoLag).empty());
 }
 
 TEST_CASE("a displaced robot that vision has lost for a second is dropped") {
   Fixture f;
   f.receive({displaced(5, 2, 0)});
-  CHECK(f.obstacles.recent(kNow + std::chrono::milliseconds(990)).size() == 1);
-  CHECK(f.obstacles.recent(kNow + std::chrono::milliseconds(1010)).empty());
+  CHECK(f.obstacles.recent(kNow + std::chrono::milliseconds(990), kNoLag).size() == 1);
+  CHECK(f.obstacles.recent(kNow + std::chrono::milliseconds(1010), kNoLag).empty());
 }
 
 TEST_CASE("a silent robot is a moving obstacle too") {
@@ -66,10 +67,10 @@ TEST_CASE("a silent robot is a moving obstacle too") {
   msg::RobotNotice silent = displaced(5, 2, 1);
   silent.is_displaced(false);
   f.receive({silent});
-  CHECK(f.obstacles.recent(kNow).empty());
+  CHECK(f.obstacles.recent(kNow, kNoLag).empty());
   silent.is_silent(true);
   f.receive({silent});
-  CHECK(f.obstacles.recent(kNow).size() == 1);
+  CHECK(f.obstacles.recent(kNow, kNoLag).size() == 1);
 }
 
 }  // namespace sidestep::displaced_obstacles_test

@@ -63,7 +63,7 @@ struct NegotiationFixture {
     REQUIRE(n.may_propose(at_s(0.95)));
   }
   Proposal propose(double start, double now) {
-    const Version& base = n.base_at(at_s(start));
+    const Version& base = n.held().base_at(at_s(start));
     Trajectory trajectory(at_s(start), base.trajectory.state_at(at_s(start)));
     trajectory.append(from_seconds(0.1), {1, 0});
     append_stop(trajectory, 5);

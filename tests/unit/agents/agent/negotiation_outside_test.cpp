@@ -26,15 +26,15 @@ TEST_CASE(
   auto robot_report = make_report(off, 0.98);
   robot_report.is_off_reference = true;
   f.n.on_robot_report(robot_report);
-  CHECK(f.n.executing().number == off.number);
-  CHECK(f.n.executing().inflation_m == 0.02);
+  CHECK(f.n.held().executing().number == off.number);
+  CHECK(f.n.held().executing().inflation_m == 0.02);
   CHECK(f.n.is_contradicted());
   CHECK(f.n.registration().versions->versions().size() == 1);
   // An earlier fact arrives late.
   f.n.on_robot_report(make_report(f.initial, 0.96));
-  CHECK(f.n.executing().number == off.number);
+  CHECK(f.n.held().executing().number == off.number);
   const Trajectory next = Trajectory::resting(at_s(1.5), {0.125, 0});
-  const auto proposal = f.n.propose({&next, 1}, f.n.base_at(at_s(1.5)).number, at_s(1.4));
+  const auto proposal = f.n.propose({&next, 1}, f.n.held().base_at(at_s(1.5)).number, at_s(1.4));
   CHECK(proposal.candidates[0]->base == off.number);
   CHECK(proposal.candidates[0]->number > off.number);
   CHECK(proposal.candidates[0]->inflation_m == 0);
@@ -81,7 +81,7 @@ TEST_CASE("a lifted robot holds no version, registers as absent, and proposes a 
   // A late fact says that it executes nothing. Then it is lifted again.
   f.n.on_robot_report(lifted(1.28, none));
   CHECK_FALSE(f.n.is_absent());
-  CHECK(f.n.base_at(at_s(2)).number == rest->number);
+  CHECK(f.n.held().base_at(at_s(2)).number == rest->number);
   f.n.on_robot_report(lifted(1.4, none));
   CHECK(f.n.is_absent());
 

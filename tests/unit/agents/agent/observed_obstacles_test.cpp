@@ -11,6 +11,7 @@
 namespace sidestep::observed_obstacles_test {
 
 constexpr Duration kSlack{1'000'000};
+constexpr Duration kNoLag{0};
 constexpr double kSpeed_mps = 1.5;
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
@@ -49,8 +50,8 @@ struct Fixture {
 TEST_CASE("an observation is kept with its uncertainty until a newer one of the same track arrives") {
   Fixture f;
   f.receive(5, 1, 10, 10.02);
-  REQUIRE(f.obstacles.recent(at_s(10.02)).size() == 1);
-  const MovingObstacle first = f.obstacles.recent(at_s(10.02))[0];
+  REQUIRE(f.obstacles.recent(at_s(10.02), kNoLag).size() == 1);
+  const MovingObstacle first = f.obstacles.recent(at_s(10.02), kNoLag)[0];
   CHECK(first.position_m == Vec2(1, 0));
   CHECK(first.radius_m == Approx(0.1 + 4 * 0.01));
   CHECK(first.speed_mps == kSpeed_mps);
@@ -58,25 +59,25 @@ TEST_CASE("an observation is kept with its uncertainty until a newer one of the 
   f.receive(5, 1.2, 10.1, 10.12);
   // A late message.
   f.receive(5, 1.1, 10.05, 10.13);
-  REQUIRE(f.obstacles.recent(at_s(10.13)).size() == 1);
-  CHECK(f.obstacles.recent(at_s(10.13))[0].position_m == Vec2(1.2, 0));
+  REQUIRE(f.obstacles.recent(at_s(10.13), kNoLag).size() == 1);
+  CHECK(f.obstacles.recent(at_s(10.13), kNoLag)[0].position_m == Vec2(1.2, 0));
 }
 
 TEST_CASE("an obstacle that is no longer observed is kept for a second, and its reach grows") {
   Fixture f;
   f.receive(5, 1, 10, 10.02);
   f.receive(List(10.5), 10.5);
-  REQUIRE(f.obstacles.recent(at_s(10.9)).size() == 1);
-  CHECK(f.obstacles.recent(at_s(10.9))[0].reach_m(at_s(10.9)) ==
+  REQUIRE(f.obstacles.recent(at_s(10.9), kNoLag).size() == 1);
+  CHECK(f.obstacles.recent(at_s(10.9), kNoLag)[0].reach_m(at_s(10.9)) ==
         Approx(0.14 + 0.9 * kSpeed_mps).margin(0.01));
-  CHECK(f.obstacles.recent(at_s(11.1)).empty());
+  CHECK(f.obstacles.recent(at_s(11.1), kNoLag).empty());
 }
 
 TEST_CASE("tracks of a restarted vision process do not replace those of its predecessor") {
   Fixture f;
   f.receive(1, 1, 10, 10.02, 1);
   f.receive(1, -1, 10.1, 10.12, 2);
-  CHECK(f.obstacles.recent(at_s(10.2)).size() == 2);
+  CHECK(f.obstacles.recent(at_s(10.2), kNoLag).size() == 2);
 }
 
 TEST_CASE("the latest observation of every track is kept, in any order of tracks and lists") {
@@ -95,7 +96,7 @@ TEST_CASE("the latest observation of every track is kept, in any order of tracks
     }
     f.receive(list, 10);
   }
-  const auto recent = f.obstacles.recent(at_s(10));
+  const auto recent = f.obstacles.recent(at_s(10), kNoLag);
   CHECK(recent.size() ==
         static_cast<std::size_t>(std::ranges::count_if(latest, [](Time t) { return t != Time{}; })));
   for (const MovingObstacle& obstacle : recent) {
@@ -111,8 +112,8 @@ TEST_CASE("an observation from the future is counted and dropped, and its list d
     Fixture f;
     f.receive(List(10).add(5, {1, 0}, observed_at).add(6, 2, 10), 10.02);
     CHECK(f.obstacles.invalid() == 1);
-    REQUIRE(f.obstacles.recent(now).size() == 1);
-    CHECK(f.obstacles.recent(now)[0].position_m == Vec2(2, 0));
+    REQUIRE(f.obstacles.recent(now, kNoLag).size() == 1);
+    CHECK(f.obstacles.recent(now, kNoLag)[0].position_m == Vec2(2, 0));
     CHECK(f.obstacles.complete_at() == Time{});
   }
 }
@@ -124,7 +125,7 @@ TEST_CASE("a list from the future is counted and dropped as a whole") {
     list.observations.valid_at = valid_at;
     f.receive(list.add(5, 1, 10), 10.02);
     CHECK(f.obstacles.invalid() == 1);
-    CHECK(f.obstacles.recent(at_s(10.02)).empty());
+    CHECK(f.obstacles.recent(at_s(10.02), kNoLag).empty());
     CHECK(f.obstacles.complete_at() == Time{});
     // Vision's clock needs to be only roughly right.
     f.receive(List(10.1), 10.02);
@@ -146,7 +147,7 @@ TEST_CASE("old observations are dropped, and not counted as invalid") {
   for (const Time observed_at : {at_s(9), Time::min()}) {
     Fixture f;
     f.receive(List(10).add(7, {1, 0}, observed_at), 10.02);
-    CHECK(f.obstacles.recent(at_s(10.02)).empty());
+    CHECK(f.obstacles.recent(at_s(10.02), kNoLag).empty());
     CHECK(f.obstacles.invalid() == 0);
     CHECK(f.obstacles.complete_at() == at_s(10));
   }
@@ -165,9 +166,9 @@ TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all ne
     all.push_back({{x, y}, 0.14, at_s(observed_at) - kSlack, kSpeed_mps});
   }
   const Time now = at_s(10.15);
-  const auto recent = f.obstacles.recent(now);
+  const auto recent = f.obstacles.recent(now, kNoLag);
   REQUIRE(recent.size() == ObservedObstacles::kCapacity);
-  const SeenRegion seen = f.obstacles.seen(now);
+  const SeenRegion seen = f.obstacles.seen(now, kNoLag);
   REQUIRE_FALSE(seen.is_everywhere());
   CHECK(seen.radius_at_m(now) > 2);
   for (const MovingObstacle& obstacle : all) {
@@ -179,7 +180,7 @@ TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all ne
               seen.radius_at_m(now + from_seconds(later_s)) - 1e-9);
   }
   // They would have been dropped by now.
-  CHECK(f.obstacles.seen(now + from_seconds(1.2)).is_everywhere());
+  CHECK(f.obstacles.seen(now + from_seconds(1.2), kNoLag).is_everywhere());
 }
 
 TEST_CASE(
@@ -191,8 +192,8 @@ TEST_CASE(
   // From now on the clocks are correct.
   f.receive(List(10).add(6, 2, 10), 10.02);
   CHECK(f.obstacles.complete_at() == Time{});
-  REQUIRE(f.obstacles.recent(at_s(10.02)).size() == 1);
-  CHECK(f.obstacles.recent(at_s(10.02))[0].position_m == Vec2(2, 0));
+  REQUIRE(f.obstacles.recent(at_s(10.02), kNoLag).size() == 1);
+  CHECK(f.obstacles.recent(at_s(10.02), kNoLag)[0].position_m == Vec2(2, 0));
   f.receive(List(11).add(6, 2, 11), 11.01);
   CHECK(f.obstacles.complete_at() == Time{});
   f.receive(List(11.03).add(6, 2, 11.03), 11.05);

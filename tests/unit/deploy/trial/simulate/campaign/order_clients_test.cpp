@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/simulate/campaign/order_clients.hpp"
 
+#include <cmath>
+
 #include "simulator/world/disturbance_codec.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/ordered_system.hpp"
@@ -13,7 +15,7 @@ constexpr ClientId kOther = kOtherClient;
 
 struct Trial {
   SimSystem system{waiting_robots(2), 1};
-  OrderClients clients{system, waiting_robots(2).radius_m};
+  OrderClients clients{system, waiting_robots(2)};
   Trial() { system.run_for(2s); }
   void give(msg::OrderKind kind, RobotId robot, ClientId client, std::vector<Goal> goals = {}) {
     Order order{kind, robot, client};
@@ -66,6 +68,27 @@ TEST_CASE("a held robot that is pushed by another one, which somebody carries, f
   CHECK(trial.clients.failures().empty());
 }
 
+TEST_CASE("a held robot without power may coast to rest, however long that takes") {
+  Trial trial;
+  trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1.5, 1.5}}});
+  trial.system.run_for(900ms);
+  RobotDisturbance switch_off;
+  switch_off.robot = 0;
+  switch_off.kind = msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF;
+  trial.system.disturb(encode(switch_off));
+  trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);
+  double speed_mps = 0;
+  trial.system.on_truth([&](const msg::GroundTruth& truth) {
+    for (const msg::TrueRobotState& body : truth.robots())
+      if (body.robot() == 0) speed_mps = std::hypot(body.vx_mps(), body.vy_mps());
+  });
+  trial.system.run_for(OrderClients::kTimeToRest + 200ms);
+  REQUIRE(speed_mps > 0.05);
+  trial.system.run_for(4s);
+  CHECK(speed_mps == 0);
+  CHECK(trial.clients.failures().empty());
+}
+
 TEST_CASE("an order that a coordinator does not remember fails a trial, until its client has repeated it") {
   Trial trial;
   trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1}}});
@@ -89,7 +112,7 @@ TEST_CASE("a restarted coordinator that hears nobody does not fail a trial becau
   Scenario scenario = waiting_robots(2);
   scenario.coordinators = 2;
   SimSystem system{scenario, 1};
-  OrderClients clients{system, scenario.radius_m};
+  OrderClients clients{system, scenario};
   system.run_for(2s);
   for (const std::string& process : system_process_names(scenario)) {
     LinkQuality cut;
@@ -113,7 +136,7 @@ TEST_CASE(
   Scenario scenario = waiting_robots(2);
   scenario.coordinators = 2;
   SimSystem system{scenario, 1};
-  OrderClients clients{system, scenario.radius_m};
+  OrderClients clients{system, scenario};
   system.run_for(2s);
   LinkQuality cut;
   cut.is_cut = true;
