@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The overhead cameras of a field, row by row from the corner with the lowest x and y, along x first. Each
-/// camera is mounted above its cell of the grid and sees the cell and the overlap around it. Height,
+/// The overhead cameras of a field, row by row from the corner with the lowest x and y; x varies fastest.
+/// Each camera is mounted above its cell of the grid and sees the cell and the overlap around it. Height,
 /// distortion and image size come from `prototype`. Throws std::invalid_argument if overhead_camera_model()
 /// does.
 std::vector<CameraModel> camera_grid(const Field& field, const VisionSpec& spec,

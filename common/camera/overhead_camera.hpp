@@ -11,7 +11,7 @@ struct OverheadCamera {
   Box view_m{{-3, -2.25}, {3, 2.25}};  ///< the rectangle on the floor
   double object_height_m = 0.15;       ///< objects in the rectangle are in view up to this height
   double height_m = 4;                 ///< height of the camera above the floor
-  Vec2 lateral_offset_m{0, 0};         ///< from the rectangle's centre to the camera; tilts it
+  Vec2 lateral_offset_m{0, 0};         ///< offset of the camera from the rectangle's centre; tilts the camera
   int width_px = 780;
   int height_px = 580;
   double distortion = 0.1;  ///< coefficient k in common/camera/lens.hpp

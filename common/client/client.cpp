@@ -88,7 +88,7 @@ struct Client::Impl {
   }
 
   OrderId send_to(RobotId robot, OrderHandle (OrderClient::*order)(sidestep::RobotId)) {
-    // kAllRobots as a robot number would address all robots, although one was meant.
+    // Without this check, the number kAllRobots would address all robots instead of one.
     if (robot >= kMaxRobots) return refuse(Refusal::kUnknownRobot);
     return send([robot, order](OrderClient& client) { return (client.*order)(robot); });
   }

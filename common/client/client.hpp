@@ -15,9 +15,9 @@
 namespace sidestep::client {
 
 struct Settings {
-  std::string name;                     ///< of this program; clients with different names have separate holds
-  bool is_operator = false;             ///< its orders take precedence, and its resume ends all holds
-  int domain = 0;                       ///< DDS domain of the run, 0 .. 232
+  std::string name;          ///< the client's name; clients with different names have separate holds
+  bool is_operator = false;  ///< the client's orders take precedence, and its resume ends all holds
+  int domain = 0;            ///< DDS domain of the run, 0 .. 232
   std::string interface = "127.0.0.1";  ///< address of the network interface to use, or "all"
   /// Addresses of all hosts that run processes, for networks without multicast. Empty: use multicast.
   std::vector<std::string> peers{};

@@ -16,7 +16,7 @@ bool stays(const SentOrder& sent, const OrderState& state);
 sidestep::Zone to_zone(const Zone& zone);
 std::vector<sidestep::Goal> to_goals(const std::vector<Goal>& goals);
 
-/// Whether coordinators could decode the order at `now`. Does not check its client and number.
+/// Whether coordinators could decode the order at `now`. Does not check the order's client and number.
 bool is_well_formed(sidestep::Order order, Time now);
 
 }  // namespace sidestep::client

@@ -7,8 +7,8 @@
 namespace sidestep {
 namespace {
 
-// A coordinator has forgotten an order if this many of its complete memories in a row lack it: a single one
-// may have been sent before the coordinator heard of the order.
+// A coordinator has forgotten an order if this many of its complete order memories in a row lack the order: a
+// single memory may have been sent before the coordinator heard of the order.
 constexpr int kRoundsUntilForgotten = 3;
 
 bool drives(const Order& order) { return order.kind == msg::OrderKind::ORDER_GO; }
@@ -88,7 +88,7 @@ OrderHandle OrderClient::send_zone(Order order) {
             earlier.kind == msg::OrderKind::ORDER_REMOVE_ZONE) &&
            earlier.zone_number == order.zone_number;
   };
-  // At most one: each forgets its predecessor.
+  // There is at most one, because each zone order makes the client forget its predecessor.
   const auto earlier = std::ranges::find_if(sent_, is_same_zone);
   if (earlier != sent_.end()) forget(earlier);
   return send(std::move(order));
@@ -135,7 +135,7 @@ bool OrderClient::renumber(SentOrder& sent, const msg::OrderAnswer& answer) {
   if (sent.is_number_final || !is_behind || !is_affected || is_refused(answer.result())) return false;
   if (sent.order.kind == msg::OrderKind::ORDER_RESUME) {
     // If this client's clock has already passed the newest number, that number belongs to a later order,
-    // perhaps a hold, and not to a clock that is ahead.
+    // perhaps a hold, and this client's clock is not behind.
     const bool is_late = answer.newest_number() <= static_cast<OrderNumber>(to_ns(bus_.now()));
     if (is_late || is_followed_by_hold(sent)) return false;
   }
@@ -172,7 +172,7 @@ void OrderClient::update(SentOrder& sent, OrderPhase phase, std::size_t goal_ind
     missing_.erase(sent.handle);
     ++closed_count_;
   }
-  if (on_change_) on_change_(sent);  // the callback may send orders, and this one is then forgotten
+  if (on_change_) on_change_(sent);  // the callback may send orders and thereby forget this one
   if (closed_count_ > kMaxFinal)
     forget(std::ranges::find_if(sent_, [](const auto& entry) { return is_closed(entry.second); }));
 }
@@ -260,7 +260,7 @@ void OrderClient::compare(SentOrder& sent, std::uint32_t coordinator, const Orde
     missing_[sent.handle][coordinator] = 0;
     // Only an answer, or a report from the robot's agent, shows that a second process remembers the order.
     const bool has_started = known->progress.state != msg::OrderState::ORDER_ACCEPTED;
-    // The robot's status is more recent than the memory, unless it was lost.
+    // The robot's status is more recent than the memory, unless the status was lost.
     if (known->progress.is_finished() || (sent.phase == OrderPhase::kSent && has_started))
       update(sent, phase_of(known->progress), known->progress.goal_index);
   } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {

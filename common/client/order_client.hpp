@@ -90,17 +90,17 @@ class OrderClient {
   void publish(const Order& order);
   /// nullptr if this client has no order with this number.
   SentOrder* find_number(OrderNumber number);
-  /// Renumbers the order if the client's clock is behind, so that the answer does not reflect the client's
-  /// intent. Returns whether it did.
+  /// Renumbers the order if its number was too low because this client's clock is behind, so that the answer
+  /// does not reflect the client's intent. Returns whether it renumbered the order.
   bool renumber(SentOrder& sent, const msg::OrderAnswer& answer);
   void repeat();
   void on_answer(const msg::OrderAnswer& answer);
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
-  /// Counts a complete memory of this coordinator that lacks the order. Returns whether enough in a row do,
-  /// at most once for each that many memories.
+  /// Counts another consecutive complete order memory of this coordinator that lacks the order. True at every
+  /// kRoundsUntilForgotten-th.
   bool count_missing(const SentOrder& sent, std::uint32_t coordinator);
-  /// Whether the last complete memory of some coordinator lists the order.
+  /// Whether the latest complete order memory of any coordinator lists the order.
   bool is_listed(const SentOrder& sent) const;
   void compare(std::uint32_t coordinator, const OrderBook& remembered);
   void compare(SentOrder& sent, std::uint32_t coordinator, const OrderBook& remembered);
@@ -114,7 +114,7 @@ class OrderClient {
   std::map<OrderHandle, SentOrder> sent_;
   std::map<OrderNumber, OrderHandle> by_number_;  // keyed by the orders' current numbers
   std::size_t closed_count_ = 0;
-  /// Number of consecutive complete memories of each coordinator that lack the order.
+  /// Number of consecutive complete order memories of each coordinator that lack the order.
   std::map<OrderHandle, std::map<std::uint32_t, int>> missing_;
   std::map<RobotId, OrderReport> reports_;
   std::map<std::uint32_t, Round> rounds_;  // keyed by coordinator

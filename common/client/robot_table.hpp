@@ -14,7 +14,7 @@
 
 namespace sidestep::client {
 
-/// What agents and vision have reported of each robot. Messages are untrusted.
+/// What agents and vision have reported about each robot. Messages are untrusted.
 class RobotTable {
  public:
   /// Agents report at least once a second.

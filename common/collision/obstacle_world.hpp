@@ -22,7 +22,7 @@ enum class Structure {
 
 /// The obstacle nearest to a point. In an empty world: kNoObstacle, infinitely far.
 struct Nearest {
-  double distance_m = std::numeric_limits<double>::infinity();  ///< to the boundary, negative inside
+  double distance_m = std::numeric_limits<double>::infinity();  ///< distance to the boundary, negative inside
   ObstacleId obstacle = kNoObstacle;
 };
 

@@ -18,8 +18,8 @@ double entry(const Vec2& from, const Vec2& displacement, const Circle& disc) {
   return std::max(0.0, c / (std::sqrt(under_root) - b));
 }
 
-/// The fraction of the displacement after which a point that is farther than `reach` from an edge comes that
-/// near.
+/// The fraction of the displacement after which a point that is farther than `reach` from an edge comes
+/// within this distance.
 double entry(const Vec2& from, const Vec2& displacement, const Segment& edge, double reach) {
   double first = std::min(entry(from, displacement, {edge.from_m, reach}),
                           entry(from, displacement, {edge.to_m, reach}));

@@ -123,8 +123,8 @@ std::string notice_of(const LoadedMap& map, const std::string& name, const std::
                        unknown == "free" ? "" : ", unless the scenario says `unknown: free`");
   if (map.yaw_rad != 0)
     text += fmt::format(
-        "{}map {} is turned by {:.6g} rad; coordinates of the scenario are along its rows "
-        "and columns, those of other programs are turned by as much",
+        "{}map {} is rotated by {:.6g} rad; coordinates of the scenario follow its rows and "
+        "columns, those of other programs are rotated by this angle",
         text.empty() ? "" : "; ", name, map.yaw_rad);
   return text;
 }
@@ -157,7 +157,7 @@ std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map, const OccupancyMap*
   std::string unknown{kUnknown[0]};
   map.read("unknown", kUnknown, unknown);
   if (!node.IsDefined() && map.find("unknown").IsDefined())
-    map.location_of("unknown").fail("there is no map that could have unknown cells");
+    map.location_of("unknown").fail("expected only together with the key map");
   if (!node.IsDefined()) return nullptr;
   const std::string name = text_from(node, location);
   if (name.empty()) location.fail("expected the path of a map's YAML file, got nothing");

@@ -10,9 +10,10 @@ namespace sidestep {
 
 struct Scenario;
 
-/// The planners that can drive robots, for the key `planner` of scenarios. agents/planning/named_planner.hpp
-/// makes them. Six are local methods that follow another planner's paths. The others are for
-/// comparison: they keep a graph of one world, use up all time, or examine the whole floor.
+/// The planners that can drive robots, for the key `planner` of scenarios
+/// (agents/planning/named_planner.hpp). Six are local methods that follow another planner's paths. Planners
+/// that are not listed are for comparison: they keep a graph of one world, use up all time, or examine the
+/// whole floor.
 inline constexpr std::array<std::string_view, 19> kDrivingPlanners{
     "lazy-visibility", "errt",
     "bi-errt",         "rrt",

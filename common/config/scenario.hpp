@@ -27,17 +27,17 @@ struct RobotSpec {
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
   std::vector<Goal> goals;     ///< visited in order; may be empty
-  std::string planner{};       ///< planner of its routes (named_planner.hpp); empty: the scenario's
+  std::string planner{};       ///< planner of the robot's routes (named_planner.hpp); empty: the scenario's
   Duration clock_offset{0};    ///< robot's clock - host's clock, at the start
   double clock_drift_ppm = 0;  ///< rate at which the robot's clock gains on the host's
-  bool is_absent = false;      ///< not on the floor at the start; start_m is its own estimate
+  bool is_absent = false;      ///< not on the floor at the start; start_m is then the robot's own estimate
 };
 
 /// A moving obstacle outside the protocol: an opponent or a person.
 struct OpponentSpec {
   double radius_m = 0.09;
   double speed_mps = 1;
-  std::vector<Vec2> path_m;  ///< at least one point; back and forth, or a loop if both ends coincide
+  std::vector<Vec2> path_m;  ///< at least one point; back and forth, or in a loop if both ends coincide
 };
 
 struct BallSpec {
@@ -62,7 +62,7 @@ struct VisionSpec {
   double overlap_m = 0.5;                 ///< how far a camera's view extends beyond its grid cell
   double position_noise_m = 0.0005;       ///< standard deviation on each axis
   double heading_noise_rad = 0.005;       ///< standard deviation
-  Duration delay{10'000'000};             ///< from capture to publication
+  Duration delay{10'000'000};             ///< time from capture to publication
   double miss_probability = 0;            ///< probability that a visible robot is missing from a frame
   double ghost_probability = 0;           ///< probability of a false detection of a robot in a frame
   double ghost_obstacle_probability = 0;  ///< probability of a false obstacle in a frame

@@ -74,7 +74,7 @@ struct PlacementCheck {
   }
 };
 
-/// Where the robot stays at the end. A robot without goals stays where it starts.
+/// The robot's place after its last goal. A robot without goals stays where it starts.
 std::optional<Vec2> last_place_m(const RobotSpec& robot) {
   if (!robot.goals.empty()) return robot.goals.back().position_m;
   return robot.is_absent ? std::nullopt : std::optional(robot.start_m);

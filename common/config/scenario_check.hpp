@@ -11,7 +11,7 @@ namespace sidestep {
 /// Line numbers of a robot's entries in the scenario file.
 struct RobotLines {
   int start = 1;
-  std::vector<int> goals;  ///< one entry per goal
+  std::vector<int> goals;  ///< one line number per goal
 };
 
 /// Throws ConfigError if two robots share an id, a start or goal lies outside the field or in an obstacle,

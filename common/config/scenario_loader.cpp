@@ -52,8 +52,8 @@ void read_name(YamlMap& map, const std::string& file, Scenario& scenario) {
   }
   scenario.name = text_from(node, map.location_of("name"));
   if (scenario.name.empty() || as_name(scenario.name) != scenario.name)
-    map.location_of("name").fail(fmt::format(
-        "expected 1 to {} letters, digits, '-', '_' or '.', and no '.' in front", kMaxNameLength));
+    map.location_of("name").fail(
+        fmt::format("expected 1 to {} letters, digits, '-', '_' or '.', and no leading '.'", kMaxNameLength));
 }
 
 void read_field_and_limits(YamlMap& map, Scenario& scenario) {
@@ -125,7 +125,7 @@ void check_images(YamlMap& map, const Scenario& scenario) {
 
 void read_vision(YamlMap& map, VisionSpec& vision) {
   read_section(map, "vision", [&](YamlMap& inner) {
-    // Frames more than 0.3 s apart cannot supervise anything.
+    // Frames more than 0.3 s apart are too rare to supervise robots.
     inner.read("rate_hz", {5, 1000}, vision.rate_hz);
     inner.read("columns", {1, 16}, vision.columns);
     inner.read("rows", {1, 16}, vision.rows);

@@ -23,7 +23,7 @@ std::uint64_t hash(std::string_view text) {
   return result;
 }
 
-/// The robot numbers with runs shortened, for example "0-3, 8".
+/// The robot numbers, with consecutive ones as a range, for example "0-3, 8".
 std::string numbers_of(const Scenario& scenario, Team team) {
   std::string text;
   const auto& robots = scenario.robots;

@@ -13,7 +13,7 @@ namespace sidestep {
 
 /// A rule whose value differs between two processes.
 struct RuleDifference {
-  std::string key;     ///< as in the scenario file, for example limits.speed_mps
+  std::string key;     ///< key in the scenario file, for example limits.speed_mps
   std::string own;     ///< empty: this process does not know the key
   std::string others;  ///< empty: the other process does not know the key
 };

@@ -23,9 +23,9 @@ OutputFile open_output(const std::string& path, WriteMode mode) {
     const int problem = errno;
     std::error_code error;
     const bool lacks_reader = problem == ENXIO && std::filesystem::is_fifo(path, error);
-    throw_unwritable(path, lacks_reader ? "nobody reads this pipe" : std::strerror(problem));
+    throw_unwritable(path, lacks_reader ? "no process reads this pipe" : std::strerror(problem));
   }
-  fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);  // only opening must not wait
+  fcntl(descriptor, F_SETFL, fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);  // writing may block
   OutputFile file(fdopen(descriptor, appends ? "a" : "w"));
   if (file) return file;
   const std::string reason = std::strerror(errno);

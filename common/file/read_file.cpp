@@ -31,7 +31,7 @@ std::string read_file(const std::string& path, std::size_t max_bytes) {
     if (text.size() > max_bytes)
       throw std::runtime_error(fmt::format("more than {} MB", max_bytes / 1'000'000));
   }
-  if (file.bad()) throw std::runtime_error("an error while it was read");
+  if (file.bad()) throw std::runtime_error("a read error");
   return text;
 }
 

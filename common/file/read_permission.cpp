@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxLinks = 40;  ///< as many as the kernel follows
+constexpr int kMaxLinks = 40;  ///< the kernel follows at most this many
 
 std::string user_name(uid_t user) {
   passwd entry{};

@@ -7,8 +7,8 @@
 namespace sidestep {
 
 /// Length in bytes of the UTF-8 sequence (RFC 3629) that begins at `at`, which must be below the text's size.
-/// 0: there is none, or it is a control character other than tab, newline and carriage return, or one of the
-/// non-characters that XML 1.0 excludes.
+/// 0 if no valid sequence begins there, or if it encodes a control character other than tab, newline and
+/// carriage return, or a non-character that XML 1.0 excludes.
 [[nodiscard]] std::size_t utf8_length(std::string_view text, std::size_t at);
 
 /// Length in bytes of a character that can be part of a name: as utf8_length(), but 0 for ASCII white space

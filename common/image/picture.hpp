@@ -16,8 +16,8 @@ inline constexpr std::size_t kMaxPicturePixels = 4096 * 4096;
 inline constexpr std::size_t kMaxPictureBytes = 64'000'000;
 
 /// Reads a picture in PNG, JPEG or PNM as kRgb. Throws std::invalid_argument ("PATH: ...") if the file does
-/// not exist, is not such a picture, or exceeds kMaxPicturePixels or kMaxPictureBytes. The size that its
-/// header states is checked before memory is allocated for it.
+/// not exist, has another format, or exceeds kMaxPicturePixels or kMaxPictureBytes. The size stated in its
+/// header is checked before memory is allocated for it.
 Image read_picture(const std::string& path);
 
 /// Throws std::runtime_error if the file cannot be written.

@@ -22,7 +22,7 @@ std::shared_ptr<bio_st> open_key_file(const std::string& path) {
   std::shared_ptr<BIO> result(BIO_new(BIO_s_mem()), BIO_free_all);
   if (!result || BIO_write(result.get(), content.data(), static_cast<int>(content.size())) !=
                      static_cast<int>(content.size()))
-    throw std::invalid_argument("cannot read " + path + ": OpenSSL has no memory");
+    throw std::invalid_argument("cannot read " + path + ": OpenSSL is out of memory");
   return result;
 }
 

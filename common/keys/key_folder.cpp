@@ -36,7 +36,7 @@ void require_own_private_key(const std::string& file, const Certificate& certifi
     throw std::invalid_argument(
         fmt::format("{}: other users may read or change this private key; chmod 600 {}", file, file));
   if (X509_check_private_key(certificate.x509(), load_private_key(file).get()) != 1)
-    throw std::invalid_argument(file + ": this private key is not that of the certificate beside it");
+    throw std::invalid_argument(file + ": this private key does not match the certificate beside it");
 }
 
 /// The clock may not have been set yet, so a key that is not valid yet is not a usage error: if the process
@@ -100,7 +100,7 @@ std::string key_folder_of(const std::string& store, const Identity& identity) {
   }
   throw std::invalid_argument(
       fmt::format("--keys: {} has no keys of {}; `sidestep keys issue --scenario FILE --keys {}` makes all "
-                  "that a run needs",
+                  "keys that a run needs",
                   enclaves, to_text(identity), store));
 }
 
@@ -123,8 +123,8 @@ KeyFolder load_key_folder(const std::string& path, Time now) {
     throw std::invalid_argument(fmt::format("{}: expected the certificate of an identity, got that of '{}'",
                                             where, certificate.subject()));
   if (!certificate.is_issued_by(authority))
-    throw std::invalid_argument(fmt::format("{}: another authority has issued it than {}", where,
-                                            file(key_files::kIdentityAuthority)));
+    throw std::invalid_argument(
+        fmt::format("{}: issued by an authority other than {}", where, file(key_files::kIdentityAuthority)));
   require_valid(fmt::format("{}: the key of {}", where, to_text(*identity)), certificate.validity(), now,
                 kIssueAgain);
   const KeyFolder keys{fs::absolute(path).lexically_normal().string(), *identity, certificate, authority};

@@ -41,11 +41,11 @@ struct KeyFolder {
 /// set yet.
 [[nodiscard]] KeyFolder load_key_folder(const std::string& path, Time now);
 
-/// Finds the key folder of an identity inside a folder made by `sidestep keys init`. For robots, finds one
-/// whose keys cover all of them. Throws std::invalid_argument if there is none.
+/// Finds the key folder of an identity inside a folder made by `sidestep keys init`. For a range of robots,
+/// finds a folder whose keys cover all of them. Throws std::invalid_argument if there is none.
 [[nodiscard]] std::string key_folder_of(const std::string& store, const Identity& identity);
 
-/// Like key_folder_of(), but `path` may also be the key folder of a single identity, which may be any.
+/// Like key_folder_of(), but `path` may also be the key folder of any single identity.
 [[nodiscard]] std::string own_key_folder(const std::string& path, const Identity& identity);
 
 /// Formats a time in UTC with a strftime() format whose result has at most 63 characters.

@@ -13,7 +13,7 @@ namespace sidestep {
 
 using PrivateKey = std::shared_ptr<evp_pkey_st>;
 
-/// Reads a PEM file. Throws std::invalid_argument with the file and what is wrong.
+/// Reads a PEM file. Throws std::invalid_argument that names the file and the problem.
 [[nodiscard]] PrivateKey load_private_key(const std::string& path);
 
 /// Signs the SHA-256 hash of the bytes; Certificate::has_signed() checks the signature. Throws

@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// The text of a DDS Security document that was signed by an authority (S/MIME, DDS Security 1.1, 9.4.1).
-/// Throws std::invalid_argument with the file and what is wrong.
+/// Throws std::invalid_argument that names the file and the problem.
 [[nodiscard]] std::string load_signed_document(const std::string& path, const Certificate& authority);
 
 /// How long a subject's permissions are valid on this host, according to a permissions document. nullopt if

@@ -43,7 +43,7 @@ struct RobotFeedback {
   bool has_ball = false;  ///< the ball touches the robot's dribbler
 };
 
-/// RobotControlResponse.
+/// RobotControlResponse: the answer to TeamCommands.
 struct TeamResponse {
   std::vector<SimulatorError> errors;
   std::vector<RobotFeedback> feedback;
@@ -62,7 +62,6 @@ struct RobotTeleport {
   std::optional<bool> is_present;
 };
 
-/// SimulatorCommand.
 struct SimulatorCommand {
   std::optional<BallTeleport> ball;
   std::vector<RobotTeleport> robots;
@@ -71,7 +70,6 @@ struct SimulatorCommand {
   std::optional<std::uint32_t> vision_port;
 };
 
-/// SimulatorResponse.
 struct SimulatorResponse {
   std::vector<SimulatorError> errors;
 };

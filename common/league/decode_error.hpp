@@ -38,7 +38,7 @@ struct [[nodiscard]] Decoded {
 inline constexpr std::size_t kMaxDatagramSize = 65507;
 /// Cameras are numbered 0 .. kMaxCameras - 1.
 inline constexpr std::uint32_t kMaxCameras = 64;
-/// Robots of a team are numbered 0 .. kRobotNumbers - 1, the number of standard patterns.
+/// Robots of a team are numbered 0 .. kRobotNumbers - 1; there is one standard marker pattern per number.
 inline constexpr std::uint32_t kRobotNumbers = 16;
 
 }  // namespace sidestep::league

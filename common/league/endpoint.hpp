@@ -22,11 +22,11 @@ struct Endpoint {
 std::string to_text(const Endpoint& endpoint);
 
 /// Parses ADDRESS:PORT with a multicast address (224.0.0.0 to 239.255.255.255) and a port (1 to 65535).
-/// Throws std::invalid_argument with what was expected.
+/// Throws std::invalid_argument that says what was expected.
 [[nodiscard]] Endpoint parse_multicast_endpoint(const std::string& text);
-/// Parses ADDRESS:PORT with a unicast address. Throws std::invalid_argument with what was expected.
+/// Parses ADDRESS:PORT with a unicast address. Throws std::invalid_argument that says what was expected.
 [[nodiscard]] Endpoint parse_unicast_endpoint(const std::string& text);
-/// Parses an IPv4 address such as 127.0.0.1. Throws std::invalid_argument with what was expected.
+/// Parses an IPv4 address such as 127.0.0.1. Throws std::invalid_argument that says what was expected.
 [[nodiscard]] std::uint32_t parse_address(const std::string& text);
 
 /// An owned file descriptor.

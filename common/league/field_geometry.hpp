@@ -17,7 +17,7 @@ struct LineMarking {
   Vec2 from_m{0, 0};
   Vec2 to_m{0, 0};
   double thickness_m = 0;
-  std::optional<std::uint32_t> type{};  ///< as numbered by the league: 1 centre circle, 2 top touch line, ...
+  std::optional<std::uint32_t> type{};  ///< the league's number: 1 centre circle, 2 top touch line, ...
 };
 
 struct ArcMarking {

@@ -18,7 +18,7 @@ namespace sidestep::league {
 
 /// The packet types of a log, with their numbers in the file.
 enum class LogType : std::int32_t {
-  kVision2010 = 2,  ///< with the geometry format of 2010
+  kVision2010 = 2,  ///< vision packets with the geometry format of 2010
   kReferee = 3,
   kVision = 4,
   kTracked = 5
@@ -49,8 +49,8 @@ class LogReader {
 
   /// Reads the next record, skipping unknown types. False at the end.
   [[nodiscard]] bool next(LogRecord& record);
-  /// Positions the reader before the first record received at least `after_first` after the first of the
-  /// file. False if there is none.
+  /// Positions the reader before the first record that was received at least `after_first` later than the
+  /// file's first record. False if there is none.
   [[nodiscard]] bool seek(Duration after_first);
   LogStatus status() const { return status_; }
   /// Why the log is truncated or corrupt, as "FILE: byte 28: ..."; else empty.

@@ -22,8 +22,8 @@ inline constexpr const char* kSimulatedVisionEndpoint = "224.5.23.2:10020";
 inline constexpr const char* kLeagueInterface = "127.0.0.1";
 
 /// Sends datagrams to a multicast group over one interface, given by its address, without blocking. The TTL
-/// is 1, so they stay in the local network. The constructor throws std::invalid_argument if the machine has
-/// no such interface, and std::runtime_error if the socket cannot be opened.
+/// is 1, so the datagrams stay in the local network. The constructor throws std::invalid_argument if the
+/// machine has no such interface, and std::runtime_error if the socket cannot be opened.
 class MulticastSender {
  public:
   MulticastSender(const Endpoint& group, const std::string& interface);

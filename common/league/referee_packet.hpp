@@ -27,7 +27,7 @@ enum class RefereeCommand : std::uint8_t {
   kPreparePenaltyBlue,
   kDirectFreeYellow,
   kDirectFreeBlue,
-  kIndirectFreeYellow,  ///< only in logs of earlier years, like the goals
+  kIndirectFreeYellow,  ///< occurs only in logs of earlier years, like kGoalYellow and kGoalBlue
   kIndirectFreeBlue,
   kTimeoutYellow,
   kTimeoutBlue,
@@ -46,15 +46,15 @@ std::optional<Team> team_of(RefereeCommand command);
 
 /// The part of the Referee message that navigation needs.
 struct RefereePacket {
-  Duration sent{0};  ///< by the sender's clock, like DetectionFrame::captured
+  Duration sent{0};  ///< send time by the sender's clock, like DetectionFrame::captured
   RefereeCommand command = RefereeCommand::kHalt;
   std::uint32_t command_counter = 0;               ///< number of commands since the referee's start
   Duration commanded{0};                           ///< when the command was given, by the sender's clock
   std::optional<Vec2> designated_position_m = {};  ///< target position of ball placement
 };
 
-/// The payload of a datagram, with teams without names. Precondition: the numbers are finite and in the
-/// ranges that decode_referee() accepts.
+/// Encodes the payload of a datagram; the names of the teams are empty. Precondition: the numbers are finite
+/// and in the ranges that decode_referee() accepts.
 std::vector<std::byte> encode(const RefereePacket& packet);
 
 /// Rejects a packet as a whole if its command is unknown, its position beyond 100 m, or a time beyond 2^33 s.

@@ -34,7 +34,7 @@ struct TrackedRobot {
 
 struct TrackedFrame {
   std::uint32_t frame_number = 0;
-  Duration at{0};  ///< by the sender's clock, like DetectionFrame::captured
+  Duration at{0};  ///< time by the sender's clock, like DetectionFrame::captured
   std::vector<TrackedBall> balls;
   std::vector<TrackedRobot> robots;
 };
@@ -46,8 +46,8 @@ struct TrackedPacket {
   std::optional<TrackedFrame> frame;
 };
 
-/// The payload of a datagram. Precondition: the numbers are finite and in the ranges that decode_tracked()
-/// accepts.
+/// Encodes the payload of a datagram. Precondition: the numbers are finite and in the ranges that
+/// decode_tracked() accepts.
 std::vector<std::byte> encode(const TrackedPacket& packet);
 
 /// Rejects a packet as a whole if any value in it is invalid: positions beyond 100 m, headings beyond 7 rad,

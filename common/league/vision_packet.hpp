@@ -19,7 +19,7 @@ struct DetectedBall {
   std::optional<double> height_m;
   double confidence = 0;  ///< 0 .. 1
   Vec2 pixel{0, 0};
-  std::optional<std::uint32_t> area;  ///< in pixels
+  std::optional<std::uint32_t> area;  ///< area in pixels
 };
 
 struct DetectedRobot {
@@ -38,7 +38,7 @@ struct DetectionFrame {
   std::uint32_t camera = 0;
   Duration captured{0};
   Duration sent{0};
-  std::optional<Duration> captured_by_camera;  ///< by the camera's own clock
+  std::optional<Duration> captured_by_camera;  ///< capture time by the camera's own clock
   std::vector<DetectedBall> balls;
   std::vector<DetectedRobot> yellow;
   std::vector<DetectedRobot> blue;
@@ -51,8 +51,8 @@ struct VisionPacket {
   std::optional<std::uint32_t> source;  ///< the sending program, as a number defined by the league
 };
 
-/// The payload of a datagram. Precondition: the numbers are finite and in the ranges that decode_vision()
-/// accepts.
+/// Encodes the payload of a datagram. Precondition: the numbers are finite and in the ranges that
+/// decode_vision() accepts.
 std::vector<std::byte> encode(const VisionPacket& packet);
 
 /// Rejects a packet as a whole if any value in it is invalid: positions beyond 100 m, headings beyond 7 rad,

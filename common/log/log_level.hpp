@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// Severity of a log line, in ascending order. As the level of a log it is the lowest severity that is
-/// written; kOff disables the log and is no severity.
+/// Severity of a log line, in ascending order. The level of a log is the lowest severity that it writes; kOff
+/// disables the log and is not a severity.
 enum class LogLevel : std::uint8_t { kTrace, kDebug, kInfo, kWarning, kError, kOff };
 
 /// The names of the levels on the command line and in the log, indexed by LogLevel.

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// The distances of all cells of a map to the nearest blocked cell, two bytes a cell (8 MB for 2,000 x 2,000
-/// cells, and twice that during computation). Const functions are thread-safe and do not allocate. The
+/// The distances of all cells of a map to the nearest blocked cell, two bytes per cell (8 MB for 2,000 x
+/// 2,000 cells, and twice that during computation). Const functions are thread-safe and do not allocate. The
 /// outside of the map counts as blocked in all bounds.
 class DistanceField {
  public:
@@ -17,15 +17,15 @@ class DistanceField {
 
   const MapGrid& grid() const { return grid_; }
 
-  /// A lower bound of the distance from a point to the nearest blocked cell or the outside. It is 0 inside
-  /// them and for points that are not finite. For distances up to 2,047 cells it is at most 1.5 cells below
-  /// the true distance.
+  /// A lower bound of the distance from a point to the nearest blocked cell or the outside. It is 0 inside a
+  /// blocked cell, outside the map and for points that are not finite. For distances up to 2,047 cells it is
+  /// at most 1.5 cells below the true distance.
   double lower_bound_m(const Vec2& p) const {
     const Vec2 offset = p - grid_.origin_m, left = size_m_ - offset;
     if (!(offset.x() > 0 && offset.y() > 0 && left.x() > 0 && left.y() > 0)) return 0;
     const int column = std::min(static_cast<int>(offset.x() * cells_per_m_), grid_.columns - 1);
     const int row = std::min(static_cast<int>(offset.y() * cells_per_m_), grid_.rows - 1);
-    // This holds for any cell, so it does not matter if rounding selects a neighbour of p's cell.
+    // The bound holds for any cell, so it does not matter if rounding selects a neighbour of p's cell.
     const Vec2 from_centre(offset.x() - (column + 0.5) * grid_.resolution_m,
                            offset.y() - (row + 0.5) * grid_.resolution_m);
     const double bound_m = stored(column, row) * m_per_step_ - margin_m_ - from_centre.norm();
@@ -58,7 +58,7 @@ class DistanceField {
   Vec2 size_m_;
   double cells_per_m_, m_per_step_;
   double margin_m_;                       // half the diagonal of a blocked cell, plus all errors
-  std::vector<std::uint16_t> distances_;  // in units of 1 / kSteps cells, rounded to the nearest
+  std::vector<std::uint16_t> distances_;  // distances in 1 / kSteps cells, rounded to the nearest
 };
 
 /// Whether a disc that moves in a straight line touches a blocked cell or the outside. Same result as

@@ -84,7 +84,7 @@ class RowPass {
     return size;
   }
 
-  /// Whether the last corner lies below the line from the one before it to a new one.
+  /// Whether the last corner lies below the line from the corner before it to a new corner.
   bool is_convex(std::size_t size, std::int32_t x, std::int32_t height) const {
     const std::int32_t last_x = xs_[size - 1], last_height = heights_[size - 1];
     return std::int64_t{last_height - heights_[size - 2]} * (x - last_x) <
@@ -115,7 +115,7 @@ class RowPass {
   }
 
   std::vector<std::int32_t> xs_, heights_;  // indexed by corner; heights are x² + distance²
-  std::vector<std::int32_t> lasts_;         // by corner: last column where its parabola is lowest
+  std::vector<std::int32_t> lasts_;         // indexed by corner: last column where its parabola is lowest
   std::vector<std::int32_t> squared_;
 };
 

@@ -32,7 +32,8 @@ void check(const FloorPlanSettings& settings) {
     throw std::invalid_argument("a floor plan's doors are wider than its rooms, or its rooms have no size");
   for (const double chance : {settings.corridor_chance, settings.shelves_chance}) {
     if (!(chance >= 0 && chance <= 1))
-      throw std::invalid_argument(fmt::format("a chance of a floor plan is {}, expected 0 to 1", chance));
+      throw std::invalid_argument(
+          fmt::format("a probability of a floor plan is {}, expected 0 to 1", chance));
   }
 }
 

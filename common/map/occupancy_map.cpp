@@ -35,14 +35,14 @@ Box part_near_row(const Segment& path, double row_low_m, double row_high_m, doub
 OccupancyMap::OccupancyMap(const MapGrid& grid, BitGrid blocked) : grid_(grid), blocked_(std::move(blocked)) {
   check(grid);
   if (blocked_.columns() != grid.columns || blocked_.rows() != grid.rows) {
-    throw std::invalid_argument(fmt::format("a map of {} x {} cells with {} x {} bits", grid.columns,
+    throw std::invalid_argument(fmt::format("a map of {} x {} cells was given {} x {} bits", grid.columns,
                                             grid.rows, blocked_.columns(), blocked_.rows()));
   }
 }
 
 double OccupancyMap::distance_m(const Vec2& p, double max_m) const {
   if (!p.allFinite()) throw std::invalid_argument("the position of a distance query is not finite");
-  if (!(max_m >= 0)) throw std::invalid_argument("the largest distance of a query is not 0 or more");
+  if (!(max_m >= 0)) throw std::invalid_argument("the maximum distance of a query is negative or NaN");
   double best_m = std::min(max_m, -signed_distance(p, extent()));
   if (best_m <= 0) return 0;
   const Cell at = cell_at(p);

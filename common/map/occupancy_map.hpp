@@ -27,8 +27,8 @@ class OccupancyMap {
   /// True outside the map.
   bool is_blocked(const Cell& cell) const { return !grid_.has(cell) || blocked_.get(cell.column, cell.row); }
 
-  /// The exact distance from a point to the nearest blocked cell or the outside, or `max_m` if that is
-  /// smaller. It is 0 inside them. The run time grows with the result. `max_m` may be infinite.
+  /// The exact distance from a point to the nearest blocked cell or the outside, but at most `max_m`, which
+  /// may be infinite. It is 0 inside a blocked cell or outside. The run time grows with the result.
   double distance_m(const Vec2& p, double max_m = std::numeric_limits<double>::infinity()) const;
 
   /// Whether a disc that moves straight from one position to another touches a blocked cell or the outside.
@@ -42,10 +42,10 @@ class OccupancyMap {
   template <typename Call>
   bool for_each_box(const Box& region, const Call& call) const;
 
-  /// Rectangles that together cover exactly the blocked cells, without the outside. Each is maximal, so they
-  /// overlap. Their number is small but not minimal: for each cell not yet covered, in rows from the lower
-  /// left, the largest rectangle with this cell as its corner is chosen, and extended. nullopt if more than
-  /// `limit` would be needed.
+  /// Rectangles that together cover exactly the blocked cells, without the outside. Each is maximal, so
+  /// rectangles may overlap. Their number is small but not minimal: for each cell not yet covered, in rows
+  /// from the lower left, the largest rectangle with this cell as its corner is chosen, and extended. nullopt
+  /// if more than `limit` would be needed.
   std::optional<std::vector<Box>> rectangles(std::size_t limit) const;
 
  private:

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kSignatureSize = 8, kChunkOverhead = 12;
 /// Enough for 64 bits per pixel without compression.
 constexpr long kMaxFileBytes = 8 * kMaxMapCells;
-/// Maximum compression of deflate, where a pixel has at least one bit.
+/// Deflate compresses at most 1032 to 1, and a pixel has at least one bit.
 constexpr long kMaxPixelsPerByte = 8 * 1032;
 /// gAMA chunks contain 100,000 / gamma. libpng leaves samples unchanged if gamma is within 5 % of sRGB's.
 constexpr std::uint32_t kMinGamma = 44'000, kMaxGamma = 47'000;

@@ -9,7 +9,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kNoHit = std::numeric_limits<double>::infinity();
-/// Every point of a cell has at least this much less free space than the distance between centres: half a
+/// The free distance at any point of a cell is the distance between centres less at most this: half a
 /// diagonal for the point, half a diagonal for the blocked cell, and the error of the stored distance.
 constexpr double kCellMargin = 1.4143 + 0.02;
 /// Margin that keeps a ray off blocked cells after a jump, so that rounding cannot put it into one.

@@ -17,8 +17,8 @@ struct RayScene {
   std::span<const Circle> discs{};  ///< robots and people
 };
 
-/// The distance from a point along a unit vector to the first blocked cell or the outside. It is 0 inside
-/// them, and infinite if it exceeds `max_m`. Cells far from blocked ones are skipped by the distance field,
+/// The distance from a point along a unit vector to the first blocked cell or the outside: 0 if the point is
+/// in either, infinite if it exceeds `max_m`. Cells far from blocked ones are skipped by the distance field,
 /// others are traversed one by one (Amanatides and Woo 1987). A ray that passes a corner or an edge within a
 /// nanometre may hit it or not. Throws std::invalid_argument for numbers that are not finite.
 [[nodiscard]] double cast_ray(const OccupancyMap& map, const DistanceField& field, const Vec2& from_m,

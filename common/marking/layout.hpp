@@ -21,7 +21,7 @@ struct Marker {
 /// The marker colours of one robot of a team.
 struct MarkerPattern {
   std::uint32_t id = 0;
-  std::vector<Colour> colours;  ///< of the layout's dots, in order
+  std::vector<Colour> colours;  ///< colours of the layout's dots, in order
 };
 
 /// The arrangement of markers on top of a robot. The centre marker's colour identifies the team, the other

@@ -17,7 +17,7 @@ std::string cause(const Blockage& blockage) {
     case msg::BlockReason::BLOCK_ZONE:
       return fmt::format("zone {} covers its goal", blockage.blocker);
     case msg::BlockReason::BLOCK_OCCLUDED_CORNER:
-      return "somebody may step out from behind the corner at " + place(blockage.blocker_m);
+      return "a person may step out from behind the corner at " + place(blockage.blocker_m);
     case msg::BlockReason::BLOCK_NONE:
     case msg::BlockReason::BLOCK_NO_PATH:
       break;

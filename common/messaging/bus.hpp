@@ -62,7 +62,7 @@ class Bus {
     return nullptr;
   }
 
-  /// Whether this process's keys allow it to write, or read, a topic's channel of a robot; true without keys.
+  /// Whether this process's keys allow it to write, or read, a robot's channel of a topic; true without keys.
   /// If the keys forbid it, advertise() throws std::invalid_argument, and a subscription receives no
   /// messages.
   virtual bool may_write(const TopicInfo& topic, std::uint32_t robot) const {
@@ -97,7 +97,7 @@ class Bus {
   }
 
   /// From now on, if two processes write a single-writer channel, only the messages of the process that was
-  /// heard first are used. For observers of a simulation, in which that one is genuine.
+  /// heard first are used. For observers of a simulation, where the first process is the genuine one.
   void follow_first_senders() { follows_first_ = true; }
 
   /// From now on, new subscriptions to single-writer channels listen for a moment before they trust a writer.

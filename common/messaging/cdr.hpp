@@ -25,7 +25,7 @@ std::shared_ptr<void> make_message();
 template <typename Message>
 std::shared_ptr<const void> copy_message(const void* message);
 
-/// Header.sender.
+/// The message's Header.sender.
 template <typename Message>
 std::uint32_t message_sender(const void* message);
 

@@ -10,8 +10,8 @@
 namespace sidestep {
 
 /// Answers clock probes with the time at which the probe arrived and the time at which the answer was sent,
-/// by this process's clock. Concurrent commands share the rate of answers. Probes beyond it are ignored, so
-/// that nobody can overload the process with them.
+/// by this process's clock. Probes beyond a rate, which all senders share, are ignored, so that no sender can
+/// overload the process.
 class ClockResponder {
  public:
   /// What an answer says about the process besides its clock.

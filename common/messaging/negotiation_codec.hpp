@@ -14,8 +14,8 @@ namespace sidestep {
 /// candidates remain.
 [[nodiscard]] std::optional<Proposal> decode(const msg::Proposal& message, Time now);
 /// Decodes an untrusted registration. Returns nullopt if its sender is not an agent of the registration's
-/// robot, or if incarnation or epoch are implausible. Registration::versions is nullopt if there are too
-/// many, if any is invalid, belongs to another robot or is listed twice, or if they contradict is_absent.
+/// robot, or if incarnation or epoch are implausible. Registration::versions is nullopt if too many are
+/// listed, if any is invalid, belongs to another robot or is listed twice, or if they contradict is_absent.
 [[nodiscard]] std::optional<Registration> decode(const msg::Registration& message, Time now);
 /// Decodes an untrusted verdict. Returns nullopt unless a coordinator sent it for `robot`, and all reasons
 /// are known.
@@ -25,8 +25,8 @@ namespace sidestep {
 /// implausible. Precondition: the message outlives the result.
 [[nodiscard]] std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now);
 
-/// Decodes the untrusted reason of a coordinator's role. Returns nullopt if it is unknown or refers to no
-/// possible process.
+/// Decodes the untrusted reason of a coordinator's role. Returns nullopt if the reason is unknown or refers
+/// to no possible process.
 [[nodiscard]] std::optional<RoleCause> decode_role_cause(const msg::CoordinatorState& message);
 /// Writes a role's reason into a coordinator's state.
 void encode(const RoleCause& cause, msg::CoordinatorState& message);

@@ -44,8 +44,9 @@ struct OrderReport {
   std::optional<double> remaining_s{};
 };
 
-/// Decodes an untrusted order. Returns nullopt if the sender may not send orders or not this one, if the kind
-/// is unknown, if the number is implausible at `now` (by the local clock), or if any value is out of bounds.
+/// Decodes an untrusted order. Returns nullopt if the sender may not send orders, or not this one, if the
+/// kind is unknown, if the number is implausible at `now` (by the local clock), or if any value is out of
+/// bounds.
 [[nodiscard]] std::optional<Order> decode(const msg::Order& message, Time now);
 /// Decodes an untrusted page. Returns nullopt if its sender is neither a coordinator nor an agent, if there
 /// are more than kMaxOrderPages pages, or if any of its orders is invalid.

@@ -9,16 +9,16 @@
 namespace sidestep {
 
 /// Decodes an untrusted command. Returns nullopt unless it is for `robot`, its sender is an agent of `robot`,
-/// and every field is finite and plausible at `now` (by the local clock). Only the fix's time may be
-/// arbitrary.
+/// and every field is finite and plausible at `now` (by the local clock). Only the capture time of the pose
+/// fix may be arbitrary.
 [[nodiscard]] std::optional<Command> decode(const msg::Command& message, RobotId robot, Time now);
-/// Decodes untrusted facts. Returns nullopt unless `robot` sent them about itself, all numbers are finite,
-/// and version, incarnations, epoch and times are valid and plausible at `now` (by the local clock).
+/// Decodes an untrusted robot report. Returns nullopt unless `robot` sent it about itself, all numbers are
+/// finite, and version, incarnations, epoch and times are valid and plausible at `now` (by the local clock).
 [[nodiscard]] std::optional<RobotReport> decode(const msg::Feedback& message, RobotId robot, Time now);
 
 /// Encodes a command without the header's message_number and stamp_ns, which Writer::publish() sets.
 msg::Command encode(const Command& command);
-/// Encodes facts without the header's message_number and stamp_ns.
+/// Encodes a robot report without the header's message_number and stamp_ns.
 msg::Feedback encode(const RobotReport& robot_report);
 
 }  // namespace sidestep

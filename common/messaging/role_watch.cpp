@@ -49,13 +49,13 @@ std::string describe_other(std::uint32_t process, Incarnation own, Incarnation o
   const std::string name = process_name(process);
   const double by_s = to_seconds(Duration{static_cast<std::int64_t>(own - other)});
   return fmt::format(
-      "another {} is running in this domain, which started {:.1f} s {}; there must be only one", name,
+      "another {} is running in this domain; it started {:.1f} s {}, and there must be only one", name,
       std::abs(by_s), by_s > 0 ? "earlier" : "later");
 }
 
 std::string describe_contest(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
   return fmt::format(
-      "two processes send '{}' as {}; the messages of both are ignored there until one of them has ended",
+      "two processes send '{}' as {}; the messages of both are ignored on this topic until one of them ends",
       channel_name(topic, robot),
       topic.per_robot ? fmt::format("robot {}", robot) : process_name(header.sender()));
 }

@@ -20,7 +20,7 @@ RulesExchange::RulesExchange(Bus& bus, std::uint32_t process, const SharedRules&
 }
 
 void RulesExchange::on_refused(const TopicInfo& topic, const msg::Header& header) {
-  // The simulator sends its robots' messages with their numbers.
+  // The simulator sends the messages of its robots with the robots' numbers as senders.
   const bool is_simulator = topic.per_robot && topic.writers.has(Role::kSimulator);
   report(is_simulator ? static_cast<std::uint32_t>(Sender::kSimulator) : header.sender(), header.rules(), {});
   publish_if_due();
@@ -39,7 +39,8 @@ void RulesExchange::report(std::uint32_t process, Fingerprint fingerprint,
                            std::vector<RuleDifference> differences) {
   const std::pair key(process, fingerprint);
   const bool is_full = reported_.size() >= kMaxReported && !reported_.contains(key);
-  // Anybody can invent processes. Once the table is full, later processes are still reported, but rarely.
+  // A hostile sender can invent processes. Once the table is full, later processes are still reported, but
+  // rarely.
   if (is_full && !later_reports_.admit(bus_.now())) return;
   if (is_full) reported_.erase(reported_.begin());
   const auto [known, is_new] = reported_.try_emplace(key, false);
@@ -60,15 +61,15 @@ void RulesExchange::publish_if_due() {
   // Created only now: with many processes, unnecessary writers would dominate the start-up time.
   if (!writer_) {
     writer_ = bus_.advertise(topics::kRules);
-    // Over DDS the first message is lost, because nobody has discovered this writer yet. The other process
-    // might never again send a message that is refused, so the rules are sent again later.
+    // Over DDS the first message is lost, because no process has discovered this writer yet. The other
+    // process might never again send a message that is refused, so the rules are sent again later.
     for (const int periods : {1, 2, 4}) bus_.at(now + periods * kPeriod, [this] { publish_if_due(); });
   }
   writer_->publish(message, now);
 }
 
 std::string describe(const RulesMismatch& mismatch) {
-  std::string text = "refuses " + process_name(mismatch.process) + ", which works by other rules";
+  std::string text = "refuses " + process_name(mismatch.process) + ", which has different rules";
   if (!mismatch.differences.empty()) text += ": " + describe(mismatch.differences);
   return text;
 }

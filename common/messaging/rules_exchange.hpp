@@ -50,7 +50,7 @@ class RulesExchange {
   RateLimit later_reports_{1, std::chrono::seconds(10)};  ///< used once reported_ is full
 };
 
-/// A log message such as "refuses agent 3, which works by other rules: margin_m is 0.02 instead of 0.01".
+/// A log message such as "refuses agent 3, which has different rules: margin_m is 0.02 instead of 0.01".
 std::string describe(const RulesMismatch& mismatch);
 
 }  // namespace sidestep

@@ -7,19 +7,19 @@
 
 namespace sidestep {
 
-/// Guards a channel that only one process at a time may write (TopicInfo::is_sole), such as a robot's facts.
-/// Two processes that speak for the same robot contradict each other, and nothing shows which one is right.
-/// Therefore all messages of both are ignored while both are heard. To the protocol these messages are lost,
-/// which stops robots and is safe.
+/// Guards a channel that only one process at a time may write (TopicInfo::is_sole), such as a robot's
+/// feedback. Two processes that speak for the same robot contradict each other, and nothing shows which one
+/// is right. Therefore all messages of both are ignored while both are heard. For the protocol these messages
+/// are lost, which stops robots and is safe.
 class SoleSender {
  public:
   enum class Outcome : std::uint8_t { kCounts, kRefused, kNewlyContested };
   /// Silence after which a process counts as gone, so that another may take its place. The longer time
-  /// applies if the two have been heard at the same time.
+  /// applies if the two have been heard alternately.
   static constexpr Duration kGoneAfter{1'000'000'000};
   static constexpr Duration kGoneAfterContest{6'000'000'000};
-  /// A process that starts among others listens for this long before it trusts a sender. Otherwise it would
-  /// take the first one heard for the only one.
+  /// A process that starts while others are running listens for this long before it trusts a sender.
+  /// Otherwise it would take the first one heard for the only one.
   static constexpr Duration kListening{300'000'000};
 
   SoleSender() = default;
@@ -42,7 +42,7 @@ class SoleSender {
   /// Handles a message in the listening period: any process heard besides the first one proves a conflict.
   Outcome listen(std::uint64_t incarnation, Time now);
 
-  static constexpr std::uint32_t kEvidence = 2;  // number of alternating messages of each
+  static constexpr std::uint32_t kEvidence = 2;  // number of alternating messages of each process
 
   bool has_sender_ = false, is_reported_ = false;
   std::uint64_t sender_ = 0;  // incarnation of the process that was heard first

@@ -50,11 +50,10 @@ struct TopicInfo {
   const char* name = nullptr;
   Roles writers, readers;
   Qos qos{};
-  bool per_robot =
-      false;  ///< one channel per robot, "<name>/<robot>": readers get only their robot's messages
+  bool per_robot = false;   ///< the topic has one channel per robot, "<name>/<robot>"
   bool is_checked = false;  ///< processes refuse messages on this topic from processes with other rules
   MessageType type{};
-  bool is_sole = false;  ///< only one process at a time may write a channel, see SoleSender
+  bool is_sole = false;  ///< only one process at a time may write each channel, see SoleSender
 };
 
 template <typename Message>
@@ -156,7 +155,7 @@ inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", Role::kAgent, kWatchers, Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
 /// Counts of messages that each process has refused, dropped or received too late. Processes that must run
-/// alone also detect duplicates by it.
+/// alone also use it to detect a second process with their id.
 inline constexpr Topic<msg::Counters> kCounters{
     {"counters", kParts, kSoleRoles | kWatchers, Qos::kState, false, true,
      message_type<msg::Counters>("sidestep::msg::Counters", msg::MAX_COUNTERS)}};

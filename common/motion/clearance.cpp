@@ -129,7 +129,7 @@ double min_squared_distance(const RelativeMotion& motion) {
     if (derivative_low < 0 && derivative_high > 0) {
       minimum = std::min(minimum, motion.squared_distance(derivative.zero(low, high)));
     } else {
-      // A minimum at a bound of the bracket.
+      // The minimum is at a bound of the bracket.
       minimum = std::min(minimum, motion.squared_distance(high));
     }
     low = high;

@@ -16,7 +16,7 @@ Vec2 max_extent_m(const Trajectory& trajectory) {
     const double seconds = to_seconds(phase.duration);
     for (const int axis : {0, 1}) {
       const double turn = -state.velocity_mps[axis] / phase.acceleration_mps2[axis];
-      if (!(turn > 0 && turn < seconds)) continue;  // also false where the acceleration is zero
+      if (!(turn > 0 && turn < seconds)) continue;  // also skips zero acceleration
       const double turning_point = state.position_m[axis] + 0.5 * turn * state.velocity_mps[axis];
       extent[axis] = std::max(extent[axis], std::abs(turning_point));
     }

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Where a robot is to drive.
+/// A place that a robot must drive to.
 struct Goal {
   Vec2 position_m{0, 0};
   std::optional<double> heading_rad{};      ///< nullopt: any heading

@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// Speed at which a planned motion counts as at rest: it is a rounding error, and has no direction. Measured
-/// speeds are noisier; what measures them has a threshold of its own.
+/// Speed at which a planned motion counts as at rest: such a speed is a rounding error, and has no direction.
+/// Measured speeds are noisier and need a higher threshold.
 inline constexpr double kPlannedRest_mps = 1e-6;
 
 }  // namespace sidestep

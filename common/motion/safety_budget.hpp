@@ -10,8 +10,8 @@ namespace sidestep {
 /// from its reference must return within 25 ms; the rest of the bound covers this time.
 constexpr double drift_bound_m(double tracking_bound_m) { return 0.6 * tracking_bound_m; }
 
-/// Maximum persistent offset between a robot's place and where vision shows it, for example due to a badly
-/// calibrated camera. It is the part of the tracking bound that drift does not use up.
+/// Maximum persistent offset between a robot's position and the one that vision reports, for example due to a
+/// badly calibrated camera. It is the part of the tracking bound that drift does not use up.
 constexpr double vision_error_bound_m(double tracking_bound_m) {
   return tracking_bound_m - drift_bound_m(tracking_bound_m);
 }

@@ -10,7 +10,7 @@ namespace sidestep {
 
 void add_bases_bus_options(const CliCommand& app, const std::string& condition, BasesBusOptions& options) {
   app.add_option("--topic-prefix", options.topic_prefix,
-                 condition + ": of rt/robot3/cmd_vel and rt/robot3/odom")
+                 condition + ": text before the robot's number in rt/robot3/cmd_vel and rt/robot3/odom")
       .show_default();
   app.add_option("--base-domain", options.domain,
                  condition +
@@ -23,7 +23,7 @@ std::shared_ptr<Bus> bases_bus(DdsBus& bus, const BasesBusOptions& options) {
   if (!options.domain) {
     if (bus.has_keys())
       throw std::invalid_argument(
-          "bases have no keys, so that their topics need a DDS domain of their own; expected --base-domain");
+          "bases have no keys, so their topics need a separate DDS domain; expected --base-domain");
     return {std::shared_ptr<void>(), &bus};
   }
   log(LogLevel::kInfo,

@@ -255,7 +255,7 @@ void CliCommand::on_parsed(std::function<void()> callback) const {
 
 CommandLine::CommandLine(const std::string& description, const std::string& program_name)
     : app_(std::make_unique<CLI::App>(description, program_name)) {
-  // Here, because each program begins with its command line.
+  // Called here, because each program begins with its command line.
   open_closed_streams();
 }
 
@@ -280,7 +280,8 @@ std::optional<CLI::ParseError> unknown_command(const CLI::App& root) {
 
 }  // namespace
 
-/// Converts arguments to the form that the library expects. It takes "-.5" for an option but not "-0.5".
+/// Converts arguments to the form that the library expects. The library takes "-.5" for an option but not
+/// "-0.5".
 std::vector<std::string> CommandLine::reversed(std::vector<std::string> arguments) {
   const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   for (std::string& argument : arguments) {

@@ -16,7 +16,7 @@ class Option;
 
 namespace sidestep {
 
-/// The command line is wrong; the message says what and where. Programs exit with kExitUsage.
+/// The command line is wrong; the message says where and why. Programs exit with kExitUsage.
 class UsageError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -29,9 +29,9 @@ struct ValueCheck {
   struct Limits {
     double min, max;
   };
-  std::optional<Limits> limits{};  ///< of in_range()
+  std::optional<Limits> limits{};  ///< set by in_range()
 };
-/// For options with whole numbers, Option::check() replaces it with in_whole_range().
+/// For options with whole numbers, Option::check() replaces this check with in_whole_range().
 [[nodiscard]] ValueCheck in_range(double min, double max);
 [[nodiscard]] ValueCheck in_whole_range(std::int64_t min, std::int64_t max);
 /// From 1e-9 to 1e9: positive, and usable as a duration in seconds or as a rate per second.
@@ -58,7 +58,7 @@ class Option {
 
  private:
   CLI::Option* option_;
-  bool is_whole_;  ///< its values are whole numbers
+  bool is_whole_;  ///< the option's values are whole numbers
 };
 
 /// Handle of a command or subcommand, to which options are added. Variables must outlive the parsing.

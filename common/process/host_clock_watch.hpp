@@ -10,12 +10,12 @@ namespace sidestep {
 
 /// The processes whose clocks this process's clock must agree with.
 enum class ClockReference {
-  kCoordinators,  ///< for all processes except coordinators
-  kRobots         ///< for coordinators: they serve the robots, whose clocks they cannot set
+  kCoordinators,  ///< reference of all processes except coordinators
+  kRobots         ///< reference of coordinators, which cannot set the robots' clocks
 };
 
 /// Detects when the host's clock is set, and uses ClockRecovery to decide whether the process must restart
-/// with it. Costs nothing as long as the host's clock is not set.
+/// with that clock. Costs nothing as long as the host's clock is not set.
 class HostClockWatch {
  public:
   static constexpr Duration kPeriod{1'000'000'000};
@@ -24,7 +24,7 @@ class HostClockWatch {
     std::function<Duration()> host_ahead;   ///< returns the host's clock minus the process's clock
     std::function<bool()> is_in_use;        ///< whether the process uses its clock together with others
     std::function<void()> on_adopt;         ///< called once if the process must restart with its host's clock
-    std::function<void(Duration)> on_step;  ///< the host's clock was set: it is this far ahead
+    std::function<void(Duration)> on_step;  ///< called if the host's clock was set, with its lead
   };
 
   /// `max_clock_difference`: see ClockRecovery. The bus makes no callbacks after this object's destruction.

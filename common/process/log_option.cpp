@@ -9,7 +9,7 @@ Option add_log_option(const CliCommand& app, LogLevel& level) {
   return app
       .add_option(
           "--log-level", [&level](const std::string& name) { level = *log_level_from(name); },
-          "least severe messages in the log")
+          "lowest severity of messages in the log")
       .check(log_level_names())
       .show_default(std::string(to_text(level)));
 }

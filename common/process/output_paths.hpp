@@ -6,9 +6,9 @@
 
 namespace sidestep {
 
-/// A file of a command.
+/// A file that a command reads or writes.
 struct NamedPath {
-  std::string name;  ///< what names it on the command line, e.g. "--report"
+  std::string name;  ///< the option or argument that names it, e.g. "--report"
   std::string path;  ///< empty: none
 };
 

@@ -55,7 +55,7 @@ void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings) {
                  "addresses of the hosts of all processes, on networks without multicast [multicast]")
       .comma_separated();
   app.add_option("--keys", settings.keys,
-                 "folder with the keys of this process, or that `sidestep keys init` has made");
+                 "folder with the keys of this process, or a folder made by `sidestep keys init`");
   app.add_flag("--insecure", settings.insecure,
                "run without keys, although other machines can reach the interface and command the robots");
 }

@@ -21,7 +21,7 @@ namespace sidestep {
 struct RunningNodes {
   std::shared_ptr<void> nodes;
   /// Whether the process uses its clock together with others, so that it must keep its clock when the host's
-  /// is set. Empty: never.
+  /// clock is set. Empty: never.
   std::function<bool()> uses_clock = {};
   /// Called when the process is asked to exit, and then every 10 ms until it returns true; only then does the
   /// process exit. Empty: it exits immediately.

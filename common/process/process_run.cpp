@@ -54,10 +54,9 @@ void stop_when_finished(DdsBus& bus, const StopRequest& request, const std::func
 }
 
 void log_step(Duration host_ahead) {
-  log(LogLevel::kWarning,
-      fmt::format(
-          "the host's clock has been set, it is {:+.3f} s ahead of this process's, which stays as it is",
-          to_seconds(host_ahead)));
+  log(LogLevel::kWarning, fmt::format("the host's clock has been set and is now {:+.3f} s ahead of this "
+                                      "process's clock, which does not change",
+                                      to_seconds(host_ahead)));
 }
 
 /// Runs the program on one bus. Returns whether it must restart with the host's clock.
@@ -117,7 +116,7 @@ void run_program(const Program& program, const Scenario& scenario, const DdsSett
     DdsBus::adopt_host_clock();
     log(LogLevel::kWarning,
         fmt::format(
-            "begins anew: the host's clock has been set by {:+.3f} s, and others agree with it only now",
+            "restarts: the host's clock has been set by {:+.3f} s and now agrees with the clocks of others",
             by_s));
     incarnation = next_incarnation(incarnation, DdsBus::clock());
   }

@@ -18,7 +18,7 @@ struct Proposal {
   Incarnation incarnation = 0;  ///< the agent's incarnation
   Epoch epoch = 0;
   Time sent_at{};                   ///< by the agent's clock
-  VersionNumber number = 0;         ///< of the first candidate, even if malformed; identifies the proposal
+  VersionNumber number = 0;         ///< first candidate's number, even if malformed; identifies the proposal
   std::size_t candidate_count = 0;  ///< 0: the proposal is malformed
   /// In order of preference. nullopt: the candidate is malformed. Only the first candidate_count are used.
   std::array<std::optional<Version>, msg::MAX_CANDIDATES> candidates{};
@@ -59,7 +59,7 @@ struct CoordinatorHeartbeat {
   Incarnation incarnation = 0;
   Epoch epoch = 0;  ///< 0: the coordinator is a standby
   msg::CoordinatorMode mode = msg::CoordinatorMode::COORDINATOR_STANDBY;
-  /// The world state against which the robots' places were last checked.
+  /// The time of the world state with which the robots' places were last compared.
   Time watched_until{};
   bool remembers_orders = false;
   std::span<const msg::RobotNotice> notices{};  ///< valid as long as the decoded message exists

@@ -7,7 +7,7 @@ namespace sidestep {
 /// message must be.
 inline constexpr double kCompleteEverywhere_m = 1e9;
 
-/// Number of standard deviations within which an obstacle is assumed to be of its observed position: on each
+/// An obstacle is assumed to be within this number of standard deviations of its observed position: on each
 /// axis, a normally distributed error exceeds 4 sigma once in 16,000 cases.
 inline constexpr double kObstacleSigmas = 4;
 

@@ -49,9 +49,9 @@ struct Order {
   RobotId robot = 0;
   ClientId client = 0;
   OrderNumber number = 0;
-  std::vector<Goal> goals{};  ///< for ORDER_GO; empty: the scenario's goals
+  std::vector<Goal> goals{};  ///< goals of ORDER_GO; empty: the scenario's goals
   std::uint32_t zone_number = 0;
-  Zone zone{};  ///< for ORDER_ZONE
+  Zone zone{};  ///< zone of ORDER_ZONE
 };
 
 /// A robot's progress with a drive order.

@@ -260,7 +260,7 @@ bool OrderBook::is_lifted(const Order& hold) const {
 bool OrderBook::contradicts(const Order& order) const {
   if (knows(order)) return false;
   if (order.kind == msg::OrderKind::ORDER_RESUME) return lifts_any(order);
-  return orders_.contains(place_of(order));  // by an earlier order, since this one is not known
+  return orders_.contains(place_of(order));  // occupied by an earlier order, since this one is not known
 }
 
 bool OrderBook::stands(const Order& order) const {

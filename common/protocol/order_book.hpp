@@ -21,9 +21,9 @@ namespace sidestep {
 /// The number of remembered resumes and removals of clients is bounded: the oldest are forgotten first. So
 /// books that have merged the same orders agree, regardless of the order of arrival, unless more than
 /// kMaxResumes holds or kMaxRemovals zones have been lifted since. A book that has forgotten a resume may
-/// take the lifted hold back from another process: robots are held rather than released. An exception is a
-/// resume that releases one robot from a client's hold of all; it is not forgotten as long as that hold is in
-/// force.
+/// accept the lifted hold again from another process: robots are held rather than released. A resume that
+/// releases one robot from a client's hold of all robots is called an exception, and is not forgotten as long
+/// as that hold is in force.
 class OrderBook {
  public:
   enum class Outcome {
@@ -50,7 +50,7 @@ class OrderBook {
   bool is_lifted(const Order& hold) const;
   /// Whether the book lacks this order but lists one that the order replaces, cancels, lifts or removes.
   bool contradicts(const Order& order) const;
-  /// Whether this order has its place.
+  /// Whether this order is the one in its place.
   bool stands(const Order& order) const;
   /// Whether adding the order, apart from its progress, would change nothing in this book.
   bool knows(const Order& order) const;
@@ -78,7 +78,7 @@ class OrderBook {
   /// orders.
   static constexpr std::size_t kMaxResumes = 512;
   static constexpr std::size_t kMaxRemovals = 256;
-  /// Maximum number of robots that clients can except from their holds of all; more than a scenario has.
+  /// Maximum number of exceptions from clients' holds of all robots; more than a scenario has robots.
   static constexpr std::size_t kMaxExceptions = 2048, kMaxMergedExceptions = 2 * kMaxExceptions;
 
  private:
@@ -87,13 +87,13 @@ class OrderBook {
   /// Bounded memory of lifting orders; the oldest are forgotten first.
   struct Lifted {
     std::set<std::pair<OrderNumber, Place>> by_age;
-    OrderNumber forgotten_number = 0;  // highest number of the forgotten ones
+    OrderNumber forgotten_number = 0;  // highest number of the forgotten orders
   };
   static Place place_of(const Order& order);
   bool has_room(const Order& order) const;
   /// Whether a client's order may be a late repetition of an order that was completely forgotten.
   bool may_be_forgotten(const Order& order) const;
-  /// Whether the client has lifted its hold with this number, be it of the robot or of all robots.
+  /// Whether the client has lifted its hold with this number, of this robot or of all robots.
   bool has_resumed(ClientId client, RobotId robot, OrderNumber number) const;
   /// Whether a later resume lifts everything that this one lifts.
   bool is_redundant(const Order& resume) const;
@@ -112,7 +112,7 @@ class OrderBook {
   void forget_oldest_removals();
 
   std::map<Place, RememberedOrder> orders_;
-  std::array<std::size_t, kRanks> holds_{}, zones_{};  // in force, by rank of the client
+  std::array<std::size_t, kRanks> holds_{}, zones_{};  // numbers in force, by rank of the client
   Lifted resumes_, removals_;                          // clients' resumes; removals of zones
   OrderNumber newest_number_ = 0;
 };

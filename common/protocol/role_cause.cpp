@@ -25,7 +25,7 @@ std::string describe(const RoleCause& cause) {
     case msg::RoleReason::ROLE_EPOCH_OF_ROBOT:
       return fmt::format("robot {} obeys the higher epoch {}", cause.peer, cause.learned);
     case msg::RoleReason::ROLE_SHARED_EPOCH:
-      return fmt::format("another process with number {} began the same epoch", cause.peer);
+      return fmt::format("another process with number {} started the same epoch", cause.peer);
   }
   return "unknown";
 }

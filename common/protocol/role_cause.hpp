@@ -15,7 +15,7 @@ struct RoleCause {
   msg::RoleReason reason = msg::RoleReason::ROLE_STARTED;
   std::uint32_t peer = 0;  ///< number of the coordinator or robot that the reason refers to
   Duration silence{0};     ///< time without heartbeats
-  Epoch learned = 0;       ///< the higher epoch that it has learned of
+  Epoch learned = 0;       ///< the higher epoch that the coordinator has learned of
 };
 
 /// Describes the cause, for example "no heartbeat of coordinator 1 for 151 ms".

@@ -11,7 +11,7 @@ enum class Role : std::uint8_t {
   kCoordinator,
   kVision,
   kSimulator,
-  kRobot,  ///< drives robots outside this project
+  kRobot,  ///< drives third-party robots
   kReferee,
   kClient,    ///< gives orders
   kOperator,  ///< gives orders that take precedence, causes faults, and attests absences

@@ -9,13 +9,13 @@
 
 namespace sidestep {
 
-/// Values of Header.sender. A robot and its agents use the robot's number. The others use these bases, plus
-/// their own number where there are several.
+/// Values of Header.sender. A robot and its agents use the robot's number. Other processes use these bases,
+/// plus their own number where there are several.
 enum class Sender : std::uint32_t {
   kCoordinator = 10000,
   kVision = 20000,
   kSimulator = 30000,
-  kRobots = 35000,  ///< a process that drives robots outside this project
+  kRobots = 35000,  ///< a process that drives third-party robots
   kOperator = 40000,
   kReferee = 50000,
   kScenario = 60000,  ///< orders from the scenario file
@@ -30,8 +30,8 @@ constexpr bool is_coordinator(std::uint32_t sender) {
   return sender >= first && sender < first + kMaxCoordinators;
 }
 
-/// The roles of processes that may use this Header.sender. A robot's facts carry its agent's number, and an
-/// operator may speak as a client.
+/// The roles of processes that may use this Header.sender. A robot's feedback carries its agent's number, and
+/// an operator may speak as a client.
 constexpr Roles roles_of(std::uint32_t sender) {
   if (sender < kMaxRobots) return Role::kAgent | Role::kSimulator | Role::kRobot;
   if (is_coordinator(sender)) return Role::kCoordinator;

@@ -13,7 +13,7 @@ struct Settings {
   Real tracking_bound_m = Real(0.005);
   Real drift_bound_m = Real(0.003);    ///< the part of the tracking bound that drift may use: 0.6 of it
   Real deceleration_mps2 = 5;          ///< D, used for the robot's own stops
-  std::int64_t actuation_lead_ns = 0;  ///< from a command to the motors until the body moves
+  std::int64_t actuation_lead_ns = 0;  ///< time from a command to the motors until the body moves
 };
 
 /// Number of versions and commands that a robot has received, by outcome.
@@ -57,7 +57,7 @@ struct MotionUnderWay {
   Vec<Real> from_mps;
   int part_count = 0;
   Part parts[kMaxParts];
-  Real error_m = 0;  ///< maximum distance at any time between these parts and what the commands cause
+  Real error_m = 0;  ///< maximum distance, at any time, from the motion that the commands cause
 };
 
 /// The robot's own estimate of its state. A robot whose estimate is not finite has no pose.
@@ -92,7 +92,7 @@ struct RobotReport {
 /// one exception: if the motors respond with a delay, they have already been sent the beginning of any
 /// version that starts within the lead, so the robot executes such versions. It acknowledges the new agent
 /// and accepts its versions only when no such version can still start. So the fact that acknowledges an agent
-/// covers everything that the robot executes for earlier ones.
+/// covers everything that the robot executes for earlier agents.
 ///
 /// It makes an own stop if the robot may be farther from its reference than the tracking bound. It also makes
 /// one if the robot may be farther than the drift bound and either does not return within kMaxRecovery_ns or
@@ -118,7 +118,7 @@ class RobotSide {
   /// stored again.
   static constexpr std::uint64_t kStoredAhead = std::uint64_t{1} << 26;
 
-  /// Creates the side of a robot that has just been switched on and does not know its pose.
+  /// For a robot that has just been switched on and does not know its pose.
   RobotSide(const Settings<Real>& settings, const DurableState& remembered);
 
   /// The robot is at rest at this place and executes version 0 there. Only for a robot that has never obeyed
@@ -129,7 +129,7 @@ class RobotSide {
   /// The robot no longer knows its pose.
   void lose_pose();
   /// The robot has lost everything except its stored memory, its pose and what it reported. The next
-  /// check_reference() that may do so makes an own stop.
+  /// check_reference() at which it may stop makes an own stop.
   void reboot() { is_rebooting_ = true; }
   /// The robot has been without power and has lost its pending versions.
   void switch_on();
@@ -232,8 +232,8 @@ class RobotSide {
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
   bool has_pose_ = false;
-  bool has_found_pose_ = false;     ///< and it has not made its own stop there yet
-  bool is_clock_set_back_ = false;  ///< and it has not made its own stop by the new time yet
+  bool has_found_pose_ = false;     ///< the robot has not made its own stop at the found pose yet
+  bool is_clock_set_back_ = false;  ///< the robot has not made its own stop by the new time yet
   bool is_memory_broken_ = false;
   bool has_command_ = false;
   std::int64_t command_sent_at_ns_ = 0, command_received_at_ns_ = 0;

@@ -17,7 +17,7 @@ class ClockRecovery {
  public:
   /// A smaller difference between the two clocks is ignored.
   static constexpr Duration kMinStep{10'000'000};
-  /// Clocks that differ by at most this agree, in addition to the network's delay and the clock bound.
+  /// Maximum difference of clocks that agree, beyond the network's delay and the clock bound.
   static constexpr Duration kTolerance{2'000'000};
   /// If a message seems older than this, it was not late; its sender's clock disagrees.
   static constexpr Duration kMaxDelay{250'000'000};
@@ -48,7 +48,7 @@ class ClockRecovery {
   bool is_delay(Duration age) const { return age >= -tolerance_ && age <= kMaxDelay; }
 
   Duration tolerance_;
-  std::map<std::uint32_t, Reference> references_;  ///< in this period
+  std::map<std::uint32_t, Reference> references_;  ///< references heard in this period
   Duration last_host_ahead_{0};
   int evident_periods_ = 0;
 };

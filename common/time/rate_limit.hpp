@@ -13,7 +13,7 @@ class RateLimit {
   constexpr RateLimit(int burst, Duration period) : period_(period), tolerance_((burst - 1) * period) {}
 
   [[nodiscard]] constexpr bool admit(Time now) {
-    // The next event can only be due this much later if the clock was set back since.
+    // due_ can only be this far ahead if the clock was set back since.
     if (due_ - now > tolerance_ + period_) due_ = now;
     const Time due = std::max(due_, now);
     if (due - now > tolerance_) return false;

@@ -8,9 +8,9 @@
 namespace sidestep {
 namespace {
 
-constexpr double kExtraFixNoise_m = 0.0005;  ///< for correlation between fixes due to vision's filter
+constexpr double kExtraFixNoise_m = 0.0005;  ///< covers the correlation of fixes by vision's filter
 
-// Periods differ a little because the robot's clock may drift: by up to one part in this.
+// Periods may differ by one part in this number, because the robot's clock may drift.
 constexpr int kMaxPeriodErrorPart = 1000;
 constexpr double kHeadingGain = 0.05;        // gain of a heading fix
 constexpr double kSlipVariance_m2ps = 1e-8;  // position variance due to wheel slip
@@ -51,7 +51,7 @@ void PoseEstimator::advance(Time now, const Odometry& odometry, const Vec2& acce
   history_[static_cast<std::size_t>(count_ % kHistoryPeriods)] = {odometry_m_, turned_rad_};
   ++count_;
 
-  // The measurement is the mean over the period, so it is valid half a period ago.
+  // The measurement is the mean over the period, so it is the velocity half a period ago.
   velocity_mps_ += acceleration_mps2 * dt;
   const Vec2 measured = odometry.velocity_mps * (1 - scale_) + acceleration_mps2 * (0.5 * dt);
   velocity_mps_ += settings_.velocity_gain * (measured - velocity_mps_);
@@ -105,7 +105,7 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   scale_ += correction.z();
   // The odometry's relative error e is defined by 1 + e = 1 / (1 - scale).
   if (!(scale_ < 1 && std::abs(scale_ / (1 - scale_)) <= kMaxScaleDeviations * settings_.scale_error)) {
-    // If wheels roll while the robot is displaced, that looks like such an error.
+    // Wheels that roll while the robot is displaced seem to have such an error.
     scale_ = 0;
     covariance_(2, 2) = settings_.scale_error * settings_.scale_error;
     decorrelate_scale();

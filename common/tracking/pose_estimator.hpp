@@ -21,12 +21,12 @@ struct Odometry {
 
 /// The robot's sensor model. Noises and errors are standard deviations.
 struct EstimatorSettings {
-  double velocity_noise_mps = 0.01;   ///< of one odometry measurement, on each axis
-  double scale_error = 0.005;         ///< of the odometry's constant relative error
-  double fix_noise_m = 0.0005;        ///< of a fix, on each axis
-  double velocity_gain = 0.08;        ///< weight against the motor model; 1: no model
-  Duration period{1'000'000};         ///< of the odometry
-  double commanded_noise_mps = 0.01;  ///< of a velocity that was commanded instead of measured, on each axis
+  double velocity_noise_mps = 0.01;   ///< noise of one odometry measurement, on each axis
+  double scale_error = 0.005;         ///< constant relative error of the odometry
+  double fix_noise_m = 0.0005;        ///< noise of a fix, on each axis
+  double velocity_gain = 0.08;        ///< weight of measurements against the motor model; 1: no model
+  Duration period{1'000'000};         ///< period of the odometry
+  double commanded_noise_mps = 0.01;  ///< error of an unmeasured, commanded velocity, on each axis
 };
 
 /// A robot's estimate of its own pose: dead reckoning from the last fix. A Kalman filter over position and
@@ -71,7 +71,7 @@ class PoseEstimator {
   double position_error_rms_m() const;
   /// The filter's estimate of the standard deviation of scale_error().
   double odometry_scale_stddev() const { return std::sqrt(std::max(covariance_(2, 2), 0.0)); }
-  /// Whether the pose is usable. A value that is not finite once stays that way.
+  /// Whether the pose is usable. A value that is not finite never becomes finite again.
   bool is_finite() const {
     return position_m().allFinite() && std::isfinite(heading_rad()) && covariance_.allFinite();
   }
@@ -107,7 +107,7 @@ class PoseEstimator {
   Vec2 anchor_m_;
   Vec2 anchor_odometry_m_{0, 0};
   double scale_ = 0;
-  Eigen::Matrix3d covariance_;  ///< of the position at the anchor, and of the scale
+  Eigen::Matrix3d covariance_;  ///< covariance of the position at the anchor, and of the scale
   double heading_anchor_rad_;   ///< heading at which turned_rad_ was 0
   double jump_m_ = 0;
   Time commanded_at_ = Time::min();               ///< when a velocity was last commanded instead of measured

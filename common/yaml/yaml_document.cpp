@@ -21,12 +21,12 @@ namespace {
 
 constexpr std::size_t kMaxValues = 400'000;
 
-/// Records the line on which the last document began, and counts values. Every use of an anchor counts as
-/// many values as the anchor has, and so do merged ones. yaml-cpp takes about half a kilobyte for each value.
+/// Records the line on which the last document began, and counts values. Every use of an anchor, and
+/// every merge, counts as many values as the anchor has. yaml-cpp takes about half a kilobyte for each value.
 class FirstReading : public YAML::EventHandler {
  public:
   int line = 1;
-  bool has_merge_key = false;  ///< may be true without need: some text may contain "<<"
+  bool has_merge_key = false;  ///< true also if other text contains "<<"
 
   explicit FirstReading(const std::string& file_name) : file_name_(file_name) {}
 
@@ -77,7 +77,8 @@ class FirstReading : public YAML::EventHandler {
 
   const std::string& file_name_;
   std::size_t values_ = 0;
-  std::vector<std::pair<YAML::anchor_t, std::size_t>> open_;  // with the number of values before the anchor
+  std::vector<std::pair<YAML::anchor_t, std::size_t>>
+      open_;  // open anchors, with the number of values before each
   // Number of values by anchor; 0 means no anchor.
   std::map<YAML::anchor_t, std::size_t> values_of_;
 };

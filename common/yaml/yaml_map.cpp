@@ -36,7 +36,7 @@ std::string described(const YAML::Node& node) {
 
 std::string described(Range range) { return fmt::format("{:.10g} to {:.10g}", range.low, range.high); }
 
-/// A number is a plain scalar: "3" in quotes or with a tag is text. Like YAML's core schema, takes one plus.
+/// A number is a plain scalar: "3" in quotes or with a tag is text. Like YAML's core schema, accepts a plus.
 template <typename Number>
 bool parse_plain(const YAML::Node& node, Number& value) {
   if (!node.IsScalar() || node.Tag() != "?") return false;

@@ -9,11 +9,11 @@
 namespace sidestep {
 namespace {
 
-/// As deep as yaml-cpp reads.
+/// Maximum nesting that yaml-cpp reads.
 constexpr int kMaxNesting = 500;
 
 /// Characters that begin, end or separate tokens within brackets. Dashes and line ends do so only outside
-/// brackets, where yaml-cpp hands over each value as it reads it.
+/// brackets, where yaml-cpp returns each value as it reads it.
 constexpr std::string_view kStructure = "[]{},:?&*!'\"";
 
 }  // namespace
@@ -36,7 +36,7 @@ void check_yaml_structure(const std::string& text, const std::string& file_name,
     } else if (kStructure.find(c) != std::string_view::npos || (is_directive && (c == ' ' || c == '\t'))) {
       if (++structure > max_structure)
         throw ConfigError(file_name, line,
-                          fmt::format("more than {} characters out of {}, expected at most {} values",
+                          fmt::format("more than {} of the characters {}, expected at most {} values",
                                       max_structure, kStructure, max_values));
       if (!is_comment && (c == '[' || c == '{') && ++nesting > kMaxNesting)
         throw ConfigError(file_name, line, fmt::format("expected at most {} nested brackets", kMaxNesting));

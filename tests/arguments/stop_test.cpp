@@ -87,7 +87,7 @@ TEST_CASE("a run whose report is a pipe without a reader reports that and ends")
                                      folder.path(), 60s, SIGKILL);
   INFO(run.errors);
   CHECK(run.exit_code == 1);
-  CHECK_THAT(run.errors, ContainsSubstring("cannot write " + pipe + ": nobody reads this pipe"));
+  CHECK_THAT(run.errors, ContainsSubstring("cannot write " + pipe + ": no process reads this pipe"));
 }
 
 }  // namespace sidestep::arguments

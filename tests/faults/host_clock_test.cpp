@@ -12,7 +12,7 @@ namespace sidestep::host_clock_test {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kBeginsAnew = ": begins anew: the host's clock has been set";
+constexpr const char* kRestarts = ": restarts: the host's clock has been set";
 constexpr const char* kIsSet = ": the host's clock has been set";
 
 /// Which host runs which processes of the crossing, and how far the late host's clock is ahead initially.
@@ -35,7 +35,7 @@ void check_recovery(const LateStart& start) {
   const auto children = run.children();
   host.set_clock(0s);
   for (const std::string& process : start.late_processes)
-    CHECK(run.wait_until([&] { return run.logged(process + kBeginsAnew); }));
+    CHECK(run.wait_until([&] { return run.logged(process + kRestarts); }));
   const std::string ended = run.wait_for_end();
   INFO(run.output());
   CHECK(ended == "exit code 0");
@@ -93,7 +93,7 @@ TEST_CASE("setting a host's clock during a healthy run changes nothing", "[slow]
   for (const char* process : {"sidestep-coordinator", "agent-4", "agent-5", "agent-6", "agent-7"})
     CHECK(run.wait_until([&] { return run.logged(std::string(process) + kIsSet); }));
   CHECK(run.wait_for_end() == "exit code 0");
-  CHECK_FALSE(run.logged(kBeginsAnew));
+  CHECK_FALSE(run.logged(kRestarts));
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);

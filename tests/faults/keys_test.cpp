@@ -133,7 +133,7 @@ TEST_CASE("without keys, anybody's order moves a robot") {
   Attacker attacker({std::stoi(run.dds_arguments()[1])});
   INFO(run.output());
   CHECK(attack(run, attacker, seconds(20)));
-  CHECK(run.logged("no keys: anybody on this network can command the robots"));
+  CHECK(run.logged("no keys: any machine on this network can command the robots"));
 }
 
 TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]") {
@@ -151,7 +151,7 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]
 
   AttackerSettings foreign = keyed.with_keys(others.folder_of("judge"));
   use_own_permissions(foreign, others);
-  check_refused(run, foreign, "a process at 127.0.0.1, whose key another authority has issued");
+  check_refused(run, foreign, "a process at 127.0.0.1, whose key was issued by another authority");
   // Different authorities use the same process names, so their participants have the same prefix.
   foreign = keyed.with_keys(others.folder_of("vision"));
   foreign.announced = keyed.with_keys(keyed.keys.folder_of("vision")).announced;

@@ -258,17 +258,16 @@ TEST_CASE(
   REQUIRE(run.start("coordinator 1", "sidestep-coordinator", arguments) > 0);
   INFO(run.output());
   REQUIRE(run.wait_until([&] {
-    return run.printed(
-        "refuses coordinator 1, which works by other rules: robots.blue is 0-6 instead of 0-7");
+    return run.printed("refuses coordinator 1, which has different rules: robots.blue is 0-6 instead of 0-7");
   }));
   WARN("named " << to_seconds(run.bus().now() - begin) << " s after the start of its process");
   // Both sides name the robots in their scenario.
   CHECK(run.wait_until([&] {
     return run.printed(
-        "coordinator-1: refuses coordinator, which works by other rules: robots.blue is 0-7 instead of 0-6");
+        "coordinator-1: refuses coordinator, which has different rules: robots.blue is 0-7 instead of 0-6");
   }));
   CHECK(run.wait_until([&] {
-    return run.logged("agent-0: refuses coordinator 1, which works by other rules: robots.blue is 0-6");
+    return run.logged("agent-0: refuses coordinator 1, which has different rules: robots.blue is 0-6");
   }));
   // The counters of every process reach an observer within a second.
   std::vector<std::string> echo{"topic", "echo", "counters", "--count", "25"};

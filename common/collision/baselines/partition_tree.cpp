@@ -75,7 +75,7 @@ typename PartitionTree<kDirections>::Extents PartitionTree<kDirections>::extents
 template <std::size_t kDirections>
 template <typename Call>
 void PartitionTree<kDirections>::each_leaf(NodeId id, const Extents& extents, const Call& call) {
-  // The call may add nodes.
+  // Copied, because the call may add nodes.
   const std::uint32_t direction = nodes_[id].direction, low = nodes_[id].low, high = nodes_[id].high;
   const double offset_m = nodes_[id].offset_m;
   if (direction == kLeaf) return call(id);
@@ -94,7 +94,7 @@ void PartitionTree<kDirections>::add(Slot slot, const Shape& shape) {
   const Extents extents = extents_[slot];
   each_leaf(0, extents, [&](NodeId leaf) {
     nodes_[leaf].slots.push_back(slot);
-    // Not tried at every size, because leaves that cannot be divided would be tried again and again.
+    // Not tried at every size, because a leaf that cannot be divided would be tried again each time.
     const std::size_t size = nodes_[leaf].slots.size();
     if (size > 2 * kMaxInLeaf && std::has_single_bit(size)) divide(leaf);
   });

@@ -9,9 +9,9 @@ namespace sidestep::baselines {
 
 /// A binary space partitioning tree (Fuchs et al. 1980) whose dividing lines are perpendicular to a fixed set
 /// of directions. With two directions, x and y, it is a K-D tree (Bentley 1975). Every leaf lists all
-/// obstacles that may touch its region. A region is divided where the sum over both sides of the squared
-/// number of obstacles is smallest, as long as that reduces this number enough. Rebuilt when updates have
-/// doubled the number of nodes.
+/// obstacles that may touch its region. A region is divided by the line that minimises the sum of the squared
+/// numbers of obstacles on its two sides, if that reduces the cost enough. The tree is rebuilt when updates
+/// have doubled the number of nodes.
 template <std::size_t kDirections>
 class PartitionTree {
  public:
@@ -21,8 +21,8 @@ class PartitionTree {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
-  /// Whether `test(slot)` holds for an obstacle whose box the sweep's box overlaps. Tests an obstacle once
-  /// for each leaf that both may touch.
+  /// Whether `test(slot)` holds for an obstacle whose box the sweep's box overlaps. An obstacle is tested
+  /// once for each leaf that both the obstacle and the sweep may touch.
   template <typename Test>
   bool any_candidate(const Sweep& sweep, const Test& test) const {
     return any_in(0, sweep, sweep.bounds(), test);

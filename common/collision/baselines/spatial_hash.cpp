@@ -33,7 +33,7 @@ SpatialHash::SpatialHash(const ShapeStore& store) : origin_m_(store.origin_m()) 
   for (const Slot slot : store.slots()) add(slot, store.shape(slot));
 }
 
-/// Increases with the position. Cells far from the origin coincide.
+/// The cell number of a coordinate, which increases with it. Coordinates far from the origin share a cell.
 std::int32_t SpatialHash::cell(double at_m) const {
   return static_cast<std::int32_t>(std::clamp(std::floor(at_m * cells_per_m_), -kMaxCell, kMaxCell));
 }

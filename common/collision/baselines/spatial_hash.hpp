@@ -73,7 +73,7 @@ class SpatialHash {
 
   Vec2 origin_m_;
   double cells_per_m_ = 1;
-  std::vector<std::uint32_t> heads_;  // indexed by bucket: its first entry; the size is a power of two
+  std::vector<std::uint32_t> heads_;  // first entry of each bucket; the size is a power of two
   std::vector<Entry> entries_;
   std::uint32_t free_entry_ = kNone;  // head of the list of unused entries
   std::size_t used_entries_ = 0;

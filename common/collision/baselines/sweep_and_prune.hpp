@@ -7,10 +7,10 @@
 
 namespace sidestep::baselines {
 
-/// Obstacles sorted by the lower ends of their boxes on one axis (Baraff 1992; Cohen et al. 1995): a query
-/// compares those whose lower ends are between its own lower end, less the longest box, and its upper end.
-/// Sorts along the axis on which the obstacles are spread more widely. A moved obstacle is sorted in by
-/// exchanges with its neighbours, which are few if it moves little.
+/// Obstacles sorted by the lower ends of their boxes on one axis (Baraff 1992; Cohen et al. 1995). A query
+/// compares the boxes that begin before its upper end, and after its lower end minus the longest box. The
+/// axis is the one on which the obstacles are spread more widely. A moved obstacle is swapped with its
+/// neighbours until the order is restored, which takes few swaps if it moves little.
 class SweepAndPrune {
  public:
   explicit SweepAndPrune(const ShapeStore& store);
@@ -35,13 +35,13 @@ class SweepAndPrune {
  private:
   /// Writes the obstacle at an index of the sorted arrays.
   void put(std::size_t i, const Box& box, Slot slot);
-  /// Exchanges the obstacle at an index with its neighbours until it is in order.
+  /// Swaps the obstacle at an index with its neighbours until the order is restored.
   void sort_in(std::size_t i);
   void exchange(std::size_t i, std::size_t j);
 
   Eigen::Index axis_ = 0;
   double max_length_m_ = 0;     // longest box so far, along the axis
-  std::vector<double> lows_m_;  // in ascending order; boxes and slots in the same order
+  std::vector<double> lows_m_;  // ascending; boxes_ and slots_ have the same order
   std::vector<Box> boxes_;
   std::vector<Slot> slots_;
   std::vector<std::size_t> indices_;  // indexed by slot

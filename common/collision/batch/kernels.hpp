@@ -11,16 +11,16 @@ namespace sidestep::collision {
 inline constexpr std::size_t kLanes = 16;     ///< lanes per block, independent of the machine's vector width
 inline constexpr std::size_t kBuckets = 256;  ///< buckets per axis in extent masks
 
-/// An obstacle, relative to the origin: a circle or, if `radius_m` is NaN, a shape with edges that begin at
-/// the block `edges`.
+/// An obstacle, relative to the origin: a circle or, if `radius_m` is NaN, a shape with edges, the first of
+/// which are in the block `edges`.
 struct alignas(16) ShapeRecord {
   float x_m, y_m, radius_m;
   std::uint32_t edges;
 };
 
 /// Four edges of a convex shape, one per lane: start point, edge vector, and edge vector divided by its
-/// squared length. The shape lies to the left of all edges. A segment has two edges, there and back. Unused
-/// lanes repeat the last edge.
+/// squared length. The shape lies to the left of all edges. A segment has two edges, one in each direction.
+/// Unused lanes repeat the last edge.
 struct alignas(32) EdgeBlock {
   float x_m[4], y_m[4], edge_x_m[4], edge_y_m[4], along_x_per_m[4], along_y_per_m[4];
   std::uint32_t following;  ///< number of further blocks that belong to the same shape
@@ -71,13 +71,13 @@ struct MasksView {
   const float *per_m, *shift;  ///< one entry per table
 };
 
-/// A node of a box tree: boxes, and the node or slot that each box belongs to. Entries of empty lanes may be
-/// looked up too.
+/// A node of a box tree: boxes, and the node or slot that each box belongs to. Kernels may also read the
+/// entries of empty lanes.
 struct TreeNode {
   BoxBlock boxes;
   std::uint32_t children[kLanes];
-  std::uint32_t parent, lane;  ///< the parent, and the lane of this node in it
-  std::uint32_t count;         ///< number of lanes in use; these come first
+  std::uint32_t parent, lane;  ///< the parent node, and this node's lane in the parent
+  std::uint32_t count;         ///< number of lanes in use, from lane 0 on
   bool is_leaf;
 };
 

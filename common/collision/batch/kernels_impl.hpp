@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels; see vectors.hpp for the rules of inclusion. The compiler may contract products, which rounds
-// differently between instruction sets. Error bounds cover the difference in decisions and in buckets.
+// The kernels; see vectors.hpp for the rules of inclusion. The compiler may fuse multiplications and
+// additions, whose rounding then differs between instruction sets. The error bounds cover this.
 #include "common/collision/batch/moving_disc.hpp"
 
 namespace sidestep::collision {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The query as kernels see it, and its comparison with circles and edges; see vectors.hpp for the rules of
-// inclusion.
+// A query in the form that kernels use, and its comparison with circles and edges; see vectors.hpp for the
+// rules of inclusion.
 #include "common/collision/batch/vectors.hpp"
 
 namespace sidestep::collision {
@@ -16,8 +16,8 @@ struct MovingDisc {
   bool is_valid;       ///< all numbers are finite and within the limit of single precision
 };
 
-/// The bit pattern of a number. Patterns of non-negative numbers are in the order of the numbers; those of
-/// negative numbers and NaN are larger than the pattern of any finite non-negative number.
+/// The bit pattern of a number. Patterns of non-negative numbers sort like the numbers; those of negative
+/// numbers and NaN are larger than the pattern of any finite non-negative number.
 inline std::uint32_t bit_pattern(float value) {
   std::uint32_t bits = 0;
   __builtin_memcpy(&bits, &value, sizeof bits);

@@ -11,7 +11,7 @@ namespace sidestep {
 /// A geometry of FCL.
 using Solid = std::shared_ptr<fcl::CollisionGeometryd>;
 
-/// Extrudes a shape on the floor: half of the height lies below the floor, and the floor's origin is kept. A
+/// Extrudes a shape on the floor, half of the height upwards and half downwards, without moving its origin. A
 /// circle becomes a polygon with 128 corners, a segment a vertical rectangle. Throws std::invalid_argument if
 /// the shape is invalid or the height is not above 0.
 [[nodiscard]] Solid prism(const Shape& shape, double height_m);

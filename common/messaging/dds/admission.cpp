@@ -25,7 +25,7 @@ void append_part(std::vector<std::uint8_t>& bytes, std::span<const std::uint8_t>
   bytes.insert(bytes.end(), part.begin(), part.end());
 }
 
-/// Removes such a part from the front and returns it.
+/// Removes a part written by append_part() from the front and returns it.
 std::optional<std::span<const std::uint8_t>> take_part(std::span<const std::uint8_t>& bytes) {
   if (bytes.empty() || bytes.size() - 1 < bytes[0]) return std::nullopt;
   const std::span<const std::uint8_t> part = bytes.subspan(1, bytes[0]);
@@ -75,9 +75,9 @@ const char* reason_text(Admission::Refusal refusal) {
     case Refusal::kNoCertificate:
       return ", whose announcement has no valid certificate";
     case Refusal::kOtherAuthority:
-      return ", whose key another authority has issued";
+      return ", whose key was issued by another authority";
     case Refusal::kUnknownSubject:
-      return ", whose certificate is for nobody that Sidestep knows";
+      return ", whose certificate names no identity of Sidestep";
     case Refusal::kNotValidNow:
       return ", whose key has expired, or is not valid yet";
     case Refusal::kRevoked:
@@ -150,7 +150,7 @@ Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const
   const auto displaced = displaced_.find(id);
   if (displaced != displaced_.end() && now < displaced->second.until) return Refusal::kTooMany;
   const Time start = time_of(announced.start);
-  // The latest one may have been silent for a while.
+  // Includes the latest participant itself, which may return after a silence.
   const bool is_latest = start >= known.latest_start && start < now + kMaxAhead;
   if (!is_latest && !known.unproven.admit(now)) return Refusal::kTooMany;
   const auto refuse = [&](Refusal refusal) {
@@ -171,7 +171,7 @@ bool Admission::make_room(const Known& known, bool is_latest, Time now) {
   const auto same = static_cast<std::size_t>(std::ranges::count_if(participants_, has_certificate));
   const bool is_certificate_full = same >= kMaxPerCertificate;
   if (!is_certificate_full && participants_.size() < kMaxParticipants) return true;
-  auto oldest = participants_.end();  // by its start
+  auto oldest = participants_.end();  // the participant that started first
   for (auto entry = participants_.begin(); entry != participants_.end(); ++entry) {
     const Participant& participant = entry->second;
     if (is_certificate_full && participant.known != &known) continue;

@@ -26,18 +26,19 @@ std::vector<std::uint8_t> credentials(const Certificate& certificate, const Priv
 
 /// Decides which participants a process with keys listens to, and knows who they are.
 ///
-/// Fast DDS authenticates participants, but does not report their identities, stores everybody's
+/// Fast DDS authenticates participants, but does not report their identities, stores every participant's
 /// announcements, and reads the list of revoked keys only at its start. Participants therefore announce their
 /// certificate. The prefix of a participant's GUID depends on the certificate, and Fast DDS checks that the
-/// owner of the GUID has the certificate's private key. What is decided here therefore holds for all
-/// participants that Fast DDS accepts. An attacker cannot sign an announcement. It can replay another
+/// owner of the GUID has the certificate's private key. The decisions made here therefore hold for all
+/// participants that Fast DDS accepts. No attacker can sign an announcement. It can replay another
 /// participant's, but then fails to authenticate. So the number of participants with one certificate is
-/// limited. Those that are not the latest to start are admitted at a low rate until they have authenticated,
-/// because Fast DDS keeps about a hundred bytes for each as long as the process lives. If no place is left, a
-/// new participant displaces one that has not authenticated in time. The displaced one must wait before it is
-/// admitted again, twice as long each time. Only the owner of the private key can announce a later start, so
-/// a genuine process that restarts does not wait. Participants that exchange no messages, such as two agents,
-/// do not admit each other: with many robots, their handshakes would take most of the start-up time.
+/// limited. Participants other than the one that started last are admitted at a low rate until they have
+/// authenticated, because Fast DDS keeps about a hundred bytes for each as long as the process lives. If no
+/// place is left, a new participant displaces one that has not authenticated in time. The displaced one must
+/// wait before it is admitted again, twice as long each time. Only the owner of the private key can announce
+/// a later start, so a genuine process that restarts does not wait. Participants that exchange no messages,
+/// such as two agents, do not admit each other: with many robots, their handshakes would take most of the
+/// start-up time.
 class Admission {
  public:
   static constexpr std::size_t kMaxPerCertificate = 24;
@@ -45,15 +46,15 @@ class Admission {
   /// kMaxPerCertificate.
   static constexpr Duration kUnprovenPeriod{5'000'000'000};
   static constexpr std::size_t kMaxParticipants = 1024;
-  /// Announcements come once a second.
+  /// A participant is forgotten after this silence. Announcements come once a second.
   static constexpr Duration kForgetAfter{10'000'000'000};
   /// Time within which Fast DDS has authenticated a genuine participant.
   static constexpr Duration kMaxUnproven{8'000'000'000};
-  /// A start that is farther ahead does not count as the latest: its time is from a wrong clock, and it would
+  /// A start time farther in the future does not count as the latest: it is from a wrong clock, and would
   /// remain the latest for that long.
   static constexpr Duration kMaxAhead{600'000'000'000};
   /// How long a displaced participant waits before it is admitted again: the first time, and at most. The
-  /// first wait is short, because a genuine one may be slow on a busy machine.
+  /// first wait is short, because a genuine participant may be slow on a busy machine.
   static constexpr Duration kFirstWait{10'000'000'000}, kMaxWait{3'600'000'000'000};
   /// Limit on the certificates and announcements whose signatures are checked: a burst, and then a rate.
   static constexpr int kMaxChecks = 400, kChecksPerSecond = 400;
@@ -87,7 +88,7 @@ class Admission {
   /// Processes a participant's announcement: untrusted bytes in the format of credentials().
   [[nodiscard]] Decision on_announcement(const ParticipantId& id, std::span<const std::uint8_t> announced,
                                          Time now);
-  /// Whether datagrams of the participant may be passed on. Process its announcement first.
+  /// Whether datagrams of the participant may be passed on. Call on_announcement() first.
   [[nodiscard]] bool admits(const ParticipantId& id, Time now);
   /// Who the participant is; nullptr if it is not admitted.
   const Identity* identity_of(const ParticipantId& id) const;
@@ -116,22 +117,22 @@ class Admission {
     bool is_needed;
     Time not_before, not_after;
     RateLimit unproven{kMaxPerCertificate, kUnprovenPeriod};
-    Time announced{};     ///< last
-    Time latest_start{};  ///< of those that were admitted, unless it was ahead of the clock
+    Time announced{};     ///< time of the last announcement
+    Time latest_start{};  ///< latest start of an admitted participant, not ahead of the clock
   };
   struct Participant {
     Known* known = nullptr;
     Time admitted, last_heard, start;
-    bool was_latest = false;  ///< it used up no place of Known::unproven
+    bool was_latest = false;  ///< its admission did not count against Known::unproven
     bool is_proven = false, is_reported = false;
   };
   struct Displaced {
     Time since, until;  ///< not admitted again before `until`
   };
 
-  /// Forgets the certificate that was announced longest ago, unless a participant has it.
+  /// Forgets the certificate that was announced longest ago, unless a participant uses it.
   void forget_oldest();
-  /// The certificate, if the authority has issued it; otherwise says why not.
+  /// The certificate, if the authority has issued it; otherwise sets `refusal` and returns nullptr.
   Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
   Refusal admit(const ParticipantId& id, Known& known, const Announced& announced, Time now);
   /// Makes room for one more participant with this certificate. Displaces one that has not authenticated in
@@ -147,10 +148,10 @@ class Admission {
   const Certificate authority_;
   const std::string version_;
   std::set<std::string> revoked_;
-  std::map<std::string, Known> known_;  ///< by certificate (DER); only those of the authority
+  std::map<std::string, Known> known_;  ///< keyed by certificate (DER); only the authority's
   std::map<ParticipantId, Participant> participants_;
-  std::map<ParticipantId, Displaced> displaced_;     ///< at most kMaxParticipants; the oldest is forgotten
-  std::vector<ParticipantId> displaced_since_call_;  ///< of newly_refused()
+  std::map<ParticipantId, Displaced> displaced_;     ///< at most kMaxParticipants; the oldest are forgotten
+  std::vector<ParticipantId> displaced_since_call_;  ///< since the last call of newly_refused()
   RateLimit checks_{kMaxChecks, std::chrono::microseconds(1'000'000 / kChecksPerSecond)};
 };
 

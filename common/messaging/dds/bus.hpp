@@ -25,7 +25,7 @@ struct DdsSettings {
   /// multicast.
   std::vector<std::string> peers{};
   /// Folder with the keys of one identity, or a folder made by `sidestep keys init`. Empty: no keys, so that
-  /// anybody on the network can command the robots.
+  /// any machine on the network can command the robots.
   std::string keys{};
   bool insecure = false;  ///< allows running without keys on networks that other machines can reach
   /// The identity whose keys to use if the folder has several.
@@ -76,7 +76,7 @@ class DdsBus : public Bus {
 
   /// Creates a bus without keys in another domain, over the loopback interface, for third-party programs on
   /// this machine. Its callbacks are made by the thread that runs this bus, which must outlive the last of
-  /// them. Throws std::invalid_argument if the domain is this bus's own, and whatever the constructor throws.
+  /// them. Throws as the constructor does, and std::invalid_argument if the domain is this bus's own.
   std::unique_ptr<DdsBus> local_bus(int domain) const;
 
   /// The addresses on which this participant listens for messages, for the log. Empty before the first

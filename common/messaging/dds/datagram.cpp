@@ -19,7 +19,7 @@ static_assert(kHeader.size() + sizeof(ParticipantId) == kDatagramHeaderSize);
 constexpr std::array<std::uint8_t, 4> kProtocol{'R', 'T', 'P', 'S'};
 
 using EntityId = std::array<std::uint8_t, 4>;
-/// Announce participants: the first one to all, the second one to those that have shown their keys
+/// Writers that announce participants: the first one to all, the second one to authenticated participants
 /// (DDS Security 1.1, 7.4.4).
 constexpr std::array<EntityId, 2> kParticipantWriters{{{0, 1, 0, 0xc2}, {0xff, 1, 1, 0xc2}}};
 constexpr std::size_t kDataHeaderSize = 20;

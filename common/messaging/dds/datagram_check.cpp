@@ -21,7 +21,7 @@ constexpr std::size_t kStatisticsSize = 56;
 /// Upper bound of the sequence numbers of a process's discovery messages, which count its own endpoints. Fast
 /// DDS 2.9.1 visits each number below the one in a heartbeat or a gap.
 constexpr std::int64_t kMaxPlainNumber = 1 << 15;
-/// Entity ids of handshake messages (DDS Security 1.1, 7.4.3), whose numbers count the participants so far.
+/// Entity ids of handshake messages (DDS Security 1.1, 7.4.3), whose sequence numbers count participants.
 constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x000201c4;
 
 /// Removes the ids of reader and writer from the front. Returns whether they belong together as a pair for
@@ -103,15 +103,15 @@ bool is_valid_content(const Submessage& submessage) {
     default:
       return false;
   }
-  reader.number(4);  // how often this has been sent
+  reader.number(4);  // number of times that this was sent
   return reader.is_at_end();
 }
 
 /// Skips an encrypted submessage: its prefix, body and postfix. False if one is missing, or its size differs
 /// from the stated one.
 bool skip_encrypted(const Submessage& prefix, Bytes& left) {
-  // Prefix: transformation, key, session and counter. Postfix: a code of 16 bytes, and no codes for single
-  // receivers.
+  // Prefix: transformation, key, session and counter. Postfix: an authentication code of 16 bytes, and
+  // none for individual receivers.
   constexpr std::size_t kPrefixSize = 20, kPostfixSize = 20, kCodeSize = 16;
   const auto body = take_submessage(left), postfix = take_submessage(left);
   if (!body || body->kind != kEncryptedBodySubmessage || !postfix ||

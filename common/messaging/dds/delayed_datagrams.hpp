@@ -29,8 +29,7 @@ class DelayedDatagrams {
   void add(Duration delay, fast_dds::transport::TransportReceiverInterface& receiver,
            std::span<const std::uint8_t> datagram, const fast_dds::rtps::Locator_t& local,
            const fast_dds::rtps::Locator_t& remote);
-  /// Drops the port's datagrams. Once this returns, none is being passed on, and none will be passed on
-  /// later.
+  /// Drops the port's datagrams. Once this returns, no datagram of the port is passed on any more.
   void close(std::uint32_t port);
 
  private:

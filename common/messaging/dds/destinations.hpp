@@ -17,8 +17,8 @@ bool is_discovery(const Locator& locator) {
   return locator.port % 2 == 0;
 }
 
-/// Whether a discovery datagram is addressed to everybody: to a multicast address, or to all ports at which
-/// peers may be.
+/// Whether a discovery datagram is addressed to all participants: to a multicast address, or to all ports at
+/// which peers may be.
 template <typename Locators>
 bool goes_to_everybody(Locators& destinations) {
   constexpr std::uint8_t kFirst = 224, kLast = 239;  // first byte of multicast addresses

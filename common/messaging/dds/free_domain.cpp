@@ -42,7 +42,7 @@ bool is_used(int domain, const std::set<unsigned>& ports) {
 
 FreeDomain::FreeDomain() {
   const std::set<unsigned> ports = open_ports();
-  // People choose domains below 10; from 101 on, Linux gives the ports to other programs.
+  // Users tend to choose domains below 10; from 101 on, Linux may assign the ports to any program.
   for (number_ = 10; number_ <= 100; ++number_) {
     if (is_used(number_, ports)) continue;
     const std::string path = "/tmp/sidestep-domain-" + std::to_string(number_);

@@ -67,7 +67,7 @@ bool is_handshake_message(std::span<const std::uint8_t> payload) {
   reader.take(kHeadSize);
   if (take_text(reader) != "dds.sec.auth" || reader.number(4) != 1) return false;
   if (std::ranges::find(kTokens, take_text(reader)) == kTokens.end()) return false;
-  if (reader.number(4) != 0) return false;  // properties that are texts
+  if (reader.number(4) != 0) return false;  // number of properties with text values
   const std::uint32_t count = reader.number(4);
   if (count == 0 || count > kProperties.size()) return false;
   for (std::uint32_t i = 0; i < count; ++i)

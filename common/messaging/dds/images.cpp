@@ -17,8 +17,8 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kMinSilenceTimeout{1'000'000'000}, kMaxSilenceTimeout{16'000'000'000};
-constexpr std::uint32_t kImagesBytes = 32 << 20;   ///< for all images that wait to be read
-constexpr std::uint32_t kReaderBytes = 1 << 18;    ///< a reader of images sends little
+constexpr std::uint32_t kImagesBytes = 32 << 20;   ///< memory for all images that wait to be read
+constexpr std::uint32_t kReaderBytes = 1 << 18;    ///< memory of a reader, which sends little
 constexpr std::chrono::seconds kCreationGrace{5};  ///< a segment that is being created is not locked yet
 constexpr Duration kCheckPeriod{250'000'000};
 

@@ -21,9 +21,9 @@ void remove_stale_segments(const std::filesystem::path& folder, std::chrono::sec
 std::shared_ptr<DdsParticipant> image_publisher_participant(const DdsSettings& settings);
 
 /// A bus's reader of images. It starts with shared memory, which fails silently if the writer cannot access
-/// the same shared memory (containers). Therefore, if a writer is known but no image arrives for a second,
-/// the reader switches to UDP; after two more seconds it switches back to shared memory, and so on. The
-/// timeout doubles each time, until an image arrives.
+/// the same shared memory (for example in a container). Therefore, if a writer is known but no image arrives
+/// for a second, the reader switches to UDP; after two more seconds it switches back to shared memory, and so
+/// on. The timeout doubles each time, until an image arrives.
 class DdsImageReader {
  public:
   /// Throws std::runtime_error if DdsReader does.

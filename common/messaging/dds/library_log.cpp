@@ -43,7 +43,7 @@ class LibraryLog : public eprosima::fastdds::dds::LogConsumer {
       return;
     }
     const std::string left_out =
-        source.left_out == 0 ? "" : fmt::format(" ({} like it left out)", source.left_out);
+        source.left_out == 0 ? "" : fmt::format(" ({} similar messages left out)", source.left_out);
     source.left_out = 0;
     log(entry.kind == Log::Kind::Error ? LogLevel::kError : LogLevel::kWarning,
         fmt::format("Fast DDS, {}: {}{}", category, entry.message, left_out));

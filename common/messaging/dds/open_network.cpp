@@ -31,14 +31,15 @@ bool is_in_own_namespace() {
 void require_safe_network(const DdsSettings& settings) {
   const bool is_reachable = !settings.interface.starts_with("127.") && !is_in_own_namespace();
   if (is_reachable && !settings.insecure)
-    throw std::invalid_argument(
-        fmt::format("no keys: anybody on the network of {} could command the robots; expected --keys, see "
-                    "`sidestep keys`, or "
-                    "--insecure",
-                    settings.interface == "all" ? "any interface" : settings.interface));
+    throw std::invalid_argument(fmt::format(
+        "no keys: any machine on the network of {} could command the robots; expected --keys, see "
+        "`sidestep keys`, or "
+        "--insecure",
+        settings.interface == "all" ? "any interface" : settings.interface));
   static std::once_flag once;
   std::call_once(once, [] {
-    log(LogLevel::kWarning, "no keys: anybody on this network can command the robots, see `sidestep keys`");
+    log(LogLevel::kWarning,
+        "no keys: any machine on this network can command the robots, see `sidestep keys`");
   });
 }
 

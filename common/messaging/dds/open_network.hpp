@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// Checks the network of a process without keys. Logs once that anybody on the network can command the
+/// Checks the network of a process without keys. Logs once that any machine on the network can command the
 /// robots. Throws std::invalid_argument if other machines can reach the interface, unless
 /// DdsSettings::insecure is set. The loopback interface and the network namespaces of `sidestep run` cannot
 /// be reached from outside.

@@ -35,7 +35,7 @@ using fast_dds::Duration_t;
 constexpr std::uint32_t kMutationTries = 250;  ///< limits the number of participants on one host
 const Duration_t kAnnouncementPeriod{1, 0};
 constexpr std::uint32_t kSocketBufferBytes = 1 << 20;  ///< requested; the system may grant less
-constexpr int kKeptStates = 64;                        ///< one second of a topic with one message per cycle
+constexpr int kKeptStates = 64;                        ///< one second of states at one per cycle
 constexpr int kMaxInstances = 2048;  ///< keys per endpoint; beyond that, idle ones are dropped
 
 Duration_t milliseconds(std::uint32_t ms) { return Duration_t(0, ms * 1'000'000); }
@@ -225,7 +225,7 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
     throw std::runtime_error(
         fmt::format("DDS failed to create a participant in domain {} on interface {}{}: {}", settings.domain,
                     settings.interface, keys_ ? " with the keys in " + keys_->path : "",
-                    reason.empty() ? "it does not say why" : "Fast DDS says: " + reason));
+                    reason.empty() ? "it gives no reason" : "Fast DDS says: " + reason));
   }
   if (filter_) filter_->set_self(id_of(participant_->guid().guidPrefix));
   publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
@@ -255,7 +255,7 @@ dds::Topic* DdsParticipant::topic(const std::string& channel, const TypeSupport&
   return created;
 }
 
-/// Reports permission problems that Fast DDS would refuse without saying why.
+/// Reports missing permissions, because Fast DDS would refuse the operation without saying why.
 void DdsParticipant::require_permission(const std::string& channel, bool writes) const {
   if (!keys_) return;
   for (const TopicInfo& topic : all_topics()) {

@@ -23,7 +23,7 @@ class DdsParticipant {
  public:
   /// The listener, if any, must outlive the participant. `shared_memory_bytes` > 0 is the size of the segment
   /// for written messages. Two participants on one host that both have shared memory use it instead of UDP,
-  /// even if their segments are not visible to each other (containers); faults do not affect it. Throws
+  /// even if neither can see the other's segment (for example in containers); faults do not affect it. Throws
   /// std::runtime_error with the reason, and std::invalid_argument if the keys are wrong or missing.
   DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryListener* listener,
                  std::uint32_t shared_memory_bytes = 0);

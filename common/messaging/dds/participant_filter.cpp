@@ -45,7 +45,7 @@ bool ParticipantFilter::passes(const ParticipantId& sender, std::span<const std:
       const std::lock_guard lock(mutex_);
       const Admission::Decision decision = admission_.on_announcement(sender, announcement->user_data, now);
       if (decision.refusal == Admission::Refusal::kNone) return true;
-      // Not worth a report: a participant that is not needed, or one that is admitted later because many
+      // Not reported: a participant that is not needed, or one that will be admitted later because too many
       // announce themselves now.
       if (decision.refusal == Admission::Refusal::kNotNeeded ||
           decision.refusal == Admission::Refusal::kTooFast)
@@ -113,11 +113,11 @@ void ParticipantFilter::read_revoked() {
     const std::set<std::string> listed = load_revoked_serials(revoked_file_, authority_);
     if (!std::ranges::includes(listed, admission_.revoked()))
       log(LogLevel::kWarning,
-          fmt::format("keys: {} lacks keys that were revoked; they stay revoked", revoked_file_));
+          fmt::format("keys: {} no longer lists some revoked keys; they stay revoked", revoked_file_));
     admission_.revoke(listed);
-    log(LogLevel::kInfo, "read the list of revoked keys again");
+    log(LogLevel::kInfo, "reloaded the list of revoked keys");
   } catch (const std::invalid_argument& problem) {
-    log(LogLevel::kError, fmt::format("{}; the former list remains in force", problem.what()));
+    log(LogLevel::kError, fmt::format("{}; the previous list remains in force", problem.what()));
   }
 }
 

@@ -17,8 +17,8 @@
 
 namespace sidestep {
 
-/// Keeps strangers away from a participant with keys: applies Admission in a process, logs refusals, and
-/// reloads the list of revoked keys when its file changes. Thread-safe.
+/// Keeps participants without a valid key away from a participant with keys: applies Admission in a process,
+/// logs refusals, and reloads the list of revoked keys when its file changes. Thread-safe.
 class ParticipantFilter {
  public:
   /// Throws std::invalid_argument if the list of revoked keys cannot be read.
@@ -32,8 +32,8 @@ class ParticipantFilter {
                             bool is_discovery, std::span<const std::uint8_t, 4> address);
   /// See Admission::newly_refused(). Call it about once a second.
   [[nodiscard]] std::vector<ParticipantId> newly_refused();
-  /// Whether a participant may send messages with this Header.sender on a robot's channel of a topic. If not,
-  /// logs and counts that.
+  /// Whether a participant may send messages with this Header.sender on a robot's channel of a topic. Logs
+  /// and counts refusals.
   [[nodiscard]] bool may_send(const ParticipantId& participant, const TopicInfo& topic, std::uint32_t robot,
                               std::uint32_t sender);
   [[nodiscard]] bool is_operator(const ParticipantId& participant) const;

@@ -22,7 +22,7 @@ struct PresenceNotice {
   enum class Kind : std::uint32_t {
     /// The sender has forgotten `whom`. `number` identifies this event among those of the sender.
     kForgotten = 1,
-    /// The answer to that notice, with the same number: the receiver of the notice has forgotten the sender
+    /// The sender has received the kForgotten notice of `whom` with the same number, and has forgotten `whom`
     /// too.
     kAgreed = 2,
   };
@@ -38,10 +38,10 @@ struct PresenceNotice {
 /// Fast DDS can forget a silent participant by itself (its lease), but not safely: versions 2.9 and 3.1 may
 /// abort if the participant leaves during the check, and if only one side forgets the other, as when a
 /// process was stopped for a while, they may never find each other again. Participants therefore announce an
-/// infinite lease to Fast DDS, and this class decides instead. When a forgotten participant is heard again,
-/// it is notified, and forgets the other side too. For a moment it refuses the other side's datagrams,
-/// because older ones may still wait in its sockets: if Fast DDS took an old acknowledgement for a new one,
-/// it would never resend the messages in question. Then it agrees, and its own datagrams are accepted again.
+/// infinite lease, and this class decides instead. When a forgotten participant is heard again, it is
+/// notified, and forgets the other side too. For a moment it refuses the other side's datagrams, because
+/// older ones may still wait in its sockets: if Fast DDS took an old acknowledgement for a new one, it would
+/// never resend the messages in question. Then it sends kAgreed, and its own datagrams are accepted again.
 ///
 /// Only participants that announce presence are tracked; those of other software are left to Fast DDS.
 class Presence {
@@ -69,9 +69,9 @@ class Presence {
     Time last_heard{};
     bool is_forgotten = false;
     std::uint64_t forgotten_number = 0;
-    Time ask_until{};                     ///< end of kForgotten notices to it
-    std::optional<std::uint64_t> agreed;  ///< number of its latest processed kForgotten notice
-    Time agree_from{}, agree_until{};     ///< times of refusing it, and of agreeing
+    Time ask_until{};                     ///< when kForgotten notices to the peer end
+    std::optional<std::uint64_t> agreed;  ///< number of the peer's last processed kForgotten notice
+    Time agree_from{}, agree_until{};     ///< refuses datagrams until the former; then sends kAgreed
   };
 
   Peer* find_or_add(const ParticipantId& id, Time now);

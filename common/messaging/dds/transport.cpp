@@ -52,7 +52,7 @@ struct UdpDescriptor : transport::ChainingTransportDescriptor {
 
   transport::TransportInterface* create_transport() const override;
   /// Fast DDS sends a heartbeat to all readers of a writer whenever the writer has sent this many bytes. For
-  /// discovery writers its count is far too high (2.9.1 adds up sums), so each new participant would cause
+  /// discovery writers its count is far too high (2.9.1 adds up totals), so each new participant would cause
   /// heartbeats from and to all others for every second endpoint. With 25 participants, these are most of the
   /// packets at start-up.
   std::uint32_t min_send_buffer_size() const override { return kBytesUntilHeartbeat; }
@@ -119,8 +119,8 @@ class UdpTransport : public fast_dds::ChainedTransport {
     return is_accepted;
   }
 
-  /// Processes discovery datagrams one at a time, so that none of a participant is processed while Fast DDS
-  /// forgets it.
+  /// Processes discovery datagrams one at a time, so that Fast DDS receives no datagram of a participant
+  /// while forgetting it.
   void on_discovery(Receiver& next, const ParticipantId& sender, Bytes datagram, const rtps::Locator_t& local,
                     const rtps::Locator_t& remote) {
     const std::lock_guard one_at_a_time(discovery_);
@@ -202,7 +202,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
   std::optional<Time> announced_at_;
   Presence presence_;
   Time checked_at_{};
-  std::optional<DelayedDatagrams> delayed_;  ///< only with an impairment
+  std::optional<DelayedDatagrams> delayed_;  ///< set only if there is an impairment
 };
 
 transport::TransportInterface* UdpDescriptor::create_transport() const { return new UdpTransport(*this); }

@@ -18,7 +18,7 @@ namespace sidestep {
 /// Thread-safe.
 class TypeMismatchListener : public fast_dds::DiscoveryListener {
  public:
-  /// Registers a channel of ours and its type.
+  /// Registers one of our channels and its type.
   void expect(const std::string& channel, const std::string& type);
   /// Discovery time of the channel's most recently discovered writer of our type; nullopt if there is no
   /// writer.

@@ -36,14 +36,14 @@ class SimBus : public Bus {
   /// From now on, receives all messages without delay or loss. Only for audit and metrics, which are not part
   /// of the system.
   void become_observer();
-  /// From now on, observers receive nothing that this process sends. For hostile senders: audit and metrics
-  /// judge the other processes' messages.
+  /// From now on, observers receive nothing that this process sends. For hostile senders, because audit and
+  /// metrics judge only the other processes.
   void hide_from_observers();
   /// Sets the process's clock. Timers keep their true times.
   void set_clock(const ClockError& clock) { clock_ = clock; }
   /// Simulates SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are
   /// queued. Further ones are lost, like datagrams that find a full socket buffer. At the end, all queued
-  /// messages and timers are delivered at the same time. A pause within another one can only prolong it.
+  /// messages and timers are delivered at the same time. A pause during another one can only prolong it.
   void pause(Time until, std::size_t max_queued);
 
  protected:

@@ -49,7 +49,7 @@ class Wheel {
 /// Queue of events ordered by (time, order of insertion), on hierarchical timing wheels (Varghese, Lauck
 /// 1987). The first wheel covers 2 ms in 1 µs slots; a slot is sorted when its time comes. Each slot of the
 /// second wheel covers one revolution of the first. Later events wait in a heap. The cost hardly depends on
-/// the number of events, and nothing is allocated once warm.
+/// the number of events. A queue that has reached its maximum size allocates nothing.
 template <typename Payload>
 class EventQueue {
  public:
@@ -149,7 +149,7 @@ class EventQueue {
   std::int64_t slot_ = revolution_ << kRevolutionBits;      // the slot that due_ was loaded from
   std::vector<Entry> due_;                                  // latest event first
   Wheel<Entry, std::int64_t{1} << kRevolutionBits> slots_;  // slots of the current revolution
-  Wheel<Entry, kRevolutions> revolutions_;                  // the revolutions after it
+  Wheel<Entry, kRevolutions> revolutions_;                  // the revolutions after the current one
   std::vector<Entry> arriving_;                             // scratch of begin_next_revolution()
   std::vector<Entry> later_;                                // a heap
 };

@@ -66,7 +66,7 @@ void SimNetwork::release(std::uint32_t sent) {
 void SimNetwork::postpone(const Event& event) {
   SimProcessInstance& instance = *event.subscription->instance;
   if (instance.queued_until <= now_) {
-    // The pause begins, or continues after an earlier one: all events that are due now follow in order.
+    // The pause begins, or outlasts an earlier one: all events that are due now follow in order.
     instance.queued_until = instance.paused_until;
     instance.queued = 0;
   }
@@ -161,14 +161,14 @@ void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
     sample.has_arrived = arrives(from, to);
     delay = std::max(delay, event_delay(from, to, reliable_rng_));
   }
-  // A heartbeat, the reader's answer, and the resent messages.
+  // The delays of a heartbeat, of the reader's answer, and of the resent messages.
   give_arrived(stream, event_delay(from, to, reliable_rng_) + event_delay(to, from, reliable_rng_) + delay);
 }
 
 void SimNetwork::give_arrived(ReliableStream& stream, Duration delay) {
   std::vector<ReliableStream::Sample> arrived;
   while (const auto next = stream.take_arrived()) arrived.push_back(*next);
-  // In the order in which Fast DDS passes waiting messages to a reader.
+  // Fast DDS passes waiting messages to a reader in this order.
   std::ranges::stable_sort(arrived, {}, &ReliableStream::Sample::key);
   for (const ReliableStream::Sample& sample : arrived) {
     deliver_event(stream.reader(), delay, sample.sent);

@@ -30,7 +30,7 @@ struct SimProcessInstance {
   Time paused_until = Time::min();
   Reachability reachability{};  ///< limited by its pauses; see reachability_of()
   Time queued_until =
-      Time::min();  ///< when queued events are due; earlier than the end of the pause after a second pause
+      Time::min();  ///< when queued events are due; before paused_until if a second pause prolonged the first
   std::size_t queued = 0, max_queued = 0;  ///< number of messages that wait for the end of the pause
   std::uint64_t lost = 0;                  ///< number of messages to this process that the network has lost
   std::uint64_t overflowed = 0;            ///< number of messages to this process that found its queue full
@@ -95,7 +95,7 @@ class SimNetwork {
   void postpone(const Event& event);
   void send(Writer& writer, const void* message);
   void send_event(Writer& writer, SimSubscription& subscription, std::uint32_t sent);
-  /// Stores a message that did not arrive at once, and drops what exceeds the writer's history.
+  /// Stores a message that did not arrive immediately, and drops messages beyond the writer's history.
   void keep(Writer& writer, const std::shared_ptr<ReliableStream>& stream, std::uint32_t sent,
             bool has_arrived);
   /// Resends lost messages, provided that a heartbeat and the answer to it both arrive.
@@ -114,7 +114,7 @@ class SimNetwork {
   Duration sample_delay(Rng& rng) const;
 
   Rng rng_;
-  Rng reliable_rng_;  ///< for reliable messages, so that their losses do not change others'
+  Rng reliable_rng_;  ///< draws for reliable messages do not change the losses of other messages
   const Time begin_;
   Time now_;
   NetworkSpec spec_;

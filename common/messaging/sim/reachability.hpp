@@ -11,10 +11,10 @@ namespace sidestep {
 /// How long two processes have been able to hear each other, for simulating discovery. They forget each other
 /// if either direction is silent for kSilenceLimit.
 struct Reachability {
-  Time heard_from = Time::min();  ///< both directions have been heard since this time, or until `silent_from`
+  Time heard_from = Time::min();  ///< both directions are heard from this time until `silent_from`
   Time silent_from = Time::max();
   Time last_silent_from = Time::min();  ///< start of the silence that ended at `heard_from`
-  Time begun_anew = Time::min();        ///< end of the last silence long enough to forget each other
+  Time begun_anew = Time::min();        ///< end of the last silence after which they had forgotten each other
 
   bool is_forgotten(Time now) const { return silent_from <= now && now - silent_from >= kSilenceLimit; }
   void silence(Time now) { silent_from = std::min(silent_from, now); }
@@ -26,8 +26,8 @@ struct Reachability {
   }
 };
 
-/// The reachability of two processes when all of these are required: both directions of their link, and the
-/// processes themselves.
+/// The combined reachability if two processes hear each other only while both `a` and `b` allow it, for
+/// example the two directions of their link.
 inline Reachability both(const Reachability& a, const Reachability& b) {
   return {std::max(a.heard_from, b.heard_from), std::min(a.silent_from, b.silent_from),
           std::max(a.last_silent_from, b.last_silent_from), std::max(a.begun_anew, b.begun_anew)};

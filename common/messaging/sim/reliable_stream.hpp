@@ -25,8 +25,7 @@ class ReliableStream {
     bool is_in_history = true;  ///< still in the writer's history
   };
 
-  /// Time that writer and reader need to discover each other: if they can hear each other from the beginning,
-  /// and after a silence.
+  /// Time that writer and reader need to discover each other: at first contact, and again after a silence.
   struct Delays {
     Duration at_first{0}, anew{0};
   };
@@ -40,7 +39,7 @@ class ReliableStream {
   [[nodiscard]] bool update(const Reachability& reachability, Time now);
   std::deque<Sample>& waiting() { return waiting_; }
   /// Removes the oldest message of the key from the writer's history if it holds more than kEventDepth.
-  /// Returns the message if that makes it lost.
+  /// Returns the message if it is thereby lost.
   std::optional<Sample> overwrite(const CdrKey& key);
   /// Removes and returns the first message if it has arrived.
   std::optional<Sample> take_arrived();
@@ -53,7 +52,7 @@ class ReliableStream {
   Delays delays_;
   bool is_anew_ = false;
   bool is_matched_ = false;
-  std::deque<Sample> waiting_;  // in the order of writing
+  std::deque<Sample> waiting_;  // messages in the order of writing
 };
 
 }  // namespace sidestep

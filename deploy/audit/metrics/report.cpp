@@ -300,7 +300,7 @@ std::string summary(const Report& r) {
         fmt::format("a cause outside the protocol brought robots {} and {} into conflict\n", first, second);
   if (r.audit) text += audit_text(*r.audit);
   for (const auto& [process, differences] : r.mismatches) {
-    text += fmt::format("{} was refused because it works by other rules: {}\n", process,
+    text += fmt::format("{} was refused because it has different rules: {}\n", process,
                         differences.empty() ? "it did not say which" : describe(differences));
   }
   for (const Death& death : r.deaths) {

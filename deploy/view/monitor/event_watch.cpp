@@ -219,7 +219,7 @@ void EventWatch::on_refused(std::uint32_t sender, Time now) {
   if (refused_.size() >= kMaxSenders) refused_.clear();
   refused_.insert(sender);
   add(Severity::kError, "rules",
-      fmt::format("{} works by other rules: its messages are refused", process_name(sender)), now,
+      fmt::format("{} has different rules: its messages are refused", process_name(sender)), now,
       robots_of(sender));
 }
 

@@ -98,7 +98,7 @@ Judgement judge(const ExpectMismatch& check, const RunHistory& history) {
   if (!end.abort_reason.empty()) return gap_at_end(history).value_or(Judgement{});
   std::string others;
   for (const auto& [process, differences] : end.mismatches) others += (others.empty() ? "" : ", ") + process;
-  return Judgement::failed(end.at_s, others.empty() ? "no process is reported to work by other rules"
+  return Judgement::failed(end.at_s, others.empty() ? "no process is reported to have different rules"
                                                     : "only these are reported: " + others);
 }
 

@@ -63,7 +63,7 @@ struct DescribeCheck {
     return fmt::format("{} named {} {}", to_text(check.robots), name_of(check.as), text_of(check.span));
   }
   std::string operator()(const ExpectMismatch& check) const {
-    return check.process + " reported to work by other rules";
+    return check.process + " reported to have different rules";
   }
 };
 

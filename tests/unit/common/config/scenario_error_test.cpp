@@ -268,7 +268,7 @@ TEST_CASE(
   CHECK(load("unknown: free\n", "[-2, -2, 0]").map->notice() ==
         "map map.yaml: 800 of 1600 cells are unknown; they count as free");
   CHECK_THAT(load("unknown: free\n", "[-2, 2, -1.5707963267948966]").map->notice(),
-             ContainsSubstring("map map.yaml is turned by -1.5708 rad"));
+             ContainsSubstring("map map.yaml is rotated by -1.5708 rad"));
   CHECK_THROWS_WITH(load("unknown: perhaps\n", "[-2, -2, 0]"),
                     ContainsSubstring("scenario.yaml:2: unknown: "));
   check_rejected(kRobot + "unknown: free\n", 2, "there is no map");

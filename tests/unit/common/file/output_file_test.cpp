@@ -28,7 +28,7 @@ TEST_CASE("a file that cannot be opened, and a pipe that nobody reads, are refus
   const std::string pipe = folder.file("pipe");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   CHECK_THROWS_WITH(open_output("/dev/null/x"), "cannot write /dev/null/x: Not a directory");
-  CHECK_THROWS_WITH(open_output(pipe), "cannot write " + pipe + ": nobody reads this pipe");
+  CHECK_THROWS_WITH(open_output(pipe), "cannot write " + pipe + ": no process reads this pipe");
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
   CHECK_NOTHROW(open_output(pipe));
   close(reader);

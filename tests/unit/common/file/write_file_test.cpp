@@ -53,7 +53,7 @@ TEST_CASE("a pipe without a reader is reported and does not block") {
   const TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK_THROWS_WITH(write_file(pipe, "text"), "cannot write " + pipe + ": nobody reads this pipe");
+  CHECK_THROWS_WITH(write_file(pipe, "text"), "cannot write " + pipe + ": no process reads this pipe");
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
   REQUIRE(reader >= 0);
   write_file(pipe, "text");

@@ -15,7 +15,7 @@ TEST_CASE("the cause of a blockage is described in a clause") {
   CHECK(text(msg::BlockReason::BLOCK_ZONE) == "zone 5 covers its goal" + instead);
   CHECK(text(msg::BlockReason::BLOCK_NO_PATH) == "no path leads to its goal" + instead);
   CHECK(text(msg::BlockReason::BLOCK_OCCLUDED_CORNER) ==
-        "somebody may step out from behind the corner at 1.23,-2.00" + instead);
+        "a person may step out from behind the corner at 1.23,-2.00" + instead);
 }
 
 }  // namespace sidestep::blockage_text_test

@@ -61,8 +61,8 @@ TEST_CASE("two processes with different rules refuse each other's messages, and 
   CHECK(a.observed == 300);
   CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 100);
   CHECK(drops_of(b.bus).total(DropReason::kOtherRules) == 200);
-  const std::string refuses_b = "refuses coordinator 1, which works by other rules",
-                    refuses_a = "refuses coordinator, which works by other rules";
+  const std::string refuses_b = "refuses coordinator 1, which has different rules",
+                    refuses_a = "refuses coordinator, which has different rules";
   // b learns first that a is there; a learns of b from its rules.
   CHECK(b.mismatches == std::vector{refuses_a, refuses_a + ": margin_m is 0.01 instead of 0.02"});
   CHECK(a.mismatches == std::vector{refuses_b + ": margin_m is 0.02 instead of 0.01"});
@@ -102,7 +102,7 @@ TEST_CASE("one refused message is enough for both sides to name the difference")
   CHECK_FALSE(a.mismatches.empty());
   CHECK(b.mismatches ==
         std::vector<std::string>{
-            "refuses coordinator, which works by other rules: margin_m is 0.01 instead of 0.02"});
+            "refuses coordinator, which has different rules: margin_m is 0.01 instead of 0.02"});
 }
 
 TEST_CASE("however many processes are invented, 256 are named, and then one every ten seconds") {

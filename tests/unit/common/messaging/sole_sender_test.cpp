@@ -166,8 +166,8 @@ TEST_CASE("a reader of a single-writer topic gets nothing from two writers, and 
   reader.watch_contests([&](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
     ++contests;
     CHECK(describe_contest(topic, robot, header) ==
-          "two processes send 'feedback/3' as robot 3; the messages of both are ignored there until one of "
-          "them has ended");
+          "two processes send 'feedback/3' as robot 3; the messages of both are ignored on this topic "
+          "until one of them ends");
   });
   msg::Feedback feedback;
   const auto send = [&](auto& writer, Incarnation incarnation) {

@@ -25,7 +25,7 @@ TEST_CASE("bases have no keys, so with keys their topics need a separate domain"
                     ContainsSubstring("bases have no keys") && ContainsSubstring("expected --base-domain"));
   CHECK_THROWS_WITH(bases_bus(bus, {"robot", domain.number()}),
                     ContainsSubstring("DDS domain " + std::to_string(domain.number()) +
-                                      " is that of this process already"));
+                                      " is already the domain of this process"));
 }
 
 TEST_CASE("without keys and without a separate domain, bases use the agents' network") {

@@ -24,7 +24,7 @@ TEST_CASE("the reason for an epoch names who knew a higher one") {
   CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_ROBOT, 5, Duration{0}, 77}) ==
         "robot 5 obeys the higher epoch 77");
   CHECK(describe({msg::RoleReason::ROLE_SHARED_EPOCH, 2, Duration{0}, 0}) ==
-        "another process with number 2 began the same epoch");
+        "another process with number 2 started the same epoch");
 }
 
 }  // namespace sidestep::role_cause_test

@@ -21,9 +21,9 @@ class ChainedTransport : public transport::ChainingTransport {
  public:
   using ChainingTransport::ChainingTransport;
 
-  /// Called before a datagram is sent to everybody, that is, to a multicast address or to all ports at which
-  /// peers may be; announcements of the participant are sent like that. Receives the first part of the
-  /// datagram. Returns another datagram to be sent there before it; empty: none.
+  /// Called before a datagram is sent to all participants (to a multicast address, or to all ports at which
+  /// peers may be), as announcements are. `first_part` is the beginning of the datagram. Returns another
+  /// datagram to be sent to the same destinations first; empty: none.
   virtual std::vector<std::uint8_t> before_announcement(std::span<const std::uint8_t> first_part) = 0;
   /// Called when a datagram has arrived. `next` processes it unless it is dropped here.
   virtual void on_datagram(transport::TransportReceiverInterface& next,

@@ -10,7 +10,7 @@
 
 namespace sidestep::fast_dds {
 
-/// Base of our type supports. It has the same virtual functions for every version of Fast DDS. Fast DDS's
+/// Base class of our type supports, with the same virtual functions for every version of Fast DDS. Fast DDS's
 /// `data` pointers point to samples of the derived class.
 class DataType : public dds::TopicDataType {
  public:

@@ -57,7 +57,7 @@ inline void disable_intraprocess_delivery() {
 }
 
 /// Disables announcing the structure of types, because Cyclone DDS drops endpoints that do. In this version
-/// DataType does it.
+/// DataType disables it.
 inline void disable_type_propagation(dds::DomainParticipantQos&) {}
 
 }  // namespace sidestep::fast_dds

@@ -11,8 +11,8 @@ struct DiscoveryPair {
   std::uint32_t writer, reader;
 };
 
-/// The writers of discovery whose messages Fast DDS 2.9.1 sends unencrypted: of participants, of their
-/// writers, their readers and their liveliness (RTPS 2.2, 9.3.1.2).
+/// The discovery writers whose messages Fast DDS 2.9.1 sends unencrypted. They announce participants,
+/// writers, readers and liveliness (RTPS 2.2, 9.3.1.2).
 constexpr std::array<DiscoveryPair, 4> kPlainDiscovery{
     {{0x000100c2, 0x000100c7}, {0x000003c2, 0x000003c7}, {0x000004c2, 0x000004c7}, {0x000200c2, 0x000200c7}}};
 

@@ -11,10 +11,10 @@ struct DiscoveryPair {
   std::uint32_t writer, reader;
 };
 
-/// The writers of discovery whose messages Fast DDS 3 sends unencrypted: of participants, of their writers,
-/// their readers and their liveliness (RTPS 2.2, 9.3.1.2). With keys there are three more (DDS
-/// Security 1.1, 7.4.4): one announces participants to those that have shown their keys, and two have nothing
-/// to say, because governance does not protect discovery.
+/// The discovery writers whose messages Fast DDS 3 sends unencrypted. They announce participants, writers,
+/// readers and liveliness (RTPS 2.2, 9.3.1.2). With keys there are three more (DDS Security 1.1, 7.4.4): one
+/// announces participants to authenticated participants, and two send nothing, because governance does not
+/// protect discovery.
 constexpr std::array<DiscoveryPair, 7> kPlainDiscovery{{{0x000100c2, 0x000100c7},
                                                         {0x000003c2, 0x000003c7},
                                                         {0x000004c2, 0x000004c7},

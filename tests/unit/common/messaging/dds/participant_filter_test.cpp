@@ -93,7 +93,7 @@ TEST_CASE("the list of revoked keys is read again when it changes, and a broken 
   CHECK(f.filter.newly_refused() == std::vector{agent});
   change([&] { write_file(file, "nonsense"); });
   CHECK(f.filter.newly_refused().empty());
-  CHECK(log.has("the former list remains in force"));
+  CHECK(log.has("the previous list remains in force"));
   CHECK_FALSE(f.filter.passes(agent, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
   CHECK(f.filter.passes(viewer, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
 }
@@ -109,12 +109,12 @@ TEST_CASE("a list that is older than the last one undoes no revocation, and a pi
   write_file(file, older);
   std::filesystem::last_write_time(file, std::filesystem::last_write_time(file) + std::chrono::seconds(2));
   CHECK(f.filter.newly_refused().empty());
-  CHECK(log.has("lacks keys that were revoked; they stay revoked"));
+  CHECK(log.has("no longer lists some revoked keys; they stay revoked"));
   CHECK_FALSE(f.filter.passes(agent, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
   std::filesystem::remove(file);
   REQUIRE(mkfifo(file.c_str(), 0600) == 0);
   CHECK(f.filter.newly_refused().empty());
-  CHECK(log.has("the former list remains in force"));
+  CHECK(log.has("the previous list remains in force"));
 }
 
 TEST_CASE("a participant that the library refuses is named") {

@@ -93,7 +93,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
   CHECK(json["deaths"][0]["process"] == "agent 7");
   CHECK(json["mismatches"].dump() ==
         R"({"agent 3":{},"vision":{"margin_m":{"run":"0.01","process":"0.02"}}})");
-  CHECK_THAT(summary(example()), ContainsSubstring("vision was refused because it works by other rules: "
+  CHECK_THAT(summary(example()), ContainsSubstring("vision was refused because it has different rules: "
                                                    "margin_m is 0.02 instead of 0.01"));
   CHECK(json["wall_clock"]["real_time_factor"] == 3.0);
   CHECK_FALSE(json["wall_clock"].contains("processes"));

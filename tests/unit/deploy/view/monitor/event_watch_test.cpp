@@ -154,7 +154,7 @@ TEST_CASE("a flood of invented senders with different rules causes few events, a
   const std::uint64_t before = w.log.count();
   for (int i = 0; i < 3; ++i) w.watch.on_refused(3, w.now);
   CHECK(w.log.count() == before + 1);
-  CHECK(w.log.since(before)[0].text == "agent 3 works by other rules: its messages are refused");
+  CHECK(w.log.since(before)[0].text == "agent 3 has different rules: its messages are refused");
 }
 
 TEST_CASE("a log forgets the oldest events, and numbering continues") {
