@@ -11,7 +11,8 @@
 
 namespace sidestep {
 
-/// What all checks of an audit add to. Counts violations, keeps the first ones, and passes each one on.
+/// The findings of all checks of an audit. Counts the violations, keeps the first ones, and calls back for
+/// each.
 struct AuditFindings {
   AuditTotals totals;
   Time now{};  ///< by the auditor's clock

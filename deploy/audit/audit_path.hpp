@@ -51,15 +51,16 @@ class AuditPath {
   double max_speed_mps_ = 0;
 };
 
-/// The smallest distance between two paths, and its time.
+/// The smallest distance between two paths, and the time at which it occurs.
 struct ClosestApproach {
   double distance_m = std::numeric_limits<double>::infinity();
   std::int64_t at_ns = 0;
 };
 
 /// Closest approach at or after `from_ns` and the later of the two starts. Steps are as long as the relative
-/// speed allows without missing a distance below `cutoff_m`, and at most 0.25 ms where the paths are that
-/// close. Below `cutoff_m` the result is accurate to micrometres; above it, the result is only a bound.
+/// speed allows without missing a distance below `cutoff_m`; where the paths are closer than that, steps are
+/// at most 0.25 ms. Below `cutoff_m` the result is accurate to micrometres; above it, the result is only a
+/// bound.
 [[nodiscard]] ClosestApproach closest_approach(const AuditPath& a, const AuditPath& b, double cutoff_m,
                                                std::int64_t from_ns = 0);
 /// The closest approach of a path to a fixed point, with the same accuracy.

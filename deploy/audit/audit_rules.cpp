@@ -37,7 +37,7 @@ constexpr std::array<AuditRuleInfo, kAuditRules> kRules{{
     {"stale-incarnation", "firmware, S-05", "a robot obeys no incarnation older than one it has obeyed"},
     {"stale-epoch", "robots fence epochs, S-10",
      "a robot executes no version sent under an epoch older than one it has obeyed"},
-    {"facts", "ledger rule 2", "later facts never contradict earlier ones"},
+    {"facts", "ledger rule 2", "a robot's later reports never contradict earlier ones"},
     {"off-reference", "off reference",
      "a robot's own version brakes to rest at once and is numbered above all others"},
     {"tracking", "off reference",

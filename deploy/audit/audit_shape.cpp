@@ -52,7 +52,7 @@ ClosestApproach closest_approach(const AuditPath& path, const AuditShape& obstac
     return d;
   };
   const double end = path.duration_s(), speed = path.max_speed_mps() + 1e-9;
-  // No point of the path between two samples is nearer than the cutoff, unless the step is the shortest one.
+  // A step cannot skip a point nearer than the cutoff, unless it is the shortest step.
   for (double s = 0, d = sample(0); s < end; d = sample(s))
     s = std::min(end, s + std::max(kShortestStep_s, (d - cutoff_m) / speed));
   if (best < cutoff_m + speed * kShortestStep_s) {

@@ -54,7 +54,7 @@ std::string shortfall(const AuditTotals& totals) {
   if (totals.received == 0 && totals.refused > 0)
     return fmt::format("all {} messages come from processes with other rules", totals.refused);
   if (totals.received == 0) return "no messages were received";
-  if (totals.run_s <= 0) return "no run was heard in which robots could move";
+  if (totals.run_s <= 0) return "no received message shows that robots could move";
   std::string text;
   const auto add = [&](const std::string& reason) { text += (text.empty() ? "" : ", ") + reason; };
   const auto add_part = [&](double covered, const char* missing) {
@@ -64,7 +64,7 @@ std::string shortfall(const AuditTotals& totals) {
   add_part(coverage.messages, "of the messages were missed");
   add_part(coverage.versions, "of the executed versions lack a proposal, a grant or a command");
   add_part(coverage.pairs, "of the compared pairs of versions are undecided");
-  add_part(coverage.time, "of the time passed without facts of every robot");
+  add_part(coverage.time, "of the time passed with at least one robot silent");
   if (totals.reference == AuditReference::kNone)
     add("neither ground truth nor vision was received");
   else

@@ -28,12 +28,11 @@ enum class AuditReference : std::uint8_t { kNone, kVision, kGroundTruth, kVision
 /// For example "ground truth".
 [[nodiscard]] const char* name_of(AuditReference reference);
 
-/// The contacts of one pair of robots that one cause excuses. Without a second robot, contacts of a robot
-/// with an obstacle.
+/// The contacts of one pair that one cause excuses. The pair is two robots, or a robot and an obstacle.
 struct ExcusedContacts {
   std::string cause;
   RobotId first = 0;
-  std::optional<RobotId> second;
+  std::optional<RobotId> second;  ///< nullopt: an obstacle
   std::uint64_t contacts = 0;
 };
 
@@ -44,28 +43,29 @@ struct AuditTotals {
   std::uint64_t violations = 0;
   std::array<std::uint64_t, kAuditRules> by_rule{};
   std::vector<Violation> first;  ///< the first kMaxKept violations
-  std::uint64_t received = 0;    ///< number of messages
-  std::uint64_t missed = 0;      ///< number of messages, from gaps in their numbers
+  std::uint64_t received = 0;    ///< number of received messages
+  std::uint64_t missed = 0;      ///< number of missed messages, inferred from gaps in message numbers
   std::uint64_t invalid = 0;     ///< number of malformed messages, which were dropped
   /// Number of messages from processes with different rules, see refuse_other_rules().
   std::uint64_t refused = 0;
   std::uint64_t compared_pairs = 0;  ///< number of pairs of versions whose clearance was checked
-  /// Number of pairs that are too close and whose possible excuse was not received.
+  /// Number of pairs that are too close, unless a missed message excuses them.
   std::uint64_t undecided_pairs = 0;
   Coverage coverage;
   bool is_cut_off = false;  ///< the messages come from a recording that lacks an unknown part of the run
-  /// Duration of the part of the run in which silence counts, see RunCoverage::begin_run.
+  /// Duration of the part of the run in which a silent robot lowers the coverage, see
+  /// RunCoverage::begin_run().
   double run_s = 0;
   AuditReference reference = AuditReference::kNone;
-  /// Largest distance of a robot on its reference from that reference.
+  /// Largest distance of a robot from its reference, while it was not off reference.
   double max_position_error_m = 0;
   std::uint64_t excused_crashes = 0;     ///< number of crashes of moving robots that a disturbance excuses
   std::uint64_t excused_contacts = 0;    ///< number of contacts that a disturbance of a robot excuses
-  std::vector<ExcusedContacts> excused;  ///< the same contacts, by cause and pair
+  std::vector<ExcusedContacts> excused;  ///< the excused contacts, by cause and pair
   /// Number of contacts for which the reference did not name the robots.
   std::uint64_t unidentified_contacts = 0;
-  std::uint64_t undecided_contacts = 0;  ///< number of contacts whose possible excuse was not received
-  /// Number of crashes of moving robots whose possible excuse was not received.
+  std::uint64_t undecided_contacts = 0;  ///< number of contacts that a missed message may excuse
+  /// Number of crashes of moving robots that a missed message may excuse.
   std::uint64_t undecided_crashes = 0;
   std::uint64_t excused_displacements = 0;  ///< number of position errors of disturbed robots
   double pair_s = 0;                        ///< observed time, summed over all pairs of robots on the floor

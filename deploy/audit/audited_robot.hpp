@@ -19,14 +19,14 @@ namespace sidestep {
 
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::min();
-/// Versions that start this long after a robot's first fact were certainly granted after that fact, and after
-/// an auditor that joined a run had found all senders.
+/// Versions that start this long after a robot's first report were certainly granted after that report, and
+/// after an auditor that joined late had discovered all senders.
 inline constexpr std::int64_t kMaxLead_ns = 2'000'000'000;
 
-/// Why a fact proves that a version is not executed from then on.
+/// Why a robot's report proves that the robot no longer executes a version.
 enum class Exclusion : std::uint8_t { kNone, kOlder, kLate, kFenced, kLifted };
 
-/// The highest epochs in which something was registered. Bounded in number.
+/// The highest epochs in which a robot or a version was registered, at most 16.
 class EpochMemory {
  public:
   void add(Epoch epoch);
@@ -40,47 +40,48 @@ class EpochMemory {
   Epoch max_evicted_ = 0;
 };
 
-/// What is known about one version. Sending times are by the auditor's clock, except that times of grants are
-/// by the coordinator's clock if the auditor may miss messages.
+/// What is known about one version. Sending times are by the auditor's clock. Times of grants are by the
+/// coordinator's clock if the auditor may miss messages.
 struct KnownVersion {
   // The members that are read for most versions come first, so that they are adjacent in memory.
   VersionNumber number = 0;
   bool has_content = false;
-  bool is_own_stop = false;  ///< made by the firmware when it was off its reference
+  bool is_own_stop = false;  ///< made by the firmware when the robot was off its reference
   bool was_executed = false;
   Exclusion exclusion = Exclusion::kNone;
-  Epoch granted_in = 0;                      ///< for an own stop: the epoch whose ledger page contained it
-  std::int64_t granted_by_ns = kNever;       ///< latest sending time of the verdict, or of that page
+  Epoch granted_in = 0;                 ///< for an own stop: the epoch whose ledger page contained it
+  std::int64_t granted_by_ns = kNever;  ///< upper bound of the sending time of the verdict, or of that page
   std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
-  /// Lower bound of the time until which the ledger contained it, see MessageTimes::granter_time_ns.
+  /// The ledger contained it at least until this time, which is by the clock of
+  /// MessageTimes::granter_time_ns().
   std::int64_t alive_until_ns = kAlways;
   std::int64_t excluded_ns = kNever;
-  // What the pages of the ledger show, by the coordinator's clock. Unused if the auditor receives every
+  // What ledger pages show, with times by the coordinator's clock. Unused if the auditor receives every
   // message.
-  Epoch listed_in = 0;                      ///< the latest epoch whose pages listed it
-  std::int64_t listed_from_ns = kNever;     ///< the first page that listed it
-  std::int64_t entered_after_ns = kAlways;  ///< the last page before that one without it
+  Epoch listed_in = 0;                      ///< the latest epoch whose ledger pages listed it
+  std::int64_t listed_from_ns = kNever;     ///< time of the first page that listed it
+  std::int64_t entered_after_ns = kAlways;  ///< time of the last earlier page, which did not list it
   AuditPath path;
   EpochMemory registered_in;
   std::int64_t sent_ns = kNever;    ///< earliest sending time of the first command that contains it
-  Epoch sent_epoch = 0;             ///< the highest epoch of these commands
+  Epoch sent_epoch = 0;             ///< the highest epoch of the commands that contain it
   bool is_granted_by_page = false;  ///< inferred from a ledger page, because the verdict was missed
-  bool is_proposed = false;         ///< its proposal was received, or was received and may have been evicted
+  bool is_proposed = false;         ///< its proposal was received, or may have been received and evicted
   bool is_reported_unsent = false;  ///< ensures that a violation is reported only once
-  bool is_content_checked = false;  ///< including the check against its base
+  bool is_content_checked = false;  ///< its content was checked, also against its base
   bool is_pair_checked = false;     ///< checked against the other robots' versions in the ledger
   msg::Version version;
 
-  /// Whether it was granted or registered in the epoch.
+  /// Whether the version was granted or registered in the epoch.
   bool is_in(Epoch epoch) const;
-  /// Whether a ledger has contained it, as far as is known.
+  /// Whether a ledger is known to have contained the version.
   bool was_in_ledger() const { return number == 0 || granted_in != 0 || !registered_in.is_empty(); }
-  /// Whether its proposal, its grant and a command with it were all received, together with everything that
-  /// they are compared with.
+  /// Whether all messages about the version were received and checked: its proposal, its grant and a command.
   bool is_traced() const {
     return is_proposed && granted_in != 0 && sent_ns != kNever && is_content_checked && is_pair_checked;
   }
-  /// Whether it is or may be in the epoch. A coordinator may resume after more epochs than are remembered.
+  /// Whether the version was, or may have been, granted or registered in the epoch. An old coordinator may
+  /// resume after so many epochs that its own epoch is no longer remembered.
   bool may_be_in(Epoch epoch) const;
 };
 
@@ -125,7 +126,7 @@ class AuditedRobot {
   std::int64_t traceable_from_ns = kNever;
   std::size_t first_recent = 0;  ///< versions before this index were excluded long ago
 
-  /// The latest fact.
+  /// The latest report of the robot.
   struct ReceivedReport {
     std::uint64_t robot_incarnation = 0;  ///< incarnation of the robot
     std::int64_t at_ns = 0;
@@ -133,15 +134,16 @@ class AuditedRobot {
     VersionNumber executing = 0;
     Incarnation obeyed_incarnation = 0;
     Epoch obeyed_epoch = 0;
-    std::int64_t epoch_since_ns = kNever;  ///< upper bound of the time of the first fact with this epoch
-    /// If off the floor: the last version that it executed on the floor.
+    std::int64_t epoch_since_ns = kNever;  ///< upper bound of the time of the first report with this epoch
+    /// If the robot is off the floor: the last version that it executed on the floor.
     VersionNumber last_executed = 0;
     bool is_off_reference = false;
     bool is_lifted = false;
   };
   std::optional<ReceivedReport> last_report;
-  Time heard_at{};  ///< when it arrived
-  /// Since when all facts have reported an error beyond the drift bound, or beyond the tracking bound.
+  Time heard_at{};  ///< when the latest report arrived
+  /// Since when all reports have stated a tracking error beyond the drift bound, or beyond the tracking
+  /// bound.
   std::int64_t drifted_since_ns = kNever, beyond_bound_since_ns = kNever;
 
   /// The latest registration.
@@ -156,27 +158,29 @@ class AuditedRobot {
   };
   std::optional<Registered> registered;
 
-  /// The latest position in the reference that has not yet been compared with feedback.
+  /// The robot's latest position by ground truth or vision that has not yet been compared with a report.
   struct Observation {
     std::int64_t at_ns = kNever;
-    double x = 0, y = 0, reference_error_m = 0;  ///< the error is according to ground truth
+    double x = 0, y = 0, reference_error_m = 0;  ///< reference_error_m is by ground truth
   };
   Observation observation;
   EpochMemory registered_in;
-  /// The latest page of the ledger that listed versions of the robot, by the coordinator's clock.
+  /// The latest ledger page that listed versions of the robot; its time is by the coordinator's clock.
   struct Listing {
     Epoch epoch = 0;
     std::int64_t at_ns = kAlways;
   };
   Listing listed;
-  /// Offset of the robot's clock by its last fact; exact only if every message is received at once.
+  /// Offset of the robot's clock according to its last report; exact only if every message is received at
+  /// once.
   std::int64_t clock_ahead_ns = 0;
-  /// An operator has attested its absence: epochs up to this one may have begun without its registration.
+  /// An operator has attested the robot's absence: epochs up to this one may have begun without its
+  /// registration.
   Epoch attested_until = 0;
-  Epoch attested_in = 0;  ///< the newest epoch that had begun when its absence was last attested
+  Epoch attested_in = 0;  ///< the newest epoch at the time of the latest attestation
 
-  /// Number of executed versions, and of those that are traced. Counts only versions that an agent made and
-  /// that were granted during the audit.
+  /// Number of executed versions, and number of these that are traced. Counts only versions that an agent
+  /// made and that were granted during the audit.
   struct ExecutedVersions {
     std::uint64_t all = 0, traced = 0;
     void add(const KnownVersion& version, std::int64_t from_ns);
@@ -190,12 +194,12 @@ class AuditedRobot {
   const KnownVersion* find_near(std::size_t index, VersionNumber number) const;
   /// Whether the version is unknown and may have been evicted.
   bool was_evicted(VersionNumber number) const { return number <= max_evicted_version && !find(number); }
-  /// Whether all versions that the robot executed from one version to another, which may be the same, are
-  /// known.
+  /// Whether all versions that the robot executed between two versions are known; `from` may equal `to`.
   bool continues(VersionNumber from, VersionNumber to) const;
-  /// The version executed at a time by the robot's clock, before or as `latest` was; nullptr: unknown.
+  /// The version that was executed at this time by the robot's clock: `latest` or an earlier one; nullptr:
+  /// unknown.
   const KnownVersion* executed_at(VersionNumber latest, std::int64_t at_ns) const;
-  /// Distance of a position from the version that the robot executes; infinite if that is unknown.
+  /// Distance of a position from the version that the robot executes; infinite if that version is unknown.
   double distance_from_version_m(const Vec2& position_m, std::int64_t at_ns) const;
   /// The counts over the robot's whole life.
   ExecutedVersions executed_versions() const;
@@ -206,11 +210,11 @@ class AuditedRobot {
   ProposalRecord* find_proposal(std::uint64_t number);
   /// The proposal that was sent at this time by the agent's clock.
   ProposalRecord* find_proposal(std::uint64_t number, std::int64_t stamp_ns);
-  /// The newest proposal with this candidate of the same agent.
+  /// The newest proposal that contains this candidate of the same agent.
   const ProposalRecord* find_proposal_of(const msg::Version& candidate) const;
   /// Removes versions that were excluded before `before_ns`.
   void forget(std::int64_t before_ns);
-  /// Advances first_recent past versions excluded before `since_ns`: they are not compared any more.
+  /// Advances first_recent past versions excluded before `since_ns`, which are not compared any more.
   void advance_recent(std::int64_t since_ns);
   /// Moves first_recent back to this version, so that it is compared again using what is now known about it.
   void make_recent(VersionNumber number);
@@ -218,14 +222,14 @@ class AuditedRobot {
   ProposalRecord& add_proposal();
   /// Forgets everything except the id and the counters, because a new simulator starts with a new floor.
   void reset();
-  /// Forgets the times of facts and of the observation, because the robot's clock was set back.
+  /// Forgets the times of reports and of the observation, because the robot's clock was set back.
   void forget_times();
 
  private:
   ExecutedVersions forgotten_;
 };
 
-/// Whether and why the fact proves that the version is not executed from then on.
+/// Whether and why the report proves that the robot no longer executes the version.
 [[nodiscard]] Exclusion exclusion_by(const AuditedRobot::ReceivedReport& robot_report,
                                      const KnownVersion& version);
 

@@ -71,7 +71,7 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     ++findings_.totals.invalid;
     return;
   }
-  // Such a registration registers nobody, and only informs a coordinator of the epoch.
+  // A registration without versions, of a robot on the floor, only informs the coordinator of the epoch.
   if (registration.version_count() == 0 && !registration.is_absent()) return;
   orders_.on_registration(registration);
   epochs_.on_registration(*robot, registration, reception);
@@ -197,7 +197,7 @@ void listen(Bus& bus, const Scenario& scenario, Auditor& auditor) {
     subscribe(topics::kCommand, &Auditor::on_command, robot.id);
     subscribe(topics::kFeedback, &Auditor::on_robot_report, robot.id);
   }
-  // Advances also when no message arrives.
+  // Advances the auditor's time even when no message arrives.
   constexpr Duration kAdvancePeriod = std::chrono::milliseconds(100);
   call_periodically(bus, kAdvancePeriod, [&bus, &auditor] { auditor.advance(bus.now()); });
 }

@@ -13,13 +13,13 @@
 namespace sidestep {
 
 /// Checks all messages of a run against the rules of the safety protocol and reports each violation with the
-/// robots and versions involved. It takes each message, checks its form and sender, and hands it on to the
-/// audits of what it concerns. Shares no code with the components under audit. The auditor may join late,
+/// robots and versions involved. It checks the form and the sender of each message, and passes the message on
+/// to the audits that it concerns. Shares no code with the components under audit. The auditor may join late,
 /// miss messages and receive them late and out of order. It then relies only on contradictions between
 /// received messages that no missing message could resolve. So it finds less, but never raises a false alarm,
-/// and its totals state how much it covered. In that case it knows the order of two messages only if they
-/// have the same sender or if one refers to the other. Operators' messages must not be lost. Memory is
-/// bounded by the roster.
+/// and its totals state how much it covered. If messages may be missed, it knows the order of two messages
+/// only if they have the same sender or if one refers to the other. Operators' messages must not be lost.
+/// Memory is bounded by the roster.
 class Auditor {
  public:
   Auditor(const Scenario& scenario, const AuditInput& input);
@@ -62,7 +62,7 @@ class Auditor {
 
   /// The robot on the roster; if there is none, the message is counted as invalid.
   AuditedRobot* known_robot(RobotId robot);
-  /// The same for a message that only the robot's own processes may send.
+  /// The robot that sent the message; if another process sent it, the message is counted as invalid.
   AuditedRobot* sender_of(RobotId robot, const msg::Header& header);
   Reception trace(Kind kind, std::uint32_t key, const msg::Header& header);
 
@@ -83,8 +83,8 @@ class Auditor {
 
 /// Subscribes the auditor to a bus. The auditor must outlive the bus's last callback.
 void listen(Bus& bus, const Scenario& scenario, Auditor& auditor);
-/// Makes a bus that is used for nothing else refuse messages from processes with different rules
-/// (PROTOCOL.md, "The same rules"); the auditor counts them. In other processes RulesExchange does this.
+/// Makes a bus that only the auditor uses refuse messages from processes with different rules (PROTOCOL.md,
+/// "The same rules"); the auditor counts them. In processes with other buses RulesExchange does this.
 void refuse_other_rules(Bus& bus, const Scenario& scenario, Auditor& auditor);
 
 }  // namespace sidestep

@@ -33,7 +33,7 @@ bool ContactExcuses::are_known(std::optional<std::size_t> robot, std::int64_t ap
   // A robot that is not seen now may have been disturbed since it was last seen.
   if (!robot || !observed_[*robot] || are_contacts_unknown_ || disturbances_.is_uncertain(*robot))
     return false;
-  // When vision is the reference, robots that touch may have done so since one of them was out of place.
+  // With vision as the reference, robots that touch may have touched ever since one of them was out of place.
   return !coverage_.is_vision() || positions_.in_place_since_ns(*robot) <= apart_ns;
 }
 
@@ -44,7 +44,7 @@ void ContactExcuses::observe(const AuditedRobot& robot, const Vec2& position_m, 
   const KnownVersion* const version = is_executing ? robot.find(robot.last_report->executing) : nullptr;
   if (!version || !version->has_content) return;
   observed.inflation_m = version->version.inflation_m();
-  // By now the robot may execute another version.
+  // If the last report is old, the robot may execute another version by now.
   const bool is_recent = run_.is_complete() || findings_.now - robot.heard_at <= 2 * run_.scenario.cycle;
   observed.is_in_place = is_recent && version->was_in_ledger() &&
                          error_m <= run_.scenario.tracking_bound_m + observed.inflation_m + allowance_m;

@@ -11,8 +11,7 @@
 
 namespace sidestep {
 
-/// Decides whether contacts that the reference shows are excused, or may be although nothing received says
-/// so.
+/// Decides whether a contact that the reference shows is excused, or may be excused by a missed message.
 class ContactExcuses {
  public:
   ContactExcuses(const AuditedRun& run, const RobotRecords& robots, const RunCoverage& coverage,
@@ -26,7 +25,7 @@ class ContactExcuses {
                double allowance_m);
   /// All robots on the floor at this time have been observed.
   void end_observation(Time at) { disturbances_.update(at, observed_); }
-  /// It is unknown which robots pushed which.
+  /// From now on it is unknown which robots pushed which others.
   void on_unknown_contacts() { are_contacts_unknown_ = true; }
 
   /// Whether a contact is excused or left undecided, which is then counted. nullopt stands for an obstacle.

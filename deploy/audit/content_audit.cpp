@@ -13,7 +13,7 @@ constexpr double kContinuityTolerance = 1e-7;  // in m and in m/s
 constexpr double kSpeedTolerance_mps = 1e-5;
 constexpr double kEffortTolerance = 2e-3;
 
-/// The acceleration relative to the robot's limit, which is F ahead and sideways and D against the velocity.
+/// The acceleration relative to the robot's limit: F forwards and sideways, D against the velocity.
 double effort(const AuditPath::Node& n, const MotionLimits& limits) {
   const double f = limits.acceleration_mps2, d = limits.deceleration_mps2;
   const double speed = std::hypot(n.vx, n.vy), acceleration = std::hypot(n.ax, n.ay);
@@ -28,7 +28,7 @@ double largest_effort(const AuditPath::Node& begin, const AuditPath::Node& end, 
   AuditPath::Node last = end;
   last.ax = begin.ax;
   last.ay = begin.ay;
-  // A phase that brakes to rest ends without a direction.
+  // At the end of a phase that brakes to rest, the velocity has no direction.
   const bool ends_at_rest = std::hypot(end.vx, end.vy) <= kSpeedTolerance_mps;
   return std::max(effort(begin, limits), ends_at_rest ? 0 : effort(last, limits));
 }
@@ -47,8 +47,8 @@ void ContentAudit::check(const AuditedRobot& robot, KnownVersion& known) {
 }
 
 void ContentAudit::check_against_base(const AuditedRobot& robot, KnownVersion& known) {
-  // A robot may leave the field, or come near obstacles, as far as its base does. A rest version on base 0
-  // has no base if the robot was lifted, which may have been missed.
+  // A version may leave the field, or come near obstacles, as far as its base does. A lifted robot's rest
+  // version on base 0 has no base, and messages that show the lifting may have been missed.
   const bool may_rest = known.version.base() == 0 && known.path.reach_m() == 0;
   const KnownVersion* base = robots_.base_of(robot, known);
   if (!run_.is_complete() && (may_rest || !base)) return;
@@ -92,7 +92,7 @@ void ContentAudit::check_field(const AuditedRobot& robot, const KnownVersion& kn
     for (int i = 0; i <= path.phase_count(); ++i) {
       const AuditPath::Node& n = path.phase(i);
       for (const double turn : {0.0, n.ax != 0 ? -n.vx / n.ax : 0.0, n.ay != 0 ? -n.vy / n.ay : 0.0}) {
-        // If it changes sign elsewhere, this is another point of the path.
+        // If the sign changes outside this phase, another point of the path is sampled, which does no harm.
         const AuditPath::Node p = path.at_s(n.elapsed_s + turn);
         most = std::max({most, std::abs(p.x) - limit_x_m, std::abs(p.y) - limit_y_m});
       }
@@ -120,8 +120,8 @@ void ContentAudit::check_obstacles(const AuditedRobot& robot, const KnownVersion
   });
 }
 
-/// The base's distance from an obstacle or, if that is a part of the map, from all of the map: runs of cells
-/// are cut into boxes differently for every path.
+/// The base's distance from an obstacle; if the obstacle is part of the map, from the whole map, because the
+/// map's cells are split into boxes differently for each path.
 double ContentAudit::distance_of_base_m(const KnownVersion& base, const AuditShape& obstacle, bool is_map,
                                         double required_m) const {
   double nearest_m = closest_approach(base.path, obstacle, required_m).distance_m;

@@ -16,7 +16,7 @@ class ContentAudit {
 
   /// Precondition, here and below: the version has content.
   void check(const AuditedRobot& robot, KnownVersion& known);
-  /// The checks that depend on the version's base, as far as the base is known.
+  /// Runs the checks that need the version's base, if the base is known.
   void check_against_base(const AuditedRobot& robot, KnownVersion& known);
 
  private:
@@ -36,7 +36,7 @@ class ContentAudit {
   const AuditedRun& run_;
   const RobotRecords& robots_;
   AuditFindings& findings_;
-  std::vector<AuditShape> obstacles_;  ///< parallel to those of the scenario
+  std::vector<AuditShape> obstacles_;  ///< parallel to the scenario's obstacles
 };
 
 }  // namespace sidestep

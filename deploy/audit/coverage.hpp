@@ -5,8 +5,7 @@
 
 namespace sidestep {
 
-/// The parts of a run that the audit covered, each between 0 and 1. A part is 1 if there was nothing to
-/// cover.
+/// The fractions of a run that the audit covered, from 0 to 1. A fraction is 1 if there was nothing to cover.
 struct Coverage {
   /// An audit with a smaller share does not judge the run.
   static constexpr double kMinimum = 0.95;
@@ -18,7 +17,7 @@ struct Coverage {
   double time = 0;       ///< fraction of the run time in which every robot's executed version is known
   double reference = 0;  ///< fraction of the run time in which ground truth or vision was received
 
-  /// The smallest part.
+  /// The smallest fraction.
   double share() const;
 };
 

@@ -61,7 +61,7 @@ void Disturbances::on_missed() {
 
 void Disturbances::on_reference_missed() {
   on_missed();
-  // The robots may have moved in between.
+  // The robots may have moved while their positions were not received.
   for (State& state : states_) state.rests_since.reset();
 }
 
@@ -161,7 +161,7 @@ void Disturbances::update_displacement(std::size_t robot) {
   const Duration elapsed = *now_ - displacement->end;
   if (elapsed < Duration{0}) return;
   if (!displacement->back_at) {
-    // A robot whose clock has jumped is in place by its own clock, but not where others expect it.
+    // A robot whose clock has jumped is in place by its own clock, but not where other robots expect it.
     const bool may_be_clock = displacement->cause == kClockCause ||
                               (displacement->cause == kUnknownCause && !settings_.knows_causes);
     const bool may_drive = !may_be_clock && elapsed >= kSettlingTime;

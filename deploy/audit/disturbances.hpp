@@ -53,7 +53,8 @@ class Disturbances {
 
   /// Messages were missed. From now on it is unknown when a currently disturbed robot will be back in place.
   void on_missed();
-  /// Messages that show positions were missed, with the same consequence as in on_missed().
+  /// Messages that show positions were missed. Calls on_missed(), and forgets since when robots have been at
+  /// rest.
   void on_reference_missed();
   /// Whether the robot may be disturbed although no received message says so.
   bool is_uncertain(std::size_t robot) const { return states_[robot].is_uncertain; }
@@ -77,7 +78,7 @@ class Disturbances {
     std::vector<bool> is_over;  ///< indexed by robot: contacts with it are no longer excused
   };
   struct State {
-    std::optional<Time> reported_end;  ///< as last reported
+    std::optional<Time> reported_end;  ///< end of the disturbance, as last reported
     std::optional<std::string_view> announced;
     std::optional<Time> rests_since;
     bool rests_where_left = false;

@@ -38,7 +38,7 @@ void EpochAudit::on_registration(AuditedRobot& robot, const msg::Registration& r
     known->registered_in.add(epoch);
   }
   robot.registered_in.add(epoch);
-  // The attestation stays valid in the epochs that had begun.
+  // The attestation stays valid in the epochs that had begun when it was given.
   robot.attested_until = std::min(robot.attested_until, std::max(epoch, robot.attested_in));
   if (!robot.registered || epoch >= robot.registered->epoch) robot.registered = std::move(registered);
 }
@@ -60,7 +60,7 @@ void EpochAudit::on_coordinator(const msg::CoordinatorState& state, const Recept
     return;
   known->second.is_reported = true;
   findings_.report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),
-                   "{} robots' registrations are missing, although the coordinator has granted",
+                   "the coordinator has granted, although the registrations of {} robots are missing",
                    missing.size());
 }
 
@@ -74,7 +74,7 @@ void EpochAudit::on_command(const AuditedRobot& robot, const msg::Command& comma
   }
   if (reception.is_newest && command.epoch() < stream->epoch) {
     findings_.report(AuditRule::kEpochRegression, robot.id, nullptr, command.epoch(),
-                     "follows commands under epoch {}", stream->epoch);
+                     "the agent's previous command was under epoch {}", stream->epoch);
   }
   if (reception.is_newest) stream->epoch = std::max(stream->epoch, command.epoch());
 }
@@ -118,7 +118,8 @@ void EpochAudit::check_obeyed(AuditedRobot& robot, const KnownVersion& executing
                      "still obeys epoch {}, so it cannot have registered before the grant",
                      feedback.obeyed_epoch());
   }
-  // Without every message the order of facts and grants is not known, nor who was attested to be absent.
+  // If messages may be missed, the order of reports and grants is unknown, and so are attestations of
+  // absence.
   for (auto& [epoch, record] : epochs_) {
     if (!run_.is_complete()) break;
     if (record.is_reported || feedback.is_lifted() || feedback.obeyed_epoch() >= epoch) continue;
@@ -137,7 +138,7 @@ bool EpochAudit::is_after_registration(const AuditedRobot& robot, const msg::Fee
                                        const Reception& reception) const {
   const AuditedRobot::Registered& registered = *robot.registered;
   if (run_.is_complete()) return registered.latest_ns < reception.earliest_ns;
-  // The robot repeats the time of a command that the agent sent after the registration.
+  // The report repeats the stamp of a command that the agent sent after the registration.
   return feedback.obeyed_incarnation() == registered.incarnation &&
          times_.stamps().tell_order(robot.id, registered.incarnation) &&
          feedback.command_stamp_ns() > registered.stamp_ns;

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Checks who grants and obeys in an epoch: one coordinator grants, after all robots have registered, and
-/// robots and agents return to no earlier epoch.
+/// Checks that only one coordinator grants in an epoch, that it grants only after all robots have registered,
+/// and that robots and agents never return to an earlier epoch.
 class EpochAudit {
  public:
   EpochAudit(const AuditedRun& run, const MessageTimes& times, RobotRecords& robots, AuditFindings& findings)
@@ -22,12 +22,13 @@ class EpochAudit {
   void on_coordinator(const msg::CoordinatorState& state, const Reception& reception);
   void on_grant(const AuditedRobot& robot, const KnownVersion& known, const msg::Verdict& verdict);
   void on_command(const AuditedRobot& robot, const msg::Command& command, const Reception& reception);
-  /// Checks a fact about an executed version against the epochs that the robot should obey.
+  /// Checks a report of an executed version against the epochs that the robot should obey.
   void check_obeyed(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback,
                     const Reception& reception);
-  /// Whether the page is by the coordinator that grants in its epoch, as far as is known.
+  /// Whether the coordinator that grants in the page's epoch sent the page; true if that coordinator is
+  /// unknown.
   bool is_of_granter(const msg::LedgerPage& page) const;
-  /// Whether the page is also by the coordinator that has sent the first page of its epoch.
+  /// Whether, in addition, the same coordinator sent the first page of the epoch.
   bool is_of_first_sender(const msg::LedgerPage& page);
 
  private:
@@ -46,7 +47,7 @@ class EpochAudit {
 
   EpochRecord& epoch_record(Epoch epoch);
   void check_registration(AuditedRobot& robot, const KnownVersion& executing, const msg::Feedback& feedback);
-  /// Whether the robot certainly sent the fact after its agent had sent the latest registration.
+  /// Whether the robot certainly sent the report after its agent had sent the latest registration.
   bool is_after_registration(const AuditedRobot& robot, const msg::Feedback& feedback,
                              const Reception& reception) const;
 
@@ -55,7 +56,7 @@ class EpochAudit {
   RobotRecords& robots_;
   AuditFindings& findings_;
   std::map<Epoch, EpochRecord> epochs_;
-  Epoch newest_epoch_ = 0;  ///< newest epoch that a coordinator has announced
+  Epoch newest_epoch_ = 0;  ///< the newest epoch that a coordinator has announced
   std::map<RobotId, std::vector<AgentStream>> streams_;
 };
 

@@ -13,10 +13,10 @@ namespace {
 constexpr std::int64_t kRetention_ns = 1'500'000'000;
 // Versions excluded longer ago than this were compared before they were excluded.
 constexpr std::int64_t kRecentWindow_ns = 50'000'000;
-// A robot counts its incarnations on from that of its simulator, which is a clock reading in nanoseconds.
-// Another simulator starts later than that.
+// A robot's incarnation is that of its simulator, which is a clock reading in nanoseconds, plus the number of
+// times that the robot's clock was set back. A later simulator's incarnation is higher by more than this.
 constexpr std::uint64_t kMaxSetbacks = 100'000;
-// If a robot is silent for this long, facts of an earlier simulator may be the true ones (PROTOCOL.md,
+// If a robot is silent for this long, reports of an earlier simulator may be the true ones (PROTOCOL.md,
 // "Processes that must be alone").
 constexpr Duration kGoneAfter = std::chrono::seconds(1);
 
@@ -31,9 +31,9 @@ const char* reason_of(Exclusion exclusion) {
     case Exclusion::kOlder:
       return "a newer version was executed before it";
     case Exclusion::kLate:
-      return "its start had passed before the robot executed it";
+      return "the robot had not executed it when its start passed";
     case Exclusion::kFenced:
-      return "the robot had obeyed a later incarnation by then without executing it";
+      return "the robot had obeyed a later incarnation before executing it";
     default:
       return "the robot has been lifted off the floor since its grant";
   }
@@ -107,7 +107,7 @@ AuditedRobot::ReceivedReport FactAudit::report_of(const AuditedRobot& robot, con
 
 bool FactAudit::is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const {
   const std::int64_t bound_ns = run_.clock_bound_ns() + 1000;
-  // A fact is dated by the robot's own clock, and stamped by that of the process that sends it.
+  // A report's time is by the robot's own clock; its header's stamp is by the clock of the sending process.
   const bool is_dated_as_sent = std::abs(feedback.valid_at_ns() - feedback.header().stamp_ns()) <= bound_ns;
   if (!run_.is_complete() && !is_dated_as_sent) return false;
   return feedback.valid_at_ns() - reception.latest_ns <= bound_ns &&
@@ -131,7 +131,7 @@ void FactAudit::check_executing(AuditedRobot& robot, KnownVersion& executing,
     executing.executed_until_ns = std::max(executing.executed_until_ns, robot_report.at_ns);
   }
   executing.was_executed = true;
-  // Its base may have been received since its grant.
+  // The version's base may have been received after the version was granted.
   if (executing.granted_in != 0 && !executing.is_own_stop && !executing.is_content_checked)
     content_.check_against_base(robot, executing);
 }
@@ -147,7 +147,8 @@ void FactAudit::check_order(const AuditedRobot& robot, const ReceivedReport& rob
   // A clock that was out of bound may be set back.
   const bool was_clock_sound = last.is_clock_sound && (run_.is_complete() || is_next);
   if (robot_report.at_ns < last.at_ns && was_clock_sound)
-    fail(fmt::format("is stamped {} ns and follows a fact stamped {} ns", robot_report.at_ns, last.at_ns));
+    fail(fmt::format("is stamped {} ns, earlier than the report before it, {} ns", robot_report.at_ns,
+                     last.at_ns));
   if (robot_report.obeyed_incarnation < last.obeyed_incarnation)
     fail(fmt::format("obeys incarnation {} after incarnation {}", robot_report.obeyed_incarnation,
                      last.obeyed_incarnation));
@@ -156,7 +157,7 @@ void FactAudit::check_order(const AuditedRobot& robot, const ReceivedReport& rob
   if (robot_report.executing != 0 && start_ns > robot_report.at_ns)
     fail(fmt::format("executes at {} ns a version that starts at {} ns", robot_report.at_ns, start_ns));
   if (robot_report.executing == 0 && !robot_report.is_lifted && last.executing > 0)
-    fail(fmt::format("reports its initial rest after version {}", last.executing));
+    fail(fmt::format("reports its initial rest after it has executed version {}", last.executing));
 }
 
 void FactAudit::check_switch(const AuditedRobot& robot, const KnownVersion& to,
@@ -170,13 +171,13 @@ void FactAudit::check_switch(const AuditedRobot& robot, const KnownVersion& to,
     findings_.report(rule, robot.id, &to, 0, "is executed, although {}", reason_of(to.exclusion));
     return;
   }
-  // The robot may have executed several versions between two facts.
+  // The robot may have executed several versions between two reports.
   const VersionNumber from = robot.last_report->executing;
   const KnownVersion* step = &to;
   while (step && step->version.base() > from && step->version.base() < step->number)
     step = robots_.base_of(robot, *step);
   if (!step || step->version.base() == from) return;
-  // It may have been lifted and put down in between.
+  // The robot may have been lifted and put down between the two reports.
   const bool may_follow_lift = step->version.base() == 0 && step->path.reach_m() == 0;
   if (!run_.is_complete() && may_follow_lift) return;
   findings_.report(AuditRule::kSwitch, robot.id, &to, 0, "continues version {}, but version {} was executed",
@@ -199,9 +200,10 @@ void FactAudit::exclude(AuditedRobot& robot, const ReceivedReport& robot_report,
     if (known.exclusion != Exclusion::kNone) continue;
     known.exclusion = exclusion_by(robot_report, known);
     if (known.exclusion != Exclusion::kNone) known.excluded_ns = to_ns(findings_.now);
-    // Without every message it is not known how late a fact arrives: only pages tell what the ledger holds.
+    // If messages may be missed, the delay of reports is unknown, and only pages show what the ledger
+    // contains.
     if (!known.has_content || !run_.is_complete()) continue;
-    // If no fact was missed, this is the first one that excludes the version, and no component could know
+    // If no report was missed, this is the first one that excludes the version, and no component could know
     // earlier.
     if (known.exclusion == Exclusion::kNone || reception.is_next)
       known.alive_until_ns = std::max(known.alive_until_ns, reception.earliest_ns);

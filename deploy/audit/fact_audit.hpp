@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Checks what robots report: the order of their facts, and what they execute.
+/// Checks what robots report: the order of their reports, and the versions that they execute.
 class FactAudit {
  public:
   FactAudit(const AuditedRun& run, RobotRecords& robots, EpochAudit& epochs, ContentAudit& content,
@@ -23,18 +23,18 @@ class FactAudit {
         findings_(findings),
         motion_(run, findings) {}
 
-  /// Checks a fact against what is known about the robot; nullopt if it is no fact to learn from.
+  /// Checks a report against what is known about the robot; nullopt if the report must not be used further.
   [[nodiscard]] std::optional<AuditedRobot::ReceivedReport> check(AuditedRobot& robot,
                                                                   const msg::Feedback& feedback,
                                                                   const Reception& reception);
-  /// Makes the fact that check() has just returned the robot's latest one, and checks the pairs that it
-  /// proves.
+  /// Stores the report that check() has just returned as the robot's latest one. Checks the clearance of the
+  /// pairs of versions that the report proves to have been held or executed at the same time.
   void keep(AuditedRobot& robot, const AuditedRobot::ReceivedReport& robot_report);
 
  private:
   using ReceivedReport = AuditedRobot::ReceivedReport;
 
-  /// Forgets what is no longer valid if the fact is of another incarnation. Returns whether the fact counts.
+  /// If the incarnation is new, forgets what is no longer valid. Returns whether the report counts.
   [[nodiscard]] bool accept_incarnation(AuditedRobot& robot, std::uint64_t incarnation);
   ReceivedReport report_of(const AuditedRobot& robot, const msg::Feedback& feedback,
                            const Reception& reception) const;
@@ -45,7 +45,7 @@ class FactAudit {
                        const msg::Feedback& feedback, const Reception& reception);
   void check_switch(const AuditedRobot& robot, const KnownVersion& to, const ReceivedReport& robot_report);
   void check_sent(AuditedRobot& robot, KnownVersion& executing);
-  /// Excludes the versions that the fact proves are not executed any more.
+  /// Excludes the versions that the report proves are no longer executed.
   void exclude(AuditedRobot& robot, const ReceivedReport& robot_report, const Reception& reception) const;
 
   const AuditedRun& run_;

@@ -112,8 +112,9 @@ void GrantAudit::on_verdict(AuditedRobot& robot, const msg::Verdict& verdict, co
   judge_order(*known, verdict);
 }
 
-// A robot that is to be put down is granted its place although it is held. A verdict may be repeated; if not
-// all messages are received, only a version that starts long after the hold was certainly granted after it.
+// A held robot may be granted a rest version at the place where it will be put down. Verdicts may be
+// repeated; so if messages may be missed, only a version that starts long after the hold was certainly
+// granted after it.
 void GrantAudit::judge_order(const KnownVersion& known, const msg::Verdict& verdict) {
   const bool is_place = known.version.base() == 0 && known.path.duration_s() <= 0;
   if (!known.has_content || is_place) return;

@@ -32,7 +32,7 @@ class GrantAudit {
  private:
   void decide(AuditedRobot& robot, ProposalRecord& proposal, Epoch epoch, VersionNumber granted);
   void check_grant(AuditedRobot& robot, KnownVersion& known, const msg::Verdict& verdict);
-  /// Passes a grant that moves a robot to the audit of orders.
+  /// Passes a grant on to the audit of orders if it lets a robot move.
   void judge_order(const KnownVersion& known, const msg::Verdict& verdict);
   void check_forwarded(AuditedRobot& robot, VersionNumber number);
   /// The proposal that a verdict answers; nullptr if it was not received.

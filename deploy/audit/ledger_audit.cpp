@@ -33,7 +33,7 @@ void LedgerAudit::on_page(const msg::LedgerPage& page, const Reception& receptio
 void LedgerAudit::check_entry(AuditedRobot& robot, const msg::Version& version, const msg::LedgerPage& page,
                               const Reception& reception) {
   const KnownVersion* known = robot.find(version.version_number());
-  // A coordinator that receives no facts keeps versions that were evicted here long ago.
+  // A coordinator that receives no reports keeps versions that the auditor evicted long ago.
   if (robot.was_evicted(version.version_number())) return;
   const bool may_be_held = known && (known->may_be_in(page.epoch()) || known->is_own_stop);
   const bool may_be_forgotten = page.epoch() <= robot.forgotten_in;
@@ -44,7 +44,8 @@ void LedgerAudit::check_entry(AuditedRobot& robot, const msg::Version& version, 
   }
   KnownVersion* stored = robots_.store(robot, version);
   if (!stored || stored->is_in(page.epoch()) || stored->granted_in != 0) return;
-  // A version that was proposed in this epoch was not registered, so its verdict was missed.
+  // A version that was proposed in this epoch was not registered, so it was granted by a verdict that was
+  // missed.
   const ProposalRecord* proposal = robot.find_proposal_of(stored->version);
   const bool was_granted = !run_.is_complete() && proposal && proposal->epoch == page.epoch();
   if (!stored->is_own_stop && !was_granted) return;
@@ -58,8 +59,8 @@ void LedgerAudit::check_entry(AuditedRobot& robot, const msg::Version& version, 
   }
 }
 
-// The ledger never takes back a version that it has forgotten, so it held one from the first page that listed
-// it to the last.
+// A version that the ledger has forgotten never returns, so the ledger contained a version from the first
+// page that listed it until the last one.
 void LedgerAudit::learn(AuditedRobot& robot, Versions versions, const msg::LedgerPage& page) {
   const std::int64_t at_ns = page.header().stamp_ns();
   pairs_.remember_evidence(robot);
@@ -94,7 +95,7 @@ void LedgerAudit::check_complete(const AuditedRobot& robot, Versions versions, E
     if (std::ranges::any_of(versions, [&](const auto& v) { return v.version_number() == known.number; }))
       continue;
     findings_.report(AuditRule::kLedgerPage, robot.id, &known, epoch,
-                     "is not in the ledger, although no fact has excluded it");
+                     "is not in the ledger, although no report of its robot has excluded it");
   }
 }
 

@@ -26,7 +26,7 @@ class LedgerAudit {
   void on_page(const msg::LedgerPage& page, const Reception& reception);
 
  private:
-  using Versions = std::span<const msg::Version>;  ///< those of one robot on a page
+  using Versions = std::span<const msg::Version>;  ///< the versions of one robot on a page
 
   void check_entry(AuditedRobot& robot, const msg::Version& version, const msg::LedgerPage& page,
                    const Reception& reception);

@@ -41,8 +41,8 @@ class MessageTimes {
     stamps_.record(channel_of(kind, key), header);
   }
 
-  /// Whether times of an agent or a coordinator can be compared. Times of the auditor's clock always can;
-  /// times of the sender's clock only until it was set back.
+  /// Whether sending times of this agent or coordinator can be compared. Times by the auditor's clock always
+  /// can; times by the sender's clock can only until that clock is set back.
   bool are_comparable(const msg::Header& header) const {
     return run_.is_complete() || stamps_.tell_order(header.sender(), header.incarnation());
   }
@@ -53,8 +53,8 @@ class MessageTimes {
     return run_.is_complete() ? reception.latest_ns : header.stamp_ns();
   }
 
-  const ComparableStamps& stamps() const { return stamps_; }  ///< of agents and coordinators
-  const MessageTrace& trace() const { return trace_; }        ///< of all others than agents
+  const ComparableStamps& stamps() const { return stamps_; }  ///< stamps of agents and coordinators
+  const MessageTrace& trace() const { return trace_; }        ///< of all senders except agents
   const MessageTrace& agent_trace() const { return agent_trace_; }
 
  private:

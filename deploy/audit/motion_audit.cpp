@@ -11,7 +11,7 @@ namespace {
 
 // A robot checks its tracking error once per millisecond, but reports the position in between.
 constexpr double kReportingTolerance_m = 0.0005;
-// Robots whose motors respond later than this are not driven.
+// Robots whose motors take longer than this to respond cannot be driven.
 constexpr std::int64_t kMaxMotorLead_ns = 300'000'000;
 // Robots check themselves every millisecond. Beyond the drift bound they may take 25 ms to return.
 constexpr std::int64_t kCheckPeriod_ns = 1'000'000;
@@ -24,7 +24,7 @@ void MotionAudit::check_tracking(AuditedRobot& robot, const KnownVersion& execut
                                  const msg::Feedback& feedback, const Reception& reception) {
   const std::int64_t drifted_since_ns = std::exchange(robot.drifted_since_ns, kNever);
   const std::int64_t beyond_since_ns = std::exchange(robot.beyond_bound_since_ns, kNever);
-  // Setting a robot's clock displaces its reference at once.
+  // When a robot's clock is set, its reference jumps.
   if (!robot.last_report || !robot.last_report->is_clock_sound || !robot_report.is_clock_sound) return;
   if (robot_report.is_off_reference || robot_report.is_lifted || robot.last_report->is_off_reference) return;
   const double bound_m = run_.scenario.tracking_bound_m;
@@ -32,7 +32,7 @@ void MotionAudit::check_tracking(AuditedRobot& robot, const KnownVersion& execut
       feedback.tracking_error_m() - executing.version.inflation_m() - kReportingTolerance_m;
   const auto check = [&](double allowed_m, std::int64_t since_ns, std::int64_t timeout_ns) {
     if (!(error_m > allowed_m)) return kNever;
-    // If facts were missed, the robot may have recovered in between.
+    // If reports were missed, the robot may have recovered in between.
     const std::int64_t first_ns = reception.is_next && since_ns != kNever ? since_ns : robot_report.at_ns;
     const std::int64_t lasted_ns = robot_report.at_ns - first_ns;
     if (lasted_ns > timeout_ns) {
@@ -53,7 +53,7 @@ void MotionAudit::check_own_stop(const AuditedRobot& robot, const KnownVersion& 
   const auto fail = [&](const std::string& detail) {
     findings_.report(AuditRule::kOffReference, robot.id, &own_stop, 0, detail);
   };
-  // With the same number, it is the stop that the robot is already executing, of which messages were missed.
+  // An equal number means that the robot was already executing this stop, but that was missed.
   if (robot.last_report && own_stop.number < robot.last_report->executing)
     fail(fmt::format("is not numbered above version {}, which it replaces", robot.last_report->executing));
   const AuditPath::Node& end = own_stop.path.last();

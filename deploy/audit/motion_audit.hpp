@@ -10,7 +10,7 @@ class MotionAudit {
  public:
   MotionAudit(const AuditedRun& run, AuditFindings& findings) : run_(run), findings_(findings) {}
 
-  /// Precondition: `robot_report` is what `feedback` says, and robot.fact the fact before it.
+  /// Precondition: `robot_report` is decoded from `feedback`, and robot.last_report is the report before it.
   void check_tracking(AuditedRobot& robot, const KnownVersion& executing,
                       const AuditedRobot::ReceivedReport& robot_report, const msg::Feedback& feedback,
                       const Reception& reception);

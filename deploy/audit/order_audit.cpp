@@ -162,7 +162,7 @@ void OrderAudit::on_answer(const msg::OrderAnswer& answer) {
   const Coordinator* coordinator = coordinator_of(answer.header());
   if (!coordinator || answer.result() != msg::OrderResult::RESULT_REMEMBERED) return;
   const auto sent = sent_.find({answer.order_number(), answer.client()});
-  if (sent == sent_.end()) return;  // A repetition may have been numbered differently, or it was missed.
+  if (sent == sent_.end()) return;  // The order was missed, or its repetition has another number.
   const Terms& order = sent->second;
   Confirmed& last = confirmed_[order.subject];
   if (std::pair(last.terms.number, last.terms.client) < std::pair(order.number, order.client))

@@ -51,7 +51,7 @@ class OrderAudit {
     std::uint32_t robot = 0;
   };
   using Key = std::pair<std::uint64_t, std::uint32_t>;  // number and client of an order
-  /// An agent of a robot that is known to remember an order.
+  /// An agent that is known to remember an order.
   struct Witness {
     Incarnation incarnation = 0;
     std::int64_t stamp_ns = 0;
@@ -102,7 +102,7 @@ class OrderAudit {
   void judge_grants(const Memory& memory, Coordinator& coordinator);
   void judge_confirmed(const Memory& memory, std::uint32_t sender, const Coordinator& coordinator,
                        bool claims_completeness);
-  /// Whether an agent that is known to remember the order has registered with the coordinator since then.
+  /// Whether an agent that is known to remember the order has registered in the epoch since then.
   bool has_witness(const Terms& terms, Epoch epoch) const;
   void add_witness(const Key& key, RobotId robot, const Witness& witness);
 

@@ -29,15 +29,14 @@ double PairAudit::min_separation_m(const KnownVersion& a, const KnownVersion& b)
 
 std::optional<Epoch> PairAudit::common_epoch(const KnownVersion& a, const Evidence& a_state,
                                              const KnownVersion& b, const Evidence& b_state) const {
-  // Proof by a ledger: when both versions had been granted, in whichever order, no fact had excluded either
-  // of them.
+  // Proof by a ledger: when the later one of the two was granted, no report had excluded the other.
   for (const KnownVersion* granted : {&a, &b}) {
     const Epoch epoch = granted->granted_in;
     if (epoch == 0 || granted->is_own_stop || !was_checked_against(*granted, granted == &a ? b : a)) continue;
     const std::int64_t both_ns = std::max(entry_ns(a, epoch), entry_ns(b, epoch));
     if (std::min(a_state.alive_until_ns, b_state.alive_until_ns) >= both_ns) return epoch;
   }
-  // Proof by facts: both were executed at one time, independently of any ledger.
+  // Proof by reports: both versions were executed at the same time, whatever the ledgers contained.
   if (a.is_own_stop || b.is_own_stop || !a_state.was_executed || !b_state.was_executed) return std::nullopt;
   const std::int64_t from_ns = std::max(a.path.start_ns(), b.path.start_ns());
   const std::int64_t to_ns = std::min(a_state.executed_until_ns, b_state.executed_until_ns);
@@ -60,7 +59,7 @@ bool PairAudit::was_checked_against(const KnownVersion& granted, const KnownVers
   return other.granted_in == epoch || other.was_executed;
 }
 
-// Clocks of robots of one process are compared by the times at which it sent their facts.
+// Clocks of robots in one process can be compared, because that process stamps the reports of all of them.
 bool PairAudit::are_clocks_comparable(const AuditedRobot& a, const AuditedRobot& b) const {
   if (!a.last_report || !b.last_report || !a.last_report->is_clock_sound || !b.last_report->is_clock_sound)
     return false;
@@ -130,7 +129,8 @@ void PairAudit::check_changes(const AuditedRobot& robot, std::size_t other) {
 }
 
 void PairAudit::check_new(const AuditedRobot& robot, KnownVersion& known) {
-  if (known.alive_until_ns < known.granted_by_ns) return;  // later facts or pages will trigger the comparison
+  if (known.alive_until_ns < known.granted_by_ns)
+    return;  // later reports or pages will trigger the comparison
   known.is_pair_checked = true;
   for (const AuditedRobot& other : robots_.all()) {
     if (&other == &robot) continue;

@@ -16,7 +16,8 @@ class PairAudit {
 
   /// Remembers what has been proven about the robot's recent versions so far.
   void remember_evidence(const AuditedRobot& robot);
-  /// Checks the pairs that evidence proves since remember_evidence(), which must concern the same robot.
+  /// Checks the pairs for which evidence newer than remember_evidence() proves that they were held or
+  /// executed at the same time. Precondition: the last call of remember_evidence() was for this robot.
   void check_changes(const AuditedRobot& robot);
   /// Checks a newly granted version against all others.
   void check_new(const AuditedRobot& robot, KnownVersion& known);
@@ -61,7 +62,7 @@ class PairAudit {
   const std::int64_t clock_bound_ns_;
   std::vector<BoundingDisc> bounds_;                     ///< parallel to the robots
   std::vector<std::vector<LiveVersion>> live_versions_;  ///< parallel to the robots
-  std::vector<Evidence> before_;                         ///< of the robot's recent versions
+  std::vector<Evidence> before_;  ///< evidence before the current message, for the robot's recent versions
   std::vector<LiveVersion> changed_;
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 // Rounding of positions and velocities in messages.
 constexpr double kRounding_m = 1e-5;
-// A robot that was moved learns that from vision, and then reports that it is off its reference.
+// A robot that was moved learns this from vision within this time, and reports that it is off its reference.
 constexpr std::int64_t kMaxSeenDisplacement_ns = 300'000'000;
 
 }  // namespace
@@ -31,8 +31,8 @@ void PositionAudit::check(AuditedRobot& robot, const AuditedRobot::ReceivedRepor
   AuditedRobot::Observation& pending = robot.observation;
   // A simulator of robots without firmware does not know their references.
   const bool is_seen = is_vision || pending.reference_error_m < 0;
-  // If messages may be missed, the delay of facts is unknown, and so is the offset of the robot's clock. It
-  // is within bound of the clocks of cameras and of such a simulator.
+  // If messages may be missed, the delay of reports is unknown, and so is the offset of the robot's clock.
+  // That clock is then assumed to be within bound of the clocks of cameras and of such a simulator.
   const bool is_by_bound = is_vision || (is_seen && !run_.is_complete());
   const std::int64_t ahead_ns = robot_report.at_ns - reception.latest_ns;
   const std::int64_t gained_ns = ahead_ns - std::exchange(robot.clock_ahead_ns, ahead_ns);
@@ -42,12 +42,12 @@ void PositionAudit::check(AuditedRobot& robot, const AuditedRobot::ReceivedRepor
     pending = {};
     return;
   }
-  // According to the robot's clock.
+  // The observation's time by the robot's clock.
   const std::int64_t at_ns = pending.at_ns + (is_by_bound ? 0 : ahead_ns);
   if (robot_report.at_ns < at_ns) return;
   const AuditedRobot::Observation observation = std::exchange(pending, {});
   if (!run_.is_complete() && !reception.is_next) {
-    // What the robot did meanwhile is unknown.
+    // Reports were missed, so what the robot did in between is unknown.
     displacement = {};
     return;
   }
@@ -55,7 +55,7 @@ void PositionAudit::check(AuditedRobot& robot, const AuditedRobot::ReceivedRepor
                       robot.last_report->is_off_reference || robot.last_report->is_lifted ||
                       (is_by_bound && !robot_report.is_clock_sound);
   const KnownVersion* executed = robot.executed_at(robot_report.executing, at_ns);
-  // An own stop may have been made, and left, between the two facts.
+  // The robot may have begun and ended an own stop between the two reports.
   const bool may_be_off = !run_.is_complete() && executed && executed->is_own_stop;
   if (is_off || !executed || may_be_off) {
     displacement = {};
@@ -66,7 +66,7 @@ void PositionAudit::check(AuditedRobot& robot, const AuditedRobot::ReceivedRepor
     const AuditPath::Node reference = executed->path.at_ns(at_ns);
     error_m = std::hypot(observation.x - reference.x, observation.y - reference.y);
   } else {
-    // Ground truth that arrives late may be older than both facts.
+    // Ground truth that arrives late may be older than both reports.
     if (robot.last_report->at_ns > at_ns) return;
     // The times of live messages are not exact enough to say which of the two versions was executed.
     const KnownVersion* const before = robot.find(robot.last_report->executing);
@@ -111,7 +111,7 @@ void PositionAudit::check_seen_position(const AuditedRobot& robot, const KnownVe
     displacement = {kNever, false, was_in_place ? displacement.in_place_since_ns : at_ns};
     return;
   }
-  // An auditor that joins a run does not know what has displaced a robot before.
+  // An auditor that joins a run does not know which robots were displaced before.
   if (!run_.is_complete() && displacement.in_place_since_ns == kNever) return;
   if (is_known_to_be_displaced(robots_.index_of(robot))) {
     ++findings_.totals.excused_displacements;

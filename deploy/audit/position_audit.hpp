@@ -16,19 +16,20 @@ class PositionAudit {
 
   /// The coordinator that grants names robots as displaced.
   void on_displaced(std::vector<RobotId> robots) { named_displaced_ = std::move(robots); }
-  /// Compares the robot's pending observation with a fact. Precondition: robot.fact is the fact before it.
+  /// Compares the robot's pending observation with a new report. Precondition: robot.last_report is the
+  /// report before it.
   void check(AuditedRobot& robot, const AuditedRobot::ReceivedReport& robot_report,
              const Reception& reception);
-  /// In all observations by vision since this time the robot was in place; kNever: unknown.
+  /// Since this time, vision has always seen the robot in place; kNever: unknown.
   std::int64_t in_place_since_ns(std::size_t robot) const { return displacements_[robot].in_place_since_ns; }
 
  private:
   /// A displacement that vision shows.
   struct SeenDisplacement {
-    /// In all observations since this time the robot is out of place.
+    /// Since this time, the robot has always been seen out of place.
     std::int64_t since_ns = kNever;
     bool is_reported = false;  ///< ensures that it is reported only once
-    /// In all observations since this time it was in place; kNever: unknown.
+    /// Since this time, the robot has always been seen in place; kNever: unknown.
     std::int64_t in_place_since_ns = kNever;
   };
 

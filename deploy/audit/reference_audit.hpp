@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Audits robots by the reference, which is ground truth or vision: their positions and contacts.
+/// Audits the robots' positions and contacts by the reference, which is ground truth or vision.
 class ReferenceAudit {
  public:
   ReferenceAudit(const AuditedRun& run, RobotRecords& robots, RunCoverage& coverage, AuditFindings& findings);
@@ -19,7 +19,7 @@ class ReferenceAudit {
     vision_.on_world_state(world, reception);
   }
   void on_disturbance(const msg::Disturbance& disturbance);
-  /// Messages were missed that may tell of disturbances.
+  /// Messages that may have announced disturbances were missed.
   void on_missed() { disturbances_.on_missed(); }
   PositionAudit& positions() { return positions_; }
   void add_to(AuditTotals& totals) const { excuses_.add_to(totals); }

@@ -19,7 +19,8 @@ KnownVersion* RobotRecords::store(AuditedRobot& robot, const msg::Version& versi
     return nullptr;
   }
   KnownVersion& known = robot.find_or_insert(version.version_number());
-  // A later agent, or another floor: what the auditor would have forgotten if it had received every message.
+  // A later agent or another floor reuses the number. An auditor that received every message would have
+  // forgotten the old version by now.
   const bool is_another = known.has_content && (known.version.incarnation() != version.incarnation() ||
                                                 (known.number == 0 && !(known.version == version)));
   if (!run_.is_complete() && is_another) {
@@ -32,7 +33,7 @@ KnownVersion* RobotRecords::store(AuditedRobot& robot, const msg::Version& versi
     known.path = AuditPath(version);
     known.is_content_checked = known.is_pair_checked = run_.is_complete();
     max_inflation_m_ = std::max(max_inflation_m_, version.inflation_m());
-    // An earlier fact may exclude the version.
+    // An earlier report may exclude the version.
     if (robot.last_report) known.exclusion = exclusion_by(*robot.last_report, known);
     known.excluded_ns = known.exclusion == Exclusion::kNone ? kNever : to_ns(findings_.now);
     robot.make_recent(known.number);

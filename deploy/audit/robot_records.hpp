@@ -10,8 +10,8 @@
 
 namespace sidestep {
 
-/// What is known about the robots on the roster and their versions. Reports versions that differ from one
-/// message to another.
+/// What is known about the robots on the roster and their versions. Reports a violation if two messages give
+/// one version different contents.
 class RobotRecords {
  public:
   RobotRecords(const AuditedRun& run, AuditFindings& findings);
@@ -37,7 +37,7 @@ class RobotRecords {
   /// The content of a version's base; nullptr if it was not received. A restarted agent may reuse numbers of
   /// versions that its predecessor proposed without success.
   const KnownVersion* base_of(const AuditedRobot& robot, const KnownVersion& known) const;
-  /// The maximum over all versions received so far.
+  /// The maximum inflation of all versions received so far.
   double max_inflation_m() const { return max_inflation_m_; }
 
  private:

@@ -6,9 +6,9 @@
 namespace sidestep {
 namespace {
 
-// Bound against overflow: four hours of facts.
+// Prevents an overflow: as many reports as a robot sends in four hours.
 constexpr std::uint64_t kMaxMissed = 1'000'000;
-// An auditor that joins a run finds the senders one after another.
+// An auditor that joins a run discovers all senders within this time.
 constexpr Duration kMaxJoinTime = std::chrono::seconds(1);
 
 }  // namespace
@@ -27,8 +27,8 @@ void RunCoverage::begin_run() {
 void RunCoverage::hear_robot_report(const AuditedRobot& robot, VersionNumber executing,
                                     const Reception& reception) {
   if (executing != 0) begin_run();
-  // A robot that runs sends at least one fact per cycle, so this many missed facts cover at most as many
-  // cycles. They leave no doubt if all versions are known that the robot executed in between.
+  // A running robot sends at least one report per cycle, so n missed reports span at most n cycles. Missed
+  // reports do not matter if all versions that the robot executed in between are known.
   const bool is_known = robot.last_report && robot.continues(robot.last_report->executing, executing);
   const auto missed = static_cast<std::int64_t>(std::min(reception.missed, kMaxMissed));
   report_coverage_.hear(robots_.index_of(robot), findings_.now,
@@ -57,7 +57,8 @@ void RunCoverage::add_to(AuditTotals& totals, const MessageTimes& times) const {
     versions.traced += executed.traced;
   }
   Coverage& coverage = totals.coverage;
-  // Agents' messages are judged by their effect, as versions; those of a host that is cut off have no effect.
+  // Agents' messages count only by their effect, in coverage.versions, because messages from a host that is
+  // cut off have none.
   const std::uint64_t distinct = times.trace().distinct();
   coverage.messages = distinct > 0 ? share_of(distinct, distinct + times.trace().missed()) : 0;
   coverage.versions = share_of(versions.traced, versions.all);

@@ -15,10 +15,10 @@ class RunCoverage {
   RunCoverage(const AuditedRun& run, RobotRecords& robots, AuditFindings& findings)
       : run_(run), robots_(robots), findings_(findings), report_coverage_(robots.all().size()) {}
 
-  /// Something shows that robots may move. From then on, silence counts once every robot has been heard, but
-  /// at the latest after a second.
+  /// A message shows that robots may move. Once every robot has been heard, or after a second at the latest,
+  /// silence lowers the coverage.
   void begin_run();
-  /// Precondition: the fact is not yet the robot's latest one.
+  /// Precondition: robot.last_report is the report before this one.
   void hear_robot_report(const AuditedRobot& robot, VersionNumber executing, const Reception& reception);
   /// The robot's next silence does not count.
   void expect_silence(const AuditedRobot& robot) { report_coverage_.expect_silence(robots_.index_of(robot)); }
@@ -26,7 +26,7 @@ class RunCoverage {
   void use_reference(AuditReference reference);
   bool has_ground_truth() const;
   bool is_vision() const { return findings_.totals.reference == AuditReference::kVision; }
-  /// `source` is the robot that vision shows, or 0 for ground truth; see ReceptionCoverage.
+  /// `source` is the index of the robot that vision shows, or 0 for ground truth; see ReceptionCoverage.
   void hear_reference(std::size_t source, Duration unheard) {
     reference_coverage_->hear(source, findings_.now, unheard);
   }
@@ -37,8 +37,8 @@ class RunCoverage {
   const AuditedRun& run_;
   RobotRecords& robots_;
   AuditFindings& findings_;
-  std::optional<Time> motion_sign_at_, begun_at_;  ///< when something first showed that robots may move
-  ReceptionCoverage report_coverage_;              ///< facts of all robots
+  std::optional<Time> motion_sign_at_, begun_at_;  ///< when a message first showed that robots may move
+  ReceptionCoverage report_coverage_;              ///< reports of all robots
   std::optional<ReceptionCoverage> reference_coverage_;
 };
 

@@ -28,7 +28,7 @@ struct SeenContact {
   std::size_t first = 0;              ///< index in the roster
   std::optional<std::size_t> second;  ///< nullopt: the contact is with an obstacle
   double distance_m = 0;              ///< between the centres, or from the centre to the obstacle's edge
-  /// When they were last seen apart; the lowest number if never.
+  /// When the two were last seen apart; the lowest number if never.
   std::int64_t apart_ns = std::numeric_limits<std::int64_t>::min();
 };
 
@@ -47,8 +47,8 @@ class SeenContacts {
   void on_missed();
 
  private:
-  using Pair = std::pair<std::size_t, std::size_t>;  ///< second: robot, or number of robots + obstacle;
-                                                     ///< the map is the last obstacle
+  using Pair = std::pair<std::size_t, std::size_t>;  ///< second: index of a robot, or number of robots +
+                                                     ///< index of an obstacle; the map is the last obstacle
 
   /// Returns whether a contact begins.
   bool observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m,

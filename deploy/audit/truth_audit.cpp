@@ -21,7 +21,7 @@ void TruthAudit::on_truth(const msg::GroundTruth& truth, const Reception& recept
   }
   if (!reception.is_newest) return;
   if (!coverage_.has_ground_truth()) coverage_.use_reference(AuditReference::kGroundTruth);
-  // The ground truth's counters report contacts even if they happened while no ground truth was received.
+  // The counters in ground truth include contacts that happened while no ground truth was received.
   coverage_.hear_reference(0, Duration{0});
   if (truths_.size() >= kMaxSimulatorLives && !truths_.contains(truth.header().incarnation()))
     truths_.erase(truths_.begin());
@@ -79,7 +79,7 @@ void TruthAudit::check_crashes(const msg::GroundTruth& truth, std::uint64_t repo
     findings_.report(AuditRule::kCrash, index ? robot : any_robot(robot), nullptr, 0,
                      "{} crashes of moving robots so far, at a robot speed of up to {:.3f} m/s",
                      truth.crashes_while_moving(), truth.max_robot_crash_speed_mps());
-    // One report covers those that are not listed.
+    // One violation covers all crashes that are not listed.
     if (!is_listed) k = truth.crashes_while_moving() - msg::MAX_CONTACTS - 1;
   }
 }

@@ -126,7 +126,7 @@ class MonitorServer {
     foxglove_.add(socket);
   }
 
-  /// Returns false if the message makes no sense.
+  /// Returns false if the message is invalid.
   bool plan(WebSocket& socket, const std::string& message) {
     if (!planning_[&socket].apply(parse_viewer_json(message))) return false;
     send_plan(socket);
@@ -166,7 +166,7 @@ class MonitorServer {
                                                                          : std::nullopt;
   }
 
-  /// "/api/fields/3"
+  /// Answers GET /api/fields/3.
   std::optional<WebResponse> fields(const WebRequest& request) {
     constexpr std::string_view kBegin = "/api/fields/";
     if (!parts_.fields || request.method != "GET" || !request.path.starts_with(kBegin)) return std::nullopt;
@@ -176,7 +176,7 @@ class MonitorServer {
                        parts_.fields->json(*robot, monitor_.floor(), monitor_.now()).dump()};
   }
 
-  /// "/api/cameras/0.jpg"
+  /// Answers GET /api/cameras/0.jpg.
   std::optional<WebResponse> camera_image(const WebRequest& request) {
     constexpr std::string_view kBegin = "/api/cameras/", kEnd = ".jpg";
     const std::string_view path = request.path;
@@ -197,8 +197,8 @@ class MonitorServer {
   WebServer server_;
 };
 
-/// A name for a recording that a viewer starts, e.g. recordings/crossing-20261125T180509.mcap; its folder
-/// exists.
+/// A name for a recording that a viewer starts, e.g. recordings/crossing-20261125T180509.mcap; creates its
+/// folder.
 std::string new_recording_file(const Scenario& scenario) {
   const std::string report = default_report_path(scenario.name, std::nullopt);
   const std::filesystem::path folder = "recordings";

@@ -44,7 +44,7 @@ TEST_CASE("the patrol drives a robot back and forth until another client sends i
   CHECK(run.command(other) == "exit code 0");
   CHECK(run.wait_until([&] { return has_ended(run, "patrol"); }));
   CHECK(run.exit_reason("patrol") == "exit code 1");
-  CHECK(run.printed("somebody else has sent the robot elsewhere"));
+  CHECK(run.printed("another client has sent the robot elsewhere"));
   start(run, "patrol", {"30", "1", "-1,1", "-2.2,0.6"});
   CHECK(run.wait_until([&] { return run.printed("the order was refused"); }));
   finish(run);

@@ -56,7 +56,7 @@ TEST_CASE("faults that cannot be applied are refused with the reason") {
   LaunchedRun run(shuttles(20, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   CHECK(run.command(fault(run, {"network", "--target", "all", "--cut"})) == "exit code 1");
-  CHECK(run.printed("no process on this domain and interface accepts such faults"));
+  CHECK(run.printed("no process on this domain and interface accepts these faults"));
   CHECK(run.command(fault(run, {"network", "--target", "agent x", "--cut"})) == "exit code 2");
   CHECK(run.printed("got 'agent x'"));
   CHECK(run.command(fault(run, {"network", "--target", "all"})) == "exit code 2");

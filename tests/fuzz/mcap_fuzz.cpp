@@ -52,7 +52,7 @@ bool try_playback(const std::string& path) {
     return result.messages > 0;
   } catch (const std::invalid_argument& error) {
     SIDESTEP_REQUIRE(std::string_view(error.what()).starts_with(path) ||
-                     std::string_view(error.what()).starts_with("the recording holds no scenario"));
+                     std::string_view(error.what()).starts_with("the recording contains no scenario"));
     return false;
   }
 }

@@ -9,7 +9,7 @@ namespace sidestep {
 
 /// One line that summarises the whole run.
 std::string progress_line(const RunMetrics& metrics, Time now);
-/// The same line, followed by at most `max_rows` lines, one per robot.
+/// The progress line, followed by one line per robot, at most `max_rows`.
 std::string progress_table(const RunMetrics& metrics, Time now, int max_rows);
 
 /// Shows the progress of a run on stdout: in a terminal, a table that is redrawn in place; elsewhere, one

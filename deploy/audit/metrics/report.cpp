@@ -86,7 +86,7 @@ Json audit_json(const AuditTotals& audit) {
 /// Why the run did not pass.
 std::string reason_of(const Report& report) {
   if (report.verdict() == AuditVerdict::kNotJudged && !report.director_deaths.empty())
-    return fmt::format("not judged: the process that observed the run died ({}), another one took its place",
+    return fmt::format("not judged: the process that observed the run died ({}) and was replaced",
                        fmt::join(report.director_deaths, ", "));
   if (report.verdict() == AuditVerdict::kNotJudged) return "not judged: " + shortfall(*report.audit);
   return report.failure_reason();

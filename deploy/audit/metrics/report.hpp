@@ -40,8 +40,9 @@ struct Report {
   std::string program;  ///< "run" or "simulate"
   std::string scenario;
   std::optional<std::uint64_t> seed;
-  std::string abort_reason;       ///< empty: the run was not aborted
-  std::string recording_failure;  ///< why the recording lacks messages; empty: it does not, or there is none
+  std::string abort_reason;  ///< empty: the run was not aborted
+  std::string
+      recording_failure;  ///< why the recording lacks messages; empty: it is complete, or there is none
   int robots = 0;
   int arrived = 0;
   bool must_arrive = true;  ///< whether the run passes only if all robots arrive
@@ -80,7 +81,7 @@ struct Report {
   DurationHistogram plan;
   DurationHistogram search;
   std::vector<Death> deaths;
-  /// Why processes that directed and observed the run have died. Nothing before that time is judged.
+  /// Why each process that directed and observed the run died. The run before such a death is not judged.
   std::vector<std::string> director_deaths;
   std::vector<EpochRecord> epochs;  ///< in the order of their first heartbeats
   /// Processes with different rules, and the differences; empty if these are unknown.
@@ -114,7 +115,7 @@ std::string summary(const Report& report);
 /// Writes to_json() to a file and creates its folder. Throws std::runtime_error with the reason for a
 /// failure.
 void write_report(const Report& report, const std::string& path);
-/// Does that too, but returns the reason of a failure; empty: it is written.
+/// Like write_report(), but returns the reason for a failure; empty if the report was written.
 [[nodiscard]] std::string try_write_report(const Report& report, const std::string& path);
 /// reports/<scenario>-<seed>.json, or with the local time instead of the seed.
 std::string default_report_path(const std::string& scenario, std::optional<std::uint64_t> seed);

@@ -20,7 +20,8 @@ namespace {
 /// Tolerances for positions and velocities from vision. Its velocities are too noisy to distinguish a slow
 /// robot from one at rest; agents can.
 constexpr double kSeenTolerance_m = 0.01, kSeenAtRest_mps = 1;
-/// More incarnations than a supervisor would ever start; any beyond are assumed to be forged.
+/// More incarnations than a supervisor would ever start; incarnations beyond this number are assumed to be
+/// forged.
 constexpr std::size_t kMaxIncarnations = 1000;
 /// Maximum number of incarnations of one process whose counters are kept separately.
 constexpr std::size_t kMaxCounterIncarnations = 32;

@@ -41,7 +41,8 @@ struct RobotProgress {
 /// incarnations of a process.
 class RunMetrics {
  public:
-  static constexpr double kAtRest_mps = 0.02;  ///< ground truth shows slower robots at rest
+  static constexpr double kAtRest_mps =
+      0.02;  ///< a robot that is slower than this in ground truth is at rest
 
   /// The scenario must outlive this object.
   explicit RunMetrics(const Scenario& scenario);
@@ -109,8 +110,9 @@ class RunMetrics {
     std::optional<Time> settled_since;  ///< since when it has been at the last goal and nearly at rest
     std::vector<msg::AgentStatus> incarnations;  ///< the last status of each incarnation of its agent, sorted
     Incarnation authoritative = 0;               ///< the incarnation whose status is used
-    int fencing_statuses = 0;                    ///< statuses from other incarnations since its last status
-    std::optional<Blockage> blockage;            ///< according to the latest status of its order
+    int fencing_statuses =
+        0;  ///< statuses from fencing incarnations since the authoritative one's last status
+    std::optional<Blockage> blockage;  ///< according to the latest status of its order
 
     /// The status to use; nullptr if there is none yet. It is the most recently received one, except that an
     /// incarnation that is still fencing is used only if no other one reports. Using the highest incarnation
@@ -158,12 +160,12 @@ class RunMetrics {
     std::vector<IncarnationCounters> incarnations;  // the latest incarnations, sorted
     IncarnationCounters earlier;  // the sum over all earlier incarnations, with the number of the last one
   };
-  /// nullptr if the incarnation is one of the earlier ones.
+  /// The counters of an incarnation; nullptr if the incarnation is older than those kept separately.
   static IncarnationCounters* counters_of(ProcessCounters& counters, Incarnation incarnation);
   std::map<std::uint32_t, ProcessCounters> counters_;  ///< indexed by process of the scenario
   std::optional<msg::CoordinatorState> active_;        ///< the latest state in the highest epoch
   std::set<std::pair<RobotId, RobotId>> conflicts_;
-  std::set<RobotId> quarantined_, displaced_;  ///< robots named at any time
+  std::set<RobotId> quarantined_, displaced_;  ///< robots that the coordinator named at any time
   std::optional<Time> granting_since_;
   std::optional<Time> truth_at_;  ///< time of the latest ground truth
   std::optional<Time> seen_at_;   ///< time of the latest world state

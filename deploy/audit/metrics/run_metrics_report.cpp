@@ -69,7 +69,7 @@ void RunMetrics::add_ground_truth(Report& report) const {
 }
 
 std::string RunMetrics::hindrance(const RobotRecord& robot) const {
-  if (!robot.status()) return "its agent was not heard";
+  if (!robot.status()) return "its agent has sent no status";
   switch (robot.status()->agent_state()) {
     case msg::AgentState::AGENT_FENCING:
       return "it does not answer its agent";
@@ -86,7 +86,7 @@ std::string RunMetrics::hindrance(const RobotRecord& robot) const {
     case msg::AgentState::AGENT_WITHOUT_ORDER:
       return "its order was cancelled";
     case msg::AgentState::AGENT_ARRIVED:
-      return fmt::format("it is {:.2f} m from its last goal, although its agent takes it for arrived",
+      return fmt::format("it is {:.2f} m from its last goal, although its agent reports arrival",
                          distance_to_go_m(robot));
     case msg::AgentState::AGENT_DRIVING:
       break;

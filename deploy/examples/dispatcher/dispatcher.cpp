@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends to every job the nearest free robot. A job whose robot fails to get there goes to another one.
+// Sends the nearest free robot to each job. If a robot fails to reach its job, the job goes to another robot.
 //   sidestep-dispatcher DOMAIN X,Y...
 #include <algorithm>
 #include <chrono>
@@ -20,9 +20,9 @@ namespace {
 using namespace sidestep::client;
 using Clock = std::chrono::steady_clock;
 
-/// A robot that has been blocked for this long makes room for another one.
+/// A job is taken from a robot that has been blocked for this long.
 constexpr std::chrono::seconds kPatience{10};
-/// All robots are heard of within this time: DDS discovery, and the period of reports.
+/// All robots are found within this time, which covers DDS discovery and one period of reports.
 constexpr std::chrono::milliseconds kDiscovery{2000};
 
 struct Job {
@@ -46,12 +46,12 @@ class Dispatcher {
   }
   ~Dispatcher() { client_.on_change(nullptr); }
 
-  /// Returns when all jobs are over. Returns whether all could be done.
+  /// Runs until all jobs are over. Returns whether all of them were done.
   bool run() {
     while (!std::all_of(jobs_.begin(), jobs_.end(), [](const Job& job) { return job.is_over; })) {
       for (Job& job : jobs_) follow(job);
       for (Job& job : jobs_) assign(job);
-      // Robots come and go without a change of an order.
+      // Wakes up regularly, because robots may come and go without a change of any order.
       std::unique_lock lock(mutex_);
       changed_.wait_for(lock, std::chrono::milliseconds(200), [this] { return has_changed_; });
       has_changed_ = false;
@@ -63,7 +63,7 @@ class Dispatcher {
   void follow(Job& job) {
     if (!job.robot) return;
     const auto state = client_.state(job.order);
-    if (!state) return give_up(job, "has been forgotten");
+    if (!state) return give_up(job, "has lost its order");
     switch (state->phase) {
       case OrderPhase::kArrived:
         say(job, "has arrived");

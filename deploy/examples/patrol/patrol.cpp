@@ -38,7 +38,7 @@ bool drive_round(Client& client, RobotId robot, const std::vector<Goal>& places)
   if (!state || state->phase == OrderPhase::kRefused)
     std::fprintf(stderr, "the order was refused\n");
   else if (state->phase == OrderPhase::kReplaced)
-    std::fprintf(stderr, "somebody else has sent the robot elsewhere\n");
+    std::fprintf(stderr, "another client has sent the robot elsewhere\n");
   return state && state->phase == OrderPhase::kArrived;
 }
 

@@ -37,7 +37,7 @@ struct RobotPose {
   double x_m, y_m, heading_rad;
 };
 
-/// By ground truth, or as vision sees it, or by the robot's own estimate.
+/// The robot's pose by ground truth, else by vision, else by its own estimate.
 std::optional<RobotPose> pose_of(const RobotView& robot, Time now) {
   std::optional<RobotPose> found;
   if (const msg::TrueRobotState* truth = fresh(robot.truth, now))
@@ -72,7 +72,7 @@ Json stop_line(const msg::Version& message, Time now) {
     const Vec2 p = trajectory.state_at(begin + (end - begin) * i / kPoints).position_m;
     points.push_back(point(p.x(), p.y(), 0.01));
   }
-  return {{"type", 0},  // a strip
+  return {{"type", 0},  // a line strip
           {"pose", pose(0, 0, 0)},
           {"thickness", 0.03},
           {"scale_invariant", false},

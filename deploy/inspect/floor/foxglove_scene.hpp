@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// The schema of the JSON messages below. Lichtblick and Foxglove know their types by name.
+/// An empty schema for the JSON messages below: Lichtblick and Foxglove know the message types by name.
 inline constexpr const char* kJsonSchema = R"({"type":"object","properties":{}})";
 inline constexpr const char *kSceneTopic = "scene_update", *kTransformsTopic = "transforms";
 inline constexpr const char *kSceneType = "foxglove.SceneUpdate",

@@ -33,7 +33,7 @@ class Copier {
       bytes.insert(bytes.end(), message.payload.begin(), message.payload.end());
     });
   }
-  /// What was copied before is left out.
+  /// Skips an attachment that has already been copied.
   void copy(const McapAttachment& attachment) {
     if (attachments_.emplace(attachment.name, attachment.content).second) writer_.add_attachment(attachment);
   }
@@ -65,7 +65,7 @@ class Copier {
 
   McapWriter writer_;
   std::map<std::pair<const McapReader*, std::uint16_t>, std::uint16_t> ids_;
-  std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // by name and text
+  std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  // indexed by name and text
   std::map<std::uint16_t, McapChannel> channels_;
   std::set<std::pair<std::string, McapBytes>> attachments_;
   std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;
@@ -94,7 +94,8 @@ void require_same_scenario(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     const std::optional<McapBytes> scenario = recorded_scenario(path);
     if (first && scenario && *scenario != *first)
-      throw std::invalid_argument(path + ": this recording is of another scenario than those before it");
+      throw std::invalid_argument(path +
+                                  ": this recording is of a different scenario than the files before it");
     if (scenario) first = scenario;
   }
 }
@@ -107,7 +108,7 @@ bool is_chosen(const std::set<std::string>& topics, const std::string& channel) 
 
 namespace {
 
-/// "12.345 s: bookmark: here".
+/// The event as a line, for example "12.345 s: bookmark: here".
 std::string event_line(const McapMetadata& event) {
   const auto text = [&](const char* key) {
     const auto found = event.texts.find(key);

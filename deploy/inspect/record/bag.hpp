@@ -10,11 +10,11 @@
 
 namespace sidestep {
 
-/// The content of an MCAP file, ours or another program's.
+/// The content of an MCAP file, whichever program wrote it.
 struct BagInfo {
   struct Channel {
     std::string type;
-    std::uint64_t messages = 0, bytes = 0;  // of the messages' payloads
+    std::uint64_t messages = 0, bytes = 0;  // bytes: total size of the payloads
     std::uint64_t first_ns = 0, last_ns = 0;
   };
   std::map<std::string, Channel> channels;  ///< indexed by topic
@@ -38,12 +38,12 @@ struct BagCut {
       topics;  ///< for example truth, feedback/3, or feedback for the channels of all robots; empty: all
 };
 
-/// Copies a part of a file's messages, and everything that is not a message, to another file. Returns the
-/// damage of the file; everything before the damage is used.
+/// Copies a part of a file's messages, and everything that is not a message, to another file. Returns a
+/// description of damage to the file, or an empty text; everything before the damage is used.
 std::string cut_bag(const std::string& path, const BagCut& cut, const std::string& out);
 
 /// Merges files in the order of the reception times of their messages. Throws std::invalid_argument if they
-/// are recordings of different scenarios. Returns the damages of the files.
+/// are recordings of different scenarios. Returns a description of damage to the files, or an empty text.
 std::string merge_bags(const std::vector<std::string>& paths, const std::string& out);
 
 }  // namespace sidestep

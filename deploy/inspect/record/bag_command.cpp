@@ -20,7 +20,7 @@ struct BagOptions {
   BagCut cut;
 };
 
-/// Reports damage; what came before it was used.
+/// Reports damage, and returns the exit code.
 int exit_code_for(const std::string& damage) {
   if (damage.empty()) return 0;
   fmt::print(stderr, "damaged: {}; the messages before that were used\n", damage);
@@ -50,7 +50,8 @@ void add_bag_command(const CliCommand& root, std::function<int()>& action) {
   cut.add_option("--out", options->out, "recording to write").required();
   cut.add_option("--from", options->cut.from_s, "begin, in seconds after the first message")
       .check(in_range(0, 1e9));
-  cut.add_option("--to", options->cut.to_s, "end, in seconds after the first message [the recording's]")
+  cut.add_option("--to", options->cut.to_s,
+                 "end, in seconds after the first message [the end of the recording]")
       .check(in_range(0, 1e9));
   cut.add_option("--topics", options->topics, "only these, e.g. truth,feedback/3 [all]").comma_separated();
   cut.on_parsed([options, &action] {

@@ -18,7 +18,7 @@
 namespace sidestep {
 namespace {
 
-/// Contains the type, so a subscriber never gets a message of another type, even from a corrupt file.
+/// The key contains the type, so a subscriber never gets a message of another type, even from a corrupt file.
 std::string reader_key(const TopicInfo& topic, const std::string& channel) {
   return std::string(topic.type.name) + ' ' + channel;
 }
@@ -79,7 +79,7 @@ void PlaybackBus::read_header(const std::string& path) {
 Scenario PlaybackBus::scenario() const {
   if (header_.scenario_text.empty())
     throw std::invalid_argument(
-        "the recording holds no scenario: it is of a random scene, which only viewers of MCAP files show");
+        "the recording contains no scenario, because it shows a random scene; only MCAP viewers can show it");
   return parse_scenario(header_.scenario_text, header_.scenario_name + ".yaml", header_.map.get());
 }
 

@@ -36,7 +36,7 @@ class PlaybackBus : public Bus {
   Time now() const override { return now_; }
   /// Timers never fire during playback.
   void at(Time, std::function<void()>) override {}
-  /// Delivers all messages in the file's order, or those before stop().
+  /// Delivers all messages in the file's order, until stop() is called.
   [[nodiscard]] PlaybackResult play();
   /// Delivers the next message. False if there is none, or stop() was called.
   [[nodiscard]] bool play_next(PlaybackResult& result);
@@ -45,7 +45,7 @@ class PlaybackBus : public Bus {
     Time first_at{};
     std::uint64_t offset = 0;
   };
-  /// In the order of the file.
+  /// The chunks in the order of the file.
   const std::vector<ChunkPosition>& chunks() const { return chunks_; }
   const McapReader& reader() const { return reader_; }
   /// The fraction of the file that has been read, 0 to 1.
@@ -67,7 +67,7 @@ class PlaybackBus : public Bus {
                    std::function<void(const void*)> callback) override;
 
  private:
-  /// Reads up to the first message.
+  /// Reads the file up to its first message.
   void read_header(const std::string& path);
   void deliver_event(const McapMetadata& metadata);
   /// False if the message is damaged.

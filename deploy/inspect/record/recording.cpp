@@ -22,10 +22,10 @@ namespace {
 
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
-/// "CDR, little-endian", before the bytes of every message, as on the wire.
+/// The encapsulation header of little-endian CDR, which precedes every message, as on the wire.
 constexpr std::array<std::uint8_t, 4> kEncapsulation{0, 1, 0, 0};
 
-/// Whether scenes show something of the message.
+/// Whether the 3-D scenes show data of this message.
 template <typename Message>
 constexpr bool kIsInScene =
     std::is_same_v<Message, msg::GroundTruth> || std::is_same_v<Message, msg::WorldState> ||

@@ -22,7 +22,7 @@ inline constexpr const char* kEventMetadata = "sidestep event";
 inline constexpr const char *kScenarioFile = "scenario.yaml", *kMapFile = "map.yaml",
                             *kMapImageFile = "map.pgm";
 
-/// A recording's description of itself.
+/// What a recording states about its run.
 struct RecordingHeader {
   std::string scenario_name;
   std::string scenario_text;                ///< content of the scenario file
@@ -47,7 +47,7 @@ class RecordingWriter {
            const void* message);
   /// Adds the floor for the 3-D panels of Lichtblick and Foxglove, on separate channels.
   void add_scene(Time now, const FloorState& floor, double radius_m);
-  /// The period at which adding scenes is worth their size.
+  /// The recommended period of scenes, which limits the size of the file.
   static Duration scene_period(std::size_t robots) {
     return std::max<Duration>(std::chrono::milliseconds(250), robots * std::chrono::milliseconds(5));
   }

@@ -9,7 +9,7 @@
 namespace sidestep {
 namespace {
 
-/// What agents, coordinators, robots and operators write.
+/// The topics that agents, coordinators, robots and operators write.
 constexpr std::array kCommanding = {
     std::string_view(topics::kCommand.name),      std::string_view(topics::kFeedback.name),
     std::string_view(topics::kRegistration.name), std::string_view(topics::kProposal.name),

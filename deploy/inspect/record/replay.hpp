@@ -14,8 +14,8 @@ namespace sidestep {
 /// Whether messages of this topic would make processes or robots of a running system act.
 [[nodiscard]] bool is_commanding(const TopicInfo& topic);
 
-/// Why messages of these topics must not be written to a domain with these endpoints: one of them belongs to
-/// a process that drives a robot or coordinates. nullopt if they may be written.
+/// Why commanding messages must not be written to a domain with these endpoints: one of the endpoints belongs
+/// to a process that drives a robot or coordinates. nullopt if commanding messages may be written.
 [[nodiscard]] std::optional<std::string> reason_against_replay(const std::vector<DiscoveredEndpoint>& others);
 
 }  // namespace sidestep

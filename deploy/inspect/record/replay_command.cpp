@@ -22,7 +22,8 @@ namespace {
 
 constexpr const char* kParticipant = "sidestep-replay";
 constexpr Duration kDiscovery{1'500'000'000};  // participants announce themselves once a second
-/// When a writer disappears, readers drop those of its messages that they have not taken yet.
+/// How long writers outlive the last message: when a writer disappears, readers drop those of its messages
+/// that they have not taken yet.
 constexpr Duration kLinger{300'000'000};
 constexpr Duration kCheckPeriod{1'000'000'000};
 
@@ -78,15 +79,15 @@ class Replay {
     return options_.topics.empty() || std::ranges::find(options_.topics, topic.name) != options_.topics.end();
   }
 
-  /// Whether nothing in the domain forbids the replay. Otherwise says what does.
+  /// Whether the domain permits the replay. If not, prints the reason.
   bool check_domain() {
     if (!commands_) return true;
     const auto reason = reason_against_replay(endpoints_of_others(listener_));
     if (!reason) return true;
     fmt::print(
         stderr,
-        "refused: {}; messages that command need a domain without agents, coordinators and robots. Use "
-        "--domain, or --topics without them\n",
+        "refused: {}; commands must not be replayed where agents, coordinators or robots are. Use another "
+        "--domain, or --topics without commands\n",
         *reason);
     is_refused_ = true;
     return false;
@@ -104,7 +105,7 @@ class Replay {
                                });
   }
 
-  /// Waits until a message's turn. False: the replay is over.
+  /// Waits until it is time to write a message. False: the replay is over.
   bool wait_for(Time recorded_at) {
     if (!begun_at_) {
       begun_at_ = checked_at_ = bus_.now();

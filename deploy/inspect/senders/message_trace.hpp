@@ -15,9 +15,9 @@ namespace sidestep {
 struct Reception {
   std::int64_t earliest_ns = 0;  ///< lower bound of the sending time
   std::int64_t latest_ns = 0;    ///< upper bound of the sending time
-  std::uint64_t missed = 0;      ///< number of messages between the newest one received before and this one
-  bool is_next = false;          ///< directly follows the newest message previously received from that sender
-  bool is_newest = false;        ///< neither this nor a later message from that sender was received before
+  std::uint64_t missed = 0;  ///< number of messages missed between the newest earlier message and this one
+  bool is_next = false;      ///< directly follows the newest message previously received from that sender
+  bool is_newest = false;    ///< neither this nor a later message from that sender was received before
 };
 
 /// Counts missed messages and bounds sending times, using only message headers.
@@ -34,7 +34,7 @@ class MessageTrace {
   std::uint64_t received() const { return received_; }
   /// Number of different messages received.
   std::uint64_t distinct() const { return distinct_; }
-  /// Number of messages that were not received, between received ones of the same sender and topic.
+  /// Number of missed messages, inferred from gaps between received messages of one sender and topic.
   std::uint64_t missed() const { return missed_; }
 
  private:

@@ -42,7 +42,7 @@ std::string SenderMeter::table() const {
                         stream.not_newest - repeated, ms(stream.min_delay), ms(stream.delays.quantile(0.5)),
                         ms(stream.delays.quantile(0.99)), ms(stream.max_delay));
   }
-  if (forgotten_ > 0) text += fmt::format("and {} others, which were heard before these\n", forgotten_);
+  if (forgotten_ > 0) text += fmt::format("and {} others, last heard before these\n", forgotten_);
   return text;
 }
 

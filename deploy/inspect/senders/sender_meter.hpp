@@ -21,7 +21,7 @@ class SenderMeter {
   /// A table with a title and one line per sender.
   [[nodiscard]] std::string table() const;
 
-  /// If there are more senders and runs of senders than this, the most recently heard ones are kept.
+  /// Maximum number of sender incarnations; the most recently heard ones are kept.
   static constexpr std::size_t kMaxStreams = 1024;
 
  private:

@@ -7,9 +7,9 @@
 
 namespace sidestep {
 
-/// The readable form of a message of a topic: the members of its IDL, changed as ReadableForm and
-/// OctetSequences::kText say, fingerprints in hexadecimal, drop reasons by name, beams without a range in
-/// words, and histograms as quantiles.
+/// A topic's message in readable form. Its IDL members are changed as ReadableForm and OctetSequences::kText
+/// describe; fingerprints are in hexadecimal, drop reasons by name, laser beams without a range in words, and
+/// histograms as quantiles.
 [[nodiscard]] nlohmann::ordered_json describe(const TopicInfo& topic, const void* message);
 
 }  // namespace sidestep

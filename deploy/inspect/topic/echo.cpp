@@ -35,7 +35,7 @@ int echo_recording(const TopicOptions& options, MessagePrinter& printer) {
   return printer.printed() > 0 && result.damage.empty() ? 0 : kExitFailure;
 }
 
-/// The type of a foreign topic. Throws IdlError if the file does not have it.
+/// The type of another program's topic. Throws IdlError if the IDL file does not define it.
 IdlTypePtr find_type(const TopicOptions& options, const IdlTypes& types, const std::string& name) {
   const auto found = types.find(name);
   if (found != types.end() && found->second->kind == IdlType::Kind::kStruct) return found->second;

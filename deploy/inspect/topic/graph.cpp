@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-/// "feedback/3" is one of the channels "feedback/*".
+/// Combines the channels of one topic: "feedback/3" becomes "feedback/*".
 std::string grouped(const std::string& topic) {
   const std::size_t slash = topic.rfind('/');
   const bool is_channel =
@@ -59,7 +59,7 @@ std::string line(int from_y_px, int to_y_px, const char* colour) {
 
 ProcessGraph graph_of(const std::vector<DiscoveredEndpoint>& endpoints) {
   ProcessGraph graph;
-  std::map<std::pair<std::string, std::string>, ProcessGraph::Process> processes;  // by host and name
+  std::map<std::pair<std::string, std::string>, ProcessGraph::Process> processes;  // indexed by host and name
   std::set<std::string> topics;
   for (const DiscoveredEndpoint& endpoint : endpoints) {
     const std::string host = host_of(endpoint.guid), topic = grouped(endpoint.topic);

@@ -62,7 +62,7 @@ int show_topic(const TopicOptions& options) {
 
 namespace {
 
-/// Listens to a topic of any type, and prints by `print(label, rate)` every second and in total.
+/// Listens to a topic of any type. Calls `print(label, rate)` every second, and once for the total.
 template <typename Print>
 int measure(const TopicOptions& options, Print print) {
   DdsListener listener(options.dds);

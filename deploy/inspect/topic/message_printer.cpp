@@ -42,8 +42,7 @@ struct CsvLine {
   }
 };
 
-/// nullptr: there is none, which is not an error for an element of a list. Throws std::invalid_argument for a
-/// name that is unknown.
+/// Returns nullptr if a list is too short for the index. Throws std::invalid_argument if a name is unknown.
 const Json* find_member(const Json& message, const std::vector<std::string>& path) {
   const Json* value = &message;
   for (const std::string& name : path) {

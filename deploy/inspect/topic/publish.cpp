@@ -37,8 +37,7 @@ EncodedMessage encode_message(const TopicOptions& options, const IdlTypes& types
   return {type->second, encode_by_idl(*type->second, json), key_by_idl(*type->second, json)};
 }
 
-/// The name of a topic's type, if the user gives it or the topic is ours; nullopt: only other participants
-/// know it.
+/// The name of a topic's type, if the user gives it or the topic is Sidestep's; nullopt: unknown here.
 std::optional<std::string> known_type_name(const TopicOptions& options) {
   if (!options.type.empty()) return options.type;
   for (const TopicInfo& topic : all_topics())
@@ -46,12 +45,12 @@ std::optional<std::string> known_type_name(const TopicOptions& options) {
   return std::nullopt;
 }
 
-/// The name of a topic's type, as somebody in the domain announces it.
+/// The name of a topic's type, as an endpoint in the domain announces it.
 std::string announced_type_name(const TopicOptions& options, const DdsListener& listener) {
   for (const DiscoveredEndpoint& endpoint : listener.endpoints())
     if (endpoint.topic == options.topic) return endpoint.type;
-  throw std::invalid_argument(
-      fmt::format("topic '{}' is neither ours nor in this domain; name its type by --type", options.topic));
+  throw std::invalid_argument(fmt::format(
+      "topic '{}' is neither Sidestep's nor in this domain; give its type with --type", options.topic));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct TopicOptions {
   double seconds = 0;        ///< 0: until Ctrl-C
   double discovery_s = 1.5;  ///< participants announce themselves once per second
   MessagePrinterSettings printer;
-  std::string recording_file;  ///< empty: a running system
+  std::string recording_file;  ///< empty: inspects a running system
   std::string idl_file;        ///< IDL of the topic's type, if it is not one of ours
   std::string type;            ///< name of the type; empty: as announced by the topic's writer
   std::string message;         ///< JSON to publish

@@ -21,12 +21,12 @@ namespace {
 
 constexpr Duration kProbePeriod = std::chrono::milliseconds(100);
 constexpr Duration kTablePeriod = std::chrono::milliseconds(500);
-// Discovery takes up to half a second; processes without answers are heard once a second.
+// Discovery takes up to half a second; processes that do not answer probes are heard once a second.
 constexpr Duration kOnceDuration = std::chrono::milliseconds(2500);
 
 struct ClockOptions {
   DdsSettings dds;
-  std::optional<std::uint32_t> reference;  ///< process; nullopt: this command
+  std::optional<std::uint32_t> reference;  ///< id of a process; nullopt: this command's own clock
   std::string reference_name;
   bool once = false;
 };
@@ -57,7 +57,7 @@ class ClockProber {
     constexpr double kMax_s = 1e9;
     const double offset_s = message.clock_offset_s(), uncertainty_s = message.clock_uncertainty_s();
     if (message.robot() >= kMaxRobots || message.header().sender() != message.robot()) return;
-    // False for a NaN.
+    // A NaN counts as not measured.
     const bool is_measured = std::abs(offset_s) < kMax_s && uncertainty_s >= 0 && uncertainty_s < kMax_s;
     survey_.on_robot_clock(message.robot(),
                            is_measured ? std::optional(OffsetInterval{from_seconds(offset_s - uncertainty_s),

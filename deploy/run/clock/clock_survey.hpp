@@ -45,9 +45,9 @@ class ClockSurvey {
   void on_probe(Time sent) { probes_[probe_count_++ % probes_.size()] = sent; }
   /// Ignores answers to other clients, and to probes that were not sent.
   void on_answer(const ClockAnswer& answer, Time received);
-  /// Records a process that has not answered but must have a clock.
+  /// Records that a process was heard, which gives it a row even if it has not answered any probe.
   void on_heard(std::uint32_t process, Time now);
-  /// Records what an agent has measured; nullopt: nothing.
+  /// Records the offset of its robot's clock that an agent has measured; nullopt: not measured.
   void on_robot_clock(RobotId robot, const std::optional<OffsetInterval>& offset, Time now);
 
   /// One row per process, sorted by id. The offsets are relative to the clock of `reference`, or else to the

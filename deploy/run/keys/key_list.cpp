@@ -12,10 +12,10 @@ bool takes_argument(const std::string& word) {
   return word == "agent" || word == "coordinator" || word == "robot" || word == "client";
 }
 
-/// "agent 3" of 0-21 etc.
+/// The identities in a range such as "agent 0-21", or a single identity.
 std::vector<Identity> split(const std::string& text) {
   if (const auto identity = parse_identity(text)) return {*identity};
-  // Robots have ranges; those of agents and coordinators are read in the same way.
+  // parse_identity() knows ranges only of robots, so ranges of other identities are parsed as robots'.
   const auto space = text.find(' ');
   const std::string word = text.substr(0, space);
   const bool has_range = space != std::string::npos && (word == "agent" || word == "coordinator");

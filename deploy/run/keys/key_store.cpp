@@ -25,13 +25,14 @@ constexpr const char* kPermissionsKey = "permissions_ca.key.pem";
 /// Copies of all certificates that have been issued: public/issued/SERIAL.pem.
 constexpr const char* kIssued = "issued";
 
-/// Fast DDS interprets the times of permissions in the host's time zone. The time of the certificate beside
-/// them is UTC, and limits how long they are used.
+/// Margin of the times in permissions, because Fast DDS interprets them in the host's time zone. The times in
+/// the certificate are UTC, and limit how long the key is used.
 constexpr std::chrono::hours kTimeZones(24);
-/// A handshake sends them in one datagram, with the certificate and what the participant announces.
+/// A handshake sends the permissions in one datagram, with the certificate and the participant's
+/// announcement.
 constexpr std::size_t kMaxPermissions = 58'000;
 
-/// A file that only this user may read. It is never readable by others, not even for a moment.
+/// Writes a file that only this user can read, at any moment.
 void write_private_file(const std::string& path, const std::string& text) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   const bool is_written = file >= 0 &&
@@ -42,7 +43,7 @@ void write_private_file(const std::string& path, const std::string& text) {
   if (!is_written) throw std::system_error(error, std::generic_category(), "cannot write " + path);
 }
 
-/// A lock: while it exists, no other process changes the folder of keys.
+/// A lock on the folder of keys: while it exists, no other process changes the folder.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder) {
@@ -118,7 +119,7 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
   const FolderLock lock(folder_);
   const Authority identities = identity_authority(folder_);
   const Authority permissions(public_file(key_files::kPermissionsAuthority), private_file(kPermissionsKey));
-  // Fast DDS checks the authorities only as long as they are valid.
+  // A key is not accepted after an authority has expired.
   until = std::min({until, identities.certificate().not_after(), permissions.certificate().not_after()});
   if (until <= now)
     throw std::invalid_argument(

@@ -29,10 +29,11 @@ struct Revocation {
 
 /// A folder with two certificate authorities and the keys of all identities. Its layout is that of ROS 2's
 /// sros2: `public` (certificates, the list of revoked keys), `private` (the authorities' keys) and
-/// `enclaves/NAME`. There are two authorities because Fast DDS 2.9.1 accepts permissions signed with any
-/// certificate of the same authority (CVE-2023-24010). The functions throw std::invalid_argument if the state
-/// of the folder does not permit the operation, and std::runtime_error if files cannot be written. Processes
-/// that change the folder wait for each other; if one is killed, what it has completed remains.
+/// `enclaves/NAME` (one folder per identity). There are two authorities because Fast DDS 2.9.1 accepts
+/// permissions signed with any certificate of the same authority (CVE-2023-24010). The functions throw
+/// std::invalid_argument if the state of the folder does not permit the operation, and std::runtime_error if
+/// files cannot be written. Processes that change the folder wait for each other; if one is killed, what it
+/// has completed remains.
 class KeyStore {
  public:
   /// Creates a new store. If the folder exists, it must be empty.

@@ -37,7 +37,8 @@ int init(const KeysOptions& options) {
   KeyStore::create(options.folder, now - kClockSlack, now + days(options.days));
   fmt::print(
       "made {}: two certificate authorities, valid until {}\n"
-      "{}/private holds their private keys: who can read it can command all robots; no robot needs it\n",
+      "{}/private holds their private keys: whoever can read them can command all robots; no robot needs "
+      "them\n",
       options.folder, date_text(now + days(options.days)), options.folder);
   return 0;
 }

@@ -23,15 +23,15 @@ using namespace std::chrono_literals;
 
 constexpr Duration kPollPeriod = 20ms;      // maximum delay before a death is noticed
 constexpr Duration kStartInterval = 100ms;  // simultaneous starts would stall DDS discovery
-constexpr Duration kStartupTimeout = 20s;   // time since the last start
+constexpr Duration kStartupTimeout = 20s;   // maximum time from the last start until all is ready
 constexpr Duration kSettlingTime = 500ms;   // time after all arrivals, for the final status messages
-constexpr Duration kStuckTimeout = 2s;      // time since the last death
+constexpr Duration kStuckTimeout = 2s;      // minimum time since the last death
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
 constexpr const char* kMonitor = "monitor";
 
-/// For robots that accept no more commands: the longest acceleration of a version, the latency of bases, and
-/// the braking after them.
+/// Time in which robots that get no more commands come to rest: a second for the longest acceleration of a
+/// version and the latency of bases, and then the braking.
 Duration time_to_rest(const MotionLimits& limits) {
   return 1s + from_seconds(limits.speed_mps / limits.deceleration_mps2);
 }
@@ -62,7 +62,7 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       metrics_(scenario),
       auditor_(scenario, {}) {
   metrics_.set_auditor(auditor_);
-  bus_.follow_first_senders();  // the senders that this launcher starts
+  bus_.follow_first_senders();  // these are the processes that this launcher starts
   auditor_.on_violation([this](const Violation& violation) {
     if (printed_violations_++ < AuditTotals::kMaxKept)
       print("audit: " + to_line(violation), LogLevel::kError);
@@ -114,7 +114,7 @@ void Launcher::finish_recording(const Report& report) {
   try {
     recording_->close();
   } catch (const std::runtime_error&) {
-    // on_failure() has said it.
+    // on_failure() has already reported the failure.
   }
 }
 
@@ -180,8 +180,8 @@ void Launcher::start(const std::string& name, const std::string& program, bool i
 void Launcher::start(const ProcessSpec& process, const HostSpec& host) {
   const pid_t pid = children_.start(child(process, host));
   processes_[process.name] = process;
-  print(fmt::format("{} {} as pid {}{}", before_.deaths.empty() ? "started" : "goes on:", process.name, pid,
-                    options_.hosts_file.empty() ? "" : " on host " + host.name));
+  print(fmt::format("{} {} as pid {}{}", before_.deaths.empty() ? "started" : "still running:", process.name,
+                    pid, options_.hosts_file.empty() ? "" : " on host " + host.name));
 }
 
 ChildSpec Launcher::child(const ProcessSpec& process, const HostSpec& host) const {
@@ -247,7 +247,7 @@ void Launcher::start_due_agents() {
 void Launcher::send_revoked_keys() try {
   const auto list = revoked_keys_.changed(bus_.now());
   if (!list) return;
-  // Processes of this machine have no input: they read the file themselves.
+  // Processes on this machine have no input: they read the file themselves.
   for (const auto& [name, process] : processes_)
     children_.add_input(name, file_input(key_files::kRevoked, *list));
 } catch (const std::runtime_error& error) {

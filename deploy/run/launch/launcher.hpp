@@ -55,7 +55,7 @@ class Launcher {
 
   Report run();
 
-  // For directors. Processes have the same names as in the report.
+  // The following functions are for directors. Processes have the same names as in the report.
   DdsBus& bus() { return bus_; }
   const RunMetrics& metrics() const { return metrics_; }
   /// Sends a signal to a process. False if it is not running.
@@ -88,7 +88,7 @@ class Launcher {
   /// Adds the report to the recording and closes it. Stores the reason of a failure in recording_failure_.
   void finish_recording(const Report& report);
   void print_last_lines(const std::string& process);
-  /// Whether the run is over: sets abort_reason_ if it has to be aborted.
+  /// Whether the run is over; sets abort_reason_ if the run must be aborted.
   bool check_end();
   bool check_end_of_startup();
   bool check_end_of_drive();

@@ -18,10 +18,10 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-/// The shell script on the remote host. Its stdin carries files (see file_input()) and reaches its end when
-/// the connection ends for any reason: first as many as the program needs, later those that replace some of
-/// them. Descriptor 3 preserves stdin, because a shell replaces it for background processes. HUP and PIPE are
-/// ignored so that the script can clean up after the connection is lost.
+/// The shell script on the remote host. Its stdin carries files (see file_input()), first those that the
+/// program needs, later replacements. Stdin ends when the connection ends for any reason. Descriptor 3
+/// preserves stdin, because a shell replaces it for background processes. HUP and PIPE are ignored so that
+/// the script can clean up after the connection is lost.
 constexpr const char* kRemoteScript = R"(trap '' HUP PIPE
 exec 3<&0
 umask 077
@@ -66,7 +66,7 @@ struct SentFile {
   std::string name, content;
 };
 
-/// The files that the process needs, for a host that does not have them.
+/// The files that a process on another host needs.
 std::vector<SentFile> sent_files(const ProcessSpec& process) {
   std::vector<SentFile> files{{std::filesystem::path(process.scenario_file).filename().string(),
                                read_yaml_file(process.scenario_file, "a scenario")}};

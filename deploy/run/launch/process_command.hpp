@@ -30,8 +30,8 @@ struct ProcessSpec {
 [[nodiscard]] ChildSpec child_spec(const ProcessSpec& process, const HostSpec& host,
                                    const std::string& namespace_name);
 
-/// The input that adds or replaces a file in the folder of scenario and keys of a process over ssh; it must
-/// be sent to the process's stdin.
+/// Input for the stdin of a process over ssh that adds or replaces a file in the process's folder of scenario
+/// and keys.
 [[nodiscard]] std::string file_input(const std::string& name, const std::string& content);
 
 /// Throws std::runtime_error if the file cannot be read.

@@ -16,8 +16,8 @@
 namespace sidestep {
 
 /// Supervises and logs child processes. When this process ends in any way, the kernel kills the children,
-/// except that those that drive robots are asked to end. Use it only from one thread that lives as long as
-/// the program, because the kernel monitors the thread that forked.
+/// except children that drive robots: those are asked to end. Use it only from one thread that lives as long
+/// as the program, because the kernel monitors the thread that forked.
 class ProcessGroup : public Processes {
  public:
   using SteadyTime = std::chrono::steady_clock::time_point;

@@ -36,8 +36,9 @@ using std::chrono::steady_clock;
 
 constexpr int kDirectorSocket = 3;  // descriptor of the socket in the director
 constexpr auto kTerminationTimeout = 3000ms;
-constexpr auto kRepeatedStop = 1000ms;  // a starting director does not handle signals yet
-constexpr auto kMaxIdle = 15'000ms;     // a director is killed this long after its processes have ended
+constexpr auto kRepeatedStop =
+    1000ms;                          // a starting director does not handle signals yet, so they are repeated
+constexpr auto kMaxIdle = 15'000ms;  // a director is killed this long after its processes have ended
 constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // pause before the next director; doubles with each
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
@@ -168,8 +169,8 @@ class Keeper {
     events_ = ended_;
     is_ending_ = false;
   }
-  /// Whether the director has asked to end the processes. A signal could then end it before its report is
-  /// written.
+  /// Whether the director has asked to end the processes. From then on, a signal could end the director
+  /// before its report is written.
   bool is_ending() const { return is_ending_; }
   bool has_ended_all() const { return is_ending_ && group_.running() == 0; }
 
@@ -242,7 +243,7 @@ class Keeper {
   bool is_ending_ = false;
   std::map<std::string, pid_t> pids_;
   std::vector<ChildEvent> events_;  // events not yet reported to the director
-  std::vector<ChildEvent> ended_;   // the last event of each process that has died for good
+  std::vector<ChildEvent> ended_;   // the last event of each process that has died permanently
 };
 
 struct Director {

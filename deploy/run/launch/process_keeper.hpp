@@ -13,26 +13,26 @@ namespace sidestep {
 /// The work of the director, a separate process that directs the processes of a run.
 struct DirectorWork {
   /// Runs in the director, and returns its exit code. `deaths` are the reasons for which its predecessors
-  /// died, e.g. "signal 6 (SIGABRT)". Processes that one of them has started are not started again: start()
-  /// returns the number of the existing process, and poll() first reports those that have died for good.
+  /// died, e.g. "signal 6 (SIGABRT)". Processes that a predecessor has started are not started again: start()
+  /// returns the pid of the existing process, and poll() first reports processes that have died permanently.
   std::function<int(Processes&, const std::vector<std::string>& deaths)> run;
-  /// Called in this process, once all others have ended, if the director died after it was asked to end, or
-  /// while it was ending the processes.
+  /// Called in this process, once all other processes have ended, if the director died after it was asked to
+  /// end, or while it was ending the processes.
   std::function<void(const std::string& reason)> on_lost;
-  /// A director that has not ended this long after it was asked to is killed. If a signal has stopped the
-  /// director, Ctrl-C has no other effect until then.
+  /// A director that has not ended this long after it was asked to end is killed. If a signal has stopped the
+  /// director, Ctrl-C takes effect only then.
   std::chrono::milliseconds max_ending{30'000};
 };
 
-/// Runs the work in a director, which uses the network, while this process, which does not, keeps the
-/// processes in the group. So the processes continue if a signal kills the director. Another director then
-/// takes its place, after a pause that doubles each time, up to a minute. When a director ends, the remaining
-/// processes are ended too. SIGINT and SIGTERM are passed on to the director. A director that does not end in
-/// time, or within 15 s of the end of its processes, is killed. If this process dies, the director is asked
-/// to end, and finds that all processes have ended.
+/// Runs the work in a separate process, the director, which uses the network. This process does not use the
+/// network, and keeps the processes in the group. So they continue if a signal kills the director. Another
+/// director then takes its place, after a pause that doubles each time, up to a minute. When a director ends,
+/// the remaining processes are ended too. SIGINT and SIGTERM are passed on to the director. A director that
+/// does not end in time, or within 15 s of the end of its processes, is killed. If this process dies, the
+/// director is asked to end, and finds that all processes have ended.
 ///
-/// Returns the exit code of the director, 1 if it was lost. Call it before this process starts threads.
-/// Throws std::runtime_error if no process can be created.
+/// Returns the exit code of the director, or 1 if the director was lost. Call it before this process starts
+/// threads. Throws std::runtime_error if no process can be created.
 int keep_processes(ProcessGroup& group, const DirectorWork& work);
 
 }  // namespace sidestep

@@ -20,7 +20,7 @@ struct ChildSpec {
   std::string input = {};
   int niceness = 0;  ///< nice value, 0 .. 19: how far it yields to other processes; see nice(2)
   /// For a process that drives robots: the maximum time for robots to come to rest when it is asked to end.
-  /// It ends before all processes that do not drive robots (which have 0).
+  /// Such a process ends before all processes that do not drive robots, whose rest_time is 0.
   std::chrono::milliseconds rest_time{0};
 };
 
@@ -57,8 +57,8 @@ class Processes {
   /// after the timeout plus their rest time, and waits for all. Returns the names of the killed children.
   virtual std::vector<std::string> terminate(Milliseconds timeout) = 0;
 
-  /// Resource use of all children that have ended, by name. For a child on another host, that of its
-  /// connection.
+  /// Resource use of all children that have ended, by name. For a child on another host, the resource use of
+  /// its ssh connection.
   virtual std::map<std::string, ProcessUse> resource_use() const = 0;
   /// The last lines printed by a child, even after its end.
   virtual std::vector<std::string> last_lines(const std::string& name) const = 0;

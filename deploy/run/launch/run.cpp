@@ -22,14 +22,14 @@ namespace sidestep {
 
 namespace {
 
-/// FOLDER/NAME-NUMBER.EXTENSION
+/// The path with a number inserted: FOLDER/NAME-NUMBER.EXTENSION.
 std::string numbered(const std::filesystem::path& file, std::size_t number) {
   return (file.parent_path() /
           fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()))
       .string();
 }
 
-/// When the file was written; nullopt if there is none.
+/// When the file was written; nullopt if there is no file.
 std::optional<std::filesystem::file_time_type> written_at(const std::string& file) {
   std::error_code error;
   const auto time = std::filesystem::last_write_time(file, error);
@@ -39,7 +39,7 @@ std::optional<std::filesystem::file_time_type> written_at(const std::string& fil
 }  // namespace
 
 int run(const RunOptions& given) {
-  // The reader of the output may disappear; the run continues to its end and its report.
+  // If the reader of the output disappears, the run still continues to its end and its report.
   std::signal(SIGPIPE, SIG_IGN);
   RunOptions options = given;
   std::optional<FreeDomain> free_domain;

@@ -20,8 +20,8 @@ struct RunOptions {
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
   std::optional<std::string> monitor_port;  ///< address of a page that shows the run; nullopt: none
-  std::string domain = "0";                 ///< for run(): replaces that of `dds`; "auto": a free domain
-  /// With keys: a folder with the keys of all identities, of which each process gets its own.
+  std::string domain = "0";                 ///< for run(): replaces dds.domain; "auto": a free domain
+  /// dds.keys, if set, is a folder with the keys of all identities; each process gets its own keys.
   DdsSettings dds;
   FloorOptions floor;
   std::optional<double> seconds;         ///< overrides the scenario's time limit
@@ -35,10 +35,10 @@ struct RunOptions {
 /// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed
 /// or the user interrupts, stops them, and writes the report. If the scenario gives no robot a goal, clients
 /// give the orders. The run then lasts until the user interrupts, RunOptions::seconds have passed or, with
-/// `until_idle`, all robots have finished their orders; no robot has to arrive. Returns the exit code: 0 only
-/// if all robots arrived without contact and the auditor found no violation; kExitNotJudged if nothing went
-/// wrong but the audit covered too little. Throws ConfigError, and std::runtime_error if a process cannot be
-/// started or a file cannot be written.
+/// `until_idle`, all robots have finished their orders; no robot needs to arrive. Returns the exit code: 0
+/// only if all robots arrived without contact and the auditor found no violation; kExitNotJudged if nothing
+/// went wrong but the audit covered too little. Throws ConfigError, and std::runtime_error if a process
+/// cannot be started or a file cannot be written.
 int run(const RunOptions& options);
 
 }  // namespace sidestep

@@ -24,7 +24,7 @@
 namespace sidestep {
 namespace {
 
-// Discovery takes up to half a second, and a takeover as long.
+// Discovery takes up to half a second, and so does a takeover.
 constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
 constexpr Duration kTablePeriod = std::chrono::milliseconds(200);
 constexpr Duration kOnceDuration = std::chrono::milliseconds(1500);
@@ -48,7 +48,7 @@ ClientId client_of(const OrderOptions& options) {
   return options.client.empty() ? static_cast<ClientId>(Sender::kOperator) : client_id(options.client);
 }
 
-/// A client sends with its own keys.
+/// Settings with the client's identity, because a client sends with its own keys.
 DdsSettings dds_of(const OrderOptions& options) {
   DdsSettings dds = options.dds;
   if (!options.client.empty()) dds.identity = {Role::kClient, 0, 0, options.client};
@@ -81,8 +81,8 @@ int give_orders(const OrderOptions& options,
     fmt::print(
         stderr, "sidestep: {}\n",
         is_coordinator_heard
-            ? "the coordinator has not confirmed the order, which may count nevertheless: it does so "
-              "when an agent remembers the order, of a hold that of a held robot, and none may be running"
+            ? "the order may take effect, but the coordinator has not confirmed it: that needs an agent that "
+              "remembers the order (for a hold: the agent of a held robot), and no such agent may be running"
             : "no active coordinator answers on this domain and interface");
     return kExitFailure;
   }
@@ -215,7 +215,9 @@ void add_zone(const CliCommand& root, std::function<int()>& action) {
       "zone", "Sets a zone for all robots: to keep out of or, with --speed, to drive slowly in");
   const Options options = add_command(command);
   add_client_option(command, options);
-  command.add_option("NUMBER", options->zone, "the client's number of the zone; a later zone replaces it")
+  command
+      .add_option("NUMBER", options->zone,
+                  "zone number, chosen by the client; a later zone of this number replaces it")
       .required();
   const auto corners = command.add_option(
       "CORNER", options->corners, "X,Y in metres; the zone is the convex hull of all corners, plus --radius");
@@ -243,10 +245,10 @@ void add_order_commands(const CliCommand& root, std::function<int()>& action) {
   add_simple(root, action, "hold",
              "Stops robots until they are resumed. Not a certified emergency stop: it needs a coordinator",
              true, &OrderClient::hold);
-  add_simple(root, action, "resume", "Ends holds: those of this client; the operator ends all", true,
+  add_simple(root, action, "resume", "Ends the holds of this client; without --client, ends all holds", true,
              &OrderClient::resume);
   add_zone(root, action);
-  const CliCommand status = root.add_subcommand("status", "Shows what robots do with their orders");
+  const CliCommand status = root.add_subcommand("status", "Shows how robots carry out their orders");
   const Options options = add_command(status);
   status.add_flag("--once", options->once, "print the table once, and exit");
   status.on_parsed([options, &action] { action = [options] { return show_status(*options); }; });

@@ -41,7 +41,7 @@ const char* refusal_text(msg::OrderResult result) {
     case msg::OrderResult::RESULT_MALFORMED:
       break;
   }
-  return "the coordinator takes it for malformed";
+  return "the coordinator considers it malformed";
 }
 
 std::string order_name(const Order& order) {

@@ -52,7 +52,7 @@ int play(PlayedReferee& referee) {
   referee.packet.commanded = Duration{to_ns(EventLoop::now())};
   const std::function<void()> send = [&] {
     referee.packet.sent = Duration{to_ns(EventLoop::now())};
-    (void)sender.send(encode(referee.packet));  // failures are summed up at the end
+    (void)sender.send(encode(referee.packet));  // failures are reported at the end
     loop.at(EventLoop::now() + kPacketPeriod, send);
   };
   send();

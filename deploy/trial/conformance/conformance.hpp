@@ -23,7 +23,7 @@ class Conformance {
 
   bool is_finished() const { return step_ == steps_.size(); }
   const ConformanceReport& report() const { return report_; }
-  /// The current step of the examination, in words.
+  /// The current step of the test, in words.
   std::string activity() const { return is_finished() ? "" : steps_[step_]->name(); }
 
  private:

@@ -60,7 +60,7 @@ class Floor {
           std::to_string(options.dds.domain),    "--interface", options.dds.interface};
       if (!options.dds.peers.empty())
         argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options.dds.peers, ","))});
-      // Each process takes its own keys from a folder with the keys of all.
+      // Each process takes its own keys from the folder with the keys of all identities.
       if (!options.dds.keys.empty()) argv.insert(argv.end(), {"--keys", options.dds.keys});
       if (options.dds.insecure) argv.emplace_back("--insecure");
       argv.insert(argv.end(), process.arguments.begin(), process.arguments.end());

@@ -22,7 +22,7 @@ struct ConformanceContext {
   bool is_late = false;
 };
 
-/// One part of the examination.
+/// One step of the test.
 class ConformanceStep {
  public:
   virtual ~ConformanceStep() = default;
@@ -31,7 +31,7 @@ class ConformanceStep {
   [[nodiscard]] virtual bool update(ConformanceContext& context) = 0;
   /// A few words for the progress line.
   virtual std::string name() const = 0;
-  /// Whether the examination must end if this step fails.
+  /// Whether the test must end if this step fails.
   virtual bool is_required() const { return false; }
 };
 

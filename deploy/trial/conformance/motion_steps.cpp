@@ -22,20 +22,20 @@ constexpr double kUsedAcceleration = 0.5;
 constexpr double kSpeedRamp_mps2 = 1, kMaxAmplitude_m = 3;
 constexpr int kSpeedLevels = 4;
 constexpr Duration kLevelTime = 5s;
-// The noise of vision may cause an error of this many standard deviations.
+// Errors up to this many standard deviations may be due to vision's noise.
 constexpr double kNoiseDeviations = 4;
 // The tracking bound exceeds the largest measured error by this factor.
 constexpr double kReserve = 1.25;
-// Number of starts from which the latency is measured, and the part of each start before the control has
-// corrected for the latency.
+// Number of starts from which the latency is measured, and the part of each start that is evaluated: later,
+// the robot's control corrects for the latency.
 constexpr int kStarts = 8;
 constexpr Duration kStartBegin = 20ms, kStartEnd = 200ms;
 constexpr Duration kMaxLate = 150ms;
 
 Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
 
-/// A robot whose motors respond later or earlier than it assumes cannot follow; the row of its latency
-/// reports that.
+/// A robot whose motors respond later or earlier than it assumes cannot follow; only the latency row reports
+/// that.
 Conformity judged(bool is_passed, const ConformanceContext& context, std::string& figures) {
   if (is_passed || !context.is_late) return passed_if(is_passed);
   figures += "; its latency prevents it from following";
@@ -52,7 +52,7 @@ void keep_error(ConformanceContext& context, const MotionSample& sample) {
 
 /// The tracking bound within which the robot can stop at full speed if it is not seen any more
 /// (coordinator/PROTOCOL.md, "Dead reckoning"): three standard deviations of its estimate, and four of the
-/// error that grows with the way, are within the drift bound.
+/// error that grows with the distance driven, are within the drift bound.
 double bound_for_dead_reckoning_m(const LocalisationUncertainty& uncertainty, const Scenario& scenario,
                                   Duration lead) {
   const double speed_mps = scenario.limits.speed_mps;
@@ -113,8 +113,8 @@ class RestStep final : public ConformanceStep {
   std::vector<Vec2> seen_m_;
 };
 
-/// Starts from rest again and again. How far the robot is behind its reference afterwards shows how late its
-/// motors respond, compared with what the robot assumes.
+/// Starts from rest repeatedly. How far the robot is then behind its reference shows how late its motors
+/// respond, compared with what the robot assumes.
 class LatencyStep final : public ConformanceStep {
  public:
   std::string name() const override { return "latency"; }
@@ -179,7 +179,7 @@ class LatencyStep final : public ConformanceStep {
     samples_.push_back({start_->trajectory, robot_at, sample.seen_m - before_m_ / before_count_});
   }
 
-  /// The delay of the reference at which it fits the observations best.
+  /// The delay with which the reference fits the observations best.
   Duration late() const {
     Duration best{0};
     double least = INFINITY;
@@ -202,10 +202,9 @@ class LatencyStep final : public ConformanceStep {
     const double lead_s = to_seconds(context.probe.robot_report()->lead);
     context.is_late =
         std::abs(late_s) * context.scenario.limits.speed_mps > context.scenario.tracking_bound_m;
-    context.report.rows.push_back(
-        {"latency", passed_if(!context.is_late),
-         fmt::format("the motors obey after {:.0f} ms; the robot counts on {:.0f} ms",
-                     (lead_s + late_s) * 1e3, lead_s * 1e3)});
+    context.report.rows.push_back({"latency", passed_if(!context.is_late),
+                                   fmt::format("the motors obey after {:.0f} ms; the robot assumes {:.0f} ms",
+                                               (lead_s + late_s) * 1e3, lead_s * 1e3)});
   }
 
   std::optional<Time> since_;
@@ -343,7 +342,7 @@ class TrackingStep final : public ConformanceStep {
   bool give_up(ConformanceContext& context) {
     context.probe.on_sample(nullptr);
     context.report.rows.push_back(
-        {"tracking", Conformity::kFailed, "the robot does not come to the middle of the field"});
+        {"tracking", Conformity::kFailed, "the robot does not reach the middle of the field"});
     return true;
   }
 
@@ -466,7 +465,7 @@ class RunOutStep final : public ConformanceStep {
     const double allowed_m = context.scenario.tracking_bound_m + kNoiseDeviations * context.vision_noise_m;
     const bool is_passed = overshoot_m <= allowed_m && error_m <= allowed_m;
     std::string figures = fmt::format(
-        "from {:.2f} m/s it comes {:.1f} mm too far and rests {:.1f} mm beside its place: {:.2f} m/s² of "
+        "from {:.2f} m/s it overshoots by {:.1f} mm and rests {:.1f} mm off its place: {:.2f} m/s² of "
         "{:g}",
         from_mps, overshoot_m * 1e3, error_m * 1e3, braking_mps2, d);
     const Conformity conformity = judged(is_passed, context, figures);
@@ -515,11 +514,11 @@ class OwnStopStep final : public ConformanceStep {
     const bool is_resting = own_ && own_->executing.trajectory.residual_speed_mps() < 1e-5;
     context.report.rows.push_back(
         {"own stop", passed_if(is_numbered && is_resting),
-         own_ ? fmt::format("{:.0f} ms after fixes showed it elsewhere; numbered {} above all others; "
+         own_ ? fmt::format("{:.0f} ms after pose fixes showed it elsewhere; numbered {} above all others; "
                             "inflation {:.0f} mm",
                             to_seconds(took_) * 1e3, own_->executing.number - highest,
                             own_->executing.inflation_m * 1e3)
-              : "none, although fixes show it 0.3 m beside its reference"});
+              : "none, although pose fixes show it 0.3 m off its reference"});
     return true;
   }
 

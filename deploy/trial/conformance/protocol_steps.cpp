@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules about facts, clocks, fences and versions, examined at rest.
+// Steps that test the rules about reports, clocks, fences and versions while the robot rests.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ using namespace std::chrono_literals;
 constexpr Duration kReadyTimeout = 15s, kAnswerTimeout = 1s;
 // A process that misses one and a half cycles because of its scheduling is still on time.
 constexpr double kMaxGapCycles = 2.5;
-// After a version's start, a fact about it arrives within this time.
+// After a version's start, a report of it arrives within this time.
 constexpr Duration kReportTime = 100ms;
 // Pause between the robot's refusal and the next attempt.
 constexpr Duration kPause = 50ms;
@@ -37,7 +37,7 @@ Trajectory nudge(const State& from, Time start) {
 
 class ReportsStep final : public ConformanceStep {
  public:
-  std::string name() const override { return "facts"; }
+  std::string name() const override { return "reports"; }
   bool is_required() const override { return true; }
 
   bool update(ConformanceContext& context) override {
@@ -64,8 +64,8 @@ class ReportsStep final : public ConformanceStep {
     const bool is_passed = is_on_time && probe.malformed_reports() == 0 && !robot_report->is_lifted;
     context.report.rows.push_back(
         {"reports", passed_if(is_passed),
-         fmt::format("{:.0f} facts a second, at most {:.1f} ms apart; {} malformed; lead {:.0f} ms", rate_hz,
-                     ms(probe.longest_gap()), probe.malformed_reports(), ms(robot_report->lead))});
+         fmt::format("{:.0f} reports a second, at most {:.1f} ms apart; {} malformed; lead {:.0f} ms",
+                     rate_hz, ms(probe.longest_gap()), probe.malformed_reports(), ms(robot_report->lead))});
     return true;
   }
 
@@ -73,8 +73,8 @@ class ReportsStep final : public ConformanceStep {
   static std::string silence(const RobotProbe& probe) {
     if (!probe.seen()) return fmt::format("vision does not see robot {}", probe.robot());
     if (probe.malformed_reports() > 0)
-      return fmt::format("{} malformed facts, no other", probe.malformed_reports());
-    if (!probe.robot_report()) return fmt::format("no fact of robot {}", probe.robot());
+      return fmt::format("{} malformed reports, no others", probe.malformed_reports());
+    if (!probe.robot_report()) return fmt::format("no report from robot {}", probe.robot());
     return "the robot does not acknowledge a new agent and epoch; does another agent drive it?";
   }
   std::optional<Time> since_, heard_since_;
@@ -92,7 +92,7 @@ class ClockStep final : public ConformanceStep {
     const Duration bound = from_seconds(context.scenario.clock_bound_s);
     const auto offset = context.probe.clock_offset();
     if (!offset) {
-      context.report.rows.push_back({"clock", Conformity::kFailed, "facts echo no command"});
+      context.report.rows.push_back({"clock", Conformity::kFailed, "the robot's reports echo no command"});
       return true;
     }
     const bool is_known = offset->uncertainty() <= bound;
@@ -283,7 +283,9 @@ class TakeoverStep final : public ConformanceStep {
     if (!acknowledged_)
       faults_ += "; the new agent was not acknowledged";
     else if (!is_stated)
-      faults_ += "; the fact that acknowledges the new agent states another version than is executed then";
+      faults_ +=
+          "; the report that acknowledges the new agent states a version that the robot does not execute "
+          "then";
     context.stream.forget();
     sent_.reset();
     acknowledged_.reset();
@@ -300,10 +302,10 @@ class TakeoverStep final : public ConformanceStep {
   }
 
  private:
-  bool is_committed_ = false;  ///< the version starts within the lead when the new agent comes
+  bool is_committed_ = false;  ///< the version starts within the lead when the new agent takes over
   std::optional<Version> sent_;
   Incarnation earlier_ = 0;
-  std::optional<RobotReport> acknowledged_;  ///< the first fact that acknowledges the new agent
+  std::optional<RobotReport> acknowledged_;  ///< the first report that acknowledges the new agent
   std::string faults_;
 };
 
@@ -311,7 +313,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 using Message = msg::Command;
 using Context = ConformanceContext;
 
-/// Also the version's incarnation, which may not be above the command's.
+/// Lowers the incarnations of the command and of its version, which must not exceed the command's.
 void lower_incarnation(Message& m, std::uint64_t by) {
   m.header().incarnation(m.header().incarnation() - by);
   m.version().incarnation(m.header().incarnation());
@@ -331,7 +333,7 @@ std::unique_ptr<ConformanceStep> make_fence_step() {
       std::vector<RefusalStep::Attempt>{
           {"fences", "a version of an earlier agent",
            [](Message& m, const Context&) { lower_incarnation(m, 1); }},
-          {"fences", "a version of an agent long ago",
+          {"fences", "a version of a much earlier agent",
            [](Message& m, const Context&) { lower_incarnation(m, 1'000'000'000); }},
           {"fences", "a version of an earlier epoch",
            [](Message& m, const Context&) { m.epoch(m.epoch() - 1); }},
@@ -352,22 +354,22 @@ std::unique_ptr<ConformanceStep> make_versions_step() {
            [](Message& m, const Context&) { m.version().base(m.version().base() + 1'000'000); }},
           {"wrong base", "a version on base 0",
            [](Message& m, const Context&) { m.version().base(m.version().base() == 0 ? 1 : 0); }},
-          {"malformed commands", "a position that is no number",
+          {"malformed commands", "a position of NaN",
            [](Message& m, const Context&) { m.version().x_m(kNan); }},
-          {"malformed commands", "a heading that is no number",
+          {"malformed commands", "a heading of NaN",
            [](Message& m, const Context&) { m.desired_heading_rad(kNan); }},
           {"malformed commands", "an acceleration of 10^9 m/s²",
            [](Message& m, const Context&) { m.version().phases()[0].ax_mps2(1e9); }},
-          {"malformed commands", "more phases than there are",
+          {"malformed commands", "a phase count above the maximum",
            [](Message& m, const Context&) { m.version().phase_count(99); }},
           {"malformed commands", "a version of another robot",
            [](Message& m, const Context&) { m.version().robot(m.version().robot() + 1); }},
           {"malformed commands", "a command of another sender",
            [](Message& m, const Context&) { m.header().sender(m.header().sender() + 1); }},
-          {"malformed commands", "an agent of tomorrow",
+          {"malformed commands", "an agent started a day ahead",
            [](Message& m,
               const Context&) { m.header().incarnation(m.header().incarnation() + 86'400'000'000'000); }},
-          {"malformed commands", "an epoch of tomorrow",
+          {"malformed commands", "an epoch a day ahead",
            [](Message& m, const Context&) { m.epoch(m.epoch() + 86'400'000'000'000); }}});
 }
 

@@ -41,7 +41,7 @@ void RobotProbe::send_command() {
   command.incarnation = incarnation;
   command.epoch = epoch;
   command.version = version;
-  // Uses the robot's clock, so that a wrong clock shows only in its own row.
+  // Dates the fix by the robot's clock, so that a wrong clock affects only the clock row.
   if (fix_)
     command.fix =
         PoseFix{fix_->captured_at + robot_clock_offset(), fix_->position_m + fix_error_m, fix_->heading_rad};
@@ -91,7 +91,7 @@ const Version* RobotProbe::executed_at(Time robot_time) const {
   return nullptr;
 }
 
-// A fact shows what was executed up to its time.
+// A report shows what was executed up to its time.
 void RobotProbe::take_samples() {
   while (!unjudged_.empty() &&
          unjudged_.front().observed_at + robot_clock_offset() < robot_report_->valid_at) {

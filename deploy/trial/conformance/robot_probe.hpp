@@ -23,9 +23,9 @@ struct MotionSample {
   bool is_off_reference = false;
 };
 
-/// Communicates with one robot as its agent would, without a coordinator: sends commands with fixes, and
-/// receives its facts and vision's observations. All times are by this process's clock unless stated
-/// otherwise.
+/// Communicates with one robot as its agent would, without a coordinator: sends commands with pose fixes, and
+/// receives the robot's reports and vision's observations. All times are by this process's clock unless
+/// stated otherwise.
 class RobotProbe {
  public:
   RobotProbe(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation);
@@ -46,11 +46,11 @@ class RobotProbe {
   void send(msg::Command message);
 
   const std::optional<RobotReport>& robot_report() const { return robot_report_; }
-  /// When the last fact arrived.
+  /// When the last report arrived.
   Time report_at() const { return report_at_; }
   std::uint64_t report_count() const { return report_count_; }
   std::uint64_t malformed_reports() const { return malformed_reports_; }
-  /// The longest interval between two facts since the last reset_gap().
+  /// The longest interval between two reports since the last reset_gap().
   Duration longest_gap() const { return longest_gap_; }
   void reset_gap() { longest_gap_ = Duration{0}; }
   const std::optional<RobotObservation>& seen() const { return seen_; }
@@ -59,9 +59,9 @@ class RobotProbe {
   Time now() const { return bus_.now(); }
   Time robot_now() const;
 
-  /// Calls back with each sample once facts have shown which version was executed; null ends that.
+  /// Calls back with each sample once reports have shown which version was executed; null: no more callbacks.
   void on_sample(std::function<void(const MotionSample&)> callback) { on_sample_ = std::move(callback); }
-  /// The version that the robot was executing at a time, according to facts.
+  /// The version that the robot was executing at a time, according to its reports.
   const Version* executed_at(Time robot_time) const;
 
   RobotId robot() const { return robot_; }
@@ -89,8 +89,8 @@ class RobotProbe {
     Version version;
     bool is_off_reference = false;
   };
-  std::deque<Executed> executed_;  ///< in the order of the facts that report them
-  std::deque<RobotObservation> unjudged_;
+  std::deque<Executed> executed_;          ///< in the order of the reports
+  std::deque<RobotObservation> unjudged_;  ///< until reports show what the robot was executing
   std::function<void(const MotionSample&)> on_sample_;
 };
 

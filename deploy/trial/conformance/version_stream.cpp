@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr int kHeldCycles = 3;
-// Facts show a version within this time after its start.
+// Reports show a version within this time after its start.
 constexpr Duration kReportTimeout = std::chrono::milliseconds(200);
 
 }  // namespace

@@ -24,7 +24,7 @@ class VersionStream {
   /// Stops adding versions, so that the robot stops at the end of the last one. extend() continues from
   /// there.
   void stop();
-  /// Like stop(), but the next version's base is what the robot executes by then.
+  /// Like stop(), but extend() then continues from the version that the robot is executing.
   void forget();
   /// Whether the robot has executed all versions to their end.
   bool is_at_rest() const;
@@ -45,7 +45,8 @@ class VersionStream {
   Field field_;
   double radius_m_;
   VersionNumber number_ = 0;
-  std::optional<Version> last_;  ///< nullopt: starts with what the robot executes
+  std::optional<Version>
+      last_;  ///< nullopt: the stream continues from the version that the robot is executing
   int broken_ = 0;
 };
 

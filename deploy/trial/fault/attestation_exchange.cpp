@@ -20,7 +20,7 @@ bool AttestationExchange::update(bool is_missing, Time now) {
 }
 
 std::string AttestationExchange::reason() const {
-  return was_missing_ ? "the coordinator still waits for the robot: it hears facts of it"
+  return was_missing_ ? "the coordinator still waits for the robot: it receives reports from it"
                       : "the coordinator does not wait for the robot";
 }
 

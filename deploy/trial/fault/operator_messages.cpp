@@ -48,7 +48,7 @@ void wait_for_subscriber(OperatorChannel& channel, const std::string& participan
   });
   if (is_found || (participant.empty() && !subscribers.empty())) return;
   throw std::runtime_error(
-      fmt::format("{} on this domain and interface accepts such faults{}",
+      fmt::format("{} on this domain and interface accepts these faults{}",
                   participant.empty() ? "no process" : "no " + participant,
                   subscribers.empty() ? "" : fmt::format(", only {}", fmt::join(subscribers, ", "))));
 }

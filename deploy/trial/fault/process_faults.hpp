@@ -9,7 +9,7 @@ namespace sidestep {
 
 // Faults of processes that both tests (deploy/trial/test) and campaigns (deploy/trial/simulate/campaign)
 // have. Processes have the same names as in reports: "agent 3", "agent 3 (twin)", "coordinator 1", "vision",
-// "simulator". A fault's time and duration are with the fault in its plan.
+// "simulator". The plan states the time and the duration of each fault.
 
 using ProcessNames = std::vector<std::string>;
 
@@ -26,7 +26,7 @@ struct Pause {
 /// Drops all messages from some processes to others. Lasts until the end if it has no duration.
 struct Partition {
   ProcessNames from, to;
-  bool is_two_way = false;  ///< drops those in the other direction, too
+  bool is_two_way = false;  ///< also drops messages in the other direction
 };
 
 }  // namespace sidestep

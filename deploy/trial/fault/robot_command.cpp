@@ -54,7 +54,7 @@ int disturb(const RobotOptions& options, Kind kind) {
   wait_for_subscriber(channel, "sidestep-simulator");
   wait_for_writer(channel, channel_name(topics::kFeedback, options.robot),
                   fmt::format("no robot {} in this run", options.robot));
-  // The robot's agent has to request the rest version at this position.
+  // The robot's agent must request the rest version at this position.
   if (kind == Kind::DISTURBANCE_PLACE) wait_for_subscriber(channel, fmt::format("agent-{}", options.robot));
   const msg::Disturbance disturbance = disturbance_from(options, kind);
   channel.writer().write(&disturbance);
@@ -106,7 +106,7 @@ void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
   add_seconds(block);
   add("lift", "Takes a robot off the floor", Kind::DISTURBANCE_LIFT);
   const CliCommand place =
-      add("place", "Puts a lifted robot down once its rest there is granted", Kind::DISTURBANCE_PLACE);
+      add("place", "Puts a lifted robot down once it is granted this place", Kind::DISTURBANCE_PLACE);
   add_pair(place, "--at", options->position_m, 1000, "position X,Y in m");
   place.add_option("--heading", options->heading_rad, "in rad").check(angle);
   add("reboot", "Restarts a robot's firmware", Kind::DISTURBANCE_REBOOT);

@@ -96,8 +96,7 @@ class Maze {
     }
   }
 
-  /// The walls between cells, merged into maximal straight segments. The border of the field is not among
-  /// them.
+  /// The walls between cells, merged into maximal straight segments. Excludes the border of the field.
   std::vector<Segment> walls(double length_m) const {
     const double cell = length_m / static_cast<double>(cells_);
     std::vector<Segment> walls;

@@ -15,7 +15,7 @@ struct PlanQuery {
   Vec2 start_m{0, 0}, goal_m{0, 0};
 };
 
-/// A field with obstacles for a disc-shaped robot, and the queries that planners have to answer in it.
+/// A field with obstacles for a disc-shaped robot, and the queries that planners must answer in it.
 struct PlanWorld {
   std::string name;
   Field field{10, 10};

@@ -103,7 +103,7 @@ class SimRecorder {
     if (bus_) stopped_at_ = bus_->now();
     bus_.reset();
   }
-  /// Adds the report to the recording, and to the report why messages could not be recorded.
+  /// Adds the report to the recording. If messages could not be recorded, adds the reason to the report.
   void close(Report& report) {
     if (!writer_) return;
     writer_->add_report(stopped_at_, to_json(report));
@@ -124,7 +124,7 @@ class SimRecorder {
 /// Listens to the scans of one robot for a picture, if the options ask for one.
 class SightRecorder {
  public:
-  /// Throws UsageError if no such robot has a laser.
+  /// Throws UsageError if the robot does not exist or has no laser.
   SightRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options)
       : bus_(network) {
     if (!options.sight_of) return;

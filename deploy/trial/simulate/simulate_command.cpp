@@ -98,7 +98,7 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
     const bool has_faults = faults.is_given(), has_seeds = seeds.is_given();
     if (!has_faults && !scenario.is_given()) throw UsageError("SCENARIO is required");
     action = [=] {
-      // The reader of the output may disappear; the report is written nevertheless.
+      // The report is written even if the reader of the output disappears.
       std::signal(SIGPIPE, SIG_IGN);
       if (has_seeds) return run_seeds(*options);
       return has_faults ? simulate_trial(options->run, options->faults != "none") : simulate(options->run);

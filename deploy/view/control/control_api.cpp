@@ -20,7 +20,7 @@ namespace {
 using Json = nlohmann::json;
 using Kind = msg::DisturbanceKind;
 
-/// The request's body is wrong; the message says what.
+/// Thrown if the request's body is wrong; the message names the error.
 class BodyError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -33,7 +33,7 @@ WebResponse error_response(unsigned status, const std::string& error) {
   return json_response(status, {{"error", error}});
 }
 
-/// "/api/robots/3/order" without "/api", as ["robots", "3", "order"].
+/// Splits a path: "/api/robots/3/order" becomes ["robots", "3", "order"].
 std::vector<std::string> parts_of(const std::string& path) {
   constexpr std::string_view kPrefix = "/api/";
   std::vector<std::string> parts;
@@ -162,7 +162,7 @@ std::optional<WebResponse> ControlApi::respond(const WebRequest& request) {
   if (request.method == "GET") {
     if (path.size() != 2 || path[0] != "orders") return std::nullopt;
     const auto handle = parse_number<OrderHandle>(path[1]);
-    return handle ? order_state(*handle) : error_response(404, "orders are numbered");
+    return handle ? order_state(*handle) : error_response(404, "expected the number of an order");
   }
   if (!request.command_refusal.empty()) return error_response(401, request.command_refusal);
   try {

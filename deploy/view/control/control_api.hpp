@@ -31,10 +31,10 @@ struct ControlHooks {
 /// | POST /api/robots/3/fault | {"kind": "push", "vx_mps": 1, "vy_mps": 0} and others, see below |
 /// | POST /api/recording/start, stop | none; answer {"file": …} |
 /// | POST /api/bookmark | {"text": "here"} |
-/// | GET /api/orders/17 | none; what has become of an order |
+/// | GET /api/orders/17 | none; the state of an order |
 ///
-/// Orders are an operator's, and answered by {"order": 17}. Kinds of faults: push (vx_mps, vy_mps), slip
-/// (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m), reboot, switch off, switch on.
+/// Orders are sent as the operator, and answered by {"order": 17}. Kinds of faults: push (vx_mps, vy_mps),
+/// slip (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m), reboot, switch off, switch on.
 class ControlApi {
  public:
   ControlApi(Bus& bus, ControlHooks hooks);

@@ -147,7 +147,7 @@ void RobotFields::on(const msg::LaserScan& scan, const FloorState& floor, Time n
     beams.read({{scan.x_m(), scan.y_m()}, scan.heading_rad(), now, scan.ranges_m()}, robots);
     (void)local->second.grid.update(beams);
   } catch (const std::invalid_argument&) {
-    // A pose that is none.
+    // The scan has an invalid pose.
   }
 }
 

@@ -24,8 +24,9 @@ class RobotFields {
 
   /// {"navigation": {"min": [x, y], "cell_m":…, "columns":…, "rows":…, "values": […]}, "path": [[x, y], …],
   /// "band": [[x, y, radius], …], "local": {…, "values": […]}}. `navigation`: E* from the goal that the robot
-  /// intends, 0: not reachable, 1 to 255: cheap to dear. `path`: down that field. `band`: a bubble band along
-  /// it. `local`: the robot's laser, 0: unknown, 1: free, 2: occupied. What cannot be computed is missing.
+  /// intends, 0: not reachable, 1 to 255: low to high cost. `path`: the descent in that field. `band`: a
+  /// bubble band along it. `local`: the robot's laser, 0: unknown, 1: free, 2: occupied. What cannot be
+  /// computed is missing.
   [[nodiscard]] nlohmann::ordered_json json(RobotId robot, const FloorState& floor, Time now);
 
  private:

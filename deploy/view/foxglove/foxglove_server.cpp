@@ -36,7 +36,7 @@ std::optional<std::uint32_t> id_in(const Json& json, const char* key) {
 }
 
 WebMessage text_message(const Json& json) {
-  // A viewer may have sent half a character.
+  // A text that a viewer has sent may contain invalid UTF-8.
   return {std::make_shared<const std::string>(json.dump(-1, ' ', false, Json::error_handler_t::replace)),
           false};
 }

@@ -17,7 +17,7 @@
 namespace sidestep {
 namespace {
 
-/// Bound of the senders that are remembered, because anybody can invent some.
+/// Maximum number of remembered senders, because a hostile participant can invent senders.
 constexpr std::size_t kMaxSenders = 1000;
 
 std::string who(std::uint32_t robot) {
@@ -175,7 +175,7 @@ void EventWatch::on(const msg::OrderAnswer& answer, Time now) {
                               "it is malformed",
                               "there is no such robot",
                               "a goal is outside the field",
-                              "there are too many"};
+                              "there are too many holds or zones"};
   const auto result = static_cast<std::size_t>(answer.result());
   if (result < 2 || result >= kTexts.size() || !outside_.admit(now)) return;
   add(Severity::kWarning, "order",

@@ -16,7 +16,7 @@
 
 namespace sidestep {
 
-/// Finds events of interest to a person in the messages of a run, and adds them to a log.
+/// Finds events that are of interest to people in the messages of a run, and adds them to a log.
 class EventWatch {
  public:
   /// The log must outlive this object.
@@ -38,7 +38,7 @@ class EventWatch {
   /// Detects robots and coordinators that have fallen silent.
   void tick(const FloorState& floor, Time now);
 
-  /// Silence of an agent, a robot or an active coordinator that counts as an event.
+  /// An agent, a robot or an active coordinator that is silent for this long causes an event.
   static constexpr Duration kSilence = std::chrono::milliseconds(1000);
 
  private:
@@ -61,11 +61,11 @@ class EventWatch {
   bool store_if_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
   void watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot, Time now);
 
-  /// Stores the sender's last order. Returns whether it is not a repetition.
+  /// Stores the sender's last order. Returns false if the order is a repetition.
   bool store_order(std::uint32_t sender, std::uint64_t number);
 
   EventLog& log_;
-  /// Limits these events, because anybody on the network can cause them.
+  /// Limits events that any participant in the network can cause.
   RateLimit outside_{1000, std::chrono::milliseconds(10)};
   std::map<std::uint32_t, std::uint64_t> sent_orders_;  ///< the last order number, by sender
   std::set<std::uint32_t> refused_;                     ///< senders whose messages were refused

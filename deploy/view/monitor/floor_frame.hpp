@@ -20,7 +20,7 @@ namespace sidestep {
 /// | 4 × (1 + sections) | number of sections, number of rows in each, unsigned |
 /// | 4 × … | the rows of each section |
 ///
-/// frame_layout() names the sections and the columns of their rows. What is not known is NaN.
+/// frame_layout() names the sections and the columns of their rows. Unknown values are NaN.
 [[nodiscard]] std::string encode_frame(const FloorState& floor, Time now);
 
 /// {"sections": [{"name": "robots", "columns": ["id", …]}, …], "flags": ["off_reference", …]}. The flags are

@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-/// Panels are shared by many snapshots and are small.
+/// Does not count panels, which are small and shared by many snapshots.
 std::size_t size_of(const Snapshot& snapshot) { return snapshot.frame->size() + sizeof(Snapshot); }
 
 }  // namespace

@@ -24,8 +24,8 @@ class History {
 
   History(std::size_t max_bytes, WhenFull when_full) : max_bytes_(max_bytes), when_full_(when_full) {}
 
-  /// Adds a snapshot. Ignores it if it is not later than the last one. When the history is thinned out,
-  /// others are ignored too.
+  /// Adds a snapshot. Ignores it if it is not later than the last one. A history that has been thinned out
+  /// also ignores some later snapshots.
   void add(Snapshot snapshot);
   bool empty() const { return snapshots_.empty(); }
   std::size_t size() const { return snapshots_.size(); }
@@ -47,7 +47,7 @@ class History {
   WhenFull when_full_;
   std::deque<Snapshot> snapshots_;
   std::size_t bytes_ = 0;
-  std::size_t stride_ = 1, skipped_ = 0;  // of the snapshots added, one in `stride` is kept
+  std::size_t stride_ = 1, skipped_ = 0;  // one in `stride_` of the added snapshots is kept
 };
 
 }  // namespace sidestep

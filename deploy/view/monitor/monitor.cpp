@@ -23,7 +23,7 @@ enum Slot : unsigned { kFrameSlot, kPanelSlot, kTimeSlot, kInspectionSlot };
 constexpr std::size_t kMaxInspected = 500;  // number of messages that are kept for slow viewers
 constexpr double kMaxPlaySpeed = 100;
 constexpr std::size_t kHistoryBytes = 512 << 20;
-/// The panels of large fleets are too long for every half second.
+/// The panels of larger fleets are too long to be sent every half second.
 constexpr std::size_t kLargeFleet = 200;
 
 std::string text_of(const Json& json) {

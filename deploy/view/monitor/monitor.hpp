@@ -77,8 +77,8 @@ class Monitor {
     ViewerTime time;
     Time shown{};
     std::shared_ptr<const std::string> frame, panels, time_text;
-    std::optional<std::string> inspected;  ///< the channel
-    std::optional<Time> inspected_until;   ///< for a recording: up to when it has been sent
+    std::optional<std::string> inspected;  ///< the inspected channel
+    std::optional<Time> inspected_until;   ///< for a recording: messages up to this time have been sent
     Time next_inspection{};                ///< by the real-time clock
   };
 
@@ -116,7 +116,7 @@ class Monitor {
   std::set<RobotId> followed_;
   std::set<std::string> channels_;
   std::map<WebSocket*, Viewer> viewers_;
-  /// JSON received since it was last sent, by channel.
+  /// Messages in JSON that were received since the last sending, by channel.
   std::map<std::string, std::deque<std::string>> inspections_;
   std::shared_ptr<const std::string> latest_panels_;
   Time panels_at_{}, heard_at_{};

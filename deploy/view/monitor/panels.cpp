@@ -131,7 +131,7 @@ Json promise_json(const RunAssessment* assessment, bool is_heard, const std::opt
                             ? fmt::format("{} contacts, {} violations", report.contacts, violations)
                             : to_line(audit.first.front());
   } else if (!is_heard) {
-    promise["reason"] = "nothing is heard";
+    promise["reason"] = "no messages are received";
   } else if (audit.verdict() == AuditVerdict::kPassed) {
     promise["state"] = "kept";
   } else {

@@ -12,7 +12,8 @@ namespace sidestep {
 /// Finds the messages of one channel of a recording in any interval, for the inspector.
 class RecordedMessages {
  public:
-  /// `playback` knows what it has read so far of the same file. It must outlive this object.
+  /// `playback` reads the same file; only the part that it has already read is searched. It must outlive this
+  /// object.
   RecordedMessages(const std::string& path, const PlaybackBus& playback)
       : reader_(path), playback_(playback) {}
 

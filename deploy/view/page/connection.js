@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The web socket to the monitor, which connects again when it is lost.
+// The web socket to the monitor. Reconnects when the connection is lost.
 
 export class Connection {
   /**

@@ -44,7 +44,7 @@ export class Controls {
   }
 
   /**
-   * Whether it was accepted.
+   * Sends a request. Returns whether it was accepted.
    * @param {string} path @param {any} [body] @returns {Promise<boolean>}
    */
   async post(path, body) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the selected robot could plan by: a navigation function, a band, a local grid. The monitor computes them.
+// Fields by which the selected robot could plan: a navigation function, a band, a local grid. The monitor computes them.
 
 const kPeriod_ms = 500;
 
@@ -9,7 +9,7 @@ export const fields = {robot: -1, data: /** @type {any} */ (null)};
 let pictures = new Map();
 
 /**
- * Asks for the fields of a robot again and again, while they are looked at.
+ * Requests the fields of a robot periodically, while they are shown.
  * @param {() => number} wanted the robot, or -1 @param {() => void} onChange
  */
 export function watchFields(wanted, onChange) {
@@ -60,7 +60,7 @@ function drawGrid(c, grid, colour) {
   c.restore();
 }
 
-/** @param {number} value 0: not reachable, 1 to 255: cheap to dear */
+/** @param {number} value 0: not reachable, 1 to 255: low to high cost */
 const navigationColour = (value) => (value === 0 ? [0, 0, 0, 0] : [0, 60 + 0.6 * (255 - value), 178 - 0.4 * value, 120]);
 const kLocalColours = [[0, 0, 0, 0], [0, 158, 115, 60], [213, 94, 0, 200]];
 

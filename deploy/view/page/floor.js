@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The canvas with the floor: where it looks, what is clicked, and the drawing of all layers.
+// The canvas with the floor: its view, clicks and drags, and the drawing of all layers.
 import {element} from "./format.js";
 
 export class Floor {
@@ -12,7 +12,7 @@ export class Floor {
     this.scale = 0;  // CSS pixels per metre; 0: not known yet
     this.ratio = 1;  // pixels of the screen per CSS pixel
     this.isFitted = true;
-    this.isStale = true;  // what is shown is not what there is
+    this.isStale = true;  // the canvas must be drawn again
     /** @type {any} */
     this.scene = null;
     /** @type {any} */
@@ -141,7 +141,7 @@ export class Floor {
 }
 
 /**
- * Where a robot is: truth, or as vision sees it, or its own estimate.
+ * Where a robot is: by ground truth, else by vision, else by its own estimate.
  * @param {Float32Array} v @param {number} at @param {Record<string, number>} c
  */
 export function placeOf(v, at, c) {

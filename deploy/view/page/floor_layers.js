@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layers of everything but robots.
+// All layers except those of robots.
 import {addCircle, addPolygon, kGreen, kGrey, kRed, shared} from "./shapes.js";
 
 /** @typedef {import("./shapes.js").View} View */
@@ -87,7 +87,7 @@ export function drawZones(c, view) {
 }
 
 /**
- * Opponents and people, and how far each can have got since it was seen.
+ * Opponents and people, and how far each may have moved since it was seen.
  * @param {CanvasRenderingContext2D} c @param {View} view
  */
 export function drawMovingObstacles(c, view) {

@@ -7,7 +7,7 @@ export function number(value, digits = 0) {
 }
 
 /**
- * A share in percent, which never shows 100 % for less.
+ * A share in percent, rounded down, so that 100 % means all.
  * @param {number | undefined} share
  */
 export function percent(share) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that can be drawn on the floor.
+// All layers that can be drawn on the floor.
 import {drawBand, drawLocalGrid, drawNavigation} from "./fields.js";
 import {drawBall, drawDetections, drawField, drawMovingObstacles, drawObstacles, drawScans, drawZones} from "./floor_layers.js";
 import {drawBraked, drawConflicts, drawCovered, drawGoals, drawIntents, drawLabels, drawLedger, drawOutlines, drawPath, drawRobots,
@@ -9,7 +9,7 @@ import {kBlue, kGreen, kOrange, kPurple} from "./shapes.js";
 /** @typedef {import("./shapes.js").Layer} Layer */
 
 /**
- * From below to above.
+ * The layers in drawing order, the lowest first.
  * @type {Layer[]}
  */
 export const layers = [
@@ -21,15 +21,15 @@ export const layers = [
   {id: "zones", name: "Zones", key: "3", on: true, draw: drawZones},
   {id: "trails", name: "Trails", key: "4", on: true, draw: drawTrails},
   {id: "ledger", name: "Ledger", key: "5", on: false, draw: drawLedger},
-  {id: "executing", name: "Executing, with stop", key: "6", on: true,
+  {id: "executing", name: "Executed motions, with stops", key: "6", on: true,
    draw: (c, view) => drawCovered(c, view, "executing", "#56b4e955")},
   {id: "granted", name: "Granted", key: "7", on: true, draw: (c, view) => drawPath(c, view, "granted", kGreen, [])},
   {id: "proposed", name: "Proposed", key: "8", on: false, draw: (c, view) => drawPath(c, view, "proposed", kOrange, [4, 3])},
-  {id: "braked", name: "If all braked now", key: "9", on: false, draw: drawBraked},
+  {id: "braked", name: "Stops if all braked now", key: "9", on: false, draw: drawBraked},
   {id: "intents", name: "Intents", key: "0", on: false, draw: drawIntents},
   {id: "moving", name: "Moving obstacles", key: "m", on: true, draw: drawMovingObstacles},
   {id: "robots", name: "Robots", key: "r", on: true, draw: drawRobots},
-  {id: "seen", name: "Robots as seen", key: "v", on: false, draw: (c, view) => drawOutlines(c, view, ["seen_x", "seen_y"], kPurple)},
+  {id: "seen", name: "Robots as vision sees them", key: "v", on: false, draw: (c, view) => drawOutlines(c, view, ["seen_x", "seen_y"], kPurple)},
   {id: "estimated", name: "Robots' own estimates", key: "e", on: false,
    draw: (c, view) => drawOutlines(c, view, ["x", "y"], kBlue)},
   {id: "goals", name: "Goals", key: "g", on: true, draw: drawGoals},

@@ -18,7 +18,7 @@ import {Timeline} from "./timeline.js";
 const link = new URLSearchParams(location.hash.slice(1));
 const token = link.get("token") || "";
 
-/** What tests and curious people look at. */
+/** State for tests and for debugging. */
 const monitor = {frames: 0, script_ms: /** @type {number[]} */ ([]), panels: /** @type {any} */ (null),
                  scene: /** @type {any} */ (null), frame: /** @type {any} */ (null), events: /** @type {any[]} */ ([]),
                  event_received_ms: /** @type {number[]} */ ([]), connection: "connecting"};
@@ -40,7 +40,7 @@ tabs.add("coordinators", "Coordinators", coordinatorPanel);
 tabs.add("topics", "Topics", topicPanel);
 tabs.add("inspect", "Messages and plots", inspector.node);
 
-// Asked for only while it is looked at, because discovery costs the run something.
+// Requested only while the tab is shown, because discovery costs the run's processes some work.
 setInterval(async () => {
   if (tabs.shown !== "topics" || !monitor.scene || monitor.scene.is_recording || monitor.connection !== "connected") return;
   const response = await fetch("/api/network").catch(() => null);
@@ -185,9 +185,9 @@ if (matchMedia("(prefers-color-scheme: light)").matches) changeTheme();
 
 /** @type {[string, string, () => void][]} */
 const keys = [
-  [" ", "pause or go on", () => timeline.toggle()],
+  [" ", "pause or resume", () => timeline.toggle()],
   [",", "one frame back", () => timeline.step(-1)],
-  [".", "one frame on", () => timeline.step(1)],
+  [".", "one frame forward", () => timeline.step(1)],
   ["[", "previous event", () => timeline.toEvent(-1)],
   ["]", "next event", () => timeline.toEvent(1)],
   ["l", "the newest moment", () => timeline.live()],

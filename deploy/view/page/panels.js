@@ -144,7 +144,7 @@ export function updateCoordinators(panels) {
 epochTable.onClick = (/** @type {number} */ at) => seekTo(at);
 
 /**
- * Replaced by main.js.
+ * Goes to a moment. Replaced by main.js.
  * @type {(at_s: number) => void}
  */
 let seekTo = () => {};
@@ -185,7 +185,7 @@ export function updateTopics(panels) {
 }
 
 /**
- * What DDS tells of processes and hosts.
+ * Shows what DDS reports about processes and hosts.
  * @param {{hosts: any[], mismatches: string[]}} network
  */
 export function updateNetwork(network) {

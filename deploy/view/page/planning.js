@@ -5,7 +5,7 @@ import {element, number} from "./format.js";
 
 const kColours = {blocked: "#d55e00", free: "#009e7388", unchecked: "#8b96a155"};
 /**
- * What tests look at.
+ * State for tests.
  * @type {any}
  */
 const planning = {plan: null, plans: 0};
@@ -24,14 +24,14 @@ const connection = new Connection("sidestep.planning.v1", (message) => {
   element("result").textContent = `${message.solved ? `${number(message.length_m, 2)} m` : "no path"} in ${number(message.time_us, 0)} µs; ` +
       `${message.nodes.length} nodes, ${message.edges.length} edges`;
   requestAnimationFrame(draw);
-  // The next position of what is dragged follows the answer, so that positions never queue up.
+  // The next position of the dragged object is sent only after the answer, so that positions never queue up.
   if (drag && !drag.is_sent) sendDrag();
 }, () => {}, (state) => {
   element("connection").textContent = state === "lost" ? "connection lost, trying again" : "";
   element("connection").dataset.state = state;
 });
 
-/** Pixels per metre, and the middle. */
+/** Pixels per metre, and the centre of the canvas. */
 function view() {
   const [length_m, width_m] = planning.plan.field;
   return {scale: Math.min(canvas.clientWidth / (length_m + 0.4), canvas.clientHeight / (width_m + 0.4)),

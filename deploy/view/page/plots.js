@@ -18,7 +18,7 @@ export function numbersOf(value, path, found) {
   return found;
 }
 
-/** A plot that keeps the least and the most of each column of pixels. */
+/** A plot that keeps the minimum and the maximum of each column of pixels. */
 export class Plot {
   constructor() {
     this.canvas = create("canvas", {class: "plot", role: "img", "aria-label": "Plot"});
@@ -81,7 +81,7 @@ export class Plot {
   }
 }
 
-/** The panel in which a person looks at one channel. */
+/** The panel that shows the messages of one channel. */
 export class Inspector {
   /** @param {(message: object) => void} send */
   constructor(send) {
@@ -139,7 +139,7 @@ export class Inspector {
       }
     }
     const last = batch.messages[batch.messages.length - 1];
-    this.text.textContent = last ? JSON.stringify(last.message, null, 1) : "no message in the half minute before";
+    this.text.textContent = last ? JSON.stringify(last.message, null, 1) : "no message in the 30 s before this moment";
     this.plot.draw();
   }
 }

@@ -83,7 +83,7 @@ export function drawRobots(c, view) {
     if (state & (flags.off_reference | flags.lifted)) addCircle(paths.off, place.x, place.y, 1.25 * r);
     if (!Number.isNaN(v[at + columns.denied])) addCircle(paths.denied, place.x, place.y, 1.12 * r);
     if (id === view.selected) addCircle(paths.selected, place.x, place.y, 1.5 * r);
-    // The front of blue robots is a line, of yellow ones an arrow, so that shapes tell teams apart too.
+    // The front of blue robots is a line, that of yellow ones an arrow, so that teams also differ in shape.
     const dx = Math.cos(place.heading) * r, dy = Math.sin(place.heading) * r;
     if (isYellow) {
       paths.headings.moveTo(place.x - 0.5 * dx - 0.6 * dy, place.y - 0.5 * dy + 0.6 * dx);
@@ -153,7 +153,7 @@ export function drawGoals(c, view) {
     const place = placeOf(v, at, columns);
     const nearestX = v[at + columns.nearest_x], nearestY = v[at + columns.nearest_y];
     if (!Number.isNaN(nearestX)) {
-      // Its goal cannot be reached now: it goes here instead.
+      // The robot cannot reach its goal now, so it drives here instead.
       lines.moveTo(place.x, place.y);
       lines.lineTo(nearestX, nearestY);
     }
@@ -190,7 +190,7 @@ export function drawIntents(c, view) {
 
 /**
  * A line from each robot whose motion was denied to the robot that it would have met; red where the robots wait for
- * each other in a circle.
+ * each other in a cycle.
  * @param {CanvasRenderingContext2D} c @param {View} view
  */
 export function drawConflicts(c, view) {
@@ -238,7 +238,7 @@ export function drawLedger(c, view) {
 }
 
 /**
- * Places of the last seconds, by robot.
+ * Positions in the last seconds, by robot.
  * @type {Map<number, {time: number, x: number, y: number}[]>}
  */
 const trails = new Map();

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all layers draw with.
+// Drawing primitives shared by all layers.
 
 /** @typedef {{scene: any, frame: any, pixel: number, selected: number, floor: any}} View */
 /** @typedef {{id: string, name: string, key: string, on: boolean, draw: (c: CanvasRenderingContext2D, view: View) => void}} Layer */
 
-// Colours of Okabe and Ito, which colour-blind people tell apart.
+// Colours of Okabe and Ito, which colour-blind people can tell apart.
 export const kBlue = "#0072b2", kSky = "#56b4e9", kYellow = "#f0e442", kOrange = "#e69f00", kGreen = "#009e73",
              kRed = "#d55e00", kPurple = "#cc79a7", kGrey = "#8b96a1";
 
-/** What panels know and frames do not. */
+/** Data that arrive with panels, not with frames. */
 export const shared = {zones: /** @type {any[]} */ ([]), goals: /** @type {Map<number, number[][]>} */ (new Map())};
 
 /**

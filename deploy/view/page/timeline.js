@@ -72,7 +72,7 @@ export class Timeline {
   }
 
   /**
-   * To the next event after the moment shown, or the previous one.
+   * Goes to the next event after the moment shown, or to the previous one.
    * @param {number} direction
    */
   toEvent(direction) {

@@ -26,7 +26,7 @@ class PlanningScene {
 
   /// Changes the scene by a message, and plans: {"op": "move", "what": "start", "goal" or the number of an
   /// obstacle, "x": …, "y": …}, {"op": "scene", "seed": …, "obstacles": …}, {"op": "planner", "name":
-  /// "dynamic-prm" or "errt"}. False: the message makes no sense, and nothing has changed.
+  /// "dynamic-prm" or "errt"}. False: the message is invalid, and nothing has changed.
   [[nodiscard]] bool apply(const nlohmann::json& message);
 
   /// {"type": "plan", "planner":…, "solved":…, "length_m":…, "time_us":…, "start", "goal": [x, y],

@@ -14,7 +14,7 @@ struct AccessSettings {
   std::uint16_t port = 8080;
   /// Origins of other servers' pages, for example https://example.org.
   std::vector<std::string> allowed_origins;
-  std::string token;  ///< token for requests that command; empty: no request may
+  std::string token;  ///< token for requests that give commands; empty: no request may give commands
 };
 
 /// The relevant headers of a request; empty: the header is missing.

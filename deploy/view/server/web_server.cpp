@@ -94,7 +94,7 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
   }
 
  private:
-  /// The first protocol that both know; the server's first if there is none.
+  /// The first protocol that both know; the server's first one if they share none.
   std::string agreed_protocol(const std::string& wanted) const {
     for (const std::string& known : server_.protocols)
       for (const auto& token : http::token_list(wanted))
@@ -108,7 +108,7 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
       const std::string message = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
       if (self->is_closing_) return self->read();
-      if (!self->makes_sense(message)) self->close("the message makes no sense");
+      if (!self->makes_sense(message)) self->close("the message is invalid");
       self->read();
     });
   }
@@ -117,7 +117,7 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
     try {
       return server_.handlers.on_message(*this, message, stream_.got_binary());
     } catch (const std::exception&) {
-      return false;  // others are served on
+      return false;  // the other viewers are still served
     }
   }
 

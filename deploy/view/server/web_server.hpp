@@ -32,7 +32,7 @@ class WebSocket {
   virtual ~WebSocket() = default;
   /// Sends the newest value of a state. An earlier value that was not sent yet is discarded.
   virtual void send_state(unsigned slot, WebMessage message) = 0;
-  /// Sends an event in any case; if that is not possible, the viewer is disconnected.
+  /// Sends an event, which is never discarded; if that is not possible, the viewer is disconnected.
   virtual void send_event(WebMessage message) = 0;
 };
 

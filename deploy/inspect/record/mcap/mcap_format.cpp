@@ -40,7 +40,7 @@ McapTexts McapDecoder::texts() {
 }
 
 std::uint32_t mcap_checksum(std::span<const std::uint8_t> bytes, std::uint32_t sum) {
-  if (bytes.empty()) return sum;  // zlib takes no address for a new sum
+  if (bytes.empty()) return sum;  // with a null address, crc32_z() returns its initial value
   return static_cast<std::uint32_t>(crc32_z(sum, bytes.data(), bytes.size()));
 }
 

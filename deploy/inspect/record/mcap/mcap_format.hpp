@@ -132,7 +132,7 @@ class McapDecoder {
   bool is_ok_ = true;
 };
 
-/// CRC-32 as used in ZIP; `sum` continues an earlier one.
+/// CRC-32 as used in ZIP; `sum` is the checksum of the bytes before these.
 [[nodiscard]] std::uint32_t mcap_checksum(std::span<const std::uint8_t> bytes, std::uint32_t sum = 0);
 
 }  // namespace sidestep

@@ -18,8 +18,8 @@ namespace {
 using Kind = McapRecordKind;
 using Bytes = std::span<const std::uint8_t>;
 
-/// The only record kinds that the specification allows in a chunk. Skipping others would take seconds: a
-/// compressed chunk of some kilobytes may hold millions of empty ones.
+/// The only record kinds that the specification allows in a chunk. Other kinds are refused, because skipping
+/// them could take seconds: a compressed chunk of some kilobytes may contain millions of empty records.
 bool is_for_chunks(Kind kind) {
   return kind == Kind::kSchema || kind == Kind::kChannel || kind == Kind::kMessage;
 }
@@ -47,7 +47,7 @@ void McapReader::fail(const std::string& damage) {
 }
 
 Bytes McapReader::read(std::size_t size) {
-  // Grows with what the file holds, not with what it claims.
+  // Grows with the bytes that the file has, not with the size that it claims.
   constexpr std::size_t kStep = 1 << 20;
   bytes_.clear();
   while (bytes_.size() < size) {
@@ -134,15 +134,14 @@ std::string McapReader::chunk_problem(const McapDecoder& decoder, std::uint64_t 
                                       std::uint64_t stored_size, const std::string& compression) const {
   if (!decoder.is_ok() || (!is_cut_ && stored_size != decoder.left().size())) return "a chunk is damaged";
   if (size > kMaxRecordSize)
-    return fmt::format("a chunk claims to hold {} bytes, more than the {} that are read", size,
-                       kMaxRecordSize);
-  if (!compression.empty() && compression != "zstd") return "a chunk is compressed by other means than zstd";
+    return fmt::format("a chunk claims to contain {} bytes, more than the limit of {}", size, kMaxRecordSize);
+  if (!compression.empty() && compression != "zstd") return "a chunk is compressed, but not with zstd";
   return "";
 }
 
 bool McapReader::open_chunk(Bytes content) {
   McapDecoder decoder(content);
-  decoder.raw(8 + 8);  // first and last time
+  decoder.raw(8 + 8);  // times of the first and last message
   const auto size = decoder.number<std::uint64_t>();
   const auto sum = decoder.number<std::uint32_t>();
   const std::string compression = decoder.text();
@@ -187,7 +186,7 @@ void McapReader::seek(const McapReader& known, std::uint64_t chunk_offset) {
   is_sought_ = true;
   damage_.clear();
   if (std::fseek(file_.get(), static_cast<long>(chunk_offset), SEEK_SET) != 0)
-    fail("the file cannot be sought");
+    fail("cannot seek in the file");
 }
 
 double McapReader::progress() const {

@@ -69,12 +69,13 @@ class McapReader {
   McapRecord record_of(const Frame& frame);
   McapRecord message_of(std::span<const std::uint8_t> content);
   McapRecord attachment_of(std::span<const std::uint8_t> content);
-  /// Counts data that must be kept until the end of the file. False, and a failure, beyond their limit.
+  /// Counts data that must be kept until the end of the file. Beyond the limit, calls fail() and returns
+  /// false.
   bool count_kept(std::span<const std::uint8_t> content);
   void learn_schema(std::span<const std::uint8_t> content);
   void learn_channel(std::span<const std::uint8_t> content);
   void check_end(std::span<const std::uint8_t> data_end, std::uint32_t sum);
-  /// Ends reading. Keeps the first reason.
+  /// Ends reading. If called again, keeps the first reason.
   void fail(const std::string& damage);
 
   std::unique_ptr<std::FILE, Closer> file_;
@@ -82,9 +83,9 @@ class McapReader {
   std::uint32_t checksum_ = 0;  // checksum of everything read
   McapBytes bytes_, chunk_;
   McapDecoder records_{{}};  // records of the open chunk
-  bool is_cut_ = false;      // the open chunk is the last one
+  bool is_cut_ = false;      // the file ends within the open chunk
   bool is_at_end_ = false;
-  bool is_sought_ = false;
+  bool is_sought_ = false;  // seek() was called
   std::unique_ptr<std::atomic<bool>> is_stopped_ = std::make_unique<std::atomic<bool>>(false);
   std::uint64_t chunk_offset_ = 0;
   std::string damage_;

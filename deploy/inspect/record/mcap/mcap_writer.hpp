@@ -33,8 +33,8 @@ class McapWriter {
   /// Returns the id. Throws std::length_error if all 65,535 ids are taken.
   std::uint16_t add_schema(McapSchema schema);
   std::uint16_t add_channel(McapChannel channel);
-  /// Messages are added in the order of their logged times, as far as the clock permits. `append_payload`
-  /// appends the payload to the bytes passed to it.
+  /// Messages should be added in the order of their logged times. `append_payload` appends the payload to the
+  /// bytes passed to it.
   template <typename Append>
   void add_message(const McapMessage& message, Append append_payload) {
     begin_message(message);
@@ -49,8 +49,8 @@ class McapWriter {
   /// Writes the messages that have been added so far to the file.
   void end_chunk();
 
-  /// Calls back with the path and the reason when a write fails for the first time, at once if one has failed
-  /// already.
+  /// Calls back with the path and the reason when a write fails for the first time; at once if a write has
+  /// already failed.
   void on_failure(std::function<void(const std::string& failure)> callback);
   std::uint64_t messages() const { return messages_; }
   /// Writes the summary. Anything added afterwards is discarded. Throws std::runtime_error if any write has
@@ -87,8 +87,8 @@ class McapWriter {
   OutputFile file_;
   std::unique_ptr<ZSTD_CCtx_s, ContextDeleter> compressor_;
   std::uint64_t size_ = 0;
-  std::uint32_t checksum_ = 0;  // of all that was written
-  std::string failure_;         // of the first write that failed; empty: none
+  std::uint32_t checksum_ = 0;  // checksum of everything written
+  std::string failure_;         // reason of the first failed write; empty: none
   std::function<void(const std::string&)> on_failure_;
   Chunk chunk_;
   McapBytes compressed_;

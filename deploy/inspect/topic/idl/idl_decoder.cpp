@@ -89,7 +89,7 @@ class Decoder {
     const std::size_t alignment = is_version_2_ ? std::min<std::size_t>(sizeof(Number), 4) : sizeof(Number);
     at_ = (at_ + alignment - 1) / alignment * alignment;
     if (at_ > bytes_.size() || bytes_.size() - at_ < sizeof(Number))
-      throw IdlDecodingError(fmt::format("the message ends after {} bytes, too early", bytes_.size()));
+      throw IdlDecodingError(fmt::format("the message ends too early, after {} bytes", bytes_.size()));
     std::array<std::uint8_t, sizeof(Number)> raw;
     std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), sizeof(Number), raw.begin());
     if (is_swapped_) std::ranges::reverse(raw);
@@ -105,7 +105,8 @@ class Decoder {
   }
 
   Json text(const IdlType& type) {
-    const std::uint32_t size = count(type.bound == 0 ? 0 : type.bound + 1, "string");  // with the final zero
+    const std::uint32_t size =
+        count(type.bound == 0 ? 0 : type.bound + 1, "string");  // including the final zero
     std::string result(reinterpret_cast<const char*>(bytes_.data()) + at_, size);
     at_ += size;
     if (!result.empty() && result.back() == '\0') result.pop_back();
@@ -118,7 +119,7 @@ class Decoder {
     return found == type.enumerators.end() ? Json(value) : Json(found->second);
   }
 
-  /// Version 2 states the size of appendable types, and of lists whose elements are not primitive.
+  /// Skips the size that CDR version 2 states before sequences and arrays whose elements are not primitive.
   void skip_delimiter(const IdlType& element) {
     const bool is_primitive = element.kind < Kind::kString;
     if (is_version_2_ && !is_primitive) number<std::uint32_t>();

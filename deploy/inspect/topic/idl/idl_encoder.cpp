@@ -64,7 +64,7 @@ class Encoder {
     }
   }
 
-  /// The key members of a struct; all members of a key that is a struct without key members.
+  /// Encodes the key members of a struct, or all its members if none is a key.
   void encode_key(const IdlType& type, const Json* json, const std::string& name) {
     const bool has_keys = std::ranges::any_of(type.members, &IdlMember::is_key);
     for (const IdlMember& member : type.members) {
@@ -132,7 +132,7 @@ class Encoder {
   void enumerator(const IdlType& type, const Json* json, const std::string& name) {
     if (!json) return append(type.enumerators.empty() ? 0u : type.enumerators.begin()->first);
     if (json->is_number_unsigned())
-      return append_integer<std::uint32_t>(json, name);  // perhaps an unknown one
+      return append_integer<std::uint32_t>(json, name);  // possibly not the value of an enumerator
     std::string known;
     for (const auto& [value, word] : type.enumerators) {
       if (*json == word) return append(value);

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// Thrown if JSON is not a message of a type; the text names the member.
+/// Thrown if JSON is not a valid message of the expected type; the text names the member.
 class IdlEncodingError : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

@@ -49,7 +49,7 @@ class Lexer {
         skip_to(std::min(text_.find('\n', at_), text_.size()));
       } else if (has("/*")) {
         const std::size_t end = text_.find("*/", at_ + 2);
-        if (end == std::string_view::npos) fail("a comment does not end");
+        if (end == std::string_view::npos) fail("a comment is not closed");
         skip_to(end + 2);
       } else {
         return;
@@ -76,7 +76,7 @@ class Lexer {
     std::size_t end = at_ + 1;
     if (first == '"') {
       end = text_.find('"', at_ + 1);
-      if (end == std::string_view::npos) fail("a string does not end");
+      if (end == std::string_view::npos) fail("a string is not closed");
       result_.tokens.push_back({std::string(text_.substr(at_ + 1, end - at_ - 1)), line_, true});
       skip_to(end + 1);
       return;

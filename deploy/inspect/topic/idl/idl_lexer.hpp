@@ -8,7 +8,7 @@
 namespace sidestep {
 
 struct IdlToken {
-  std::string text;  ///< empty: the end. A scoped name, such as a::b, is one token; so is "::"
+  std::string text;  ///< empty: end of the file. A scoped name, such as a::b, is one token; so is "::"
   int line = 0;
   bool is_string = false;
 };

@@ -21,7 +21,7 @@ using Extensibility = IdlType::Extensibility;
 
 constexpr int kMaxNesting = 100;
 constexpr std::size_t kMaxFiles = 1000;
-// Types that hold each other several times grow exponentially.
+// If each type contains another one several times, the number of values grows exponentially.
 constexpr std::uint64_t kMaxValues = 10'000'000;
 
 /// What annotations say about the definition or member that follows.
@@ -37,7 +37,7 @@ IdlTypePtr type_of(Kind kind) {
   return std::make_shared<const IdlType>(std::move(type));
 }
 
-/// The definitions of one or several files.
+/// Parses the definitions of one or several files.
 class Parser {
  public:
   void parse_file(const std::filesystem::path& path) {
@@ -104,7 +104,7 @@ class Parser {
     for (const std::string& module : modules_) result += module + "::";
     return result + name;
   }
-  /// Looks a name up in the current module, and then in those around it.
+  /// Looks a name up in the current module, and then in the enclosing ones.
   template <typename Value>
   const Value* find(const std::map<std::string, Value>& values, std::string name) const {
     if (name.starts_with("::")) {
@@ -263,9 +263,9 @@ class Parser {
       fail(fmt::format("a message of this type has {} values, more than {}", type.values, kMaxValues));
   }
 
-  /// A message without bytes could then have any number of elements that contain nothing.
+  /// Otherwise a message of no bytes could have any number of empty elements.
   void check_element(const IdlType& element) const {
-    if (element.values == 0) fail("a list of elements that hold nothing");
+    if (element.values == 0) fail("the elements of a list contain no values");
   }
 
   IdlTypePtr array_of(IdlTypePtr element, std::uint32_t size) const {

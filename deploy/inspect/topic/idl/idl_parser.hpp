@@ -23,7 +23,7 @@ using IdlTypes = std::map<std::string, IdlTypePtr>;
 /// annotations are ignored, and so are directives other than #include "FILE". Throws IdlError, including for
 /// valid but unsupported constructs: unions, bitmasks, maps, fixed and wide types, macros.
 [[nodiscard]] IdlTypes parse_idl(std::string_view text, const std::string& file_name);
-/// Parses a file and the files that it includes, relative to itself.
+/// Parses a file and the files that it includes, whose paths are relative to its folder.
 [[nodiscard]] IdlTypes load_idl(const std::string& path);
 
 }  // namespace sidestep

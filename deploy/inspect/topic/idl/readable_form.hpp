@@ -12,16 +12,16 @@
 
 namespace sidestep {
 
-/// Returns what people read instead of a decoded value.
+/// Converts a decoded value to a readable one.
 using Rewrite = nlohmann::ordered_json (*)(const nlohmann::ordered_json& value);
 
-/// Rewrites of values whose meaning does not follow from the IDL, indexed by a struct,
-/// "sidestep::msg::Header", or by one of its members, "sidestep::msg::Header.rules".
+/// Rewrites for values whose meaning the IDL does not state, indexed by the name of a struct, such as
+/// "sidestep::msg::Header", or of a struct's member, such as "sidestep::msg::Header.rules".
 using Rewrites = std::map<std::string, Rewrite>;
 
-/// What people read of the messages of a type. Enumerators become words: the lower-case name without the
-/// prefix that all enumerators of the enum share, unknown ones "unknown 7". An array `things` beside a member
-/// `thing_count` is cut to that count. Other values remain as decoded.
+/// Converts messages of one type to a readable form. Enumerators become words: the lower-case name without
+/// the prefix that all enumerators of the enum share; an unknown value becomes, for example, "unknown 7". An
+/// array `things` beside a member `thing_count` is cut to that count. Other values remain as decoded.
 class ReadableForm {
  public:
   ReadableForm(const IdlType& type, const Rewrites& rewrites);
@@ -40,13 +40,13 @@ class ReadableForm {
 
   Change change_ = Change::kNone;
   Rewrite rewrite_ = nullptr;
-  std::size_t prefix_size_ = 0;        ///< of an enum's names
+  std::size_t prefix_size_ = 0;        ///< length of the prefix that an enum's names share
   std::vector<ReadableForm> element_;  ///< one element if the change is kElements
   std::vector<Member> members_;        ///< members that change
 };
 
-/// A member that changes: it is cut to the value of another member, unless that has no name, and then
-/// changed.
+/// A member that changes. If `count_name` is not empty, the array is first cut to the value of that member.
+/// Then `form` is applied.
 struct ReadableForm::Member {
   std::string name, count_name;
   ReadableForm form;

@@ -55,7 +55,7 @@ bool flag_from(const YAML::Node& node, const YamlLocation& location) {
   return text == "true";
 }
 
-/// "3" or "5-9"
+/// Reads a range: "3" or "5-9".
 NumberedShare::Range range_from(const YAML::Node& node, const YamlLocation& location) {
   const std::string text = text_from(node, location);
   const auto dash = text.find('-');

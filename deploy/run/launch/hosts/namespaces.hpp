@@ -46,7 +46,8 @@ class NamespaceNetwork {
   void connect(const HostSpec& host, const std::string& cable, int prefix_length);
   void remove();
 
-  const pid_t launcher_ = getpid();  ///< the original process, even in processes that it forks
+  const pid_t launcher_ =
+      getpid();  ///< the process that created the network, also in processes forked from it
   std::vector<std::string> created_;
 };
 

@@ -25,7 +25,7 @@ FloorPlanSettings plan_settings(const std::string& kind) {
           .shelves_chance = 1};
 }
 
-/// Time to drive through the building once for each goal, several times over.
+/// Several times the time to drive through the building once for each goal.
 double time_limit_s(const Scenario& scenario, int goals) {
   return 60 + 4 * goals * (scenario.field.length_m + scenario.field.width_m) / scenario.limits.speed_mps;
 }
@@ -52,7 +52,7 @@ std::string text_of(const Vec2& p) { return fmt::format("[{:.3f}, {:.3f}]", p.x(
 std::string scenario_text(const BuildingOptions& options, const Scenario& scenario) {
   Rng rng(options.seed);
   PositionSampler positions(scenario, rng);
-  // Placed in turn, so that robots are apart both at their starts and at each of their goals.
+  // One round of positions for the starts and one for each goal, in each of which robots are apart.
   std::vector<std::vector<Vec2>> places;
   for (int i = 0; i <= options.goals; ++i) {
     std::vector<Vec2> taken;
@@ -76,7 +76,7 @@ std::string scenario_text(const BuildingOptions& options, const Scenario& scenar
 }  // namespace
 
 void write_building(const BuildingOptions& options) {
-  // The folder is created first, because the building takes seconds.
+  // Creates the folder first, because generating the building takes seconds.
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
   if (!std::filesystem::is_directory(options.folder))

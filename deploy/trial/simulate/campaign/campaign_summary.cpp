@@ -124,7 +124,8 @@ std::string CampaignSummary::text() const {
       sum(&TrialResult::firmware_violations));
   if (audit.trials_without > 0) {
     text += fmt::format(
-        "{} trials are not judged by the audit, since a process believed a second simulator; it reported {} "
+        "{} trials are not judged by the audit, because a process accepted a second simulator; it reported "
+        "{} "
         "violations there\n",
         audit.trials_without, audit.violations_without);
   }

@@ -10,8 +10,9 @@
 namespace sidestep {
 namespace {
 
-// Limits of jumps forwards and back. Numbers read from a clock are refused if they are an hour ahead, and
-// agents' clocks differ by seconds anyway. Virtual time begins at 1000 s, and must not become negative.
+// Limits of jumps forwards and back. Epochs and incarnations, which are read from clocks, are refused if they
+// are an hour ahead, and agents' clocks differ by seconds anyway. Virtual time begins at 1000 s, and must not
+// become negative.
 constexpr double kMaxClockJump_s = 3580, kMaxSetback_s = 900;
 
 // Any two clocks drift apart by less than the 200 ppm that agents assume.

@@ -60,7 +60,7 @@ class DisturbanceSampler {
     plan_.add(at, disturbance);
   }
 
-  /// The operator places a robot at any free place: others may be driving there.
+  /// The operator places a robot at any free place, where other robots may be driving.
   void sample_lift() {
     const RobotId robot = random_robot();
     if (plan_.ends.contains(robot) || !handled_.insert(robot).second) return;
@@ -76,7 +76,7 @@ class DisturbanceSampler {
     plan_.add(times_.after(ready, log_uniform(0.05, 10)), std::move(place));
   }
 
-  /// Somebody changes the battery of a lifted robot. Returns when it is on again.
+  /// A person changes the battery of a lifted robot. Returns when the robot is switched on again.
   Duration sample_restart_in_hand(RobotId robot, Duration lifted_at) {
     const Duration off = times_.after(lifted_at, log_uniform(0.02, 1));
     const Duration on = times_.after(off, log_uniform(0.02, 4));
@@ -85,8 +85,7 @@ class DisturbanceSampler {
     return on;
   }
 
-  /// A robot loses power for a moment, or longer; then somebody carries it away or takes it off the
-  /// floor.
+  /// A robot loses power for a moment, or longer; then a person carries it away or takes it off the floor.
   void sample_power_loss() {
     const RobotId robot = random_robot();
     if (!handled_.insert(robot).second) return;

@@ -50,11 +50,11 @@ std::string to_text(const RobotDisturbance& disturbance) {
 std::string_view to_text(RobotEnd end) {
   switch (end) {
     case RobotEnd::kClockOutOfBound:
-      return "whose clocks are out of bound";
+      return "clock out of bound throughout";
     case RobotEnd::kClockLeftBound:
-      return "whose clocks leave the bound";
+      return "clock far out of bound at the end";
     case RobotEnd::kClockBeyondBound:
-      return "whose clocks leave the bound by little";
+      return "clock slightly out of bound at the end";
     case RobotEnd::kLifted:
       return "off the floor at the end";
     case RobotEnd::kTakenAway:
@@ -100,7 +100,7 @@ class Describe {
   }
   std::string operator()(const Partition& partition) const {
     const std::string from = group(partition.from), to = group(partition.to);
-    if (!duration_) return fmt::format("links from {} to {} cut for good", from, to);
+    if (!duration_) return fmt::format("links from {} to {} cut permanently", from, to);
     return fmt::format("partition from {} to {} for {:.3f} s", from, to, to_seconds(*duration_));
   }
   std::string operator()(const ClockJump& jump) const {
@@ -127,10 +127,10 @@ class Describe {
     return fmt::format("robot {} taken away without power", take.robot);
   }
   std::string operator()(const StartWithMutatedRule& start) const {
-    return fmt::format("{} started again with another {}", start.process, rule_mutations()[start.rule].key);
+    return fmt::format("{} restarted with a different {}", start.process, rule_mutations()[start.rule].key);
   }
   std::string operator()(const StartWithOwnRules& start) const {
-    return start.process + " started again with the right scenario";
+    return start.process + " restarted with the correct scenario";
   }
   std::string operator()(const GiveOrder& give) const { return to_text(give.order); }
   std::string operator()(const SendForgery& send) const {
@@ -141,7 +141,8 @@ class Describe {
   static std::string place(const Vec2& place_m) {
     return fmt::format("({:.3f}, {:.3f}) m", place_m.x(), place_m.y());
   }
-  /// A short name, which gives a whole host by its number, and almost all processes by the exceptions.
+  /// A short name for a group of processes: a whole host by its number, almost all processes by the
+  /// exceptions.
   std::string group(const ProcessNames& names) const {
     ProcessNames others;
     for (std::size_t i = 0; i < plan_.hosts.size(); ++i) {
@@ -180,7 +181,7 @@ std::vector<std::string> to_lines(const FaultPlan& plan) {
     lines.push_back(fmt::format("clock of {}: {:+.4f} ms, drift {:+.1f} ppm", process, ms(clock.offset),
                                 clock.drift_ppm));
   for (const auto& [robot, end] : plan.ends)
-    lines.push_back(fmt::format("robot {} is one of those {}", robot, to_text(end)));
+    lines.push_back(fmt::format("robot {}: {}", robot, to_text(end)));
   for (const TimedFault& timed : plan.faults) {
     lines.push_back(fmt::format("{:.3f} s: {}", to_seconds(timed.at),
                                 std::visit(Describe(plan, timed.duration), timed.fault)));

@@ -57,7 +57,7 @@ struct StartWithMutatedRule {
   std::string process;
   std::size_t rule = 0;  ///< index in rule_mutations()
 };
-/// Restarts such a process with the correct scenario.
+/// Restarts a process that has a mutated rule, with the correct scenario.
 struct StartWithOwnRules {
   std::string process;
 };
@@ -79,8 +79,9 @@ using Fault =
 struct TimedFault {
   Duration at{0};  ///< time since the start of the run
   Fault fault;
-  /// Of a partition or pause. A partition without it lasts for good: a coordinator no longer hears these
-  /// processes, or they no longer hear it, and the other coordinators must work without it.
+  /// Duration of a partition or pause. A partition without a duration is permanent: messages between one
+  /// coordinator and these processes are lost in at least one direction, and the other coordinators must work
+  /// without that one.
   std::optional<Duration> duration = std::nullopt;
 
   FaultSpan span() const { return {at, duration ? std::optional(at + *duration) : std::nullopt}; }

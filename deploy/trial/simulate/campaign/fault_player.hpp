@@ -25,10 +25,10 @@ class FaultPlayer {
   /// Runs until this time after the start, and applies all faults up to then.
   void run_until(Duration after_begin);
 
-  /// What was wrong with clients' orders, in words.
+  /// Failures of clients' orders, in words.
   std::vector<std::string> order_failures() const;
 
-  /// Effects of the schedule.
+  /// Called by the schedule when a fault begins or ends.
   void begin(std::size_t fault);
   void end(std::size_t fault);
 
@@ -57,7 +57,7 @@ class FaultPlayer {
   void heal();
   /// Runs the system and lets the operator act.
   void advance(Time until);
-  /// Does that, and begins and ends faults.
+  /// Like advance(), and also begins and ends faults.
   void play(Time until);
 
   SimSystem& system_;

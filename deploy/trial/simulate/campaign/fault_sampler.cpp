@@ -148,13 +148,14 @@ class FaultSampler {
     const std::string victim = random_victim();
     const Duration at = time();
     plan_.add(at, Kill{victim});
-    // Every killed process is restarted, because no later coordinator would grant without all agents.
+    // Every killed process is restarted, because a later coordinator grants only after all agents have
+    // registered.
     const double dead_s = rng_.chance(0.3) ? 0 : log_uniform(0.01, 4);
     plan_.add(times_.after(at, dead_s), Start{victim});
   }
 
-  /// Makes a process work with different rules for a while. A standby may do so for good if there is another
-  /// coordinator.
+  /// Makes a process work with different rules for a while. A standby may keep them permanently if there is
+  /// another coordinator.
   void sample_other_rules() {
     const double u = rng_.uniform();
     const std::string victim = u < 0.4   ? coordinator_process(scenario_.coordinators - 1)
@@ -162,7 +163,7 @@ class FaultSampler {
                                          : "vision";
     if (!with_other_rules_.insert(victim).second) return;
     std::size_t rule = rng_.below(rule_mutations().size());
-    // An agent needs its own robot.
+    // An agent needs its own robot on the roster.
     while (victim.starts_with("agent") && rule_mutations()[rule].changes_roster)
       rule = rng_.below(rule_mutations().size());
     const Duration at = time();
@@ -186,7 +187,8 @@ class FaultSampler {
       const std::string first = agent_process(robot), second = twin_process(robot);
       if (std::ranges::find(processes_, second) != processes_.end()) return;
       processes_.push_back(second);
-      // An agent is not restarted earlier than this after the start of its second agent.
+      // Leaves at least kMinTwinLifetime between the start of the second agent and the restart of the first
+      // one.
       const Duration at = std::max(Duration{0}, std::min(time(), plan_.healed_at - kMinTwinLifetime));
       plan_.add(at, Start{second});
       const Duration first_kill = at + until_healed(at, log_uniform(0.02, 10)) - Duration{4};
@@ -216,7 +218,8 @@ class FaultSampler {
       plan_.add(at, Partition{rest, {second}}, length);
     }
     plan_.add(plan_.healed_at - Duration{1}, Kill{second});
-    // If it has been restarted since, it was the later one, and has ended.
+    // If the first process was restarted in the meantime, it was the later one of the two, and has therefore
+    // ended.
     plan_.add(plan_.healed_at - Duration{1}, Start{first});
   }
 

@@ -21,9 +21,9 @@ class FloorOperator {
   void carry(const Carry& carry, Time limit);
   void place(const Place& place);
   void take_away(RobotId robot);
-  /// From now on, resumes all robots whenever any is held, because after a restart of everything,
-  /// coordinators hold all robots until an operator resumes them. If that has happened, nobody knows the
-  /// orders, so the operator sends robots without an order to the scenario's goals again.
+  /// From now on, resumes all robots whenever any is held, because coordinators that have all been restarted
+  /// hold all robots until an operator resumes them. Their orders are then lost, so the operator sends robots
+  /// without an order to the scenario's goals again.
   void resume_held() { resumes_ = true; }
 
   /// When the operator acts next; nullopt if there is nothing to do.
@@ -34,8 +34,9 @@ class FloorOperator {
  private:
   struct Placing {
     Place request;
-    std::size_t requests = 0;   ///< number of requests made so far
-    bool is_off_floor = false;  ///< it has been seen off the floor; the lifting may take effect late
+    std::size_t requests = 0;  ///< number of requests made so far
+    bool is_off_floor =
+        false;  ///< the robot has been seen off the floor, which may be long after the lifting was requested
   };
   const Vec2* position_of(RobotId robot) const;
   void resume_if_held();

@@ -76,7 +76,8 @@ class Forger {
 struct Forgery {
   std::string name;
   std::function<void(Forger&)> change;
-  /// Whether the fact could be true, so that for a while a ledger contains a version that no observer knows.
+  /// Whether the forged robot report could be true, so that for a while a ledger contains a version that no
+  /// observer knows.
   bool is_plausible_report = false;
 };
 

@@ -15,12 +15,12 @@
 namespace sidestep {
 
 /// The clients of a trial, each a separate process, and the judge of their orders. The judge knows when each
-/// hold was confirmed, when it was lifted by anybody, and where robots really are. It checks that no robot
-/// moves while it is held, and that no confirmed order is forgotten.
+/// hold was confirmed, when any client lifted it, and where robots really are. It checks that no robot moves
+/// while it is held, and that no confirmed order is forgotten.
 class OrderClients {
  public:
-  /// After a hold is confirmed, a robot may complete what was granted before. It may move at most for the
-  /// time to brake plus twice the number of cycles that its agent proposes ahead, which depends on the
+  /// How long a robot may still move after a hold is confirmed, because it completes earlier grants: the
+  /// braking time plus twice the number of cycles that its agent proposes ahead, which depends on the
   /// network.
   static constexpr Duration kTimeToRest = std::chrono::milliseconds(2500);
   /// A resting robot may correct its position by this much.
@@ -33,9 +33,9 @@ class OrderClients {
   OrderClients(SimSystem& system, const Scenario& scenario);
 
   void give(const Order& order);
-  /// Expects nothing of a coordinator that can no longer hear some process.
+  /// Stops judging a coordinator that can no longer hear some process.
   void expect_nothing_of(const std::string& coordinator);
-  /// What was wrong, in words.
+  /// The failures, in words.
   std::vector<std::string> failures() const;
 
  private:
@@ -50,7 +50,7 @@ class OrderClients {
     RobotId robot = 0;  // a robot or kAllRobots
     OrderHandle handle = 0;
     std::optional<Time> confirmed_at{};
-    std::set<RobotId> released{};  // robots released from a hold of all
+    std::set<RobotId> released{};  // robots released from a hold of all robots
   };
   struct Disturbance {
     Time end{};
@@ -77,12 +77,12 @@ class OrderClients {
   SimSystem& system_;
   SimBus bus_;  // a bus that observes
   std::map<ClientId, std::unique_ptr<Client>> clients_;
-  std::vector<Hold> holds_;  // holds that nobody with permission has tried to lift
+  std::vector<Hold> holds_;  // holds that no client with permission has tried to lift
   std::map<RobotId, Disturbance> disturbances_;
   std::map<RobotId, Vec2> rest_m_;  // positions of robots that must rest
   // Indexed by coordinator: pages of memories that are still arriving, and the last complete memory.
   std::map<std::uint32_t, Memory> arriving_, memories_;
-  std::set<std::uint32_t> excused_;  // coordinators of which nothing is expected
+  std::set<std::uint32_t> excused_;  // coordinators that are not judged
   std::vector<std::string> failures_;
 };
 

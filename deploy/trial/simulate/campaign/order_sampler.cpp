@@ -38,7 +38,8 @@ class OrderSampler {
     return u < 0.2 ? kFloorOperator : u < 0.6 ? kFirstClient : kFirstClient + 1;
   }
 
-  /// Usually the owner lifts the hold, sometimes an operator. Sometimes somebody without permission tries.
+  /// Usually the client that gave the hold lifts it, sometimes an operator. Sometimes a client without
+  /// permission tries to.
   void sample_hold() {
     const ClientId client = random_client();
     const RobotId robot = rng_.chance(0.3) ? kAllRobots : random_robot();

@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kMaxAttempts = 200;
 constexpr double kExtraClearance_m = 0.01;
-// Straight from cell to cell, a robot comes nearer to an obstacle by half a cell at most.
+// On the straight line between two neighbouring cells, a robot comes nearer to an obstacle by at most half a
+// cell.
 constexpr double kFloorCell_m = 2 * kExtraClearance_m;
 
 }  // namespace
@@ -30,7 +31,7 @@ void PositionSampler::find_largest_part() {
       free.at<std::uint8_t>(row, column) =
           is_clear(Vec2(grid_.x_m(column), grid_.y_m(row)) + Vec2::Constant(kFloorCell_m / 2)) ? 1 : 0;
   const int parts = cv::connectedComponentsWithStats(free, part_of, statistics, centroids, 4, CV_32S);
-  int largest = 0;  // the cells that are not free
+  int largest = 0;  // the label of the cells that are not free
   for (int part = 1; part < parts; ++part)
     if (largest == 0 ||
         statistics.at<int>(part, cv::CC_STAT_AREA) > statistics.at<int>(largest, cv::CC_STAT_AREA))

@@ -12,7 +12,7 @@
 namespace sidestep {
 
 /// Samples positions of robots clear of walls, of obstacles and, on request, of other positions. A robot can
-/// drive from each position to every other: pockets that no robot can enter or leave contain none.
+/// drive from each position to every other, so none of them is in an enclosed pocket.
 class PositionSampler {
  public:
   /// Both arguments must outlive the sampler.

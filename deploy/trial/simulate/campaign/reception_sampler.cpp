@@ -26,8 +26,8 @@ class ReceptionSampler {
   }
 
  private:
-  /// A coordinator with different rules cannot serve. Neither can one take over whose clock is so wrong that
-  /// it refuses vision's messages.
+  /// A coordinator with different rules cannot serve, and a coordinator whose clock is so wrong that it
+  /// refuses vision's messages cannot take over.
   bool can_others_serve() const {
     const bool has_other_rules = std::ranges::any_of(plan_.faults, [](const TimedFault& timed) {
       return std::holds_alternative<StartWithMutatedRule>(timed.fault);

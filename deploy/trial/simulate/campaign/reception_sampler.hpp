@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Samples processes that cannot receive, cannot send, or can receive from or send to only some others, for
-/// seconds. If there are several coordinators, one of them may stay so permanently.
+/// Samples faults of some seconds in which a process cannot receive, cannot send, or can receive from or send
+/// to only some others. If there are several coordinators, such a fault of one of them may be permanent.
 void sample_reception(const Scenario& scenario, const FaultTimes& times, FaultPlan& plan, Rng& rng);
 
 }  // namespace sidestep

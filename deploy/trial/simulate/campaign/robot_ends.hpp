@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// The states in which robots end a run of this duration, if the simulator that is alive at its end started
-/// then. A simulator that starts during the run puts the robots on the floor with the clocks of the scenario,
-/// whatever has happened to them before.
+/// The states in which robots end a run of this duration. `simulator_started` is when the simulator that is
+/// alive at the end started: it puts all robots on the floor, with the scenario's clocks, whatever happened
+/// to them before.
 [[nodiscard]] std::map<RobotId, RobotEnd> robot_ends(const FaultPlan& plan, const Scenario& scenario,
                                                      Duration simulator_started, Duration duration);
 

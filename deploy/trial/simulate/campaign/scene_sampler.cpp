@@ -144,7 +144,7 @@ Scenario sample_scene(Rng& rng, bool has_driven_bases) {
   if (has_driven_bases) use_bases(scenario);
   sample_floor(scenario, robots, rng);
   sample_sensors(scenario, rng);
-  if (has_driven_bases) scenario.command_loss = 0;  // the firmware's value
+  if (has_driven_bases) scenario.command_loss = 0;  // only firmware loses commands
   scenario.robots.resize(robots);
   std::vector<RobotLines> lines(robots);
   for (std::size_t i = 0; i < robots; ++i) {

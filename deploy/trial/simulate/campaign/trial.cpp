@@ -23,10 +23,10 @@ namespace {
 constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
 // This long after the last fault, all processes must work again.
 constexpr Duration kRecoveryTime = std::chrono::seconds(2);
-/// A robot waits for less time than this, for example after its own stop, unless it is stuck.
+/// Longest time that a robot waits, for example after its own stop, unless it is stuck.
 constexpr Duration kLongestWait = std::chrono::seconds(3);
-// With more ghosts, some are always taken for obstacles that come nearer, and robots on a small floor stay
-// put.
+// With more ghosts, there are always some that look like approaching obstacles, and robots on a small floor
+// never move.
 constexpr double kMaxGhostObstacles = 0.02;
 constexpr double kStationaryDistance_m = 0.05;
 
@@ -64,14 +64,15 @@ UnexpectedStates find_unexpected_states(const std::vector<RobotProgress>& progre
   return unexpected;
 }
 
-/// Bases that get no commands continue by themselves, off their versions; see the protocol's assumptions.
+/// Removes pauses of the process that drives bases: bases that get no commands leave their versions, which
+/// the protocol assumes never happens.
 void keep_driving(FaultPlan& plan) {
   for (TimedFault& timed : plan.faults) {
     if (auto* const pause = std::get_if<Pause>(&timed.fault)) std::erase(pause->processes, "simulator");
   }
 }
 
-/// Whether every robot out of the clock bound is so far out that no version may have been granted to it.
+/// Whether every clock out of bound is so far out that no version may have been granted to its robot.
 bool is_detection_certain(const Trial& trial) {
   const auto is_large = [](Duration offset) { return std::chrono::abs(offset) > kCertainlyDetectedOffset; };
   return std::ranges::all_of(robots_with(trial.plan, RobotEnd::kClockOutOfBound), [&](RobotId robot) {

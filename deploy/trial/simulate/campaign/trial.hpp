@@ -34,8 +34,8 @@ struct Trial {
 [[nodiscard]] Trial sample_trial(std::uint64_t seed, Duration duration,
                                  const std::optional<Scenario>& scenario, bool has_faults = true);
 
-/// Adds the reasons why a trial failed to its result, whose figures are known. `progress` and `has_arrived`
-/// (of all robots) describe the end of the trial.
+/// Adds failures to a trial's result, whose figures are already set. `progress` and `has_arrived` (of all
+/// robots) describe the end of the trial.
 void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress, bool has_arrived,
                   const Report& report, TrialResult& result);
 

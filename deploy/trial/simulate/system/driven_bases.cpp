@@ -14,7 +14,7 @@ void DirectDriver::send(std::span<const BaseCommand> commands) {
 }
 
 BaseSettings bases_with_latency(Duration latency) {
-  // Its motors need this long to reach a velocity.
+  // The motors need this long to reach a commanded velocity.
   constexpr Duration kResponse = std::chrono::milliseconds(18);
   BaseSettings bases;
   bases.latency = std::max<Duration>(latency - kResponse, Duration{0});

@@ -23,7 +23,7 @@ class SimLinkFaults {
  private:
   struct Link {
     LinkQuality quality;
-    int partitions = 0;  // number of partitions that cut it
+    int partitions = 0;  // number of partitions that cut the link
   };
   void change(const Partition& partition, int count);
   Link& link(const std::string& from, const std::string& to) {

@@ -173,7 +173,7 @@ void SimSystem::start(const std::string& name) {
 
 void SimSystem::watch_beliefs(SimBus& bus) {
   bus.watch_headers([this](const TopicInfo& topic, const msg::Header& header) {
-    // Its robots raise its incarnation when their clocks are set back.
+    // A simulator's robots use its incarnation, and raise it when their clocks are set back.
     const auto is_of = [&](Incarnation second) {
       return header.incarnation() >= second && header.incarnation() - second <= SoleSender::kMaxRaise;
     };
@@ -185,7 +185,7 @@ void SimSystem::watch_beliefs(SimBus& bus) {
 void SimSystem::on_other(const std::string& name, std::uint32_t id, Incarnation own, Incarnation other) {
   processes_.at(name)->report(LogLevel::kError, describe_other(id, own, other));
   if (stays_with_others_ || !must_be_alone(id) || own < other) return;
-  // Not done here, because this is a callback of its bus.
+  // The process is not destroyed at once, because this is a callback of its own bus.
   observer_bus_.at(now(), [this, name] { processes_.erase(name); });
 }
 

@@ -30,8 +30,8 @@ class SimSystem {
  public:
   static constexpr Time kBegin = time_from_ns(1'000'000'000'000);
   /// Starts all processes at this virtual time. `clocks` contains the errors of processes' clocks, which
-  /// apply to all their incarnations. With a latency, robots are driven bases that obey after that latency
-  /// and use the simulator's clock (DrivenBases); otherwise they have firmware.
+  /// apply to all their incarnations. If `base_latency` is set, robots are driven bases that obey after that
+  /// latency and use the simulator's clock (DrivenBases); otherwise they have firmware.
   SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std::string, ClockError> clocks = {},
             Time begin = kBegin, std::optional<Duration> base_latency = std::nullopt);
   ~SimSystem();
@@ -52,14 +52,14 @@ class SimSystem {
   /// Starts a dead process as a new incarnation without any state of the old one. Also starts
   /// twin_process(robot) as a second agent, or second_process(name), which ends when it hears the first one.
   void restart(const std::string& process);
-  /// From now on, processes that should run alone continue when they hear an earlier one, as a third-party
-  /// program might.
+  /// From now on, processes that should run alone continue when they hear an earlier process of their kind,
+  /// as a third-party program might.
   void stay_with_others() { stays_with_others_ = true; }
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
   /// When the process was last started.
   Time started_at(const std::string& process) const { return started_at_.at(process); }
-  /// Whether some process, or the observer, has believed a second simulator or one of its robots, because it
-  /// had not heard the first one for SoleSender::kGoneAfter or had never heard it.
+  /// Whether some process, or the observer, has accepted messages of a second simulator or one of its robots,
+  /// because it had not heard the first simulator for SoleSender::kGoneAfter or had never heard it.
   bool was_second_simulator_believed() const { return was_second_simulator_believed_; }
   /// Pauses a process as if by SIGSTOP and SIGCONT; see SimBus::pause. No effect if it is dead.
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
@@ -98,7 +98,7 @@ class SimSystem {
   SimProcessSpec spec_of(const std::string& process);
   void start(const std::string& process);
   void observe(const std::string& process);
-  /// Records whether the process of this bus believes a second simulator.
+  /// Records whether the process of this bus accepts messages of a second simulator.
   void watch_beliefs(SimBus& bus);
   void on_other(const std::string& process, std::uint32_t id, Incarnation own, Incarnation other);
 

@@ -28,7 +28,7 @@ struct Judgement {
 /// Judges whether a run met an expectation.
 [[nodiscard]] Judgement judge(const Expectation& expectation, const RunHistory& history);
 
-// Judges for the individual kinds of expectations.
+// Judge functions for the individual kinds of expectations.
 [[nodiscard]] Judgement judge(const ExpectNoContact& check, const RunHistory& history);
 [[nodiscard]] Judgement judge(const ExpectMinClearance& check, const RunHistory& history);
 [[nodiscard]] Judgement judge(const ExpectAtRest& check, const RunHistory& history);

@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// Judges each robot separately. A failure outweighs "not judged". The result has the worst outcome of all
-/// robots, at its earliest time, with the reasons of the first such robots.
+/// robots, at its earliest time, with the reasons of the first robots that have it.
 template <typename JudgeRobot>
 Judgement judge_each(const RobotSet& robots, JudgeRobot judge_robot) {
   constexpr int kShown = 3;
@@ -27,7 +27,7 @@ Judgement judge_each(const RobotSet& robots, JudgeRobot judge_robot) {
       if (++count <= kShown && one.reason != worst.reason) worst.reason += "; " + one.reason;
     }
   }
-  if (count > kShown) worst.reason += "; the same for " + std::to_string(count - kShown) + " more";
+  if (count > kShown) worst.reason += "; and " + std::to_string(count - kShown) + " more robots";
   return worst;
 }
 

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-// The data that expectations are judged by. Times are in seconds since the first grant.
+// The data by which expectations are judged. Times are in seconds since the first grant.
 
 struct TrueSpeed {
   RobotId robot = 0;

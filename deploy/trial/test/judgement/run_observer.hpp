@@ -22,7 +22,7 @@ class RunObserver {
   /// When the observer first learned that a coordinator grants. Everything earlier is ignored, except
   /// contacts.
   std::optional<Time> begin() const { return begin_; }
-  /// Sets the beginning if it is known otherwise that a coordinator grants.
+  /// Sets the beginning, for callers that know from another source that a coordinator grants.
   void begin_at(Time now) { begin_ = begin_.value_or(now); }
   /// The history; the caller must add the end.
   const RunHistory& history() const { return history_; }

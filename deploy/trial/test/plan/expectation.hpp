@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Why a robot is reported as having a problem: by the coordinator, or by its own agent (kClockOutOfBound).
+/// The problem for which a robot is named: by the coordinator, or by its own agent (kClockOutOfBound).
 enum class NoticeKind { kMissing, kQuarantined, kDisplaced, kConflict, kClockOutOfBound };
 /// The name used in scenario files, for example "missing".
 [[nodiscard]] const char* name_of(NoticeKind kind);
@@ -70,7 +70,7 @@ struct ExpectMaxSpeed {
 struct ExpectTakeover {
   TimeSpan span;
 };
-/// Each robot is named within the span.
+/// Each robot is named for this problem within the span.
 struct ExpectNamed {
   RobotSet robots;
   NoticeKind as = NoticeKind::kMissing;
@@ -93,7 +93,7 @@ struct Expectation {
 
 /// One line without a verdict, for example "robot 3 at rest between 1 s and 1.5 s".
 [[nodiscard]] std::string describe(const Expectation& expectation);
-/// The latest time at which it is decided; nullopt: the end of the run.
+/// The latest time at which the expectation is decided; nullopt: the end of the run.
 [[nodiscard]] std::optional<double> deadline_s(const Expectation& expectation);
 
 }  // namespace sidestep

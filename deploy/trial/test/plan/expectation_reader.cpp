@@ -97,7 +97,7 @@ class ExpectationReader {
     return *notice_kind_named(name);
   }
 
-  /// A span from a time or a fault until a deadline.
+  /// Reads a span from a time or a fault until a deadline.
   TimeSpan span() {
     TimeSpan span;
     span.from_s = start_s();
@@ -113,7 +113,7 @@ class ExpectationReader {
     return span;
   }
 
-  /// The start of a span, which by default is the first fault of the list.
+  /// Reads the start of a span, which by default is the time of the first fault.
   double start_s() {
     const auto after_s = optional_moment("after_s");
     const YAML::Node fault = map_.find("after_fault");

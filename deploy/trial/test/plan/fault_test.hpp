@@ -30,7 +30,7 @@ template <typename Action>
 /// Reads a scenario file with the keys `faults` and `expect` (deploy/scenarios/README.md). Throws
 /// ConfigError.
 [[nodiscard]] FaultTest load_fault_test(const std::string& path);
-/// Parses the text of such a file.
+/// Parses the text of a scenario file with these keys.
 [[nodiscard]] FaultTest parse_fault_test(const std::string& text, const std::string& file);
 
 }  // namespace sidestep

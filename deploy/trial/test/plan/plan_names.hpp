@@ -12,7 +12,8 @@ namespace sidestep {
 
 // Readers for names and times that faults and expectations share. They throw ConfigError.
 
-/// The only one of these keys in the mapping. `what`, for example "a fault", appears in error messages.
+/// Returns the key that the mapping contains, which must be exactly one of these keys. `what`, for example "a
+/// fault", appears in error messages.
 [[nodiscard]] std::string only_key_of(YamlMap& map, const std::vector<std::string>& keys, const char* what);
 
 /// Reads a robot of the scenario.

@@ -11,7 +11,8 @@
 
 namespace sidestep {
 
-/// Attests that robots are absent. Each attestation is repeated until no coordinator is missing the robot.
+/// Attests that robots are absent. Each attestation is repeated until no coordinator reports the robot as
+/// missing.
 class AbsenceAttestations {
  public:
   using Publish = std::function<void(msg::AbsenceAttestation&)>;

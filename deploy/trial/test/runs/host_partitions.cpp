@@ -19,7 +19,7 @@ bool contains(const std::vector<std::string>& processes, const std::string& proc
   return std::ranges::find(processes, process) != processes.end();
 }
 
-/// The sides of all partitions that a process is on.
+/// For each partition, the side that a process is on.
 std::string sides_of(const std::string& process, const FaultTest& test) {
   std::string sides;
   for (const PlannedFault& fault : test.faults) {

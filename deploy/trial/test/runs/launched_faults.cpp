@@ -21,7 +21,8 @@ void require_subscriber(const OperatorChannel& channel, const std::string& parti
   const auto subscribers = channel.subscribers();
   if (subscribers.empty() ||
       (!participant.empty() && std::ranges::find(subscribers, participant) == subscribers.end()))
-    throw std::runtime_error((participant.empty() ? "no process" : participant) + " does not listen");
+    throw std::runtime_error((participant.empty() ? "no process" : participant) +
+                             " does not receive these faults");
 }
 
 }  // namespace
@@ -78,7 +79,7 @@ void LaunchedFaults::end(std::size_t fault) {
   if (const auto* partition = std::get_if<Partition>(&action)) partitions_->end(*partition);
   if (const auto* impairment = std::get_if<ImpairmentFault>(&action))
     impair(impairment->target, kUnimpairedLink, 0);
-  // A process that has been killed since is not stopped.
+  // A paused process may have been killed in the meantime.
   for (const std::string& process : paused_[fault]) (void)launcher_.send_signal(process, SIGCONT);
 }
 
@@ -117,7 +118,7 @@ void LaunchedFaults::apply(const ImpairmentFault& fault, std::size_t index) {
 
 void LaunchedFaults::apply(const RobotDisturbance& fault, std::size_t) {
   require_subscriber(*disturbances_, "sidestep-simulator");
-  // The robot's agent has to request the rest version at this position.
+  // The robot's agent must request the rest version at this position.
   if (fault.kind == msg::DisturbanceKind::DISTURBANCE_PLACE)
     require_subscriber(*disturbances_, fmt::format("agent-{}", fault.robot));
   msg::Disturbance message = encode(fault);

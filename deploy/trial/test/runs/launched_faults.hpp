@@ -49,7 +49,7 @@ class LaunchedFaults {
   const RunHosts& hosts_;
   Launcher& launcher_;
   const RunObserver& observer_;
-  // Only the ones that the test needs.
+  // Set only if the test needs them.
   std::optional<OperatorChannel> disturbances_, network_faults_, absences_;
   std::optional<HostPartitions> partitions_;
   AbsenceAttestations attestations_;

@@ -75,7 +75,7 @@ class LaunchedTestRun {
   bool act() {
     const Time now = launcher_.bus().now();
     if (!schedule_) {
-      // The launcher's metrics have received that a coordinator grants.
+      // The launcher's metrics already know that a coordinator grants.
       observer_.begin_at(now);
       schedule_.emplace(test_.faults, *observer_.begin());
     }

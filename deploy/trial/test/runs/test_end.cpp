@@ -31,7 +31,7 @@ TestEnd::TestEnd(const FaultTest& test)
     : limit_s_(test.scenario.time_limit_s), arriving_(arriving_robots(test)) {
   for (const PlannedFault& fault : test.faults) decided_s_ = std::max(decided_s_, fault.end_s());
   for (const Expectation& expectation : test.expectations) {
-    // Arrivals end the run as soon as they happen.
+    // Expected arrivals end the run when they happen, not at their deadline.
     if (!std::holds_alternative<ExpectArrived>(expectation.check))
       decided_s_ = std::max(decided_s_, deadline_s(expectation).value_or(0));
   }

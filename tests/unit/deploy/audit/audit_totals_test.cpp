@@ -67,7 +67,7 @@ TEST_CASE("a run is not judged, with the reason, if any share of its coverage is
   }
   SECTION("time") {
     totals.coverage.time = 0.5;
-    reason = "50.0 % of the time passed without facts of every robot";
+    reason = "50.0 % of the time passed with at least one robot silent";
   }
   SECTION("reference") {
     totals.coverage.reference = 0.5;
@@ -101,7 +101,7 @@ TEST_CASE("a run is not judged, with the reason, if any share of its coverage is
   }
   SECTION("nothing happened") {
     totals.run_s = 0;
-    reason = "no run was heard in which robots could move";
+    reason = "no received message shows that robots could move";
   }
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
   CHECK(verdict_line(totals) == "not judged: " + reason);

@@ -104,7 +104,7 @@ TEST_CASE("bag merge orders messages by their time of reception") {
   CHECK_FALSE(PlaybackBus(folder.file("c.mcap")).header().is_complete);
   record(folder.file("d.mcap"), 0, 10, "robots: []\n");
   CHECK_THROWS_WITH(merge_bags({folder.file("a.mcap"), folder.file("d.mcap")}, folder.file("e.mcap")),
-                    ContainsSubstring("of another scenario"));
+                    ContainsSubstring("of a different scenario"));
   CHECK_FALSE(std::filesystem::exists(folder.file("e.mcap")));
 }
 

@@ -176,7 +176,7 @@ TEST_CASE("sizes that an MCAP file merely claims allocate no memory") {
   const std::string chunk = std::string("\x06\x28\0\0\0\0\0\0\0", 9) + std::string(16, '\0') +
                             std::string("\x00\x00\x80\x0c\0\0\0\0", 8) + std::string(16, '\0');
   write(file, magic + chunk);
-  CHECK(read(file).damage == "a chunk claims to hold 209715200 bytes, more than the 67108864 that are read");
+  CHECK(read(file).damage == "a chunk claims to contain 209715200 bytes, more than the limit of 67108864");
 }
 
 TEST_CASE("schemas and channels fill no memory, however many and large they are") {

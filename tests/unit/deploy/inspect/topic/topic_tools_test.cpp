@@ -269,7 +269,7 @@ TEST_CASE("of very many senders of a topic, those heard last are shown") {
   }
   const std::string table = meter.table();
   CHECK_THAT(table, !ContainsSubstring("agent 3 (5) ") && ContainsSubstring("agent 3 (6) ") &&
-                        EndsWith("and 5 others, which were heard before these\n"));
+                        EndsWith("and 5 others, last heard before these\n"));
 }
 
 TEST_CASE("topic delay measures the senders of a topic") {
@@ -364,7 +364,7 @@ TEST_CASE("topic pub says what is wrong with a message, and when nobody reads it
   CHECK_THROWS_WITH(topic({"pub", "disturbance", "{"}), ContainsSubstring("is not valid JSON"));
   CHECK_THROWS_WITH(topic({"pub", "disturbance", R"({"robot": -1})"}),
                     ContainsSubstring("robot: expected a whole number"));
-  CHECK_THROWS_WITH(topic({"pub", "nothing", "{}"}), ContainsSubstring("name its type by --type"));
+  CHECK_THROWS_WITH(topic({"pub", "nothing", "{}"}), ContainsSubstring("give its type with --type"));
   const Outcome outcome = topic({"pub", "disturbance", "{}"});
   CHECK(outcome.exit_code == kExitFailure);
   CHECK(outcome.err == "topic 'disturbance' has no reader that matches\n");

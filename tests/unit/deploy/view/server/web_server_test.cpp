@@ -149,7 +149,7 @@ TEST_CASE("a viewer whose messages make no sense or are too long is disconnected
   SocketClient binary(server.port(), "one");
   binary.send("x", true);
   CHECK_FALSE(binary.receive(2s));
-  CHECK(binary.close_reason() == "the message makes no sense");
+  CHECK(binary.close_reason() == "the message is invalid");
   other.send("still here");
   CHECK(other.receive()->text == "echo still here");
   CHECK(wait_until([&] { return server.closed == 3; }));
@@ -160,7 +160,7 @@ TEST_CASE("an exception in a handler ends only that answer or that viewer") {
   SocketClient other(server.port(), "one"), viewer(server.port(), "one");
   viewer.send("throw");
   CHECK_FALSE(viewer.receive(2s));
-  CHECK(viewer.close_reason() == "the message makes no sense");
+  CHECK(viewer.close_reason() == "the message is invalid");
   const HttpAnswer answer = http_request(server.port(), "GET", "/throw");
   CHECK(answer.status == 500);
   CHECK(answer.body == "this request cannot be answered: no reason\n");

@@ -110,10 +110,10 @@ TEST_CASE("wrong IDL is refused with the file, the line and the reason") {
   check("const long N = -9223372036854775807 - 1; const long M = -N;", "1: a number is too large");
   check("struct A : B { long x; };", "1: there is no struct 'B'");
   // A list of empty structs could claim any number of elements.
-  check("struct E {}; struct A { E x[9000000]; };", "1: a list of elements that hold nothing");
+  check("struct E {}; struct A { E x[9000000]; };", "1: the elements of a list contain no values");
   check("struct E {}; struct F { E e; }; struct A { sequence<F> x; };",
-        "1: a list of elements that hold nothing");
-  check("/* no end", "1: a comment does not end");
+        "1: the elements of a list contain no values");
+  check("/* no end", "1: a comment is not closed");
   check("struct 3 { long x; };", "1: expected a name, got '3'");
   check("enum E { @value(-1) A };", "1: an enumerator's value does not fit 31 bits");
   std::string deep;

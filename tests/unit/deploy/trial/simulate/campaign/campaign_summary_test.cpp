@@ -99,10 +99,11 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK(forwards.robot_hours() == Approx(2));
   CHECK(forwards.contacts() == 2);
   CHECK(forwards.failed() == 1);
-  CHECK_THAT(forwards.text(),
-             ContainsSubstring("2 contacts, 2 audit violations") &&
-                 ContainsSubstring("1 trials are not judged by the audit, since a process believed a second "
-                                   "simulator; it reported 7 violations there"));
+  CHECK_THAT(
+      forwards.text(),
+      ContainsSubstring("2 contacts, 2 audit violations") &&
+          ContainsSubstring("1 trials are not judged by the audit, because a process accepted a second "
+                            "simulator; it reported 7 violations there"));
   CHECK_THAT(forwards.text(), ContainsSubstring("20 seeds, 1 failed") &&
                                   ContainsSubstring("largest share of denied proposals: seed 19 (0.19)"));
   CHECK(forwards.excused_by_cause() == std::map<std::string, std::uint64_t>{{"push", 3}, {"slip", 1}});
