@@ -81,8 +81,8 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
     record.registered = true;
     record.attested = false;
   } else {
-    // A new agent of a registered robot: the ledger already contains the robot's versions, and no others may
-    // be added without checks.
+    // The robot is registered already, so the ledger contains its versions. A new agent must not add others
+    // without checks.
     const auto known = [&](const Version& v) {
       return std::ranges::any_of(ledger_.versions(robot),
                                  [&](const Version& w) { return w.number == v.number; });
@@ -94,9 +94,8 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
   return msg::Reason::REASON_GRANTED;
 }
 
-// When a robot obeys a new agent, it executes no version of an earlier agent except those that the
-// registration lists. But the registration may have been sent before the robot contradicted the ledger under
-// that agent.
+// Once a robot obeys a new agent, the only versions of earlier agents that it may still execute are listed in
+// the registration. But the agent may have sent the registration before its robot contradicted the ledger.
 bool Coordinator::ends_quarantine(const Registration& registration, const Record& record) const {
   return registration.incarnation > record.contradicted_under ||
          ledger_.lists_reported(registration.robot, registration.versions->versions());
@@ -109,7 +108,7 @@ bool Coordinator::on_robot_report(const RobotReport& robot_report, Time now) {
     return true;
   }
   Record& record = record_of(robot_report.robot);
-  // The weight of older gaps decays.
+  // The longest gap decays with every report.
   if (record.heard_at) record.longest_gap = std::max(now - *record.heard_at, record.longest_gap * 15 / 16);
   record.heard_at = now;
   if (!record.registered && !record.attested) return true;
@@ -150,7 +149,7 @@ void Coordinator::on_world_state(std::span<const RobotObservation> robots, Time 
     latest = std::max(latest, robot.observed_at);
     const Record& record = record_of(robot.robot);
     if (!record.registered && !record.attested) continue;
-    // Other robots keep clear of a silent robot anyway.
+    // A silent robot need not be compared: other robots keep clear of it anyway.
     if (!displaced_.observe(robot, ledger_) && !record.silent) is_whole = false;
   }
   if (is_whole) watched_until_ = std::max(watched_until_, std::min(latest, now));
@@ -170,7 +169,7 @@ void Coordinator::find_silent(Time now) {
     const bool has_fallen_silent = record.heard_at &&
                                    now - *record.heard_at > std::max(max_silence_, 2 * record.longest_gap) &&
                                    std::ranges::any_of(versions, moves);
-    // If the robot's clock has jumped ahead, its own stop is dated in the future, and until then the ledger
+    // If the robot's clock has jumped ahead, its own stop starts in the future. Until that start the ledger
     // does not say where the robot is.
     const bool is_ahead = !versions.empty() && std::ranges::all_of(versions, is_later);
     record.silent = record.registered && (has_fallen_silent || is_ahead);
@@ -234,8 +233,8 @@ msg::Reason Coordinator::refusal_reason(const Proposal& proposal, const Record& 
 
 msg::Reason Coordinator::suspension_reason(RobotId robot) const {
   if (ledger_.is_quarantined(robot)) return msg::Reason::REASON_QUARANTINED;
-  // Vision may see an absent robot while it is being carried. The robot may still be granted a place where it
-  // is to be put down.
+  // Vision may see an absent robot while a person carries it. The coordinator may still grant a place to put
+  // it down.
   const bool is_absent = ledger_.versions(robot).empty();
   if (is_absent) return msg::Reason::REASON_GRANTED;
   if (displaced_.contains(robot)) return msg::Reason::REASON_DISPLACED;

@@ -14,11 +14,11 @@
 namespace sidestep {
 
 /// Handles registration, verdicts and the ledger of one epoch; it is the only place where versions are
-/// compared. Its grants depend on no clock; `now` only serves to detect silent robots. Messages may be late,
-/// repeated or wrong; an invalid message changes nothing.
+/// compared. Its grants do not depend on any clock; `now` is only used to detect silent robots. Messages may
+/// be late, repeated or wrong; an invalid message changes nothing.
 class Coordinator {
  public:
-  /// In epoch 0 the coordinator stands by and answers no messages. `max_clock_difference` is the maximum
+  /// With epoch 0 the coordinator stands by and answers no messages. `max_clock_difference` is the maximum
   /// difference between any two clocks of robots, cameras and this coordinator. `report_period` is the period
   /// at which robots report facts.
   Coordinator(const FloorRules& rules, std::vector<RobotId> roster, Epoch epoch,
@@ -36,20 +36,20 @@ class Coordinator {
   /// Processes a fact from a robot. Returns false if it contradicts the ledger; the robot is then
   /// quarantined, that is, nothing is granted to it until it is lifted or a new agent registers it.
   bool on_robot_report(const RobotReport& robot_report, Time now);
-  /// Processes where vision sees the robots. Nothing is granted to displaced robots. `is_whole` means that no
-  /// observation of the world state was dropped. A world state with an observation that was dropped or cannot
-  /// be compared does not count as supervision.
+  /// Compares where vision sees the robots with the ledger. Nothing is granted to displaced robots.
+  /// `is_whole` means that no observation of the world state was dropped. A world state does not count as
+  /// supervision if any observation was dropped or cannot be compared.
   void on_world_state(std::span<const RobotObservation> robots, Time now, bool is_whole = true);
-  /// The operator attests that a robot is not on the floor, for this epoch. Returns false unless the
-  /// coordinator is awaiting the robot's registration.
+  /// The operator attests that a robot is not on the floor, for this epoch. Returns false if the coordinator
+  /// is not waiting for the robot's registration.
   bool on_attestation(RobotId robot);
 
   /// Holds or releases a robot, also in later epochs. Nothing is granted to a held robot, so it stops as its
   /// current version allows. Initially no robot is held.
   void set_held(RobotId robot, bool is_held) { held_[robot] = is_held; }
 
-  /// This coordinator's clock was set back: discards all recorded times by this clock, and all observations
-  /// accepted by it.
+  /// Call when this coordinator's clock was set back: discards all recorded times and all accepted
+  /// observations.
   void forget_times();
 
   bool is_active() const { return epoch_ != 0; }
@@ -58,9 +58,9 @@ class Coordinator {
   Epoch epoch() const { return epoch_; }
   const Ledger& ledger() const { return ledger_; }
   const DisplacedRobots& displaced() const { return displaced_; }
-  /// Whether a robot that should be moving is silent: no fact has arrived for kMaxSilence, for kMissedReports
-  /// periods, or for twice the longest recent gap, so that a slow network does not make robots silent. A
-  /// robot is also silent if all its versions start later than that.
+  /// Whether a robot that should be moving is silent: no fact has arrived for the longest of kMaxSilence,
+  /// kMissedReports report periods and twice the longest recent gap, so that a slow network does not make
+  /// robots silent. A robot also counts as silent if all its versions start later than that from now.
   bool is_silent(RobotId robot) const { return records_[robot].silent; }
   static constexpr Duration kMaxSilence{50'000'000};
   static constexpr int kMissedReports = 3;
@@ -77,7 +77,7 @@ class Coordinator {
   /// State of a robot's agent.
   struct Record {
     bool registered = false;
-    bool attested = false;  // its absence is attested in place of a registration
+    bool attested = false;  // its absence is attested instead of a registration
     bool silent = false;
     std::optional<Time> heard_at;  // when the last fact arrived
     Duration longest_gap{0};       // longest recent gap between facts

@@ -17,13 +17,13 @@ namespace sidestep {
 /// in conflict, and whose registrations it awaits.
 class CoordinatorEventLogger {
  public:
-  /// If registration takes longer than this, the coordinator names the missing robots, and repeats that at
-  /// this interval.
+  /// If registration takes longer than this, the coordinator reports the missing robots, and again after each
+  /// such interval.
   static constexpr Duration kRegistrationTime{1'000'000'000};
 
   explicit CoordinatorEventLogger(const EventReporter& events) : events_(events) {}
 
-  /// Compares the state with that of the last call.
+  /// Reports what has changed since the last call.
   void update(const msg::CoordinatorState& state, std::span<const Conflict> conflicts, Time now);
   /// Forgets the last state, because a new epoch has begun or this coordinator has become a standby.
   void reset();

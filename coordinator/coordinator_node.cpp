@@ -152,7 +152,7 @@ void CoordinatorNode::handle(const RobotReport& robot_report) {
 
 void CoordinatorNode::on_world_state(const msg::WorldState& message) {
   const Time valid_at = time_from_ns(message.valid_at_ns());
-  // The farther ahead a world state is timestamped, the less certain its positions are.
+  // The farther into the future a world state is dated, the less certain its positions are.
   if (valid_at > bus_.now() + max_vision_lead(max_clock_difference_))
     return drops_.count(DropReason::kFutureWorld);
   failover_.reception().on_vision(bus_.now());
@@ -168,7 +168,7 @@ void CoordinatorNode::on_world_state(const msg::WorldState& message) {
   }
   const bool was_uncontrolled = coordinator_.has_uncontrolled_robots();
   coordinator_.on_world_state(observations_, bus_.now(), is_whole);
-  // Agents need the latest places immediately.
+  // Agents need the latest positions of uncontrolled robots immediately.
   if (was_uncontrolled || coordinator_.has_uncontrolled_robots()) publish_state();
 }
 
@@ -227,7 +227,7 @@ void CoordinatorNode::apply_epoch() {
   event_logger_.reset();
   report_role();
   publish_state();
-  // Orders that arrived while this one was a standby were announced by another coordinator, if at all.
+  // While this coordinator was a standby, it did not announce the orders that it received.
   if (coordinator_.is_active()) order_service_.announce_all();
 }
 

@@ -55,7 +55,7 @@ class CoordinatorNode {
   /// Adopts the epoch of failover_, which may be 0 (standby), and publishes the new state.
   void apply_epoch();
   void update_failover();
-  /// This process's clock was set back: discards all recorded times.
+  /// Call when this process's clock was set back: discards all recorded times.
   void forget_times();
   void publish_state();
   void publish_state_periodically();

@@ -7,12 +7,12 @@
 namespace sidestep {
 namespace {
 
-// Covers non-random errors of vision, such as calibration errors.
+// Covers systematic errors of vision, such as calibration errors.
 constexpr double kObservationError_m = 0.01;
 // Random errors exceed six standard deviations once in 10^8 observations.
 constexpr double kSigmas = 6;
-// Random errors of 0.5 mm turn the direction by a twentieth over the shorter distance, and by a two-hundredth
-// over the longer one.
+// Random errors of 0.5 mm turn the direction by 1/20 rad over the short baseline, and by 1/200 rad over the
+// long one.
 constexpr double kLongBaseline_m = 0.15;
 constexpr double kShortBaseline_m = 0.015;
 constexpr Duration kMaxBaseline{700'000'000};

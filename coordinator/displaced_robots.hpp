@@ -9,11 +9,12 @@
 
 namespace sidestep {
 
-/// The robots that vision sees where none of their versions can have taken them: robots without power that
-/// roll on, robots that somebody carries, and robots on the floor that count as absent. A robot is displaced
+/// Finds robots that vision sees where none of their versions can have taken them: robots that coast without
+/// power, robots that a person carries, and robots on the floor that count as absent. A robot is displaced
 /// from the first such observation until kObservationsUntilBack consecutive ones agree with the ledger again.
-/// A single observation may have an error. The mean of a resting robot's observations may not, because the
-/// robot could otherwise stay in the wrong place for ever: it may be unable to use observations itself.
+/// A single observation may have an error. But a resting robot also counts as displaced if the mean of its
+/// observations is away from its version: it may be unable to use observations itself, and would stay in the
+/// wrong place for ever.
 class DisplacedRobots {
  public:
   static constexpr int kObservationsUntilBack = 3;
@@ -23,8 +24,8 @@ class DisplacedRobots {
   explicit DisplacedRobots(double margin_m) : margin_m_(margin_m) {}
 
   /// Compares an observation with the ledger. An observation that is older than the robot's last one changes
-  /// nothing. Returns whether the robot's last observation was compared: false if the ledger does not reach
-  /// back so far.
+  /// nothing. Returns whether the robot's last observation was compared; it is not if the ledger does not
+  /// reach back to its time.
   bool observe(const RobotObservation& observation, const Ledger& ledger);
   bool contains(RobotId robot) const;
   bool any() const { return count_ > 0; }
@@ -49,7 +50,7 @@ class DisplacedRobots {
     /// The mean position over the last kObservationsOfRest observations.
     Vec2 mean_position_m() const;
   };
-  /// Allowed distance from the version beyond its inflation.
+  /// Allowed distance of an observation from the version, beyond the version's inflation.
   double allowed_m(const RobotObservation& observation) const;
   /// Whether the robot should be at rest but the mean of its last observations is elsewhere.
   bool rests_elsewhere(const Track& track, const Ledger& ledger) const;

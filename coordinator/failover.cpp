@@ -18,20 +18,21 @@ constexpr Duration kStartTimeoutStagger{200'000'000};
 // After a pause of this length, unprocessed heartbeats may be queued.
 constexpr Duration kPauseThreshold{60'000'000};
 constexpr int kMaxBackoffExponent = 2;
-// If a coordinator is superseded earlier than this, its attempt does not count as a failure.
+// An attempt to serve does not count as a failure if the coordinator is superseded earlier than this.
 constexpr Duration kMinAttempt{200'000'000};
 constexpr int kMaxFailures = 4;
 // While no robot moves, a failed attempt costs nothing.
 constexpr int kMaxFailuresAtRest = 1;
 constexpr Duration kRestTime{1'000'000'000};
-// If robots begin to execute granted versions at least this often, they are served by a coordinator that this
-// one does not hear.
+// If robots begin to execute granted versions at least this often, they are served by another coordinator
+// whose heartbeats do not arrive here.
 constexpr Duration kServiceGap{60'000'000};
-// The same holds if they have done so for this long after the last heartbeat; in that case they may also rest
-// for a moment.
+// The robots are also served by another coordinator if they still begin granted versions this long after the
+// last heartbeat. In that case they may pause for up to kMaxPauseOfService.
 constexpr Duration kUnheardService{500'000'000};
 constexpr Duration kMaxPauseOfService{1'000'000'000};
-// A request to measure the clock may be repeated for this long.
+// A superseded coordinator has failed if an agent has asked it for this long; an agent that only measures the
+// clock asks for less.
 constexpr Duration kMinRequest{150'000'000};
 // An active coordinator that has served for this long has not failed.
 constexpr Duration kProbation{1'000'000'000};
@@ -132,9 +133,9 @@ void Failover::on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId 
   const RoleCause cause{holder == EpochHolder::kRobot ? msg::RoleReason::ROLE_EPOCH_OF_ROBOT
                                                       : msg::RoleReason::ROLE_EPOCH_OF_AGENT,
                         robot, Duration{0}, epoch};
-  // Once after becoming active, a coordinator begins a new epoch above the obeyed one. If it grants, waits in
-  // vain, or is superseded again, it has a rival whose heartbeats do not arrive. It then stands by, for twice
-  // as long each time.
+  // Once after becoming active, a coordinator begins a new epoch above the obeyed one. If it already grants,
+  // has waited for registrations in vain, or is superseded again, it has a rival whose heartbeats do not
+  // arrive. It then stands by, each time for twice as long.
   const bool is_new = now - active_since_ <= kRegistrationTime && !has_risen_;
   if (is_active() && !is_granting && is_new) {
     has_risen_ = true;
@@ -153,7 +154,7 @@ RoleCause Failover::takeover_cause(Time now) const {
 
 Duration Failover::takeover_timeout() const {
   if (is_starting_) return kStartTimeout + kStartTimeoutStagger * self_.number;
-  // While another coordinator is heard, it does not matter that this one failed to serve.
+  // Earlier failures of this coordinator do not matter while it hears another one.
   const int failures = has_heartbeat_ ? 0 : std::min(failures_, kMaxBackoffExponent);
   const Duration longest_gap = *std::max_element(gaps_.begin(), gaps_.end());
   return (kHeartbeatTimeout + kTimeoutStagger * self_.number +
@@ -189,8 +190,8 @@ void Failover::observe_own_service(Time now, bool is_granting) {
   if (now - *serving_since_ >= kProbation) failures_ = 0;
 }
 
-// A coordinator that hears no robot could not serve it. If several hear robots again at the same time, they
-// do not take over simultaneously.
+// A coordinator that hears no robots cannot serve them. The stagger keeps several coordinators that hear
+// robots again from taking over simultaneously.
 bool Failover::are_heartbeats_lost(Time now) const {
   return now - last_heartbeat_ > takeover_timeout() && now - unheard_at_ > kTimeoutStagger * self_.number &&
          !is_served_by_other(now);
@@ -206,7 +207,7 @@ std::optional<RobotId> Failover::unserved_robot(Time now) const {
   if (highest_ == 0 || now - unheard_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
   for (const RobotId robot : missing_)
     if (has_asked_long(robot, kRegistrationTime, now)) return robot;
-  // Other agents may be served, so it must be likely that this coordinator can serve all of them.
+  // Another coordinator may be serving the other agents, so this one must be likely to serve all of them.
   if (!reception_.hears_agents(roster_, now) || !reception_.hears_vision(now)) return std::nullopt;
   for (const RobotId robot : roster_)
     if (has_asked_long(robot, kServiceTime, now)) return robot;
@@ -217,8 +218,8 @@ bool Failover::has_asked_long(RobotId robot, Duration first, Time now) const {
   const bool is_at_rest = !reception_.is_fleet_served(kRestTime, now);
   const int failures = is_at_rest ? std::min(failures_, kMaxFailuresAtRest) : failures_;
   const Duration needed = first * (1 << failures);
-  // Requests come at intervals. Without the stagger, these would synchronise the coordinators that react to
-  // them.
+  // Agents repeat requests at intervals, which would synchronise the coordinators that react. The stagger
+  // prevents that.
   return reception_.request_duration(robot, now) >= needed - FleetReception::kMaxRequestGap / 3 &&
          reception_.time_since_first_request(robot, now) >= needed + 2 * kTimeoutStagger * self_.number;
 }

@@ -14,7 +14,7 @@
 
 namespace sidestep {
 
-/// Number of a coordinator in a group of standbys for each other, 0 .. kMaxCoordinators - 1.
+/// Number of a coordinator among those that stand by for each other, 0 .. kMaxCoordinators - 1.
 using CoordinatorNumber = std::uint32_t;
 
 /// The Header.sender that this coordinator uses.
@@ -49,9 +49,10 @@ class Failover {
   /// Period of update().
   static constexpr Duration kUpdatePeriod{5'000'000};
 
-  /// If an agent has asked for this long without being registered, the active coordinator does not hear it.
+  /// After an agent has asked for this long without being registered, the active coordinator is assumed not
+  /// to hear it.
   static constexpr Duration kRegistrationTime{400'000'000};
-  /// Like kRegistrationTime, but for an agent that may be registered and is not served.
+  /// Like kRegistrationTime, but for an agent that may be registered already and is not served.
   static constexpr Duration kServiceTime{500'000'000};
 
   /// A standby waits at least a second for other coordinators. A coordinator that is not a standby begins an
@@ -61,10 +62,10 @@ class Failover {
   /// Processes a heartbeat of any coordinator, including this one.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
   /// Processes a report that a robot or its agent obeys this epoch. `is_granting` tells whether this
-  /// coordinator is granting now. Such reports are repeated and may be forged, so only a few at once, and
-  /// then one in five seconds, count.
+  /// coordinator is granting now. Such reports are repeated and may be forged, so only a burst of four and
+  /// then one every five seconds count.
   void on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId robot, EpochHolder holder);
-  /// Records what arrives from robots and their agents.
+  /// The record of what arrives from robots and their agents.
   FleetReception& reception() { return reception_; }
   /// Takes over if that is due. `is_granting` tells whether this coordinator is granting now.
   void update(Time now, bool is_granting = false);
@@ -91,7 +92,7 @@ class Failover {
   bool are_heartbeats_lost(Time now) const;
   /// Whether another coordinator grants but its heartbeats do not arrive.
   bool is_served_by_other(Time now) const;
-  /// A robot whose agent is not served by the active coordinator but might be served by this one.
+  /// A robot whose agent the active coordinator does not serve, but this coordinator might.
   std::optional<RobotId> unserved_robot(Time now) const;
   /// Whether the agent has asked long enough for this coordinator to take over.
   bool has_asked_long(RobotId robot, Duration first, Time now) const;
@@ -103,12 +104,12 @@ class Failover {
   FleetReception reception_;
   std::set<RobotId> missing_;  // robots missing according to the active coordinator's last heartbeat
   Time active_since_{};
-  Time unheard_at_;                    // last time at which robots were not heard
-  std::optional<Time> serving_since_;  // since when it has granted with no agent left unserved
+  Time unheard_at_;                    // last time at which this coordinator did not hear the robots
+  std::optional<Time> serving_since_;  // start of the time in which it grants and serves all agents
   bool has_served_ = false;            // whether serving_since_ was ever set since it became active
   bool has_risen_ = false;             // since it became active, it has begun an epoch above an obeyed one
   int failures_ = 0;                   // number of consecutive times that it was active without serving
-  Epoch epoch_ = 0, highest_ = 0;      // own epoch, and highest known epoch
+  Epoch epoch_ = 0, highest_ = 0;      // own epoch; highest known epoch
   RoleCause cause_;
   Time last_heartbeat_, last_update_;
   std::array<Duration, 32> gaps_{};  // intervals between the latest heartbeats

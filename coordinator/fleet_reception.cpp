@@ -6,11 +6,11 @@
 namespace sidestep {
 namespace {
 
-// A robot that has been silent for longer than this says nothing about whether this coordinator can hear.
+// A robot that has been silent for longer than this does not count in hears_robots().
 constexpr Duration kForgetAfter{10'000'000'000};
-// An agent whose robot rests reports its order once a second.
+// An agent of a resting robot sends one message a second, the status of its order.
 constexpr Duration kMaxAgentSilence{2'500'000'000};
-// Agents do not drive for longer than this without a comparison by the coordinator.
+// Agents stop if the coordinator has not compared observations with the ledger for this long.
 constexpr Duration kMaxVisionSilence{600'000'000};
 
 }  // namespace

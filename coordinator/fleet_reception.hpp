@@ -22,13 +22,13 @@ class FleetReception {
   /// `report_period` is the period at which robots report facts.
   explicit FleetReception(Duration report_period) : max_silence_(kMissedReports * report_period) {}
 
-  /// The robot executes this version. `is_granted` is false if that is an own stop or the robot executes
-  /// nothing.
+  /// Processes a report of the version that a robot executes. `is_granted` is false for an own stop, and if
+  /// the robot executes nothing.
   void on_robot_report(RobotId robot, VersionNumber executing, bool is_granted, Time now);
   /// Records that a message of the robot's agent has arrived.
   void on_agent(RobotId robot, Time now);
   void on_vision(Time now) { vision_at_ = now; }
-  /// Processes a registration of any epoch: agents repeat it until they are served.
+  /// Processes a registration of any epoch, which agents repeat until they are served.
   void on_registration(RobotId robot, Time now);
 
   /// Whether facts arrive from at least half of the robots that sent any in the last ten seconds. False if no
@@ -48,9 +48,9 @@ class FleetReception {
   Duration request_duration(RobotId robot, Time now) const;
   /// Like request_duration(), but from the first request until now.
   Duration time_since_first_request(RobotId robot, Time now) const;
-  /// A new epoch has begun, so agents must ask again.
+  /// Call when a new epoch has begun: agents must ask again.
   void forget_requests();
-  /// The clock was set back, so all earlier times are discarded.
+  /// Call when the clock was set back: all earlier times are discarded.
   void clear();
 
  private:

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// The versions that a robot has most recently left. Observations, which arrive late, are compared with them.
-/// At 60 Hz they cover a quarter of a second.
+/// The versions that a robot has stopped executing most recently, for comparison with observations that
+/// arrive late. At 60 Hz they cover a quarter of a second.
 class FormerVersions {
  public:
   struct Entry {

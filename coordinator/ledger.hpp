@@ -61,8 +61,9 @@ class Ledger {
   /// is_quarantined().
   bool lists_reported(RobotId robot, std::span<const Version> versions) const;
 
-  /// Replaces the robot's versions, without checks, by those that it may execute. Used when an epoch begins,
-  /// and when a registration ends the robot's quarantine. Precondition: the robot is on the roster.
+  /// Replaces the robot's versions, without checks, by the given ones, which the robot may execute. Used when
+  /// an epoch begins, and when a registration ends the robot's quarantine. Precondition: the robot is on the
+  /// roster.
   void register_robot(RobotId robot, std::span<const Version> versions);
 
   /// Rules 1, 4 and 5: adds the candidate if it may be granted. Removes nothing; a refusal changes nothing.
@@ -80,7 +81,7 @@ class Ledger {
   /// before t.
   void on_lifted(RobotId robot, Time at, Incarnation robot_incarnation = 0);
 
-  /// All conflicts, in no particular order.
+  /// The pairs of robots in conflict, in no particular order.
   std::span<const Conflict> conflicts() const { return conflicts_; }
 
   /// Distance from a position to the nearest place to which the robot's versions, including former ones, may
@@ -97,8 +98,8 @@ class Ledger {
  private:
   struct Entry {
     VersionSet set;
-    // Only if the robot is quarantined: the versions of the set, followed by the version that it reported
-    // last although it was not granted.
+    // Empty unless the robot is quarantined; then the versions of the set, followed by the ungranted version
+    // that the robot reported last.
     std::vector<Version> quarantined;
     int agreeing = 0;  // number of consecutive facts that agree with the set, while quarantined
     FormerVersions former;

@@ -16,9 +16,9 @@ namespace sidestep {
 /// repeats the order, also to the next coordinator.
 /// - Most orders are confirmed when an agent or another coordinator lists them in its memory.
 /// - A hold is confirmed once the agent of one of its robots has reported that the robot is held, and the
-/// robot has afterwards reported that it obeys this coordinator. This proves that the agent had not
-/// registered with a later coordinator before it remembered the hold. So a coordinator that takes over learns
-/// of the hold, even if this one was cut off.
+/// robot has afterwards reported that it obeys this coordinator. This proves that the agent remembered the
+/// hold before it registered with any later coordinator. So a coordinator that takes over learns of the hold,
+/// even if this one was cut off.
 class OrderConfirmations {
  public:
   /// Adds an order that is in force in the order book.

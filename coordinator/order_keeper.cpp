@@ -84,7 +84,7 @@ bool OrderKeeper::update(bool is_granting, bool has_history, Time now) {
     waiting_since_.reset();
     return false;
   }
-  // It is in the future if this process's clock was set back.
+  // The time is in the future if this process's clock was set back.
   if (!waiting_since_ || now < *waiting_since_) waiting_since_ = now;
   if (!has_history) {
     // Without history, no order can have been carried out.

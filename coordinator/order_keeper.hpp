@@ -27,11 +27,12 @@ class OrderKeeper {
 
   /// Processes an order from a client and returns the answer.
   msg::OrderResult on_order(const Order& order);
-  /// Processes a page of another process's memory. Returns whether anything is new. No order on it is refused
-  /// for lack of room: if there is none, because somebody floods the memory, all robots are held in this
+  /// Processes a page of another process's memory. Returns whether anything is new. No order on the page is
+  /// refused for lack of room: if a flood of orders has filled the memory, all robots are held in this
   /// coordinator's name.
   bool on_page(const OrderPage& page);
-  /// An agent has registered. It does so only once this memory contains all orders that the agent remembers.
+  /// Processes a registration. An agent registers only once this memory contains all orders that it
+  /// remembers.
   void on_registration(bool agent_knows_orders);
   /// Processes an agent's report on an order. Returns whether anything is new.
   bool on_report(const OrderReport& report);
@@ -62,7 +63,7 @@ class OrderKeeper {
   OrderBook book_;
   std::vector<RememberedOrder> changes_;
   bool is_complete_ = false;
-  std::map<std::uint32_t, std::uint32_t> next_page_;  // by process, until one complete memory is heard
+  std::map<std::uint32_t, std::uint32_t> next_page_;  // by process, until a complete memory has arrived
   std::optional<Time> waiting_since_;
 };
 

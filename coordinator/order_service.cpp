@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kPeriod{1'000'000'000};
 // Minimum interval between announcements to new agents.
 constexpr Duration kMinPeriod{50'000'000};
-// Interval of announcements while agents wait for the orders that they remember before they register.
+// Interval of announcements while agents wait to hear all orders that they remember before they register.
 constexpr Duration kRegisteringPeriod{200'000'000};
 
 }  // namespace
@@ -49,7 +49,8 @@ void OrderService::on_order(const msg::Order& message) {
 
 void OrderService::on_page(const OrderPage& page) {
   if (page.process == process_of(self_.number)) return;
-  // Only agents of robots on the roster confirm orders: later coordinators need not hear other agents.
+  // Of the agents, only those of robots on the roster confirm orders, because a later coordinator need not
+  // hear the others.
   if (coordinator_.ledger().has_robot(page.process) || is_coordinator(page.process))
     confirmations_.on_page(page);
   confirm();

@@ -32,21 +32,22 @@ class OrderService {
   void on_page(const OrderPage& page);
   /// Processes the state of a robot's order, as reported by its agent.
   void on_report(const OrderReport& report);
-  /// A robot on the roster obeys this coordinator's epoch.
+  /// Processes a report that a robot on the roster obeys this coordinator's epoch.
   void on_obeyed(RobotId robot);
-  /// An agent has been registered: records whether orders may have been given before, and sends the agent the
-  /// orders that it lacks.
+  /// Call when an agent has been registered: records whether its robot may have received orders before, and
+  /// sends the agent the orders that it lacks.
   void on_registered(const Registration& registration);
-  /// Announces all orders again, for a process that has just started.
+  /// Announces all orders again for a process that has just started, unless they were announced very
+  /// recently.
   void repeat();
   /// Completes the memory of orders if possible.
   void update_memory();
   /// Must be called once per heartbeat period.
   void update();
-  /// The coordinator has begun an epoch or has become a standby.
+  /// Call when the coordinator has begun an epoch or has become a standby.
   void begin_epoch();
   void announce_all();
-  /// This process's clock was set back: discards all recorded times.
+  /// Call when this process's clock was set back: discards all recorded times.
   void forget_times() { announced_at_.reset(); }
 
   const OrderKeeper& orders() const { return orders_; }
@@ -61,10 +62,10 @@ class OrderService {
   /// announced any.
   bool apply();
   void announce(std::span<const RememberedOrder> orders, bool have_changed);
-  /// Announces again the orders that clients have repeated but no process has confirmed.
+  /// Announces again the orders in unheard_, which clients have repeated but no process has confirmed.
   void announce_again();
-  /// Announces the orders repeatedly while agents must register: they register once they have received all
-  /// orders that they remember.
+  /// Announces the orders repeatedly while agents have yet to register, because each registers only once it
+  /// has received all orders that it remembers.
   void tell_registering_agents();
 
   Bus& bus_;
@@ -74,10 +75,10 @@ class OrderService {
   std::function<void()> changed_;
   OrderKeeper orders_;
   OrderConfirmations confirmations_;
-  OrderBook unheard_;         // orders to be announced again
-  bool has_history_ = false;  // in this epoch, a robot has registered that may have received orders before
+  OrderBook unheard_;                 // orders to be announced again
+  bool has_history_ = false;          // a robot registered in this epoch may have received orders before
   std::optional<Time> announced_at_;  // when all orders were last announced
-  bool has_learned_ = false;          // learned an order from another process since then
+  bool has_learned_ = false;          // learned an order from another process since announced_at_
   Writer<msg::OrderAnswer> answer_writer_;
   Writer<msg::OrderMemory> memory_writer_;
   DropCounters drops_;

@@ -15,7 +15,7 @@ namespace sidestep {
 inline std::string as_nobody(const std::function<std::string()>& work) {
   constexpr uid_t kNobody = 65534;
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) return "no pipe";
+  if (pipe(ends.data()) != 0) return "cannot create a pipe";
   const pid_t process = fork();
   if (process == 0) {
     std::string text = "user nobody could not be used";

@@ -29,7 +29,7 @@ void* or_throw(void* memory) {
 
 std::size_t sidestep::allocation_count() { return count; }
 
-// All forms are replaced; otherwise memory from a sanitizer's operator new would go to free(). The array
+// Replaces all forms, because otherwise memory from a sanitizer's operator new would go to free(). The array
 // forms call these.
 void* operator new(std::size_t size) { return or_throw(counted(size)); }
 void* operator new(std::size_t size, std::align_val_t alignment) {

@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// The messages that a class or node has dropped.
+/// The counts of messages that a class or node has dropped.
 template <typename Counting>
 DropCounters drops_of(const Counting& counting) {
   DropCounters drops;

@@ -25,7 +25,7 @@ class LogEvents {
     return std::ranges::count_if(
         events_, [&](const LogEvent& event) { return event.text.find(text) != std::string::npos; });
   }
-  /// All texts, one a line, for failing tests.
+  /// The text of all events, one per line, for messages of failing tests.
   std::string text() const {
     std::string result;
     for (const LogEvent& event : events_)

@@ -22,9 +22,9 @@ inline std::vector<std::uint8_t> participant_datagram(const ParticipantId& id,
   append(id);
   append(std::array<std::uint8_t, 2>{0x15, 5});
   const std::size_t body = result.size() + 2;
-  append_16(0);  // its size, see below
+  append_16(0);  // the body's size, set below
   append(std::array<std::uint8_t, 20>{0, 0, 16, 0, 0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 1, 0, 0, 0});
-  append(std::array<std::uint8_t, 8>{0, 3, 0, 0, 0x15, 0, 4, 0});  // a list; the protocol's version:
+  append(std::array<std::uint8_t, 8>{0, 3, 0, 0, 0x15, 0, 4, 0});  // list; protocol version:
   append(std::array<std::uint8_t, 4>{2, 2, 0, 0});
   append(std::array<std::uint8_t, 4>{0x50, 0, 16, 0});  // GUID
   append(id);

@@ -13,10 +13,10 @@
 
 namespace sidestep {
 
-/// A folder of keys that ends with this object.
+/// A temporary folder of keys, removed with this object.
 class TestKeys {
  public:
-  /// `identities` as for `sidestep keys issue`.
+  /// `identities` are written as for `sidestep keys issue`.
   explicit TestKeys(const std::vector<std::string>& identities, Time now = EventLoop::now())
       : now_(now), store_(created(folder(), now)) {
     for (const Identity& identity : parse_key_list(identities)) issue(identity);
@@ -33,7 +33,7 @@ class TestKeys {
   std::string issue(const Identity& identity, Duration validity = std::chrono::hours(1)) {
     return store_.issue(identity, now_, now_ + validity);
   }
-  /// Returns how many keys are revoked that were not.
+  /// Returns the number of newly revoked keys.
   std::size_t revoke(const Identity& identity) {
     return store_.revoke(std::span(&identity, 1), now_).front().revoked;
   }

@@ -22,8 +22,8 @@ std::vector<std::uint32_t> configured_cameras(const Scenario& scenario, const Vi
   return are_given ? options.league_cameras : cameras_of(scenario.vision);
 }
 
-/// Rejects image files that would not be read, because the user would believe that they are used. Throws
-/// std::invalid_argument.
+/// Rejects files for images if no images arrive, because the user would believe that the files are used.
+/// Throws std::invalid_argument.
 void require_none(const ImageOptions& options) {
   const std::pair<const char*, const std::string&> files[] = {{"--colours", options.colours_file},
                                                               {"--cameras", options.cameras_file},

@@ -9,9 +9,10 @@ namespace {
 constexpr double kBaseAcceleration_mps2 = 4.7;
 constexpr double kBaseTurnAcceleration_radps2 = 50, kBaseTurnSpeed_radps = 20;
 
-// The time constant with which the motors reach a velocity.
+// Time constant with which the motors reach a commanded velocity.
 constexpr double kResponse_s = 0.02;
-// Bounds a flood of commands within the latency.
+// Maximum number of commands that wait for the latency to pass, so that a flood of commands does not fill the
+// memory.
 constexpr std::size_t kMaxWaiting = 1000;
 
 }  // namespace

@@ -9,8 +9,7 @@
 
 namespace sidestep {
 
-/// Properties of bases that follow velocity commands. The defaults are those of the league's simulators and
-/// robots.
+/// Properties of bases that follow velocity commands. The defaults match the league's simulators and robots.
 struct BaseSettings {
   Duration latency = std::chrono::milliseconds(100);  ///< delay from a command to the first motion
   /// The base brakes after this time without a command.

@@ -11,17 +11,18 @@
 namespace sidestep {
 namespace {
 
-// Opponents have the highest ids; an id ends in the robot's number.
+// Ids of opponents: each base plus the robot's number in its team.
 constexpr RobotId kFirstBlueOpponent = kMaxRobots - 32, kFirstYellowOpponent = kMaxRobots - 16;
-// For this long after a push by an opponent, a robot may be moving without having been driven.
+// For this long after an opponent has pushed it, a robot may be moving because of the push.
 constexpr Duration kPushedTime = std::chrono::seconds(1);
 constexpr double kReach_m = 0.015, kFrontAngle_rad = 0.45;
 
 Scenario with_opponents(const Scenario& scenario, std::uint32_t team_size) {
   require_unique_numbers(scenario);
   if (team_size > 0 && !scenario.robots.empty() && scenario.robots.back().id >= kFirstBlueOpponent)
-    throw std::invalid_argument(fmt::format("robots from {} on are opponents, but scenario {} has robot {}",
-                                            kFirstBlueOpponent, scenario.name, scenario.robots.back().id));
+    throw std::invalid_argument(
+        fmt::format("robot numbers from {} on are reserved for opponents, but scenario {} has robot {}",
+                    kFirstBlueOpponent, scenario.name, scenario.robots.back().id));
   Scenario floor = scenario;
   const double spacing_m = 2.5 * scenario.radius_m;
   for (const Team team : {Team::kBlue, Team::kYellow}) {
@@ -112,7 +113,7 @@ void BaseWorld::step() {
   if (ball_) ball_->step(floor_.field, floor_.obstacles, floor_.map.get(), bodies_, floor_.radius_m);
 }
 
-// The figure computed by the contacts includes the opponents.
+// The clearance that contacts_ measures includes the opponents.
 void BaseWorld::measure_clearance() {
   if (ours_ == bodies_.size()) return;
   for (std::size_t i = 0; i < ours_; ++i) {
@@ -136,7 +137,7 @@ void BaseWorld::count_contacts(const std::vector<double>& speeds_mps) {
       continue;
     }
     const std::size_t robot = is_ours(first) ? first : second;
-    if (!is_robot || !is_ours(robot)) continue;  // between two opponents
+    if (!is_robot || !is_ours(robot)) continue;  // not a crash of a robot with an opponent
     ++crashes_;
     const bool was_pushed = time_ - kPushedTime < pushed_at_[robot];
     pushed_at_[robot] = time_;

@@ -43,8 +43,8 @@ class BaseWorld {
   std::span<const Body> bodies() const { return bodies_; }
   const std::optional<Ball>& ball() const { return ball_; }
 
-  /// Fills in everything except the header. Contacts are those of the scenario's robots with each other and
-  /// with obstacles; crashes are those with opponents. Only for metrics and audit.
+  /// Fills in everything except the header. Counts contacts of the scenario's robots with each other and with
+  /// obstacles, and crashes of these robots with opponents. Only for metrics and audit.
   void fill(msg::GroundTruth& truth) const;
 
  private:

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr Duration kWakePeriod = milliseconds(2);
 constexpr Duration kTruthPeriod{16'666'667};
-// After a longer pause of this process, all robots stand still, and the time is not made up for.
+// After a longer pause of this process the missed time is skipped, and all robots stand still.
 constexpr Duration kMaxCatchUp = milliseconds(1000);
 constexpr auto kSender = static_cast<std::uint32_t>(Sender::kSimulator);
 

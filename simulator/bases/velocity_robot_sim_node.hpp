@@ -31,7 +31,8 @@ class VelocityRobotSimNode {
   void add_drop_source(std::function<void(DropCounters&)> source) {
     drop_sources_.push_back(std::move(source));
   }
-  /// Sets a callback for each frame's detections when they are due. Capture times are by the process's clock.
+  /// Sets a callback for each frame's detections when they are due. Capture times are in the time of the
+  /// process's clock.
   void set_detection_listener(std::function<void(const msg::DetectionFrame&)> listener) {
     detection_listener_ = std::move(listener);
   }
@@ -44,7 +45,7 @@ class VelocityRobotSimNode {
 
  private:
   struct PendingFrame {
-    Time publish_at{};  ///< by simulated time
+    Time publish_at{};  ///< in simulated time
     msg::DetectionFrame message;
   };
   void wake();

@@ -11,8 +11,8 @@
 
 namespace sidestep {
 
-/// Serves a simulated floor as bases with ROS 2's topics: receives twists, and publishes odometry 50 times a
-/// second. The bus must make no callback after the server's destruction.
+/// Makes the bases of a simulated floor available on ROS 2's topics: receives twists, and publishes odometry
+/// 50 times a second. The bus must make no callback after the server's destruction.
 class VelocityServer {
  public:
   /// A base's odometry overestimates its motion by the fraction `drift`; for every second base it

@@ -20,12 +20,12 @@ struct FloorScene {
   Scene scene() const { return {robots, cylinders, ball}; }
 };
 
-/// The scenario's floor at the start. Each robot wears the pattern of its number.
+/// The scenario's floor at the start. Each robot has the marker pattern of its number.
 FloorScene floor_scene(const Scenario& scenario);
 /// The floor in the world's current state.
 FloorScene floor_scene(const Scenario& scenario, const World& world);
 
-/// The scenario's obstacles that are not circles, and its map. Circles are drawn as cylinders of the floor.
+/// The scenario's map, and its obstacles except circles, which are cylinders of a FloorScene.
 StaticScene static_scene(const Scenario& scenario);
 
 }  // namespace sidestep

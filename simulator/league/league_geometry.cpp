@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-// The league's shape types; from kFirstLine on, the straight lines in FieldMarking's order.
+// Shape types of the league; the straight lines follow from kFirstLine on, in FieldMarking's order.
 constexpr std::uint32_t kCentreCircle = 1, kFirstLine = 2;
 
 void add_markings(league::FieldSize& field, const FieldMarking& marking) {

@@ -17,7 +17,7 @@ league::FieldSize league_field(const Field& field);
 /// distortion, 4 m above the centre of the view.
 CameraModel league_camera(const CameraView& view);
 
-/// A camera's calibration as sent to the league.
+/// A camera's calibration in the form in which the league sends it.
 league::CameraCalibration calibration_of(const CameraModel& camera, std::uint32_t number);
 
 }  // namespace sidestep

@@ -13,7 +13,7 @@
 
 namespace sidestep {
 
-/// How a simulator sends league packets; existing simulators differ in this.
+/// How a simulator sends league packets. The league's simulators differ in this.
 struct LeagueTraits {
   Duration geometry_period = std::chrono::seconds(3);  ///< 0: with every frame
   bool counts_from_start = false;                      ///< times begin with 0 instead of 1970

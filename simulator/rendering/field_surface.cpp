@@ -14,8 +14,8 @@ namespace {
 constexpr double kMargin_m = 0.3;  // width of the field surface outside the lines
 constexpr Rgb kSurroundings{58, 56, 54};
 
-/// The fractions of line and of field surface at a point or in a pixel, without texture; the rest is
-/// surroundings.
+/// The fractions of a point or pixel that show a line and the field surface, without texture. The rest shows
+/// the surroundings.
 struct Coverage {
   float line = 0, surface = 0;
 };
@@ -35,7 +35,7 @@ class FloorCoverage {
     const double line_m = lines_.distance_m(p), surface_m = signed_distance(p, surface_);
     const Coverage centre = at_point(line_m, surface_m);
     const double edge_m = std::min(std::abs(line_m), std::abs(surface_m));
-    // Larger than any pixel, so that most pixels need no exact size.
+    // Larger than any pixel, so that the exact pixel size is needed near edges only.
     constexpr double kFar_m = 0.1;
     if (edge_m > kFar_m) return centre;
     const auto slope = camera.projection_jacobian(Vec3(p.x(), p.y(), 0));
@@ -52,7 +52,8 @@ class FloorCoverage {
   }
 
  private:
-  /// Computed from the signed distances to the edges of the nearest line and of the field surface.
+  /// Coverage of a point with these signed distances to the edges of the nearest line and of the field
+  /// surface.
   static Coverage at_point(double line_m, double surface_m) {
     if (line_m <= 0) return {1, 0};
     return {0, surface_m <= 0 ? 1.0F : 0.0F};

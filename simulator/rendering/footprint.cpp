@@ -20,7 +20,7 @@ cv::Rect footprint(const CameraModel& camera, const Vec2& place_m, double radius
     }
   }
   const CameraParameters& p = camera.parameters();
-  // Excludes coordinates beyond the range of int before the conversion.
+  // Excludes coordinates that do not fit into int.
   if (high.x() < -2 || high.y() < -2 || low.x() > p.width_px + 1.0 || low.y() > p.height_px + 1.0) return {};
   const Vec2 min(-2, -2), max(p.width_px + 2.0, p.height_px + 2.0);
   low = low.cwiseMax(min).array().floor() - 1;

@@ -46,7 +46,7 @@ FrameRenderer::FrameRenderer(const CameraModel& camera, const Field& field, cons
       spec_(spec),
       rng_(rng),
       noise_(spec.format, spec.noise, camera.parameters().width_px, rng_) {
-  // The outer edge of the kernel's last pixel is three standard deviations from its centre.
+  // The kernel extends to three standard deviations from its centre.
   if (spec_.blur_px > kMinBlur_px) blur_size_ = 2 * static_cast<int>(std::ceil(3 * spec_.blur_px - 0.5)) + 1;
   render_floor_once(statics);
 }
@@ -139,8 +139,7 @@ cv::Rect FrameRenderer::draw_visible_part(const Scene& scene, const VisibleObjec
 }
 
 void FrameRenderer::blur(const cv::Rect& rect) {
-  // OpenCV rounds identically on every machine only for a matrix with its own memory, not for part of a
-  // larger one.
+  // OpenCV rounds identically on every machine only if the matrix is not a part of a larger one.
   const cv::Rect around = expanded(rect, blur_size_ / 2) & cv::Rect(0, 0, canvas_.cols, canvas_.rows);
   Canvas blurred = canvas_(around).clone();
   if (blur_size_ > 1)

@@ -15,7 +15,7 @@ namespace sidestep {
 
 struct SceneRobot {
   Team team = Team::kBlue;
-  std::uint32_t pattern = 0;  ///< id in the layout; for an unknown id the robot shows no dots
+  std::uint32_t pattern = 0;  ///< id in the layout; a robot with an unknown id shows no dots
   Vec2 position_m{0, 0};
   double heading_rad = 0;
   Vec2 velocity_mps{0, 0};

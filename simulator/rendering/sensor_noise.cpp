@@ -10,7 +10,8 @@
 namespace sidestep {
 namespace {
 
-/// Large enough that the sections of two rows seldom overlap, and small enough to stay in a cache.
+/// Size of the noise table: large enough that the sections of two rows seldom overlap, small enough for a
+/// cache.
 constexpr std::size_t kTableGroups = 1 << 16;
 
 struct Noise {

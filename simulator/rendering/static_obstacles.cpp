@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-constexpr int kSquare_px = 16;            // squares that share a list of candidate shapes
+constexpr int kSquare_px = 16;            // side of a square of pixels that shares a list of candidate shapes
 constexpr float kSideBrightness = 0.55F;  // relative to the top
 constexpr int kFrontSteps = 12;           // number of bisections along a viewing ray
 
@@ -59,7 +59,7 @@ class StaticView {
     return meets(ray_of(top_m)) ? Seen::kSide : Seen::kFloor;
   }
 
-  /// Whether all rays within a reach show tops; false if that is not certain.
+  /// Whether all rays within this reach show tops; false if uncertain.
   bool is_all_top(const Vec2& top_m, double reach_m) const {
     const Vec2 reach(reach_m, reach_m);
     return std::ranges::any_of(candidates_,

@@ -36,8 +36,7 @@ struct StaticCover {
 };
 
 /// Draws the obstacles over a floor under neutral light, antialiased, and returns what they hide: empty
-/// matrices if there are no obstacles. Precondition: the camera is above the obstacles; otherwise none are
-/// shown.
+/// matrices if there are no obstacles. Draws nothing unless the camera is above the obstacles.
 StaticCover draw_static(const StaticScene& scene, const CameraModel& camera, const Field& field,
                         const RenderSpec& spec, Canvas& floor);
 

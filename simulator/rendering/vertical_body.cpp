@@ -80,8 +80,8 @@ class BodyView {
       samples.offsets = &moved;
     }
     const double reach_m = reach_of(1);
-    // The number of samples in a shape with the given signed distance from the pixel's centre. Samples are
-    // counted one by one only if the shape's edge is within `max_m` of the centre.
+    // Returns the number of samples inside a shape at this signed distance from the pixel's centre. Counts
+    // them one by one only if the shape's edge is within `max_m` of the centre.
     const auto count = [](double distance_m, double max_m, auto count_samples) {
       return distance_m > max_m    ? 0.0F
              : distance_m < -max_m ? kAllSamples
@@ -109,9 +109,9 @@ class BodyView {
  private:
   Vec2 in_frame(const Vec2& place_m) const { return heading_ * (place_m - position_m_); }
 
-  /// An edge that crosses a square is no farther than this from its centre.
+  /// Maximum distance from a square's centre to an edge that crosses the square.
   double reach_of(int size) const { return size * pixel_reach_m_ + motion_m_; }
-  /// Like reach_of(), for the body's silhouette, where the far end of a ray moves more than its near end.
+  /// Like reach_of(), for the body's silhouette: the far end of a viewing ray moves more than its near end.
   double ray_reach_m(double reach_m) const { return 1.2 * (1 + parallax_) * reach_m; }
 
   double top_distance_m(const Vec2& p) const {
@@ -156,7 +156,7 @@ class BodyView {
   Points offsets_{}, shifts_{};
 };
 
-/// Paints a body in squares of pixels, which are divided into quarters unless all their pixels are equal.
+/// Paints a body square by square. Squares are divided into quarters until all pixels of each are equal.
 class Painter {
  public:
   Painter(const BodyView& body, const CameraModel& camera, double height_m, const cv::Rect& rect,

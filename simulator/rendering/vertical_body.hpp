@@ -20,7 +20,7 @@ struct VerticalBody {
   Vec2 position_m;
   double heading_rad = 0;
   double radius_m = 0.09;
-  double front_m = 1e3;  ///< distance of the flat front from the centre; beyond radius_m there is none
+  double front_m = 1e3;  ///< distance of the flat front from the centre; no front if it exceeds radius_m
   double height_m = 0.15;
   Light top, side;
   std::span<const TopDot> dots;  ///< must not overlap, and must lie within the top

@@ -102,7 +102,7 @@ void Cameras::detect_opponents(const CameraView& view, std::span<const Circle> o
 
 void Cameras::add_ghost(const CameraView& view, msg::DetectionFrame& frame) {
   msg::RobotDetection ghost;
-  // Half of the ghosts take the id of an existing robot, which makes them harder to reject.
+  // Half of the ghosts have the id of an existing robot, which makes them harder to reject.
   const bool is_known = !ids_.empty() && rng_.chance(0.5);
   ghost.robot(is_known ? ids_[rng_.below(ids_.size())] : static_cast<RobotId>(rng_.below(kMaxRobots)));
   ghost.x_m(rng_.uniform(view.low_m.x(), view.high_m.x()));

@@ -15,8 +15,8 @@
 
 namespace sidestep {
 
-/// The index of a body, and the index of another body, or the number of bodies plus the index of an obstacle.
-/// The map counts as one obstacle, after all others.
+/// `first` is the index of a body. `second` is the index of another body, or the number of bodies plus the
+/// index of an obstacle. The map counts as one obstacle, after all others.
 struct ContactPair {
   std::uint32_t first = 0, second = 0;
 };
@@ -64,8 +64,8 @@ class Contacts {
   void check_pair(Pair& pair, std::span<const Body> bodies);
   static void separate(const Overlap& overlap, std::span<Body> bodies);
 
-  /// A disc that represents the nearest part of an obstacle or body, from which a body must keep its own
-  /// radius; nullopt for an obstacle farther than `near_m`.
+  /// A disc that stands for the nearest part of an obstacle or body: a body touches the obstacle where its
+  /// own disc touches this one. nullopt for an obstacle farther than `near_m`.
   std::optional<Circle> facing(const Vec2& position_m, std::size_t obstacle, double near_m) const;
 
   std::vector<Shape> obstacles_;

@@ -36,7 +36,7 @@ Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time 
       side_(side_settings(settings), {}),
       settings_(settings),
       decay_(std::exp(-kPhysicsStepSeconds / settings.body.lag_s)),
-      // A command is held for a whole period and so acts half a period late on average.
+      // The motors hold a command for a whole period, so it acts half a period late on average.
       look_ahead_(from_seconds(settings.body.lag_s) + kPhysicsStep / 2),
       max_position_error_m_(settings.body.acceleration_mps2 *
                             std::pow(kVelocityGain_ps / kPositionGain_ps2, 2)),
@@ -46,7 +46,7 @@ Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time 
   executing_ = from_plain(side_.executing(), robot_);
 }
 
-// Every switch changes the number, and lifting changes the start.
+// Compares numbers and starts: every switch changes the number, and lifting changes the start.
 void Firmware::update_executing() {
   const robot::Version& executing = side_.executing();
   if (executing.number != executing_.number || executing.start_ns != to_ns(executing_.trajectory.start()))

@@ -30,10 +30,10 @@ class SimulatedFlash final : public robot::StableMemory {
 /// control and estimation. Initially it executes version 0, at rest at its start position.
 ///
 /// Firmware that has forgotten its pose brakes by its wheels, accepts no version and reports nothing, because
-/// every fact contains a position. The first fix of the resting robot gives it a pose, where it makes an own
-/// stop.
+/// every fact contains a position. The first fix after the robot has come to rest gives it a pose; it then
+/// makes an own stop there.
 ///
-/// All times are by the robot's clock, which goes back only with set_clock_back().
+/// All times are by the robot's clock, which goes back only in set_clock_back().
 class Firmware {
  public:
   Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time now,
@@ -46,7 +46,7 @@ class Firmware {
   void on_malformed_command(Time now);
 
   /// Switches to the next version if it is due; false if none is due. Every other function that takes a time
-  /// first makes all switches due by then, so that a reported "executing f at t" remains true.
+  /// first makes all switches that are due by that time, so that a reported "executing f at t" remains true.
   bool switch_next(Time now);
 
   /// Runs one period of the control loop; called every kPhysicsStep. Returns the command to the motors until
@@ -55,7 +55,7 @@ class Firmware {
 
   /// The robot was lifted off the floor: discards the executed version and all pending ones. Facts then
   /// report version 0 and name the last version as its base, so that the agent can number the next version
-  /// above it. If called again, it also discards a rest version accepted since.
+  /// above it. A second call also discards a rest version that was accepted since the first.
   void lift(Time now);
   /// The lifted robot has been put down at the rest version that it executes. Precondition:
   /// executing().number > 0.
@@ -79,14 +79,14 @@ class Firmware {
   RobotReport robot_report(Time now);
 
   const Version& executing() const { return executing_; }
-  /// Whether it executes an own stop.
+  /// Whether the robot executes an own stop.
   bool is_off_reference() const { return side_.is_off_reference(); }
   /// The reason for the last own stop.
   robot::OwnStopReason own_stop_reason() const { return side_.own_stop_reason(); }
   bool is_lifted() const { return side_.is_lifted(); }
-  /// Whether it knows its pose.
+  /// Whether the robot knows its pose.
   bool has_pose() const { return side_.has_pose(); }
-  /// Precondition of feedback().
+  /// Precondition of robot_report().
   bool may_report() const { return side_.may_report() && estimator_.is_finite(); }
   /// The robot's own estimate.
   Vec2 position_m() const { return estimator_.position_m(); }

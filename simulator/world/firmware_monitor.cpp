@@ -61,7 +61,7 @@ bool FirmwareMonitor::is_own_stop(const Trajectory& stop) const {
   if (stop.phases().empty()) return braking_s <= kDurationResolution_s;
   if (stop.phases().size() > 1) return false;
   const Vec2& braking = stop.phases()[0].acceleration_mps2;
-  // A duration is a whole number of nanoseconds.
+  // Phases last a whole number of nanoseconds, so the deceleration may differ slightly.
   const double tolerance = 1e-3 + kDurationResolution_s / braking_s;
   return std::abs(cross(velocity, braking)) <= 1e-9 * velocity.norm() && velocity.dot(braking) < 0 &&
          std::abs(braking.norm() - deceleration_mps2_) <= tolerance * deceleration_mps2_ &&
@@ -77,7 +77,8 @@ void FirmwareMonitor::started_own_stop(const Version& to) {
   check_rule(expects_clock_stop_ || to.trajectory.start() > executing_.trajectory.start());
   check_rule(is_own_stop(to.trajectory));
   check_rule(to.inflation_m >= 0 && to.inflation_m <= kMaxInflation_m);
-  // The stop starts at the robot's own estimate, whose uncertainty accounts for up to half of the drift.
+  // The stop starts at the robot's own estimate, so half of the drift bound may be due to the estimate's
+  // error.
   const State reference = executing_.trajectory.state_at(to.trajectory.start());
   const double error_m = (to.trajectory.at_start().position_m - reference.position_m).norm();
   check_rule(expects_reboot_stop_ || expects_clock_stop_ ||

@@ -11,8 +11,8 @@
 namespace sidestep {
 
 /// Observes one robot's firmware from outside and counts the rules that it breaks (coordinator/PROTOCOL.md,
-/// "Roles"). Shares no code with the firmware: it is informed of received commands (except malformed ones),
-/// started versions and reported facts. All times are by the robot's clock.
+/// "Roles"). Shares no code with the firmware: the simulator tells it of received commands (except malformed
+/// ones), started versions and reported facts. All times are by the robot's clock.
 class FirmwareMonitor {
  public:
   explicit FirmwareMonitor(const Version& initial, double tracking_bound_m = SafetyBudget{}.tracking_bound_m,
@@ -24,7 +24,7 @@ class FirmwareMonitor {
   /// The firmware starts an own stop.
   void started_own_stop(const Version& to);
   void reported(const RobotReport& robot_report);
-  /// Disturbances of the robot.
+  /// Report disturbances of the robot.
   void lifted();
   void put_down();
   void rebooted() { expects_reboot_stop_ = true; }

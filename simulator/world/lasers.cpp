@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// The noise is normal, but limited to the maximum error, which is this many standard deviations.
+/// The maximum error in standard deviations of the noise, which is normal but limited to that error.
 constexpr double kDeviations = 3;
 
 }  // namespace

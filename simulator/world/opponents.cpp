@@ -43,7 +43,7 @@ void Opponents::follow(Route& route, Vec2& position_m) {
   route.velocity_mps.setZero();
   if (route.waypoints_m.size() == 1) return;
   double left_m = route.speed_mps * kPhysicsStepSeconds;
-  // The number of waypoints per step is bounded, since coincident ones take no time to pass.
+  // Passes a limited number of waypoints per step, because coincident waypoints take no time to pass.
   for (std::size_t passed = 0; passed <= 2 * route.waypoints_m.size(); ++passed) {
     const Vec2 ahead = route.waypoints_m[route.next_waypoint] - position_m;
     const double distance = ahead.norm();

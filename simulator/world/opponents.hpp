@@ -15,17 +15,17 @@ namespace sidestep {
 struct CrashTotals {
   std::uint64_t crashes = 0;               ///< number of times that a robot and an opponent began to touch
   std::uint64_t crashes_while_moving = 0;  ///< number of crashes in which the robot was not at rest
-  /// The robot's index for crash-while-moving k, at k modulo the size.
+  /// Index of the robot in the latest crashes while moving: crash k is at k % MAX_CONTACTS.
   std::array<std::uint32_t, msg::MAX_CONTACTS> recent_moving_crashes{};
   double max_crash_speed_mps = 0;        ///< largest closing speed along the line of centres at a crash
   double max_robot_crash_speed_mps = 0;  ///< largest contribution of the robot to the closing speed
 };
 
-/// Opponents move on the floor without negotiating. Each follows its route at constant speed, back and forth,
-/// or in a loop if the route ends where it begins, and ignores everything in its way. Crashes with robots are
-/// counted but have no physical effect, since the protocol guarantees nothing about the motion after a crash.
-/// A pair is counted again only after its clearance has exceeded kContactHysteresis_m. Between two searches
-/// for neighbours, only pairs near enough to meet before the next search are checked.
+/// Opponents move on the floor without negotiating. Each follows its route at constant speed and ignores
+/// everything in its way: back and forth, or in a loop if the route ends where it begins. Crashes with robots
+/// are counted but have no physical effect, since the protocol guarantees nothing about the motion after a
+/// crash. A pair is counted again only after its clearance has exceeded kContactHysteresis_m. Between two
+/// searches for neighbours, only pairs near enough to meet before the next search are checked.
 class Opponents {
  public:
   Opponents(std::span<const OpponentSpec> specs, double robot_radius_m, double robot_speed_limit_mps);

@@ -31,7 +31,7 @@ class SimulatorNode {
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
-  /// For the outputs of this node.
+  /// The reporter that outputs of this node use too.
   const EventReporter& events() const { return events_; }
   /// Registers an output of this node, which adds its own drop counts.
   void add_drop_source(std::function<void(DropCounters&)> source) {
@@ -60,9 +60,9 @@ class SimulatorNode {
     Time publish_at{};
     msg::DetectionFrame message;
   };
-  /// The time of the world.
+  /// The current time of the world.
   Time clock();
-  /// Calls back at a time of the world.
+  /// Calls back at this time of the world.
   void at(Time world_time, std::function<void()> callback);
   void wake();
   void advance(Time now);

@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-// Slower wheels have less noise, in proportion to their speed.
+// Odometry noise of wheels slower than this is reduced in proportion to their speed.
 constexpr double kFullNoiseSpeed_mps = 0.1;
 
 /// Capabilities of wheels and floor that suffice for the robots' limits, with a reserve to follow the
@@ -112,10 +112,11 @@ void World::step() {
 }
 
 // A clock that is set back by less than the bound stands still until the new time has caught up with it, so
-// that reported facts stay true. If it is set back farther, what it reported is void.
+// that reported facts stay true. If it is set back farther, the robot begins a new incarnation, and earlier
+// facts are void.
 Time World::robot_time(std::size_t index, Time now) {
   Robot& robot = robots_[index];
-  // A scan or a command may ask for a time before the last request.
+  // A scan or a command may ask for an earlier time than the last request did.
   robot.read_at = std::max(robot.read_at, now);
   const Time reading = robot.clock_error.reading(robot.read_at);
   if (robot.clock - reading <= clock_bound_) return robot.clock = std::max(robot.clock, reading);

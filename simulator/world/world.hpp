@@ -53,7 +53,7 @@ class World {
   void on_host_clock_set_back(Duration by);
   /// The reading of the host's clock at a time of this world.
   Time host_time(Time t) const { return t - host_behind_; }
-  /// The time of this world when the host's clock shows this time.
+  /// The time of this world when the host's clock reads `shown`.
   Time world_time(Time shown) const { return shown + host_behind_; }
 
   /// Robots that have changed version, agent or epoch, or have been lifted or put down, since their last
@@ -63,7 +63,7 @@ class World {
 
   std::size_t robot_count() const { return robots_.size(); }
   RobotId id(std::size_t robot) const { return robots_[robot].id; }
-  /// Whether it has power and a version at its position; otherwise it reports nothing.
+  /// Whether the robot has power and a version at its position; otherwise it reports nothing.
   bool may_report(std::size_t robot) const {
     return robots_[robot].is_powered && robots_[robot].firmware.may_report();
   }
@@ -71,13 +71,13 @@ class World {
   /// The start of the robot's next pending version, by the host's clock; Time::max() if none is pending.
   Time next_start(std::size_t robot) const;
   std::span<const Body> bodies() const { return bodies_; }
-  /// Errors in how cameras see the robots.
+  /// Faults in how cameras see the robots.
   std::span<const VisionFault> vision_faults() const { return vision_faults_; }
   const std::optional<Ball>& ball() const { return ball_; }
   const ContactTotals& contacts() const { return contacts_.totals(); }
   const Opponents& opponents() const { return opponents_; }
   std::uint64_t firmware_violations() const;
-  /// Adds the counts of what the robots have refused.
+  /// Adds the counts of messages that the robots have refused.
   void count_drops(DropCounters& drops) const;
   /// Distance between a body and the version that it executes, by the robot's clock; 0 off the floor.
   double reference_error_m(std::size_t robot) const;
@@ -96,11 +96,11 @@ class World {
     Vec2 last_position_m;  ///< without slip, for the odometry
     double last_heading_rad;
     ClockError clock_error;      ///< error of the robot's clock relative to the host's
-    Time clock;                  ///< latest reading
-    Time read_at = Time::min();  ///< when it was read
+    Time clock;                  ///< latest reading of the robot's clock
+    Time read_at = Time::min();  ///< when the clock was last read
     std::uint64_t clock_setbacks = 0;
     VersionNumber last_own_stop = 0;
-    /// Last disturbance of the body; active ones may end later.
+    /// When the body was last disturbed; active disturbances may end later.
     std::optional<Time> last_disturbance = std::nullopt;
     bool has_pending_report = false;
     bool is_powered = true;
@@ -129,7 +129,7 @@ class World {
   bool see_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void see_frozen(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void end(const ActiveDisturbance& disturbance);
-  /// Whether cameras have misled the robot, and it has since had no fix that shows its true place.
+  /// Whether cameras have misled the robot, and it has not yet had a fix at its true place.
   bool is_still_misled(const ActiveDisturbance& disturbance) const;
   /// Whether the disturbance may take the body off its reference.
   bool affects_body(const ActiveDisturbance& disturbance) const;

@@ -109,7 +109,7 @@ void World::switch_on(std::size_t index, Time now) {
   Robot& robot = robots_[index];
   robot.is_powered = true;
   bodies_[index].set_powered(true);
-  // The motion of the wheels without power is unknown.
+  // Odometry does not measure how far the wheels have rolled without power.
   robot.last_position_m = bodies_[index].rolled_position_m();
   robot.last_heading_rad = bodies_[index].heading_rad();
   robot.firmware.switch_on(robot_time(index, now));
@@ -160,8 +160,8 @@ void World::see_frozen(std::size_t index, const RobotDisturbance& disturbance, T
   start_disturbance({index, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
 }
 
-// A robot follows what cameras show. Within the bound of sight errors, the resulting error is part of its
-// tracking error.
+// A robot follows the position that cameras show. An error of that position within the bound for vision
+// errors is part of its tracking error.
 bool World::affects_body(const ActiveDisturbance& disturbance) const {
   if (disturbance.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return false;
   return disturbance.kind != msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE ||

@@ -16,9 +16,9 @@ class WorldEventLogger {
 
   /// Reports own stops and contacts since the last call.
   void update();
-  /// An operator's message has been applied.
+  /// Reports that a disturbance has been applied.
   void on_disturbance(const RobotDisturbance& disturbance) const;
-  /// An operator's message for a robot has been refused.
+  /// Reports that a disturbance of a robot has been refused.
   void on_refused_disturbance(RobotId robot) const;
 
  private:

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 const std::string kSource = SIDESTEP_SOURCE_DIR;
 
-/// Runs rows, and keeps the greatest figures.
+/// Runs rows of the table, and records the largest processor time and memory.
 class Runner {
  public:
   Runner() : placeholders_(prepare()), table_(read_table(kSource + "/tests/arguments/table.txt")) {}
@@ -94,11 +94,12 @@ std::string expectation_of(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
-  if (!line.starts_with(kStart)) throw std::runtime_error(file.string() + ": the first line says nothing");
+  if (!line.starts_with(kStart))
+    throw std::runtime_error(file.string() + ": the first line must state the expected error");
   return line.substr(kStart.size());
 }
 
-/// Rows of a command of the table for a file that it must refuse.
+/// A row of the table for a command and a file that the command must refuse.
 Row row_for(const Runner& runner, const std::string& command, const std::string& file,
             const std::vector<std::string>& messages) {
   Placeholders placeholders = runner.placeholders();
@@ -106,7 +107,7 @@ Row row_for(const Runner& runner, const std::string& command, const std::string&
   return {2, messages, words_of(command, placeholders)};
 }
 
-TEST_CASE("invalid values of options are refused, and the message names the option and its limits",
+TEST_CASE("an invalid option value is refused with a message that names the option and its limits",
           "[slow]") {
   Runner runner;
   const std::vector<Row> rows = option_rows(runner.table(), runner.placeholders());
@@ -114,8 +115,7 @@ TEST_CASE("invalid values of options are refused, and the message names the opti
   for (const Row& row : rows) runner.check(row);
 }
 
-TEST_CASE("files of the wrong kind are refused by all commands that read files, and the message names them",
-          "[slow]") {
+TEST_CASE("every command that reads files refuses a file of the wrong kind and names it", "[slow]") {
   Runner runner;
   const std::pair<std::string, const char*> files[] = {{runner.file("missing"), ": "},
                                                        {runner.file("out"), "a directory"},
@@ -127,7 +127,7 @@ TEST_CASE("files of the wrong kind are refused by all commands that read files, 
   }
 }
 
-TEST_CASE("broken YAML is refused by all commands that read YAML, with file, line and reason", "[slow]") {
+TEST_CASE("every command that reads YAML refuses broken YAML and prints file and line and reason", "[slow]") {
   Runner runner;
   std::vector<std::pair<std::string, std::string>> files;
   for (const auto& entry : fs::directory_iterator(kSource + "/tests/arguments/broken"))
@@ -177,7 +177,7 @@ TEST_CASE("broken YAML is refused by all commands that read YAML, with file, lin
       runner.check(row_for(runner, command, file, {file + ":" + expected}));
 }
 
-TEST_CASE("unknown options and surplus arguments are refused and named", "[slow]") {
+TEST_CASE("unknown options and surplus arguments are refused by name", "[slow]") {
   Runner runner;
   for (const std::string& command : commands_of(runner.table(), "unknown")) {
     for (const std::string extra :

@@ -41,7 +41,7 @@ struct RunFixture {
 
 }  // namespace
 
-TEST_CASE("a run continues to its end and writes its report although nobody reads its output any more") {
+TEST_CASE("a run finishes and writes its report even if its output is closed or no longer read") {
   const RunFixture f;
   const std::string output =
       GENERATE("2>err | head -1", "2>&1 | head -1", ">/dev/full 2>/dev/full", ">&- 2>&-");
@@ -53,8 +53,7 @@ TEST_CASE("a run continues to its end and writes its report although nobody read
   CHECK_THAT(f.text("r.log"), !ContainsSubstring("SIGPIPE"));
 }
 
-TEST_CASE(
-    "a simulation continues to its end and writes its report although nobody reads its output any more") {
+TEST_CASE("a simulation finishes and writes its report even if its output is closed or no longer read") {
   const TemporaryFolder folder;
   const std::string runs = GENERATE(as<std::string>(), kScenario + " --seconds 1",
                                     "--faults none --seeds 1..40 --seconds 1 --jobs 2");
@@ -66,7 +65,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a run that cannot write its recording says so once, continues, and gives the reason in its report") {
+    "a run that cannot write its recording continues, and reports the error once in its output and in its "
+    "report") {
   const RunFixture f;
   const ProgramRun run = run_in_shell(f.command("--record /dev/full --report r.json >out"), f.folder);
   CAPTURE(run.errors);
@@ -93,7 +93,7 @@ TEST_CASE("a run that cannot write its report still prints its summary") {
   CHECK_THAT(f.text("out"), ContainsSubstring("robots arrived") && !ContainsSubstring("report: "));
 }
 
-TEST_CASE("a simulated run ends as usual if stderr is closed or on a full disk") {
+TEST_CASE("a simulated run ends normally if stderr is closed or its disk is full") {
   const TemporaryFolder folder;
   const std::string output = GENERATE("2>&-", "2>/dev/full", "<&- >&- 2>&-");
   const ProgramRun run = run_in_shell("\"$0\" simulate " + kScenario + " --report r.json " + output, folder);

@@ -19,8 +19,7 @@ using namespace std::chrono_literals;
 const std::string kScenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
 constexpr int kTimeFactor = kIsSanitized ? 5 : 1;
 
-/// A recording whose end takes many seconds to read: records of a kind that no reader knows, in a sparse
-/// file.
+/// A recording that takes many seconds to read: a sparse file with records of an unknown kind.
 std::string long_recording(const TemporaryFolder& folder) {
   const ProgramRun simulated = run_program(
       {"sidestep", "simulate", kScenario, "--seconds", "0.2", "--record", folder.file("short.mcap")},
@@ -65,7 +64,7 @@ TEST_CASE("a command that reads a recording ends within a second of SIGTERM", "[
       {{"sidestep", "topic", "echo", "world", "--recording", file}, 1s, -SIGTERM},
       {{"sidestep", "topic", "delay", "world", "--recording", file}, 1s, -SIGTERM},
       {{"sidestep", "monitor", file, "--port", "0", "--domain", number}, 2s, 0},
-      // After the discovery it reads to the end, because no message has the topic.
+      // After discovery it reads to the end, because no message has this topic.
       {{"sidestep", "replay", file, "--topics", "attestation", "--domain", number}, 5s, 0},
   };
   for (const auto& [command, asked_after, exit_code] : cases) {
@@ -77,7 +76,7 @@ TEST_CASE("a command that reads a recording ends within a second of SIGTERM", "[
   }
 }
 
-TEST_CASE("a run whose report is a pipe without a reader reports that and ends") {
+TEST_CASE("a run whose report goes to a pipe without a reader prints an error and ends") {
   const TemporaryFolder folder;
   const TestDomain domain;
   const std::string pipe = folder.file("pipe");

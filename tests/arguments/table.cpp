@@ -37,7 +37,7 @@ const Section& section(const std::vector<Section>& table, const std::string& hea
 void add_beyond(Placeholders& placeholders) {
   const std::string &low = placeholders["low"], &high = placeholders["high"];
   const bool is_whole = (low + high).find_first_of(".e") == std::string::npos;
-  if (high.size() > 12) return;  // the type's limits
+  if (high.size() > 12) return;  // the limits are those of the number's type
   const double step = is_whole ? 1 : 1e-4 * std::stod(high);
   placeholders["below"] = fmt::format("{:.10g}", std::stod(low) - step);
   placeholders["above"] = fmt::format("{:.10g}", std::stod(high) + step);
@@ -62,10 +62,11 @@ void add_rows(const std::vector<Section>& table, const Placeholders& given, cons
     Row row{2, {filled_in(value.at(1), placeholders)}, words_of(command, placeholders)};
     const std::string text = words_of(value[0], placeholders).at(0);
     if (is_positional) {
-      // After the options have ended, "-1" is no option.
+      // After "--", an argument such as "-1" is not an option.
       row.command.insert(row.command.end(), {"--", text});
     } else {
-      // This is how shells pass --option "$UNSET". "--option=" says that there is no value.
+      // An empty value as its own argument, as shells pass --option "$UNSET"; "--option=" would mean no
+      // value.
       if (text.empty())
         row.command.insert(row.command.end(), {option[0], text});
       else

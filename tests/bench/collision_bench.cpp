@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Compares our structures with textbook structures and other peers for swept discs among obstacles. Answers
-// have to agree.
+// SPDX-License-Identifier: Apache-2.0 Compares our structures for swept discs among obstacles with textbook
+// structures and other libraries. Fails if answers differ.
 #include <algorithm>
 #include <fmt/core.h>
 #include <functional>
@@ -91,7 +90,7 @@ bool compare(std::size_t count, bool circles_only) {
   if (circles_only && count <= 4096)
     structures.push_back(measured_structure("plain vectorised array", false, problem, plain));
   structures.push_back(measured_structure("Boost R-tree", false, problem, boost));
-  // For shapes other than circles FCL iterates to 1e-6 m and is slow.
+  // For shapes other than circles FCL iterates to a precision of 1e-6 m, and is slow.
   if (circles_only || count <= 256)
     structures.push_back(
         measured_structure("FCL dynamic AABB tree", false, problem, fcl, circles_only ? 1e-9 : 1e-6));

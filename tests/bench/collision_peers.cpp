@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// Peers, compiled for the instruction sets of the machine that builds them.
+// SPDX-License-Identifier: Apache-2.0 The peers, compiled for the instruction set of the build machine.
 #include "tests/bench/collision_peers.hpp"
 
 #include <boost/geometry.hpp>
@@ -10,7 +9,7 @@
 namespace sidestep::peers {
 namespace {
 
-constexpr std::size_t kBatchSize = 64;  // number of circles compared before a hit may end the loop
+constexpr std::size_t kBatchSize = 64;  // circles compared before the loop checks for a hit
 
 /// A moving disc, prepared for many comparisons.
 struct SweptDisc {

@@ -26,7 +26,7 @@ ExactLengths::ExactLengths(const CostGrid& grid, const Vec2& goal_m)
     for (std::int64_t x = 0; x <= columns_; ++x) {
       const Vec2 at(static_cast<double>(x), static_cast<double>(y));
       if ((at - goal).cwiseAbs().maxCoeff() > kReach || !is_turn(x, y)) continue;
-      // From a little beside the corner, towards the goal's side of it.
+      // Looks from a point slightly beside the corner, towards the goal.
       if (sees(grid.layout(), goal, at + 1e-7 * (goal - at), is_free)) relax(x, y, (at - goal).norm());
     }
   }
@@ -75,7 +75,8 @@ void ExactLengths::search() {
     if (open.length > lengths_[open.corner]) continue;
     const auto at = static_cast<std::int64_t>(open.corner);
     const std::int64_t x = at % (columns_ + 1), y = at / (columns_ + 1);
-    // A path that turns here runs through the two quadrants beside the blocked cell's, in both directions.
+    // A path that turns at this corner passes through the two quadrants next to the blocked cell's quadrant,
+    // in either direction.
     const bool is_rising = is_blocked(x, y) || is_blocked(x - 1, y - 1);
     look_into(x, y, 1, is_rising ? -1 : 1, open.length);
     look_into(x, y, -1, is_rising ? 1 : -1, open.length);
@@ -86,7 +87,7 @@ void ExactLengths::search() {
   }
 }
 
-/// Relaxes the corners on a line of the grid, as far as it is free on one side.
+/// Relaxes the corners on a grid line up to where both cells beside the line are blocked.
 void ExactLengths::look_along(std::int64_t x, std::int64_t y, int step_x, int step_y, double length) {
   const double start = length;
   for (int steps = 1;; ++steps) {
@@ -104,7 +105,7 @@ void ExactLengths::look_along(std::int64_t x, std::int64_t y, int step_x, int st
   }
 }
 
-/// Relaxes the corners inside a quadrant that are seen from a corner, row by row.
+/// Relaxes the corners in a quadrant that are visible from a corner, row by row.
 void ExactLengths::look_into(std::int64_t x, std::int64_t y, int side_x, int side_y, double length) {
   const auto blocked = [&](std::int64_t i, std::int64_t j) {
     return is_blocked(side_x > 0 ? x + i : x - 1 - i, side_y > 0 ? y + j : y - 1 - j);
@@ -113,7 +114,7 @@ void ExactLengths::look_into(std::int64_t x, std::int64_t y, int side_x, int sid
   for (std::int64_t j = 0; !cones_.empty(); ++j) {
     next_.clear();
     for (Cone cone : cones_) {
-      // Keeps the part of a cone above the direction `low`, unless it is a squeeze between two cells.
+      // Keeps the part of a cone above the direction `low`, unless that part squeezes between two cells.
       const auto keep = [&](const Direction& low) {
         const Cone part{turn(cone.low, low) >= 0 ? low : cone.low, cone.high};
         const bool is_squeezed = part.low.x == part.high.x && part.low.y == part.high.y;
@@ -121,7 +122,7 @@ void ExactLengths::look_into(std::int64_t x, std::int64_t y, int side_x, int sid
         if (turn(part.low, part.high) >= 0 && !is_squeezed && !is_border) next_.push_back(part);
       };
       bool is_left = true;
-      // Cells that touch the cone only with a corner may squeeze it.
+      // Cells that touch the cone only with a corner may make it squeeze between two cells.
       const std::int64_t first = (cone.high.x * j + cone.high.y - 1) / cone.high.y - 1;
       for (std::int64_t i = std::max<std::int64_t>(first, 0); is_left; ++i) {
         if (cone.low.y > 0 && i * cone.low.y > cone.low.x * (j + 1)) break;  // beyond the cone

@@ -5,10 +5,10 @@
 
 namespace sidestep {
 
-/// The lengths of shortest paths of a point among blocked square cells to a goal, for grids in which no free
-/// straight line is longer than kReach cells. Shortest paths turn only at corners with one blocked cell
-/// beside them, so this is Dijkstra's algorithm over such corners that see each other, found by casting
-/// shadows in integer arithmetic. Paths touch corners, but do not squeeze between two cells at a corner.
+/// Lengths of a point's shortest paths to a goal among blocked square cells, for grids in which no free
+/// straight line is longer than kReach cells. Shortest paths turn only at corners of single blocked cells, so
+/// this is Dijkstra's algorithm over such corners that see each other. Visibility is found by casting shadows
+/// in integer arithmetic. Paths touch corners, but do not squeeze between two cells at a corner.
 class ExactLengths {
  public:
   static constexpr int kReach = 80;

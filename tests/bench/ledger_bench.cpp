@@ -10,8 +10,8 @@ using namespace sidestep;
 
 namespace {
 
-/// For each robot in turn, one grant and the fact that releases its previous version, with this number of
-/// robots from the crossing streams. Proposals are random accelerations within the robot's limits.
+/// For each robot in turn, one grant and the report that releases its previous version. The argument is the
+/// number of robots from the crossing streams. Proposals are random accelerations within the robot's limits.
 void grant_of_one_version(benchmark::State& state) {
   const auto& snapshot = bench::crossing_streams();
   const auto robots = static_cast<std::size_t>(state.range(0));

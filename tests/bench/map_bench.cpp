@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// Occupancy maps: the distance transform compared with OpenCV's exact one, which has to give the same
-// distances, and the times of scans and queries, whose results are compared with slow references.
+// SPDX-License-Identifier: Apache-2.0 Benchmarks occupancy maps: compares the distance transform with
+// OpenCV's exact one, which must give the same distances, and measures scans and queries, whose results are
+// checked against slow references.
 #include <algorithm>
 #include <ctime>
 #include <fmt/core.h>
@@ -21,7 +21,7 @@ constexpr int kRounds = 41, kScans = 1'000, kQueries = 20'000;
 constexpr std::uint64_t kSeed = 1;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// Of this thread on its processor.
+/// Processor time of this thread.
 double now_us() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -34,7 +34,7 @@ double quantile(std::vector<double> values, double part) {
   return values[static_cast<std::size_t>(at)];
 }
 
-/// Medians of rounds in random order.
+/// Median times of the contestants over rounds in random order.
 std::vector<double> medians_us(const std::vector<std::function<void()>>& contestants) {
   std::vector<std::vector<double>> times_us(contestants.size());
   std::vector<std::size_t> order(contestants.size());
@@ -53,7 +53,7 @@ std::vector<double> medians_us(const std::vector<std::function<void()>>& contest
   return medians;
 }
 
-/// 0 where a cell is blocked.
+/// An image of the map, 0 where a cell is blocked.
 cv::Mat as_image(const OccupancyMap& map) {
   cv::Mat image(map.grid().rows, map.grid().columns, CV_8U);
   for (int row = 0; row < image.rows; ++row)
@@ -96,15 +96,15 @@ Vec2 free_position(Rng& rng, const OccupancyMap& map, double clearance_m) {
   }
 }
 
-/// The distance along a ray by short steps: not before the first blocked cell, and at most a step behind it
-/// unless the ray crosses only a corner.
+/// The distance along a ray to the first blocked cell, found in short steps: at most a step too far, unless
+/// the ray only crosses a corner.
 double marched_m(const OccupancyMap& map, const Vec2& from, const Vec2& direction, double max_m) {
   for (double at_m = 0; at_m <= max_m; at_m += 0.1 * map.grid().resolution_m)
     if (map.is_blocked(map.cell_at(from + at_m * direction))) return at_m;
   return kInfinite;
 }
 
-/// Beams of a scan that differ from casting each ray by itself, and from marching through the map.
+/// Counts the beams of a scan that differ from a ray cast on its own or from a march through the map.
 long count_wrong(const LaserScanner& scanner, const RayScene& scene, const Vec2& at, double heading_rad,
                  const std::vector<float>& ranges_m) {
   long wrong = 0;
@@ -112,7 +112,7 @@ long count_wrong(const LaserScanner& scanner, const RayScene& scene, const Vec2&
   for (int beam = 0; beam < scanner.settings().beams; ++beam) {
     const double range_m = ranges_m[static_cast<std::size_t>(beam)];
     const double angle_rad = heading_rad + scanner.beam_angle_rad(beam);
-    bool agrees = false;  // a ray that grazes something may miss it
+    bool agrees = false;  // a ray that grazes an obstacle may miss it
     for (const double turn_rad : {0.0, -1e-7, 1e-7}) {
       const double ray_m = cast_ray(scene, at, rotated({1, 0}, angle_rad + turn_rad), max_m);
       agrees = agrees || range_m == ray_m || std::abs(range_m - ray_m) < 1e-3;
@@ -154,8 +154,8 @@ bool bench_all_scans(const OccupancyMap& map, const DistanceField& field) {
   const ObstacleWorld shapes(random_shapes(rng, 100, 20));
   fmt::print("\nScans of 360 beams, µs                            median     p99     hits\n");
   bool is_right = bench_scans("map of 2,000 x 2,000 cells, 10 m", {&map, &field, nullptr, {}}, positions, 10);
-  is_right &= bench_scans("the same with 100 discs", {&map, &field, nullptr, discs}, positions, 10);
-  is_right &= bench_scans("the same with 100 discs, 30 m", {&map, &field, nullptr, discs}, positions, 30);
+  is_right &= bench_scans("the same map with 100 discs, 10 m", {&map, &field, nullptr, discs}, positions, 10);
+  is_right &= bench_scans("the same map with 100 discs, 30 m", {&map, &field, nullptr, discs}, positions, 30);
   is_right &= bench_scans("100 shapes on 40 x 40 m, 10 m", {nullptr, nullptr, &shapes, {}}, anywhere, 10);
   is_right &= bench_scans("100 shapes on 40 x 40 m, 30 m", {nullptr, nullptr, &shapes, {}}, anywhere, 30);
   return is_right;
@@ -191,10 +191,10 @@ bool bench_queries(const OccupancyMap& map, const DistanceField& field) {
       },
   });
   const char* const names[] = {"distance up to 1 m", "lower bound of the field", "path of up to 2 m touches",
-                               "the same with the field", "boxes around the path"};
+                               "path of up to 2 m touches, with the field", "boxes around the path"};
   fmt::print("\nQueries in the map of 2,000 x 2,000 cells, ns\n");
   for (std::size_t i = 0; i < times_us.size(); ++i)
-    fmt::print("{:<28}{:>9.0f}\n", names[i], 1e3 * times_us[i] / kQueries);
+    fmt::print("{:<42}{:>9.0f}\n", names[i], 1e3 * times_us[i] / kQueries);
   const double count = static_cast<double>(kRounds) * kQueries;
   fmt::print(
       "{:.1f} % of the paths touch, {:.1f} boxes around a path, mean distance {:.3f} m, bound {:.3f} m\n",

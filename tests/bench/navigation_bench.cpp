@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Times and errors of E*, compared with a plain wavefront and exact lengths. Fields have to be right.
+// SPDX-License-Identifier: Apache-2.0 Times and errors of E*, compared with a plain wavefront and exact
+// lengths. Fails if a field is wrong.
 #include <cstdio>
 #include <ctime>
 
@@ -86,7 +86,7 @@ double compare_full(const Problem& problem, double blocked, int rounds, bool& is
   return ns;
 }
 
-/// Ten cells in a row across the direction from the goal; empty if they do not lie in the grid.
+/// Ten cells in a row at right angles to the direction from the goal; empty if they do not fit into the grid.
 std::vector<GridCell> wall_at(const Problem& problem, double distance, double angle_rad) {
   const GridLayout& layout = problem.grid.layout();
   const Vec2 along(std::cos(angle_rad), std::sin(angle_rad));
@@ -189,7 +189,8 @@ double length_of(const std::vector<Vec2>& path_m) {
   return length_m;
 }
 
-/// Compares values, and lengths of traced paths, with exact lengths. No path is shorter than the shortest.
+/// Compares values, and lengths of traced paths, with exact lengths. No path may be shorter than the exact
+/// length.
 void compare_lengths(const Problem& problem, double blocked, bool& is_right) {
   const GridLayout& layout = problem.grid.layout();
   const std::vector<Sample> samples = sample_cells(problem, blocked == 0, 300);

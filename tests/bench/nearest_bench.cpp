@@ -14,7 +14,7 @@ using Point = std::array<double, 2>;
 
 Point sample_point(Rng& rng) { return {rng.uniform(-5, 5), rng.uniform(-5, 5)}; }
 
-/// The peer: nanoflann's dynamic index, a set of static K-D trees to which points are added one by one.
+/// The peer: nanoflann's dynamic index, a set of static K-D trees. Points are added one by one.
 class NanoflannTree {
  public:
   using Index =
@@ -50,7 +50,7 @@ class NanoflannTree {
   std::unique_ptr<Index> index_;
 };
 
-/// Like a tree planner: finds the nearest stored point, then adds a point.
+/// Works like a tree planner: finds the nearest stored point, then adds a point.
 template <typename Set>
 void grow_set(benchmark::State& state) {
   const auto points = static_cast<std::size_t>(state.range(0));

@@ -14,7 +14,7 @@ namespace {
 constexpr Duration kPeriod{16'666'667};
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 
-/// Frames of obstacles that walk on circles, at 1 m/s, on a floor with 1.5 m² for each.
+/// Frames of obstacles that move on circles at 1 m/s, with 1.5 m² of floor for each.
 std::vector<Frame> frames_of_walkers(std::size_t count, int frames) {
   Rng rng(1);
   const double half_m = 0.5 * std::sqrt(1.5 * static_cast<double>(count));

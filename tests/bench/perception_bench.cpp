@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// The time that a robot takes for one scan of its own laser, in a floor plan with people. Fails if a wall
-// moves or a person is lost.
+// SPDX-License-Identifier: Apache-2.0 The time that a robot takes to process one scan of its own laser, in a
+// floor plan with people. Fails if a wall is tracked as moving or a person is lost.
 #include <cstdlib>
 #include <fmt/format.h>
 #include <string>
@@ -24,7 +23,7 @@ double thread_us() {
   return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
 }
 
-/// The times of one step of the work.
+/// The times of one processing step.
 struct Series {
   std::string name;
   std::vector<double> times_us;
@@ -42,7 +41,7 @@ struct Series {
   }
 };
 
-/// Whether a moving track belongs to nobody.
+/// Whether a moving track belongs to no person.
 bool is_phantom(const LaserTrack& track, Time now, std::span<const Circle> people) {
   return track.is_moving && track.seen_at == now && std::ranges::none_of(people, [&](const Circle& person) {
            return (person.centre_m - track.position_m).norm() < 1;
@@ -87,7 +86,7 @@ int run() {
   }
   fmt::print("{} scans of {} beams, microseconds   median      p99\n", kScans, kLaser.beams);
   for (Series* series : {&reading, &mapping, &tracking, &tracking_map, &seeing}) series->print();
-  fmt::print("tracks that move: {}, of nobody: {}\n", moving, phantoms);
+  fmt::print("moving tracks: {}, of them without a person: {}\n", moving, phantoms);
   return moving > kScans / 2 && phantoms * 50 < moving ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 

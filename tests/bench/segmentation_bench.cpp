@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// From a frame to regions of five colours: all available kernels, two methods with OpenCV, and copying the
-// frame, compared in one run. OpenCV gets the frame already converted to the numbers that thresholds apply
-// to; the conversion is not timed. All regions must agree.
+// SPDX-License-Identifier: Apache-2.0 Compares methods that find the regions of five colours in a frame: all
+// available kernels and two methods with OpenCV, and for reference copying the frame. OpenCV gets the frame
+// already converted to the values to which thresholds apply; the conversion is not timed. Fails if regions
+// differ.
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -55,7 +55,7 @@ Regions with_components(const cv::Mat& yuv, const std::vector<ColourBox>& colour
   return regions;
 }
 
-/// Contours give only the bounding box: area and centroid remain 0.
+/// Contours give only the bounding box, so area and centroid remain 0.
 Regions with_contours(const cv::Mat& yuv, const std::vector<ColourBox>& colours) {
   Regions regions;
   cv::Mat mask;
@@ -96,9 +96,9 @@ struct Contestant {
   }
 };
 
-/// Times all contestants in rounds of random order, because each finds the caches in the state that its
-/// predecessor left. Each runs once untimed before it is timed, but on large frames this does not fully undo
-/// OpenCV's evictions. Ratios are relative to the first contestant.
+/// Times all contestants in rounds of random order, because each finds the caches as its predecessor left
+/// them. Each runs once untimed before it is timed, but on large frames this does not fully reload what
+/// OpenCV evicted. Ratios are relative to the first contestant.
 void compare(const std::string& frame_name, std::size_t bytes, std::vector<Contestant> contestants) {
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), 0);

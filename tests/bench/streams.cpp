@@ -33,7 +33,8 @@ std::map<RobotId, std::vector<Version>> newest_ledger(SimSystem& system, Duratio
   return ledger;
 }
 
-/// The query of an agent that drives straight to its goal, for the cycle after its newest version's start.
+/// The search query of an agent that drives straight to its goal, for the cycle after its newest version
+/// starts.
 SearchQuery next_query(const Scenario& scenario, const Version& newest) {
   const Time start = newest.trajectory.start() + scenario.cycle;
   const State at_start = newest.trajectory.state_at(start);

@@ -19,7 +19,7 @@ struct Snapshot {
   std::vector<Robot> robots;  ///< in order of their distance from the centre of the field
 };
 
-/// From a simulation of deploy/scenarios/streams-1000.yaml, two seconds after the first grant.
+/// A snapshot of a simulation of deploy/scenarios/streams-1000.yaml, two seconds after the first grant.
 const Snapshot& crossing_streams();
 
 }  // namespace sidestep::bench

@@ -42,7 +42,7 @@ double search_ns(const Searched& searched, const std::vector<GridPoint>& points,
 
 bool compare(std::size_t count) {
   Rng rng(kSeed);
-  // Lengths proportional to the distance between segments.
+  // Segment lengths are proportional to the spacing of the segments.
   const auto max_length = static_cast<std::int32_t>(kHalf / std::sqrt(static_cast<double>(count)));
   const std::vector<GridSegment> segments = random_divided_segments(rng, count, kHalf, max_length);
   std::vector<GridPoint> points;

@@ -14,23 +14,23 @@
 
 namespace sidestep {
 
-/// The key files of a participant, whoever made them.
+/// The key files of a participant, from any authority.
 struct AttackerKeys {
   std::string identity_authority, certificate, private_key, permissions_authority, governance, permissions;
 
-  /// The files of an identity that `sidestep keys` has made.
+  /// The files of an identity made by `sidestep keys`.
   static AttackerKeys of(const std::string& folder);
 };
 
 struct AttackerSettings {
   int domain = 0;
   std::optional<AttackerKeys> keys{};  ///< nullopt: no security
-  /// Its user data, by its id.
+  /// Returns the user data that the participant with this id announces.
   std::function<std::vector<std::uint8_t>(const ParticipantId&)> announced{};
   std::optional<CertifiedPrefix> prefix{};  ///< prefix of its id; nullopt: chosen by Fast DDS
 };
 
-/// A Fast DDS participant that checks nothing, and that only its own library checks.
+/// A Fast DDS participant with no checks except those of its own library.
 class Attacker {
  public:
   /// Throws std::runtime_error if its own library refuses the keys.

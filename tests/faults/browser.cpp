@@ -18,7 +18,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Debian's /usr/bin/chromium-headless-shell is a script: ending it would not end the browser.
+// The browser itself: Debian's /usr/bin/chromium-headless-shell is a script, and ending it would not end the
+// browser.
 constexpr const char* kChromium = "/usr/lib/chromium/chromium-headless-shell";
 constexpr auto kPollPeriod = std::chrono::milliseconds(20);
 constexpr int kPolls = 1000;

@@ -27,12 +27,13 @@ class Browser {
   /// The text of the element with this id.
   std::string text(const std::string& id);
   void click(const std::string& id);
-  /// Presses a key of the page.
+  /// Presses a key.
   void press(const std::string& key);
-  /// Waits until a JavaScript expression is true, at most 20 s, and calls `meanwhile` again and again.
+  /// Waits until a JavaScript expression is true, for at most 20 s, and calls `meanwhile` repeatedly. Returns
+  /// whether it became true.
   bool wait_until(
       const std::string& expression, const std::function<void()>& meanwhile = [] {});
-  /// Errors that the page has logged, of scripts and of loading.
+  /// Errors of scripts and of loading that the page has logged.
   std::string complaints();
   /// Writes a PNG.
   void save_screenshot(const std::string& path);
@@ -45,7 +46,7 @@ class Browser {
   ProcessGroup group_;
   std::uint16_t port_;
   std::string session_;
-  pid_t pid_ = 0;  ///< of Chromium
+  pid_t pid_ = 0;  ///< process id of Chromium
 };
 
 }  // namespace sidestep

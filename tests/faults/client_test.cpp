@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// The examples for the client library, with real processes.
+// SPDX-License-Identifier: Apache-2.0 The examples of the client library, with real processes.
 #include <signal.h>
 
 #include "tests/catch.hpp"
@@ -21,7 +20,7 @@ int count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Ends the run like a user, with Ctrl-C.
+/// Ends the run with Ctrl-C, like a user.
 void finish(LaunchedRun& run) {
   REQUIRE(kill(run.pid(), SIGINT) == 0);
   CHECK(run.wait_for_end() == "exit code 0");
@@ -50,7 +49,9 @@ TEST_CASE("the patrol drives a robot back and forth until another client sends i
   finish(run);
 }
 
-TEST_CASE("the dispatcher sends the nearest free robots, although an agent is killed and a robot sent away") {
+TEST_CASE(
+    "the dispatcher sends the nearest free robots although an agent is killed and another client has sent a "
+    "robot away") {
   LaunchedRun run(shipped_scenario("on-demand"));
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
   std::vector<std::string> away{"go", "0", "-2.5,-2", "--client", "other"};

@@ -23,7 +23,7 @@ struct PeerOutcome {
   std::string output;
 };
 
-/// Runs the peer to its end, which comes after 30 s at the latest.
+/// Runs the peer to its end; it ends by itself after at most 30 s.
 PeerOutcome run_peer(const std::string& arguments) {
   constexpr const char* kLoopback =
       "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"true\"/>"
@@ -41,7 +41,7 @@ PeerOutcome run_peer(const std::string& arguments) {
   return outcome;
 }
 
-/// Publishes random messages of five topics for as long as it exists, in a thread of its own.
+/// Publishes random messages of five topics in its own thread, from construction to destruction.
 class RandomPublisher {
  public:
   RandomPublisher() : bus_(test_settings("publisher")) {
@@ -49,7 +49,7 @@ class RandomPublisher {
     add(topics::kFeedback, 3, robot);
     add(topics::kVerdict, 3, [robot](msg::Verdict& verdict) {
       robot(verdict);
-      // Cyclone refuses values that are no enumerators.
+      // Cyclone refuses enum values that are not enumerators.
       verdict.reasons() = {msg::Reason::REASON_GRANTED, msg::Reason::REASON_CONFLICT,
                            msg::Reason::REASON_OBSTACLE, msg::Reason::REASON_MALFORMED,
                            msg::Reason::REASON_GRANTED};
@@ -65,7 +65,7 @@ class RandomPublisher {
     bus_.stop();
     if (thread_.joinable()) thread_.join();
   }
-  /// What was published on a channel, by message number. Call it after stop().
+  /// The message that was published on a channel with this number, as JSON. Call it after stop().
   const nlohmann::ordered_json& described(const std::string& channel, std::uint64_t number) {
     return described_[channel][number];
   }

@@ -26,9 +26,9 @@ constexpr std::uint16_t kPortsOfDomain = 250;
 
 std::uint16_t first_port(int domain) { return static_cast<std::uint16_t>(7400 + kPortsOfDomain * domain); }
 
-constexpr std::size_t kHeaderSize = 20;  // of a datagram of RTPS
+constexpr std::size_t kHeaderSize = 20;  // of an RTPS datagram
 
-/// Where its submessages begin (RTPS 2.2, 8.3.3).
+/// The positions at which the submessages of a datagram begin (RTPS 2.2, 8.3.3).
 std::vector<std::size_t> submessages(std::span<const std::uint8_t> datagram) {
   std::vector<std::size_t> result;
   for (std::size_t at = kHeaderSize; at + 4 <= datagram.size();) {
@@ -47,7 +47,7 @@ void send_to(int socket, in_addr address, std::uint16_t port, std::span<const st
   to.sin_family = AF_INET;
   to.sin_addr = address;
   to.sin_port = htons(port);
-  // Whether the datagram arrives is up to the receiver.
+  // The result is ignored, because datagrams may be lost anyway.
   (void)!sendto(socket, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
 }
 
@@ -59,7 +59,7 @@ std::vector<std::uint16_t> open_ports(int domain) {
   std::string line;
   std::getline(file, line);
   while (std::getline(file, line)) {
-    // "  sl  local_address", the latter as 0100007F:1CE8
+    // Columns: "sl", then "local_address" such as 0100007F:1CE8.
     std::istringstream words(line);
     std::string slot, local;
     words >> slot >> local;
@@ -76,7 +76,7 @@ std::vector<std::uint16_t> open_ports(int domain) {
 std::uint64_t datagrams_read() {
   std::ifstream file("/proc/net/snmp");
   std::string protocol, names;
-  // Two lines for each protocol: names, and values.
+  // The file has two lines for each protocol: names, then values.
   while (file >> protocol && protocol != "Udp:") std::getline(file, names);
   std::getline(file, names);
   std::uint64_t result = 0;
@@ -168,7 +168,8 @@ std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::s
       break;
     }
     case 5:
-      // The numbers of a heartbeat, a gap or an acknowledgement, the high half first; of any magnitude.
+      // Overwrites a sequence number of a heartbeat, a gap or an acknowledgement, high half first, with a
+      // number of any magnitude.
       if (const std::size_t at = start + 12 + 8 * rng.below(2); at + 8 <= result.size()) {
         const std::uint64_t number = rng.bits() >> rng.below(64), halves = number >> 32 | number << 32;
         for (std::size_t i = 0; i < 8; ++i) result[at + i] = static_cast<std::uint8_t>(halves >> 8 * i);
@@ -183,7 +184,7 @@ std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::s
 }
 
 DatagramSender::DatagramSender() : socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-  if (socket_ < 0) throw std::runtime_error("cannot make a socket");
+  if (socket_ < 0) throw std::runtime_error("cannot create a socket");
   in_addr loopback{htonl(INADDR_LOOPBACK)};
   setsockopt(socket_, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback);
 }

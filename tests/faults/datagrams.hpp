@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-/// A UDP datagram to a port of this machine's loopback interface.
+/// A captured UDP datagram, sent to a port of this machine's loopback interface.
 struct CapturedDatagram {
   std::uint16_t port = 0;
   std::vector<std::uint8_t> bytes;
@@ -33,7 +33,7 @@ class Capture {
   Capture(const Capture&) = delete;
   Capture& operator=(const Capture&) = delete;
 
-  /// A copy of what has been captured so far, oldest first; at most the first hundred thousand.
+  /// The datagrams captured so far, oldest first; at most the first hundred thousand.
   std::vector<CapturedDatagram> datagrams() const;
 
  private:
@@ -47,8 +47,8 @@ class Capture {
   std::thread thread_;
 };
 
-/// A DDS process's datagram as an attacker without keys may alter it: single bytes, the kind, length or
-/// content of a submessage, its end cut off, or submessages of another datagram behind it.
+/// Alters a DDS process's datagram like an attacker without keys: changes single bytes or the kind, length or
+/// content of a submessage, cuts off the end, or appends submessages of another datagram.
 std::vector<std::uint8_t> altered(std::span<const std::uint8_t> datagram, std::span<const std::uint8_t> other,
                                   Rng& rng);
 
@@ -61,7 +61,7 @@ class DatagramSender {
   DatagramSender& operator=(const DatagramSender&) = delete;
 
   void send(std::uint16_t port, std::span<const std::uint8_t> bytes);
-  /// To the multicast group in which participants of a DDS domain find each other.
+  /// Sends to the multicast group in which participants of a DDS domain find each other.
   void announce(int domain, std::span<const std::uint8_t> bytes);
 
  private:

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Subscribes to everything that the monitor subscribes to, and discards it, until it is interrupted: what
-// listening costs at least.
+// SPDX-License-Identifier: Apache-2.0 Subscribes to all topics that the monitor subscribes to, and discards
+// the messages until it is interrupted. Shows the minimum cost of listening.
 #include <cstdio>
 #include <cstdlib>
 

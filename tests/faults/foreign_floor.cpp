@@ -25,7 +25,7 @@ void ForeignFloor::start_simulator() {
       "--scenario",     run_->scenario_file(), "--league", "--ssl-vision",  endpoints_.text(0),
       "--control",      to_text(control()),    "--blue",   to_text(blue()), "--yellow",
       to_text(yellow())};
-  // Nobody hears it in its separate domain.
+  // In its separate domain no process receives its messages.
   const auto dds = has_truth_
                        ? run_->dds_arguments()
                        : std::vector<std::string>{"--domain", std::to_string(endpoints_.domain().number())};

@@ -12,13 +12,13 @@
 
 namespace sidestep {
 
-/// `sidestep run --driver league` on a floor that another process simulates. The run talks to it only by the
-/// league's protocol, over UDP on the loopback interface. The simulator is ours, so that there is ground
-/// truth, and no process outlives this object.
+/// `sidestep run --driver league` on a floor that another process simulates. The run communicates with the
+/// simulator only by the league's protocol, over UDP on the loopback interface. The simulator is Sidestep's,
+/// so that there is ground truth. No process outlives this object.
 class ForeignFloor {
  public:
-  /// `has_truth`: the run hears the ground truth; otherwise it is judged by vision, as with a third-party
-  /// simulator.
+  /// `has_truth`: the run receives the ground truth. Otherwise it is judged from vision, as with a
+  /// third-party simulator.
   explicit ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options = {},
                         const std::vector<std::string>& run_options = {}, bool has_truth = true);
 

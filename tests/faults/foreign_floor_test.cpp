@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Robots that a foreign simulator moves, over the Small Size League's simulation protocol.
+// SPDX-License-Identifier: Apache-2.0 Robots in a separate simulator, driven over the Small Size League's
+// simulation protocol.
 #include "tests/faults/foreign_floor.hpp"
 
 #include <csignal>
@@ -26,7 +26,7 @@ class RandomTeam {
   RandomTeam(const league::Endpoint& port, std::uint32_t robots, double max_mps, std::uint64_t seed)
       : port_(port), rng_(seed), moves_(robots), max_mps_(max_mps) {}
 
-  /// Must be called often.
+  /// Sends the commands that are due. Must be called often.
   void act(Time now) {
     if (now < due_) return;
     due_ = now + 15ms;
@@ -83,7 +83,8 @@ TEST_CASE("robots of a third-party simulator all arrive without contact, even wi
   WARN(name << ", loss " << loss << ": " << outcome(report));
 }
 
-TEST_CASE("without ground truth, agents report arrivals and vision judges contacts", "[both-cores]") {
+TEST_CASE("without ground truth, arrivals are judged from agents' reports and contacts from vision",
+          "[both-cores]") {
   ForeignFloor floor(shipped_scenario("league/crossing"), {}, {}, false);
   const std::string ended = floor.run().wait_for_end();
   INFO(floor.run().output());
@@ -113,8 +114,10 @@ TEST_CASE("robots continue after the process that drives them is killed and rest
   WARN("after a restart of the robots' process: " << outcome(report));
 }
 
-TEST_CASE("robots come to rest before the process that drives them ends, however the run ends",
-          "[both-cores]") {
+TEST_CASE(
+    "robots come to rest before the process that drives them ends, whether the run is stopped or the "
+    "launcher is killed",
+    "[both-cores]") {
   const int signal = GENERATE(SIGINT, SIGKILL);
   CAPTURE(signal);
   ForeignFloor floor(shipped_scenario("league/crossing"));
@@ -152,7 +155,7 @@ TEST_CASE("robots continue after the third-party simulator is killed and restart
   WARN("after a restart of the simulator: " << ended << ", " << outcome(report));
 }
 
-TEST_CASE("our robots never touch each other, and are at rest before randomly driven opponents reach them",
+TEST_CASE("our robots never touch each other, and are at rest before randomly driven opponents touch them",
           "[both-cores]") {
   const std::uint64_t seed = 1 + static_cast<std::uint64_t>(time(nullptr)) % 1000;
   CAPTURE(seed);

@@ -20,7 +20,7 @@ using std::chrono::seconds;
 
 constexpr double kAtRest_mps = 0.03;
 
-/// The two teams, back and forth.
+/// The scenario of the two teams, which drive back and forth.
 std::string teams_to_and_fro() {
   std::string text;
   const std::regex robot("(.*start_m: )(\\[[^\\]]*\\])(.*goals_m: )\\[(\\[[^\\]]*\\])\\](.*)");
@@ -37,7 +37,7 @@ std::string teams_to_and_fro() {
   return std::regex_replace(text, std::regex("time_limit_s: 60"), "time_limit_s: 600");
 }
 
-/// Seconds from now until the last robot was in motion, before all rested for half a second.
+/// Waits until all robots have rested for half a second. Returns the seconds from now until the last motion.
 double seconds_to_rest(LaunchedRun& run, Time from) {
   Time moved_at = from;
   REQUIRE(run.wait_until([&] {
@@ -86,17 +86,18 @@ void check_holds(LaunchedRun& run, double extra_s) {
   const double budget_s = braking_s + 3 * to_seconds(scenario.cycle) + extra_s;
   WARN("from publication to rest, " << published.to_text() << ", budget " << budget_s << " s");
   WARN("from the command's start to rest, " << entered.to_text() << ", budget " << 1 + braking_s << " s");
-  // Agents that have to wait for a processor propose farther ahead, and stop later.
+  // Agents that wait for a processor propose farther ahead, so their robots stop later.
   CHECK(published.seconds.back() <= budget_s + 0.5);
 }
 
-TEST_CASE("22 robots held at full speed over DDS come to rest quickly, 40 times", "[.long][slow]") {
+TEST_CASE("22 robots come to rest quickly when held at full speed over DDS, 40 times", "[.long][slow]") {
   LaunchedRun run(teams_to_and_fro());
   check_holds(run, 0);
 }
 
-TEST_CASE("22 robots held on three hosts with 5 % packet loss come to rest quickly, 40 times",
-          "[.long][slow]") {
+TEST_CASE(
+    "22 robots on three hosts with 5 % packet loss come to rest quickly when held at full speed, 40 times",
+    "[.long][slow]") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(teams_to_and_fro());
   for (const char* host : {"floor", "east", "west"}) {
@@ -133,7 +134,7 @@ TEST_CASE("held robots stay at rest although the coordinator and all agents are 
   CHECK(fastest_mps < kAtRest_mps);
   client.resume(kAllRobots);
   CHECK(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
-  CHECK(run.wait_for_end() == "exit code 1");  // no robot visits all its goals
+  CHECK(run.wait_for_end() == "exit code 1");  // no robot has visited all its goals
   CHECK(run.report()["contacts"] == 0);
   CHECK(run.report()["audit"]["violations"] == 0);
 }

@@ -15,11 +15,12 @@ using namespace std::chrono_literals;
 constexpr const char* kRestarts = ": restarts: the host's clock has been set";
 constexpr const char* kIsSet = ": the host's clock has been set";
 
-/// Which host runs which processes of the crossing, and how far the late host's clock is ahead initially.
+/// Assigns the processes of scenario crossing to hosts, and says how far the late host's clock is ahead
+/// initially.
 struct LateStart {
   const char* late;
   const char* right;
-  std::vector<std::string> late_processes;  ///< by their names in the log
+  std::vector<std::string> late_processes;  ///< names in the log
   Duration ahead;
 };
 
@@ -73,14 +74,15 @@ TEST_CASE("vision that started with a clock 2 s ahead recovers once it is set") 
 }
 
 TEST_CASE(
-    "a simulator with a clock two hours behind, whose robots obey nobody yet, recovers once it is set") {
+    "a simulator that started with a clock two hours behind recovers once it is set, if its robots obey no "
+    "agent yet") {
   check_recovery({"processes: [simulator]",
                   "processes: [vision, coordinator], agents: [0-7]",
                   {"sidestep-simulator"},
                   -2h});
 }
 
-TEST_CASE("setting a host's clock during a healthy run changes nothing", "[slow]") {
+TEST_CASE("setting a host's clock during a healthy run does not disturb the run", "[slow]") {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
   const Duration ahead = GENERATE(Duration(1h), Duration(-24h), Duration(-300ms));
   CAPTURE(to_seconds(ahead));
@@ -100,7 +102,7 @@ TEST_CASE("setting a host's clock during a healthy run changes nothing", "[slow]
   CHECK(report["epochs"].size() == 1);
 }
 
-TEST_CASE("`sidestep clock` names processes whose clocks are wrong, and hosts whose clock has been set",
+TEST_CASE("`sidestep clock` lists processes whose clocks are wrong, and hosts whose clock has been set",
           "[slow]") {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
   const LateHost host("agents: [4-7]", "processes: [simulator, vision, coordinator], agents: [0-3]", 2s);

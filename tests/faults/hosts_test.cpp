@@ -54,7 +54,7 @@ TEST_CASE("22 robots on three hosts without multicast all arrive without contact
   const auto in_namespace = [&](const std::string& host, const std::string& command) {
     return "ip netns exec sidestep-" + std::to_string(run->pid()) + "-" + host + " " + command;
   };
-  // Multicast is lost in all directions, and counted.
+  // All multicast packets are dropped and counted, in both directions.
   for (const char* host : {"floor", "east", "west"}) {
     for (const char* command :
          {"nft add table ip peers", "nft 'add chain ip peers out { type filter hook output priority 0; }'",
@@ -97,7 +97,7 @@ TEST_CASE("vision finds the robots in images of cameras on another host", "[both
   const auto file =
       std::filesystem::temp_directory_path() / ("sidestep-hosts-" + std::to_string(getpid()) + ".yaml");
   std::ofstream(file) << hosts;
-  // 60 images a second of each camera, in packets between hosts, would take most of two slow cores.
+  // With 60 images a second per camera, packets between hosts would use most of two slow cores.
   const auto run = LaunchedRun::on_namespaces(crossing_images(30), {"--seconds", "120"}, file.string());
   const std::string ended = run->wait_for_end();
   INFO(run->output());
@@ -108,7 +108,7 @@ TEST_CASE("vision finds the robots in images of cameras on another host", "[both
   std::filesystem::remove(file);
 }
 
-TEST_CASE("robots on a host that is cut off for five seconds stop, the others drive on, and all arrive",
+TEST_CASE("robots on a host that is cut off for five seconds stop, the others continue, and all arrive",
           "[both-cores]") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("two-teams-22"));
@@ -125,8 +125,8 @@ TEST_CASE("robots on a host that is cut off for five seconds stop, the others dr
   REQUIRE(run->wait_until([&] { return run->printed("drops 100 %"); }));
   const Time cut_at = run->bus().now();
   REQUIRE(run->wait_until([&] { return run->max_speed_mps(cut_off) < 0.02; }));
-  // During the partition these robots stay at rest while others move. The end of the partition may be printed
-  // later than robots notice it.
+  // During the partition the cut-off robots stay at rest while others move. Robots may notice the end of the
+  // partition before it is printed.
   double max_cut_off_mps = 0, max_others_mps = 0;
   REQUIRE(run->wait_until([&] {
     if (run->bus().now() > cut_at + std::chrono::seconds(4)) return true;
@@ -144,7 +144,7 @@ TEST_CASE("robots on a host that is cut off for five seconds stop, the others dr
   WARN("one of three hosts cut off for 5 s: " << figures(run->report()));
 }
 
-TEST_CASE("the next run removes the namespaces of a killed launcher") {
+TEST_CASE("a run removes the namespaces that a killed launcher has left behind") {
   SIDESTEP_NEEDS_ROOT();
   const auto killed = LaunchedRun::on_namespaces(shipped_scenario("crossing"));
   REQUIRE(killed->wait_until([&] { return killed->children().size() == 11; }));
@@ -158,7 +158,7 @@ TEST_CASE("the next run removes the namespaces of a killed launcher") {
   CHECK_FALSE(has_namespaces(next.pid()));
 }
 
-TEST_CASE("packet faults for unknown hosts, or without a loss, are refused") {
+TEST_CASE("a packet fault is refused if its host is unknown or no loss is given") {
   SIDESTEP_NEEDS_ROOT();
   const auto run = LaunchedRun::on_namespaces(shipped_scenario("crossing"));
   CHECK(run->command({"fault", "partition", "sidestep-" + std::to_string(run->pid()) + "-south"}) ==

@@ -32,7 +32,7 @@ inline std::unique_ptr<TestKeys> keys_for(const std::string& scenario) {
   return keys;
 }
 
-/// Three robots that stay at rest until somebody orders them to drive.
+/// Three robots that stay at rest until they get an order.
 inline constexpr const char* kThreeWaitingRobots =
     "name: waiting\nfield: {length_m: 6, width_m: 5}\ntime_limit_s: 3600\nrobots:\n"
     "  - {id: 0, start_m: [-2, -1]}\n  - {id: 1, start_m: [-2, 0]}\n  - {id: 2, start_m: [-2, 1]}\n";
@@ -48,7 +48,7 @@ struct KeyedRun {
       : keys(all_identities()), run(kThreeWaitingRobots, arguments(extra_arguments)) {
     INFO(run.output());
     REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
-    // Asks again, because agents may not answer yet.
+    // Repeats the command, because agents may not answer yet.
     REQUIRE(run.wait_until([&] { return command({"status", "--once"}) == "exit code 0"; }));
   }
 
@@ -60,8 +60,8 @@ struct KeyedRun {
       arguments.insert(arguments.end(), {"--keys", keys.folder()});
     return run.command(arguments);
   }
-  /// A participant with these keys. It announces them like our processes, and states that it started this
-  /// long ago.
+  /// Settings of an attacker that has these keys, announces them like a Sidestep process, and states that it
+  /// started `age` ago.
   AttackerSettings with_keys(const std::string& folder, Duration age = {}) const {
     const auto announced = [folder, age](const ParticipantId& id) {
       return credentials(Certificate::load(folder + "/" + key_files::kCertificate),
@@ -72,7 +72,7 @@ struct KeyedRun {
   }
   int domain() const { return std::stoi(run.dds_arguments()[1]); }
 
-  /// The operator's own orders still take effect, and there was no contact.
+  /// Checks that the operator's own orders still take effect, and that there was no contact.
   void check_unharmed() {
     CHECK(command({"go", "0", "0,-1", "--wait"}) == "exit code 0");
     check_safe();
@@ -102,7 +102,7 @@ class Shuttle {
   explicit Shuttle(const KeyedRun& keyed)
       : bus_(settings(keyed)), client_(bus_, static_cast<ClientId>(Sender::kOperator)) {}
 
-  /// Continues for a moment. Returns how many orders have been carried out.
+  /// Runs for 1 ms. Returns how many orders have been carried out so far.
   int drive() {
     bus_.run_until(bus_.now() + std::chrono::milliseconds(1));
     for (RobotId robot = 0; robot < handles_.size(); ++robot) {

@@ -67,7 +67,7 @@ void print(const char* name, const std::vector<Result>& results) {
 void compare(int runs) {
   std::vector<Result> open, keyed;
   for (int i = 0; i < runs; ++i) {
-    // So that neither has the advantage of always being first.
+    // Alternates the order, so that neither variant is always first.
     for (const bool has_keys : {i % 2 == 0, i % 2 != 0})
       (has_keys ? keyed : open).push_back(drive_22(has_keys));
   }

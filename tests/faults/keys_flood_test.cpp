@@ -18,10 +18,10 @@ constexpr int kPerSecond = 10'000;
 constexpr double kStanding_mps = 0.05;
 constexpr std::uint8_t kFormerProcesses = 100;
 constexpr Duration kFormerAge = std::chrono::minutes(10);
-/// A process that stored what it receives would grow by more than this in the shortest flood.
+/// A process that stored the flood's datagrams would grow by more than this in the shortest flood.
 constexpr double kMaxGrowth_mb = 6;
 
-/// Strangers, some of whom know a genuine announcement.
+/// Sends the flood. Some of its senders know a genuine announcement.
 class Strangers {
  public:
   Strangers(const KeyedRun& keyed, std::uint64_t seed) : rng_(seed), domain_(keyed.domain()) {
@@ -145,9 +145,8 @@ void check_flood(Duration duration) {
     CHECK(growth_mb < kMaxGrowth_mb);
   }
   WARN(fmt::format(
-      "{:.0f} datagrams a second to {} ports for {:.0f} s; orders carried out meanwhile: {}; all robots "
-      "stood for "
-      "{:.1f} s, at most {:.1f} s at a time",
+      "{:.0f} datagrams a second to {} ports for {:.0f} s; orders carried out meanwhile: {}; robots stood "
+      "still for {:.1f} s, for at most {:.1f} s at a time",
       sent / flooded_s, ports.size(), flooded_s, shuttle.drive() - arrived_before, standing_s, longest_s));
   CHECK(sent / flooded_s > 0.8 * kPerSecond);
   const int arrived = shuttle.drive();
@@ -158,15 +157,16 @@ void check_flood(Duration duration) {
   for (const auto& [process, counts] : report["counters"].items())
     refused += counts.value("refused_participant", 0);
   WARN(refused << " announcements refused");
-  CHECK(refused > sent);  // what is sent to all is heard by several processes
+  CHECK(refused > sent);  // several processes receive each multicast announcement
 }
 
-TEST_CASE("a flood of packets from strangers on every port costs time, but neither safety nor memory",
+TEST_CASE("a flood of unauthorised packets on every port delays robots, but costs neither safety nor memory",
           "[both-cores][slow]") {
   check_flood(seconds(15));
 }
 
-TEST_CASE("a flood of strangers on every port for five minutes fills no memory", "[.long][slow]") {
+TEST_CASE("a flood of unauthorised packets on every port for five minutes does not fill memory",
+          "[.long][slow]") {
   check_flood(std::chrono::minutes(5));
 }
 

@@ -35,7 +35,7 @@ using std::chrono::seconds;
 constexpr double kMoving_mps = 0.1;
 constexpr int kDatagramsPerSecond = 10'000;
 
-/// An order to robot 0, in this name, to drive to the other side of the field.
+/// An order in the name of `sender` that sends robot 0 to the other side of the field.
 msg::Order order_as(std::uint32_t sender, const LaunchedRun& run) {
   const Time now = run.bus().now();
   const auto& robots = run.truth().robots();
@@ -54,8 +54,8 @@ msg::Order order_as(std::uint32_t sender, const LaunchedRun& run) {
   return order;
 }
 
-/// Writes orders for some seconds, by default in the operator's name. Returns whether a robot moved; all are
-/// at rest before.
+/// Writes orders for some seconds, by default in the operator's name. Returns whether a robot moved.
+/// Precondition: all robots are at rest.
 bool attack(LaunchedRun& run, Attacker& attacker, Duration duration = seconds(3),
             std::uint32_t sender = static_cast<std::uint32_t>(Sender::kOperator)) {
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() < kMoving_mps / 2; }));
@@ -70,7 +70,7 @@ bool attack(LaunchedRun& run, Attacker& attacker, Duration duration = seconds(3)
   return has_moved;
 }
 
-/// The attacker moves no robot, finds no reader, and the log has this line.
+/// Checks that the attacker moves no robot and finds no reader, and that the log has this line.
 void check_refused(LaunchedRun& run, const AttackerSettings& settings, const std::string& line) {
   CAPTURE(line);
   Attacker attacker(settings);
@@ -79,9 +79,9 @@ void check_refused(LaunchedRun& run, const AttackerSettings& settings, const std
   CHECK(run.wait_until([&] { return run.logged("keys: refuses " + line); }));
 }
 
-/// An attacker with genuine keys that the run hears: it sends until the log says that its messages are
-/// refused. When processes of several tests start at once, one in ten such participants is not heard for a
-/// minute and more; another one then takes its place.
+/// Returns an attacker with genuine keys that the run hears. The attacker sends until the log says that its
+/// messages are refused. When processes of several tests start at once, one in ten attackers is not heard for
+/// more than a minute, and is then replaced by a new one.
 std::unique_ptr<Attacker> heard_attacker(LaunchedRun& run, const AttackerSettings& settings,
                                          const std::function<void(Attacker&)>& send,
                                          const std::vector<std::string>& lines) {
@@ -97,13 +97,13 @@ std::unique_ptr<Attacker> heard_attacker(LaunchedRun& run, const AttackerSetting
       return is_heard() || run.bus().now() - begin > seconds(10);
     }));
     if (is_heard()) return attacker;
-    WARN("attacker " << i << " is not heard");
+    WARN("attacker " << i << " is not heard, starting another one");
   }
   FAIL("no attacker is heard");
   return nullptr;
 }
 
-/// A client who is refused in the operator's name.
+/// A client that sends orders in the operator's name and is refused.
 std::unique_ptr<Attacker> heard_client(KeyedRun& keyed) {
   LaunchedRun& run = keyed.run;
   const msg::Order order = order_as(static_cast<std::uint32_t>(Sender::kOperator), run);
@@ -113,8 +113,7 @@ std::unique_ptr<Attacker> heard_client(KeyedRun& keyed) {
       {"keys: refuses messages of client forklift on topic 'order' in the name of operator"});
 }
 
-/// Replaces the permissions by some that another authority has signed: those of an operator, for the same
-/// subject.
+/// Replaces the permissions by an operator's permissions for the same subject, signed by another authority.
 void use_own_permissions(AttackerSettings& settings, const TestKeys& others) {
   const Certificate certificate = Certificate::load(settings.keys->certificate);
   const std::string authority = others.folder() + "/public/" + key_files::kPermissionsAuthority;
@@ -127,7 +126,7 @@ void use_own_permissions(AttackerSettings& settings, const TestKeys& others) {
                                                certificate.not_before(), certificate.not_after())));
 }
 
-TEST_CASE("without keys, anybody's order moves a robot") {
+TEST_CASE("without keys, an order from any process on the network moves a robot") {
   LaunchedRun run(kThreeWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.truth().robots().size() == 3; }));
   Attacker attacker({std::stoi(run.dds_arguments()[1])});
@@ -136,7 +135,7 @@ TEST_CASE("without keys, anybody's order moves a robot") {
   CHECK(run.logged("no keys: any machine on this network can command the robots"));
 }
 
-TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]") {
+TEST_CASE("with keys, a process without valid keys is refused and logged, and moves no robot", "[slow]") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   const TestKeys others(all_identities());
@@ -144,7 +143,7 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]
   const AttackerSettings genuine = keyed.with_keys(keyed.keys.folder_of("operator"));
 
   check_refused(run, {keyed.domain()}, "a process at 127.0.0.1 that announces no key");
-  // Has no keys, but repeats the operator's announcement.
+  // This attacker has no keys, but repeats the operator's announcement.
   const CertifiedPrefix prefix = Certificate::load(genuine.keys->certificate).prefix();
   check_refused(run, {keyed.domain(), std::nullopt, genuine.announced, prefix},
                 "a process that announces itself as operator");
@@ -158,7 +157,7 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]
   use_own_permissions(foreign, others);
   check_refused(run, foreign, "a process that announces itself as vision");
 
-  // A viewer who grants himself permission to write everything.
+  // A viewer that has signed its own permissions to write everything.
   AttackerSettings viewer = keyed.with_keys(keyed.keys.folder_of("viewer"));
   use_own_permissions(viewer, others);
   check_refused(run, viewer, "a process that announces itself as viewer");
@@ -167,11 +166,11 @@ TEST_CASE("with keys, strangers are refused by name, and move no robot", "[slow]
   keyed.check_unharmed();
 }
 
-TEST_CASE("with keys, no process can speak for another") {
+TEST_CASE("with keys, no process can send messages in the name of another") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());
-  // A viewer cannot read or write more than it may, and its own library says so.
+  // A viewer can only read and write what its keys allow; its own library refuses the rest.
   CHECK(keyed.command({"topic", "pub", "order", "{}", "--keys", keyed.keys.folder_of("viewer")}) ==
         "exit code 2");
   CHECK(run.printed("the keys of viewer do not allow writing the topic 'order'"));
@@ -202,7 +201,7 @@ TEST_CASE("with keys, no process can speak for another") {
       {fmt::format(fmt::runtime(refused), "registration"), fmt::format(fmt::runtime(refused), "proposal"),
        fmt::format(fmt::runtime(refused), "order_status")});
 
-  // A client may give its own orders, but none in the operator's name.
+  // A client may give orders in its own name, but not in the operator's name.
   const auto orderer = heard_client(keyed);
   Attacker& client = *orderer;
   CHECK_FALSE(attack(run, client));
@@ -253,7 +252,8 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
       [&] { return run.logged("keys: refuses client forklift at 127.0.0.1, whose key is revoked"); }));
   CHECK_FALSE(attack(run, client, seconds(3), client_id("forklift")));
 
-  // If nobody hears an attacker before its key expires, another takes its place; see heard_attacker().
+  // If no process hears an attacker before its key expires, another attacker takes its place; see
+  // heard_attacker().
   std::unique_ptr<Attacker> brief;
   bool has_moved_robot = false;
   for (int i = 0; i < 4 && !has_moved_robot; ++i) {
@@ -267,14 +267,14 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
       [&] { return run.logged("keys: refuses client brief at 127.0.0.1, whose key has expired"); }));
   CHECK_FALSE(attack(run, *brief, seconds(3), client_id("brief")));
 
-  // The robot of a revoked agent stays at rest, and the others drive on.
+  // The robot of a revoked agent stays at rest, and the others continue.
   REQUIRE(revoke({"agent", "2"}) == "exit code 0");
   REQUIRE(
       run.wait_until([&] { return run.logged("keys: refuses agent 2 at 127.0.0.1, whose key is revoked"); }));
   keyed.check_unharmed();
 }
 
-/// In place of ssh, a program that runs the remote command on this machine, as sshd would.
+/// Replaces ssh by a program that runs the remote command on this machine, as sshd would.
 class LocalSsh {
  public:
   LocalSsh() {
@@ -308,7 +308,7 @@ TEST_CASE("keys that are revoked during a run are also refused on other hosts") 
   REQUIRE(attack(run, client, seconds(20), client_id("forklift")));
   REQUIRE(run.command({"keys", "revoke", "--keys", keyed.keys.folder(), "client", "forklift"}) ==
           "exit code 0");
-  // That process uses the list of another host.
+  // The coordinator uses the list of revoked keys of the other host.
   REQUIRE(run.wait_until([&] {
     return run.logged("coordinator: keys: refuses client forklift at 127.0.0.1, whose key is revoked");
   }));
@@ -316,7 +316,8 @@ TEST_CASE("keys that are revoked during a run are also refused on other hosts") 
   keyed.check_unharmed();
 }
 
-/// A thread in an endless loop takes as much of a core as it can get. All robots are at rest.
+/// Checks that no thread is in an endless loop, which would use as much of a core as it can get. All robots
+/// are at rest.
 void check_no_thread_spins(LaunchedRun& run) {
   constexpr double kObserved_s = 4;
   const auto before = usage_of(run);
@@ -339,7 +340,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   const std::map<std::string, pid_t> processes = run.children();
   const Capture capture(keyed.domain());
   Shuttle shuttle(keyed);
-  // A replay repeats datagrams that were accepted before, including ones that have been answered since.
+  // Captures for some seconds, so that replays repeat datagrams that were accepted before.
   const Time captured_until = run.bus().now() + seconds(5);
   REQUIRE(run.wait_until([&] { return shuttle.drive() > 3 && run.bus().now() > captured_until; }));
   const std::vector<CapturedDatagram> captured = capture.datagrams();
@@ -348,7 +349,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   int replayed = 0, changed = 0;
   const std::uint64_t read_before = datagrams_read();
   const Time begin = run.bus().now();
-  // wait_until() waits for a minute at most.
+  // wait_until() waits for at most a minute.
   while (run.bus().now() - begin < duration) {
     const Time part_begin = run.bus().now();
     REQUIRE(run.wait_until([&] {
@@ -364,7 +365,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
       return run.bus().now() - part_begin > seconds(10);
     }));
   }
-  // Processes received these in addition to what they sent to each other.
+  // Processes have received these datagrams in addition to each other's.
   const std::uint64_t read = datagrams_read() - read_before;
   CHECK(read > static_cast<std::uint64_t>(replayed + changed));
   CHECK(run.children() == processes);
@@ -381,11 +382,12 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
                        << dropped << " dropped as malformed; orders carried out: " << carried_out);
 }
 
-TEST_CASE("replayed and altered datagrams do no harm to robots that drive with keys", "[slow]") {
+TEST_CASE("replayed and altered datagrams do not disturb robots that drive with keys", "[slow]") {
   repeat_and_alter(seconds(15), 41);
 }
 
-TEST_CASE("ten minutes of repeated and changed datagrams do no harm", "[.long][slow]") {
+TEST_CASE("ten minutes of replayed and altered datagrams do not disturb robots that drive with keys",
+          "[.long][slow]") {
   repeat_and_alter(std::chrono::minutes(10), 42);
 }
 

@@ -8,11 +8,12 @@
 
 namespace sidestep {
 
-/// A host of a run on this machine whose clock a test can set. The other host of the run has the right clock.
+/// A host of a run, simulated on this machine, whose clock a test can set. The run's other host has the right
+/// clock.
 class LateHost {
  public:
-  /// `processes`: what runs on this host, as in a hosts file, e.g. "processes: [vision], agents: [0-3]";
-  /// `others`: what runs on the other host. `ahead` is how far its clock is ahead at the start.
+  /// `processes` run on this host and `others` on the other host, both as in a hosts file, e.g. "processes:
+  /// [vision], agents: [0-3]". `ahead` is how far this host's clock is ahead at the start.
   LateHost(const std::string& processes, const std::string& others, Duration ahead);
   ~LateHost();
   LateHost(const LateHost&) = delete;

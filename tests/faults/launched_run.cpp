@@ -158,7 +158,7 @@ pid_t LaunchedRun::director() const {
   const std::string process = "/proc/" + std::to_string(pid_);
   std::istringstream children(text_of(process + "/task/" + std::to_string(pid_) + "/children"));
   for (pid_t child = 0; children >> child;) {
-    // It is the same program with the same arguments.
+    // The director is the same program with the same arguments.
     if (text_of("/proc/" + std::to_string(child) + "/cmdline") == text_of(process + "/cmdline")) return child;
   }
   return 0;
@@ -248,7 +248,7 @@ std::string shuttles(int times, const std::string& extra_keys) {
 void check_passed_or_missed_messages(const LaunchedRun& run, const std::string& end) {
   if (end == "exit code 0") return;
   CHECK(end == "exit code " + std::to_string(kExitNotJudged));
-  // A version is incomplete if one of the few messages about it was missed.
+  // The audit lacks data of a version if it has missed one of the few messages about the version.
   CHECK((run.printed("of the messages were missed") || run.printed("of the executed versions lack a")));
 }
 

@@ -27,8 +27,8 @@ class LaunchedRun {
   /// `scenario` is the text of a scenario file. With the argument --keys, this object observes the run as a
   /// judge.
   explicit LaunchedRun(const std::string& scenario, const std::vector<std::string>& extra_arguments = {});
-  /// A run on the hosts of a hosts file that creates namespaces. This thread stays in their network during
-  /// the lifetime of the object. Needs root.
+  /// Starts a run on the hosts of a hosts file that creates network namespaces. This thread stays in their
+  /// network during the lifetime of the object. Needs root.
   static std::unique_ptr<LaunchedRun> on_namespaces(const std::string& scenario,
                                                     const std::vector<std::string>& extra_arguments = {},
                                                     const std::string& hosts_file = three_hosts_file());
@@ -52,7 +52,7 @@ class LaunchedRun {
   std::string wait_for_end();
   /// Starts another Sidestep program alongside the run; its output goes to the same log.
   pid_t start(const std::string& name, const std::string& program, const std::vector<std::string>& arguments);
-  /// How that program ended, e.g. "exit code 0"; nullopt: it is still running.
+  /// How the program started with this name ended, e.g. "exit code 0"; nullopt: it is still running.
   std::optional<std::string> exit_reason(const std::string& name) const;
   /// Runs `sidestep` with these arguments to its end and returns the reason, e.g. "exit code 0"; empty on
   /// timeout.
@@ -62,7 +62,7 @@ class LaunchedRun {
   std::string scenario_file() const { return (folder_ / "scenario.yaml").string(); }
   /// The launcher's own process.
   pid_t pid() const { return pid_; }
-  /// Its child that directs and observes the run; 0 if there is none.
+  /// The launcher's child process that directs and observes the run; 0 if there is none.
   pid_t director() const;
   /// The latest process that was started with this name, e.g. "agent 3"; 0 if there is none.
   pid_t pid_of(const std::string& process) const;
@@ -99,21 +99,21 @@ class LaunchedRun {
   std::optional<ScopedNamespace> visit_;
   std::unique_ptr<DdsBus> bus_;
   msg::GroundTruth truth_;
-  std::map<std::string, std::string> exit_reasons_;  ///< of the programs alongside the run
+  std::map<std::string, std::string> exit_reasons_;  ///< of programs started alongside the run
   std::optional<std::string> exit_;                  ///< of the run
   pid_t pid_ = 0;
 };
 
-/// Checks that the run has passed or, where processes are forgotten for a while or packets are lost, could
-/// not be judged because too many messages were missed.
+/// Checks that the run has passed, or could not be judged because too many messages were missed. For tests in
+/// which processes are forgotten for a while or packets are lost.
 void check_passed_or_missed_messages(const LaunchedRun& run, const std::string& end);
 
 /// The text of a shipped file below deploy/, e.g. "scenarios/crossing.yaml".
 std::string shipped(const std::string& file);
 /// The text of a shipped scenario.
 std::string shipped_scenario(const std::string& name);
-/// The scenario crossing-images. With a sanitizer, which slows rendering down many times, frames are fewer
-/// and smaller.
+/// The scenario crossing-images. With a sanitizer, which makes rendering much slower, frames are fewer and
+/// smaller.
 std::string crossing_images(int rate_hz = 60);
 /// A scenario with six robots that shuttle along their own lanes and two that cross all lanes, each `times`
 /// times. `extra_keys` are added to the scenario.

@@ -218,11 +218,11 @@ TEST_CASE("robots observed through league packets cross the field and arrive wit
   CHECK(tracked.invalid() == 0);
   CHECK(tracked.packets() > 100);
   CHECK(tracked.robots() > 800);
-  // The tracker's error while robots accelerate, and ground truth that is up to 20 ms old.
+  // Allows for the tracker's error while robots accelerate, and for ground truth that is up to 20 ms old.
   CHECK(tracked.max_error_m() < 0.03);
 }
 
-TEST_CASE("replaying a recorded log of league packets shows vision the same robots") {
+TEST_CASE("vision tracks the same robots from a replayed log of league packets") {
   LeagueSystem system;
   const std::string log = system.file("floor.ssl");
   const Arguments groups{"--ssl-vision", system.endpoints().text(0), "--tracked", system.endpoints().text(1),

@@ -15,7 +15,7 @@ using namespace sidestep;
 
 namespace {
 
-/// Two namespace hosts. An empty programs folder means the programs next to this test.
+/// A hosts file with two namespaces. For an empty folder the programs next to this test run.
 std::string hosts_file(const std::string& floor_programs, const std::string& agent_programs) {
   const auto programs = [](const std::string& folder) {
     return folder.empty() ? std::string() : "    programs: " + folder + "\n";
@@ -66,7 +66,7 @@ double drive_and_kill_coordinator(const std::string& hosts) {
 
 }  // namespace
 
-TEST_CASE("a fleet of two versions of Fast DDS survives packet loss and the coordinator's death",
+TEST_CASE("a fleet with two versions of Fast DDS arrives despite packet loss and the coordinator's death",
           "[.mixed][slow]") {
   const char* other = std::getenv("SIDESTEP_OTHER_PROGRAMS");
   REQUIRE(other);
@@ -89,7 +89,8 @@ TEST_CASE("a fleet of two versions of Fast DDS survives packet loss and the coor
   CHECK(median(takeovers_ms) <= kMaxMedian_ms);
 }
 
-TEST_CASE("a fleet of two versions of Fast DDS with keys does not start, and says why", "[.mixed][slow]") {
+TEST_CASE("a fleet with keys and two versions of Fast DDS does not start, and logs the reason",
+          "[.mixed][slow]") {
   const char* other = std::getenv("SIDESTEP_OTHER_PROGRAMS");
   REQUIRE(other);
   const auto file =

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// What the monitor costs a run, and what viewers can do to it, with real processes.
+// SPDX-License-Identifier: Apache-2.0 How much load the monitor and its viewers put on a run, with real
+// processes.
 #include <arpa/inet.h>
 #include <atomic>
 #include <cstring>
@@ -53,7 +53,7 @@ void seek_back(double back_s) {
   CHECK(frames >= (back_s + 1) * 30);
   std::vector<double> delays_ms;
   for (int i = 0; i < 20; ++i) {
-    const double wanted_s = first_s + 0.05 * i + (i % 2 ? back_s / 2 : 0);  // far from the previous one
+    const double wanted_s = first_s + 0.05 * i + (i % 2 ? back_s / 2 : 0);  // far from the previous position
     const auto asked = std::chrono::steady_clock::now();
     viewer.send(fmt::format(R"({{"op":"seek","at_s":{:.6f}}})", wanted_s));
     while (std::abs(receive_frame() - wanted_s) > 0.06) {
@@ -117,7 +117,7 @@ class CountingViewer {
 };
 
 TEST_CASE("a run serves its page to the browser, and continues without the monitor") {
-  // Any free port, for example that of a monitor which has just ended.
+  // A port that is free, because its monitor has just ended.
   std::uint16_t port = 0;
   {
     LaunchedRun first(kWaitingRobots);
@@ -128,7 +128,7 @@ TEST_CASE("a run serves its page to the browser, and continues without the monit
   CHECK(Json::parse(http_request(port, "GET", "/api/state").body).at("robots").size() == 3);
   CHECK(http_request(port, "GET", "/").body.find("<title>Sidestep monitor</title>") != std::string::npos);
   CHECK(run.wait_for_end() == "exit code 0");
-  // If the port is taken, the run says so.
+  // If the port is taken, the run reports that and continues.
   LaunchedRun holder(kWaitingRobots);
   const MonitorProcess taken(holder);
   LaunchedRun other(kWaitingRobots, {fmt::format("--monitor={}", taken.port()), "--seconds", "2"});
@@ -137,7 +137,7 @@ TEST_CASE("a run serves its page to the browser, and continues without the monit
   CHECK(other.printed("Address already in use"));
 }
 
-/// Three viewers watch 22 robots.
+/// Measures the load of a monitor while three viewers watch 22 robots.
 void watch_three_times(Duration duration) {
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
@@ -177,7 +177,7 @@ TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-core
   watch_three_times(5s);
 }
 
-TEST_CASE("a monitor with three viewers costs little more than a subscriber", "[.figures][slow]") {
+TEST_CASE("a monitor with three viewers costs little more than a plain subscriber", "[.figures][slow]") {
   watch_three_times(30s);
 }
 
@@ -220,11 +220,11 @@ class SlowViewer {
   std::thread thread_;
 };
 
-TEST_CASE("slow, numerous or hostile viewers harm neither the run nor the monitor", "[both-cores][slow]") {
+TEST_CASE("slow or numerous or hostile viewers harm neither the run nor the monitor", "[both-cores][slow]") {
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
-  // Memory that the monitor needs in addition to the frames that it remembers.
+  // Memory of the monitor without its history of frames.
   const auto memory_mb = [&] {
     return usage_of(monitor.pid()).memory_mb - monitor.state().at("history_bytes").get<double>() * 1e-6;
   };

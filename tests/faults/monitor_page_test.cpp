@@ -29,7 +29,7 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   CHECK(page.text("lamp-text") == "promise kept");
   CHECK(page.text("connection") == "connected");
 
-  // The robots' positions according to ground truth.
+  // The page shows the robots' true positions.
   REQUIRE(page.wait_until("monitor.frame.sections.robots.rows === 3"));
   (void)run.wait_until([&] { return run.truth().robots().size() == 3; });
   for (const msg::TrueRobotState& robot : run.truth().robots()) {
@@ -41,7 +41,7 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
     CHECK(place[1].get<double>() == Approx(robot.y_m()).margin(0.01));
   }
 
-  // The panels.
+  // The panels have the expected contents.
   CHECK(page.run("return document.querySelectorAll('#panel-robots tbody tr').length") == 3);
   page.click("tab-coordinators");
   CHECK(page.wait_until("document.querySelector('#panel-coordinators').textContent.includes('granting')"));
@@ -58,7 +58,7 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   page.run(
       "const p = document.getElementById('plotted'); p.value = 'x_m'; p.dispatchEvent(new Event('change'))");
 
-  // An order by drag and drop, and one by HTTP.
+  // Gives one order by drag and drop, and one by HTTP.
   page.click("tab-control");
   page.run(R"(
     const canvas = document.getElementById('floor'), box = canvas.getBoundingClientRect();
@@ -80,10 +80,10 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
       if (r.robot() == robot) return std::hypot(r.x_m() - x_m, r.y_m() - y_m) < 0.05;
     return false;
   };
-  // The fields that the selected robot could plan with.
+  // The page shows the planning fields of the selected robot.
   for (const char* layer : {"navigation", "band", "local"}) page.click(std::string("layer-") + layer);
   page.run("document.querySelector('#panel-robots [data-key=\"1\"]').click()");
-  // The monitor knows the robot's goal once it has heard of the order.
+  // The monitor knows the robot's goal once it has received the order.
   Json fields;
   REQUIRE(run.wait_until([&] {
     fields = Json::parse(http_request(monitor.port(), "GET", "/api/fields/1").body);
@@ -98,15 +98,15 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   page.click("command-hold-all");
   CHECK(page.wait_until("monitor.events.filter((e) => e.kind === 'hold').length === 3", polling(run)));
 
-  // Each order is an event. Each key has a meaning, and what the page asks for is allowed.
+  // Each order appears as an event. No keyboard shortcut causes an error, and no request of the page is
+  // refused.
   CHECK(page.wait_until("monitor.events.some((e) => e.text === 'operator sends robot 0 to a goal')"));
   for (const char* key : {"1", "2", "m", "t", "f", "[", "]", ",", ".", "l"}) page.press(key);
   CHECK(page.complaints() == "");
 }
 
-TEST_CASE(
-    "the page shows that a coordinator dies and another takes over, and reconnects to a restarted monitor",
-    "[both-cores]") {
+TEST_CASE("the page shows a takeover between coordinators, and reconnects to a restarted monitor",
+          "[both-cores]") {
   LaunchedRun run(kWaitingRobots);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
   auto monitor = std::make_unique<MonitorProcess>(run);
@@ -127,7 +127,7 @@ TEST_CASE(
   CHECK(page.wait_until(
       "monitor.panels.coordinators.filter((c) => c.mode === 'granting' && c.age_s < 1).length === 1"));
 
-  // Without --control no request can command.
+  // Without --control no request can give commands.
   CHECK(page.run("return document.getElementById('tab-control')").is_null());
   CHECK(http_request(monitor->port(), "POST", "/api/hold", {{"Authorization", "Bearer "}}).status == 401);
 
@@ -141,7 +141,7 @@ TEST_CASE(
                         polling(run)));
 }
 
-/// A simulated run that was recorded, and a monitor that shows it.
+/// Records a simulated run and starts a monitor that shows it.
 class ShownRecording {
  public:
   ShownRecording(const std::string& scenario, const std::vector<std::string>& extra = {})
@@ -197,7 +197,7 @@ TEST_CASE("the page shows a recording, and a link opens it at a given moment") {
   CHECK(page.wait_until(
       fmt::format("window.monitor && monitor.frame && Math.abs(monitor.frame.time - {:.3f}) < 0.05",
                   at_s.get<double>())));
-  // Messages of the moment that is shown.
+  // The inspected message is from the displayed time.
   page.click("tab-inspect");
   page.run(
       "const c = document.getElementById('inspected'); c.value = 'feedback/0'; c.dispatchEvent(new "
@@ -215,7 +215,7 @@ TEST_CASE("the page shows a recording, and a link opens it at a given moment") {
                                   message, at_s.get<double>())));
   CHECK(page.complaints() == "");
 
-  // The floor is drawn also when nothing moves, and after it was resized and moved.
+  // The floor is drawn even if nothing moves, and again after it has been resized and zoomed.
   const std::string drawn =
       "(() => { const c = document.getElementById('floor'); return c.getContext('2d').getImageData(0, 0, "
       "c.width, "
@@ -229,7 +229,7 @@ TEST_CASE("the page shows a recording, and a link opens it at a given moment") {
   recording.end();
 }
 
-TEST_CASE("the page shows the images of cameras with the robots that vision sees", "[both-cores]") {
+TEST_CASE("the page shows camera images with the robots that vision detects", "[both-cores]") {
   LaunchedRun run(crossing_images(30));
   const MonitorProcess monitor(run);
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
@@ -283,7 +283,7 @@ TEST_CASE("a roadmap adapts while obstacles are dragged on the page") {
   recording.end();
 }
 
-TEST_CASE("the page draws 22 robots with all layers and 1,000 robots", "[both-cores][slow]") {
+TEST_CASE("the page draws all layers for 22 robots and for 1,000 robots", "[both-cores][slow]") {
   for (const char* scenario : {"two-teams-22.yaml", "streams-1000.yaml"}) {
     ShownRecording recording(scenario, {"--seconds", "3"});
     Browser page;
@@ -326,7 +326,7 @@ void send_events(std::size_t events) {
       "monitor.received = []; const push = monitor.events.push; monitor.events.push = function (e) { if "
       "(e.kind === "
       "'attestation') monitor.received.push(Date.now()); return push.call(this, e); }");
-  // An attestation of a robot that has registered has no effect, but is an event.
+  // An attestation of a registered robot has no effect, but appears as an event.
   auto writer = run.bus().advertise(topics::kAttestation);
   REQUIRE(run.wait_until([&, end = run.bus().now() + 2s] { return run.bus().now() > end; }));
   std::vector<double> sent_ms;

@@ -20,7 +20,7 @@ class MonitorProcess {
   const std::string& token() const { return token_; }
   pid_t pid() const { return pid_; }
   std::string url() const;
-  /// GET /api/state.
+  /// The answer to GET /api/state.
   nlohmann::json state() const;
 
  private:
@@ -29,7 +29,7 @@ class MonitorProcess {
   pid_t pid_ = 0;
 };
 
-/// Keeps the bus of the run from falling behind while the test waits for a browser.
+/// Returns a function that processes messages of the run while the test waits for a browser.
 std::function<void()> polling(LaunchedRun& run);
 
 /// Receives messages of the run for this long.

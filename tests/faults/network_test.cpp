@@ -39,7 +39,7 @@ TEST_CASE("all robots arrive although messages are lost in bursts, delayed, dupl
                                                                   << report["cycles"] << " cycles missed");
 }
 
-TEST_CASE("all robots stop while the coordinator is cut off, and drive on when the fault is cleared") {
+TEST_CASE("all robots stop while the coordinator is cut off, and continue when the fault is cleared") {
   LaunchedRun run(shuttles(4, ""), {"--faults"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   REQUIRE(run.command(fault(run, {"network", "--target", "coordinator", "--cut"})) == "exit code 0");
@@ -52,7 +52,7 @@ TEST_CASE("all robots stop while the coordinator is cut off, and drive on when t
   CHECK(run.report()["arrived"] == 8);
 }
 
-TEST_CASE("faults that cannot be applied are refused with the reason") {
+TEST_CASE("a network fault or push that cannot be applied is refused with a reason") {
   LaunchedRun run(shuttles(20, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   CHECK(run.command(fault(run, {"network", "--target", "all", "--cut"})) == "exit code 1");
@@ -68,7 +68,7 @@ TEST_CASE("faults that cannot be applied are refused with the reason") {
   CHECK(run.max_speed_mps() > 0);
 }
 
-TEST_CASE("a robot that is pushed reports that it is off its reference, drives on and arrives") {
+TEST_CASE("a pushed robot reports that it is off its reference, continues and arrives") {
   LaunchedRun run(shuttles(3, ""));
   REQUIRE(run.wait_until([&] { return run.speed_mps(2) > 0.8; }));
   bool is_off_reference = false;
@@ -85,7 +85,7 @@ TEST_CASE("a robot that is pushed reports that it is off its reference, drives o
 }
 
 TEST_CASE(
-    "robots that slip, are blocked, rebooted, lifted and placed, or get a wrong clock, drive on and arrive",
+    "robots arrive although they slip, are blocked, rebooted or lifted and placed, or get a wrong clock",
     "[slow]") {
   LaunchedRun run(shuttles(5, ""));
   std::map<RobotId, msg::Feedback> robot_reports;

@@ -16,7 +16,8 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr int kPerSecond = 10'000;
-// A process that stored the orders of the shortest flood would need three times as much.
+// Maximum growth of a process. One that stored the orders of the shortest flood would need three times as
+// much.
 constexpr double kMaxGrowth_mb = 6;
 
 std::string waiting_robots() {
@@ -26,12 +27,12 @@ std::string waiting_robots() {
   return text;
 }
 
-/// A random order from one of two strangers: most of it is valid, and every field is sometimes absurd.
+/// A random order from one of two hostile clients. Most fields are valid, but each is sometimes absurd.
 msg::Order hostile_order(Rng& rng, Time now) {
   const auto sometimes = [&](double usual, double absurd) { return rng.below(10) == 0 ? absurd : usual; };
   msg::Order order;
   order.header().sender(1'000'001 + static_cast<std::uint32_t>(rng.below(2)));
-  // Robot 0 is left alone, so that it can carry out its order.
+  // The flood does not affect robot 0, so that it can carry out its order.
   order.robot(
       static_cast<std::uint32_t>(sometimes(1.0 + static_cast<double>(rng.below(3)), 4e9 * rng.uniform())));
   order.terms().order_kind(static_cast<msg::OrderKind>(rng.below(5)));
@@ -101,11 +102,11 @@ void check_flood(Duration duration) {
   CHECK(run.report()["audit"]["violations"] == 0);
 }
 
-TEST_CASE("ten thousand orders a second over DDS are answered, and fill no memory", "[both-cores]") {
+TEST_CASE("ten thousand orders a second over DDS are answered without filling memory", "[both-cores]") {
   check_flood(seconds(8));
 }
 
-TEST_CASE("ten thousand orders a second over DDS for two minutes fill no memory", "[.long][slow]") {
+TEST_CASE("ten thousand orders a second over DDS for two minutes do not fill memory", "[.long][slow]") {
   check_flood(std::chrono::minutes(2));
 }
 

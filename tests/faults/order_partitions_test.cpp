@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Orders while hosts are cut off and processes are killed, over DDS: reliable messages are lost there.
+// SPDX-License-Identifier: Apache-2.0 Orders while hosts are cut off and processes are killed, over DDS,
+// where even reliable messages are then lost.
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -51,8 +51,8 @@ class PartitionRounds {
         sender_(run.bus(), client_id("sender")),
         rng_(seed) {}
 
-  /// Holds robots while a host is cut off, kills processes before the cut ends, sends the robots somewhere,
-  /// and watches whether they move before they are resumed.
+  /// One round: holds robots while a host is cut off, kills processes before the cut ends, sends the robots
+  /// somewhere, and checks whether they move before they are resumed.
   void one() {
     ++totals_.rounds;
     const std::string host = rng_.chance(0.5) ? "west" : "east";
@@ -67,7 +67,7 @@ class PartitionRounds {
       return std::ranges::all_of(
           holds, [&](OrderHandle h) { return holder_.find(h)->phase == OrderPhase::kAccepted; });
     });
-    // Only its agent confirms that a robot is held.
+    // Only the robot's agent confirms that it is held.
     const bool is_reachable =
         !is_cut_first || std::ranges::none_of(held, [&](RobotId robot) { return host_of(robot) == host; });
     totals_.unanswered += is_reachable && !is_accepted;
@@ -99,7 +99,7 @@ class PartitionRounds {
     REQUIRE(run_.wait_until([&] { return condition() || run_.bus().now() > end; }));
     return condition();
   }
-  /// Whether one of the robots moves in this time, after it has had time to brake.
+  /// Whether one of the robots moves in this time, after they have had time to brake.
   bool watch_for(Duration time, const std::set<RobotId>& robots) {
     const Time begin = run_.bus().now();
     const std::vector<RobotId> list(robots.begin(), robots.end());

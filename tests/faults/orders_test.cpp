@@ -28,7 +28,7 @@ std::string waiting_robots() {
   return text;
 }
 
-/// Sends robots to random places, each to one of its own.
+/// Sends robots to random positions that do not overlap.
 class RandomClient {
  public:
   RandomClient(DdsBus& bus, std::uint64_t seed) : client_(bus, client_id("random")), rng_(seed) {}
@@ -44,7 +44,7 @@ class RandomClient {
     open_.push_back(client_.go(robot, {{position}}));
     ++sent_;
   }
-  /// Forgets orders that are over. Returns whether none remain.
+  /// Forgets orders that have ended. Returns whether none remain.
   bool is_over() {
     std::erase_if(open_, [this](OrderHandle number) {
       const OrderPhase phase = client_.find(number)->phase;
@@ -105,12 +105,15 @@ TEST_CASE("a client learns the outcome of every order while agents and coordinat
   check_random_goals(seconds(12));
 }
 
-TEST_CASE("a client learns the outcome of every order for ten minutes", "[.long][slow]") {
+TEST_CASE(
+    "a client learns the outcome of every order for ten minutes while agents and coordinators are killed",
+    "[.long][slow]") {
   check_random_goals(minutes(10));
 }
 
 TEST_CASE(
-    "robots are held from the command line until they are resumed, although the coordinator is killed") {
+    "robots held from the command line stay held until they are resumed, although the coordinator is "
+    "killed") {
   LaunchedRun run(shuttles(20, "restart: [coordinator]\n"), {"--seconds", "18"});
   const auto command = [&](std::vector<std::string> arguments) {
     for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
@@ -136,7 +139,7 @@ TEST_CASE(
   CHECK(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
   CHECK(command({"go", "9", "0,0"}) == "exit code 1");
   CHECK(run.printed("go 9: refused, the scenario has no such robot"));
-  CHECK(run.wait_for_end() == "exit code 1");  // no robot visits all its goals
+  CHECK(run.wait_for_end() == "exit code 1");  // no robot has visited all its goals
   CHECK(run.report()["contacts"] == 0);
   CHECK(run.report()["audit"]["violations"] == 0);
 }

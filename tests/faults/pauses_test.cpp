@@ -36,8 +36,9 @@ TEST_CASE("all robots arrive without contact although each kind of process pause
   CHECK(run.report()["arrived"] == 8);
 }
 
-TEST_CASE("processes that pause until they are forgotten are rediscovered, even the launcher during startup",
-          "[slow]") {
+TEST_CASE(
+    "processes that pause until others forget them are rediscovered, including the launcher during startup",
+    "[slow]") {
   LaunchedRun run(shuttles(5, ""));
   const Duration until_forgotten = kSilenceLimit + std::chrono::seconds(2);
   REQUIRE(run.wait_until([&] { return run.printed("started agent 1"); }));
@@ -54,7 +55,7 @@ TEST_CASE("processes that pause until they are forgotten are rediscovered, even 
   CHECK(run.report()["arrived"] == 8);
 }
 
-TEST_CASE("a camera process that pauses until it is forgotten is rediscovered, and its images arrive again",
+TEST_CASE("a camera process that pauses until others forget it is rediscovered, and its images arrive again",
           "[both-cores]") {
   LaunchedRun run(crossing_images(), {"--seconds", "120"});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
@@ -67,7 +68,7 @@ TEST_CASE("a camera process that pauses until it is forgotten is rediscovered, a
   CHECK(run.report()["counters"].dump().find("forgotten_peer") != std::string::npos);
 }
 
-TEST_CASE("kill -9 of both coordinators in turn and of an agent: all robots arrive") {
+TEST_CASE("all robots arrive although both coordinators in turn and an agent are killed with kill -9") {
   LaunchedRun run(shuttles(5, "coordinators: 2\nrestart: [agents, coordinator]\n"));
   for (const char* process : {"coordinator 1", "agent 6", "coordinator"}) {
     INFO(process << "\n" << run.output());
@@ -85,7 +86,7 @@ TEST_CASE("kill -9 of both coordinators in turn and of an agent: all robots arri
   CHECK(run.report()["deaths"].size() == 3);
 }
 
-TEST_CASE("kill -9 of the simulator: the run ends and reports its death") {
+TEST_CASE("after kill -9 of the simulator, the run ends and reports that it died") {
   LaunchedRun run(shuttles(8, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   REQUIRE(kill(run.pid_of("simulator"), SIGKILL) == 0);
@@ -96,7 +97,7 @@ TEST_CASE("kill -9 of the simulator: the run ends and reports its death") {
   require_no_violations(run.report());
 }
 
-TEST_CASE("if two agents of one robot are alive, the later one drives it, without contact") {
+TEST_CASE("if one robot has two agents, the one started later drives it, without contact") {
   LaunchedRun run(shuttles(5, ""));
   REQUIRE(run.wait_until([&] { return run.speed_mps(3) > 0.8; }));
   std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--robot", "3"};

@@ -12,8 +12,8 @@ namespace sidestep {
 
 /// The resources that a process uses, as counted by the kernel.
 struct ProcessUsage {
-  double memory_mb = 0;  ///< resident
-  double cpu_s = 0;      ///< since the process's start
+  double memory_mb = 0;  ///< resident memory
+  double cpu_s = 0;      ///< processor time since the process's start
 };
 
 /// Throws std::runtime_error if no process has this id.

@@ -47,7 +47,7 @@ TEST_CASE("robots run by separate processes drive through a building whose map h
   CHECK(report["arrived"] == 6);
 }
 
-TEST_CASE("with --log-level debug, the log of a run names each registration, with time, level and process") {
+TEST_CASE("with --log-level debug, the log of a run lists each registration with level and process") {
   LaunchedRun run(shipped_scenario("crossing"), {"--log-level", "debug"});
   const std::string ended = run.wait_for_end();
   INFO(run.output());
@@ -77,8 +77,7 @@ TEST_CASE("robots detected in camera images cross the field and arrive without c
 }
 
 TEST_CASE(
-    "kill -9 of an agent while its robot moves: the robot stops without contact, the report lists the "
-    "death") {
+    "after kill -9 of an agent, its moving robot stops without contact, and the report lists the death") {
   LaunchedRun run(shipped_scenario("crossing"));
   REQUIRE(run.wait_until([&] { return run.speed_mps(2) > 0.8; }));
   REQUIRE(kill(run.pid_of("agent 2"), SIGKILL) == 0);
@@ -94,7 +93,7 @@ TEST_CASE(
   CHECK(report["deaths"][0].dump().find("SIGKILL") != std::string::npos);
 }
 
-TEST_CASE("kill -9 of the coordinator: all robots stop, and drive on to their goals after its restart") {
+TEST_CASE("after kill -9 of the coordinator, all robots stop, and reach their goals after its restart") {
   LaunchedRun run(shipped_scenario("crossing") + "restart: [coordinator]\n");
   REQUIRE(run.wait_until([&] { return run.speed_mps(0) > 0.8; }));
   const double max_mps = run.max_speed_mps();
@@ -191,7 +190,7 @@ TEST_CASE("no process outlives a killed launcher") {
   CHECK_FALSE(any_left());
 }
 
-TEST_CASE("robots drive on when the process that directs their run dies, and the run is not judged") {
+TEST_CASE("robots continue when the process that directs their run dies, and the run is not judged") {
   LaunchedRun run(shuttles(2, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   const auto children = run.children();
@@ -244,8 +243,7 @@ TEST_CASE(
   CHECK(invalid.children().empty());
 }
 
-TEST_CASE(
-    "a standby with an outdated scenario is named, never takes over, and no robot drives by its rules") {
+TEST_CASE("a standby with an outdated scenario is refused and logged, and never takes over") {
   std::string scenario = shuttles(20, "");
   LaunchedRun run(scenario);
   scenario.resize(scenario.rfind("  - {id: 7"));
@@ -261,7 +259,7 @@ TEST_CASE(
     return run.printed("refuses coordinator 1, which has different rules: robots.blue is 0-6 instead of 0-7");
   }));
   WARN("named " << to_seconds(run.bus().now() - begin) << " s after the start of its process");
-  // Both sides name the robots in their scenario.
+  // Coordinators of both sides report the difference.
   CHECK(run.wait_until([&] {
     return run.printed(
         "coordinator-1: refuses coordinator, which has different rules: robots.blue is 0-7 instead of 0-6");
@@ -269,7 +267,7 @@ TEST_CASE(
   CHECK(run.wait_until([&] {
     return run.logged("agent-0: refuses coordinator 1, which has different rules: robots.blue is 0-6");
   }));
-  // The counters of every process reach an observer within a second.
+  // Every process publishes its counters within a second.
   std::vector<std::string> echo{"topic", "echo", "counters", "--count", "25"};
   for (const std::string& argument : run.dds_arguments()) echo.push_back(argument);
   CHECK(run.command(echo) == "exit code 0");

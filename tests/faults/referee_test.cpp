@@ -18,7 +18,7 @@ using league::RefereeCommand;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr double kMaxSpeed_mps = 1.5, kMinDistance_m = 0.5;  // of the league's rules for STOP
+constexpr double kMaxSpeed_mps = 1.5, kMinDistance_m = 0.5;  // limits of the league's rules for STOP
 constexpr double kAtRest_mps = 0.03;                         // above the noise of a robot at rest
 
 std::string pair(const Vec2& v) { return fmt::format("[{:g}, {:g}]", v.x(), v.y()); }
@@ -56,10 +56,11 @@ class RefereedRun {
   pid_t referee() const { return referee_; }
   double max_speed_mps() const { return max_speed_mps_; }
   double min_distance_m() const { return min_distance_m_; }
-  /// Time from the start of the last command until the robots came to rest.
+  /// Time from the first packet of the last command until the robots came to rest.
   double rest_s() const { return rest_s_; }
 
-  /// Repeats a command; false if the run ends first. The maximum and minimum are those since `delay`.
+  /// Repeats a command; returns false if the run ends first. Measures the maximum speed and the minimum
+  /// distance once `delay` has passed.
   bool play(RefereeCommand command, Duration duration, Duration delay) {
     const Time begin = next_packet_ = run_.bus().now();
     rest_s_ = 0;
@@ -97,7 +98,7 @@ class RefereedRun {
   double max_speed_mps_ = 0, min_distance_m_ = 1e9, rest_s_ = 0;
 };
 
-TEST_CASE("twenty-two robots obey the referee's packets", "[both-cores][slow]") {
+TEST_CASE("twenty-two robots obey the referee's commands received over multicast", "[both-cores][slow]") {
   RefereedRun match;
   LaunchedRun& run = match.run();
   const bool is_driving = run.wait_until([&] {
@@ -122,7 +123,7 @@ TEST_CASE("twenty-two robots obey the referee's packets", "[both-cores][slow]") 
   nearest_m = std::min(nearest_m, match.min_distance_m());
   WARN("fastest robot " << halted_mps << " m/s in HALT, at rest after " << rest_s << " s; " << fastest_mps
                         << " m/s in STOP; nearest to the ball in STOP " << nearest_m << " m");
-  // If the program dies, what it ordered last stays in force.
+  // If the program dies, its last orders stay in force.
   REQUIRE(match.play(RefereeCommand::kHalt, seconds(2), seconds(0)));
   REQUIRE(kill(match.referee(), SIGKILL) == 0);
   REQUIRE(match.play(RefereeCommand::kForceStart, seconds(2), seconds(0)));

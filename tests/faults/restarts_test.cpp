@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// What processes that die leave behind in the others.
+// SPDX-License-Identifier: Apache-2.0 What dead processes leave behind in the others.
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
@@ -39,14 +38,14 @@ std::map<std::string, Load> measure(LaunchedRun& run, const std::string& except,
 
 struct Aftermath {
   Duration max_matching{};            ///< longest time from the start of an agent's bus until it was heard
-  double max_cpu_growth_percent = 0;  ///< of a core, of one other process
+  double max_cpu_growth_percent = 0;  ///< largest growth of another process, in percent of a core
 };
 
-/// Kills an agent with kill -9 this many times. Others must not accumulate memory, and each new agent must be
-/// heard.
+/// Kills an agent with kill -9 this many times. The memory of other processes must not grow, and each new
+/// agent must be heard.
 Aftermath kill_agent(int times, Duration window) {
   const std::string victim = "agent 6";
-  // Sanitizers keep freed memory for a while.
+  // Sanitizers delay the release of freed memory.
   constexpr double kMaxMemoryGrowth_mb = kIsSanitized ? 40 : 10;
   std::string scenario = shuttles(1000, "restart: [agents]\n");
   scenario.replace(scenario.find("time_limit_s: 100"), 17, "time_limit_s: 3000");
@@ -98,12 +97,14 @@ Aftermath kill_agent(int times, Duration window) {
 
 }  // namespace
 
-TEST_CASE("an agent that is killed repeatedly is heard again each time, and other processes do not grow") {
+TEST_CASE(
+    "an agent that is killed repeatedly reconnects each time, and memory of other processes does not grow") {
   (void)kill_agent(5, 2s);
 }
 
 TEST_CASE(
-    "an agent that is killed two hundred times is heard again each time, and other processes do not grow",
+    "an agent that is killed two hundred times reconnects each time, and memory of other processes does not "
+    "grow",
     "[.long][slow]") {
   const Aftermath aftermath = kill_agent(200, 20s);
   CHECK(aftermath.max_matching < 500ms);

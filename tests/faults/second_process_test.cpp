@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// Second processes of kinds that must be alone, over DDS.
+// SPDX-License-Identifier: Apache-2.0 Second processes of kinds that may run only once in a domain, over DDS.
 #include <csignal>
 
 #include "common/process/host_name.hpp"
@@ -24,8 +23,8 @@ void check_ends(LaunchedRun& run, const std::string& program, const std::string&
   INFO(run.output());
   CHECK(run.exit_reason("second") == "exit code 1");
   CHECK(run.printed("another " + kind + " is running in this domain"));
-  // Messages that two processes sent at the same time are ignored until the second one has been silent for a
-  // second.
+  // Messages of kinds that both processes have sent are ignored until the second process has been silent for
+  // a second.
   const Time ended_at = run.bus().now();
   REQUIRE(run.wait_until([&] { return run.bus().now() > ended_at + seconds(2); }));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
@@ -35,18 +34,19 @@ void check_ends(LaunchedRun& run, const std::string& program, const std::string&
   CHECK(run.report()["crashes_while_moving"] == 0);
 }
 
-TEST_CASE("a second simulator in a run's domain exits, and the robots drive on without contact") {
+TEST_CASE("a second simulator in a run's domain exits, and the robots continue without contact") {
   LaunchedRun run(shuttles(40, ""));
   check_ends(run, "sidestep-simulator", "simulator");
   CHECK(run.logged("two processes send 'detections' as simulator"));
 }
 
-TEST_CASE("a second vision process in a run's domain exits, and the robots drive on without contact") {
+TEST_CASE("a second vision process in a run's domain exits, and the robots continue without contact") {
   LaunchedRun run(shuttles(40, ""));
   check_ends(run, "sidestep-vision", "vision");
 }
 
-TEST_CASE("a second run in the same domain is refused before it starts a process, and is told of the first") {
+TEST_CASE(
+    "a second run in the same domain starts no process, and exits with a message that names the first run") {
   LaunchedRun run(shuttles(4, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   std::vector<std::string> arguments{"run", run.scenario_file()};

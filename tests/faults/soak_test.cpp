@@ -18,15 +18,15 @@ namespace soak_test {
 using namespace std::chrono_literals;
 
 struct SoakSettings {
-  Duration duration;       ///< from when the robots drive
-  Duration warm_up;        ///< samples in it are ignored, because caches and pools are still filling
+  Duration duration;       ///< from the moment at which robots drive
+  Duration warm_up;        ///< samples in this time are ignored, because caches and pools are still filling
   Duration sample_period;  ///< between two samples of memory
   bool has_keys = false;
 };
 
 /// One process of the run.
 struct Record {
-  ProcessUsage begin, end;  ///< at the start and the end of the time after the warm-up
+  ProcessUsage begin, end;  ///< usage after the warm-up, and at the end
   std::vector<MemorySample> samples;
 
   double slope_mb_per_h() const { return memory_slope_mb_per_h(samples); }
@@ -73,9 +73,9 @@ void print_table(const Soak& soak) {
              100 * soak.coverage());
 }
 
-/// Eight agents drive back and forth until they are interrupted.
+/// Measures a run in which eight agents drive back and forth until they are interrupted.
 Soak soak(const SoakSettings& settings) {
-  // More goals than a robot reaches, because each is more than two seconds away.
+  // More goals than a robot can reach, because each takes more than two seconds.
   const int goals = static_cast<int>(to_seconds(settings.duration + 1min) / 2);
   const double limit_s = 2 * to_seconds(settings.duration + 1min);
   const std::string scenario = shuttles(goals, "");
@@ -112,7 +112,7 @@ TEST_CASE("the growth rate of a process's memory is estimated despite noise") {
   CHECK(memory_slope_mb_per_h(samples) == Approx(0.5).margin(0.01));
 }
 
-TEST_CASE("the growth rate of a process that leaks memory shows how much it leaks") {
+TEST_CASE("the growth rate of a leaking process equals its leak rate") {
   constexpr std::size_t kStep_bytes = 1'000'000;
   constexpr int kSteps = 20;
   std::vector<MemorySample> samples;
@@ -125,7 +125,7 @@ TEST_CASE("the growth rate of a process that leaks memory shows how much it leak
   CHECK(memory_slope_mb_per_h(samples) == Approx(1).margin(0.3));
 }
 
-TEST_CASE("eight agents drive back and forth for some seconds, and every process is measured") {
+TEST_CASE("the soak test measures every process while eight agents drive back and forth") {
   const Soak result = soak({8s, 2s, 500ms});
   CHECK(result.processes.size() == 8 + 4);  // simulator, vision, coordinator, launcher
   for (const auto& [name, record] : result.processes) {

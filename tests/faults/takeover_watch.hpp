@@ -45,7 +45,7 @@ class TakeoverWatch {
   bool is_ready() const { return epoch_ != 0 && standbys_.size() == 1 && !standbys_.count(active_); }
   void on_kill() {
     killed_epoch_ = epoch_;
-    standbys_.clear();  // until they announce themselves again
+    standbys_.clear();  // standbys announce themselves again
     granted_.clear();
     moving_.clear();
   }

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Bases with ROS 2's topics for velocities and odometry, and another vendor's DDS beside them.
+// SPDX-License-Identifier: Apache-2.0 Bases with ROS 2's topics for velocities and odometry, also with
+// another vendor's DDS.
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -38,7 +38,7 @@ class RosReader {
   RosReader(const RosReader&) = delete;
   RosReader& operator=(const RosReader&) = delete;
 
-  /// It has read twists of a robot that moves, and its odometry.
+  /// Checks that the reader has read odometry and twists of a moving robot.
   void check() const {
     std::ifstream file(path_);
     int twists = 0, odometries = 0;
@@ -121,7 +121,7 @@ TEST_CASE(
        << " m");
 }
 
-TEST_CASE("twists and odometry of another vendor's DDS are understood") {
+TEST_CASE("twists and odometry published by another vendor's DDS are decoded") {
   const TestDomain domain;
   DdsBus bus(domain.settings("test"));
   std::vector<ros::Odometry> odometry;

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// Ends the program if the code under test breaks a promise. A fuzzer then reports the input.
+/// Ends the program if the condition does not hold. The fuzzer then reports the input.
 #define SIDESTEP_REQUIRE(condition)                                                      \
   do {                                                                                   \
     if (!(condition)) {                                                                  \
@@ -24,7 +24,7 @@ namespace sidestep::fuzz {
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
 
-/// Each `NAME_fuzz.cpp` defines these two for the code that it tests.
+/// Each `NAME_fuzz.cpp` defines the following two functions for the code that it tests.
 
 /// Passes an input to code that reads untrusted bytes. Ends the program if that code accepts what it must
 /// refuse. Only exceptions that the callers of that code catch are caught. Returns whether the input was
@@ -42,7 +42,7 @@ inline Bytes bytes_of(std::string_view text) { return {text.begin(), text.end()}
 /// The files with an extension, such as ".yaml", in a folder of this repository and those within it, sorted.
 [[nodiscard]] std::vector<std::filesystem::path> files_in(const std::string& folder,
                                                           const std::string& extension);
-/// Overwrites a file, in a folder that is best kept in memory: this runs for each input.
+/// Overwrites a file. This runs for each input, so the folder is best in memory.
 void write_input(const std::string& path, View bytes);
 
 }  // namespace sidestep::fuzz

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Datagrams before Fast DDS gets them: what is passed on, announcements, notices of presence, certificates.
+// SPDX-License-Identifier: Apache-2.0 Fuzzes the filter of datagrams before Fast DDS: forwarded submessages,
+// announcements, notices of presence, certificates.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -46,8 +46,8 @@ struct Submessage {
   View body;
 };
 
-/// The submessages according to the specification, parsed independently of the code under test (RTPS 2.2,
-/// 8.3.4 and 9.4.5.1.3). nullopt: one is cut off.
+/// The submessages of a datagram, parsed independently of the code under test (RTPS 2.2, 8.3.4 and
+/// 9.4.5.1.3). nullopt: a submessage is cut off.
 std::optional<std::vector<Submessage>> submessages_of(View datagram) {
   std::vector<Submessage> result;
   for (std::size_t at = kDatagramHeaderSize; at < datagram.size();) {
@@ -87,7 +87,7 @@ void check_passed(View passed) {
     SIDESTEP_REQUIRE(stated > 0 && stated <= content.size() - 4);
     SIDESTEP_REQUIRE(code.size() == 20);
   }
-  // Nothing remains to be removed.
+  // Filtering the result again removes nothing.
   SIDESTEP_REQUIRE(checked_datagram(passed).size() == passed.size());
   SIDESTEP_REQUIRE(without_statistics(passed).size() == passed.size());
 }
@@ -115,16 +115,16 @@ void try_announcement(const ParticipantId& sender, View datagram) {
   if (!is_admitted) return;
   const Identity* const identity = admission.identity_of(sender);
   SIDESTEP_REQUIRE(identity != nullptr && *identity == parse_identity("agent 3"));
-  // No other id is signed.
+  // The certificate signs no other id.
   SIDESTEP_REQUIRE(sender == agent_id());
 }
 
-/// Returns whether they are valid notices.
+/// Returns whether the bytes are valid notices of presence.
 bool try_presence(const ParticipantId& sender, View datagram) {
   const auto notices = presence_notices(datagram);
   if (!notices) return false;
   SIDESTEP_REQUIRE(notices->size() <= Presence::kMaxNotices);
-  // Apart from the version of the protocol and of its vendor.
+  // Compares everything except the versions of protocol and vendor.
   const Datagram again = presence_datagram(sender, *notices);
   SIDESTEP_REQUIRE(std::ranges::equal(View(again).subspan(8), datagram.subspan(8)));
   return true;
@@ -140,12 +140,12 @@ bool try_input(View input) {
   const View open = without_statistics(input);
   SIDESTEP_REQUIRE(open.empty() || begins(open, input));
   if (const auto submessages = submessages_of(open))
-    // One without a size is the last one, so that what follows is its content.
+    // A submessage of size 0 is the last one: the rest of the datagram is its content.
     for (const Submessage& submessage : *submessages) {
       if (submessage.body.empty() && submessage.kind != kTimestampSubmessage &&
           submessage.kind != kPadSubmessage)
         break;
-      if (submessage.body.size() % 4 != 0) break;  // Fast DDS goes on at a multiple of four
+      if (submessage.body.size() % 4 != 0) break;  // Fast DDS continues at a multiple of four
       SIDESTEP_REQUIRE(submessage.kind != kStatisticsSubmessage);
     }
   const View passed = checked_datagram(input);

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Hosts files, and where they place the processes of a scenario.
+// SPDX-License-Identifier: Apache-2.0 Fuzzes hosts files and the placement of a scenario's processes on
+// hosts.
 #include <algorithm>
 #include <arpa/inet.h>
 #include <set>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kFile = "fuzz.yaml";
 
-/// Only addresses are accepted as addresses, because they become arguments of other programs.
+/// Addresses must be real addresses, because they become arguments of other programs.
 void check_address(const std::string& text) {
   in_addr address{};
   SIDESTEP_REQUIRE(inet_pton(AF_INET, text.c_str(), &address) == 1);
@@ -23,7 +23,7 @@ void check_address(const std::string& text) {
   SIDESTEP_REQUIRE(text == plain);
 }
 
-/// Likewise, names contain no options, no spaces, and nothing that a shell interprets.
+/// Names must not look like options, and contain no spaces and no characters that a shell interprets.
 void check_name(const std::string& text, std::string_view extra) {
   SIDESTEP_REQUIRE(!text.empty() && text[0] != '-');
   for (const char c : text) {

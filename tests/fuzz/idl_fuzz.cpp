@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// IDL, and messages of the types that it defines. An input is IDL, a zero byte, and a message.
+// SPDX-License-Identifier: Apache-2.0 Fuzzes the reader of IDL and the decoder of messages whose types it
+// defines. An input is IDL, a zero byte, and a message.
 #include <algorithm>
 
 #include "common/messaging/message_schema.hpp"
@@ -28,7 +28,7 @@ void check(const IdlType& type, int depth) {
   }
 }
 
-/// What was decoded is encoded, and decoded to the same.
+/// Encodes a decoded message. Decoding the result must give the same message.
 void check_again(const IdlType& type, const Json& json) {
   try {
     const Bytes bytes = encode_by_idl(type, json);
@@ -80,7 +80,7 @@ bool try_input(View input) {
 
 std::vector<Bytes> seeds() {
   std::vector<Bytes> result;
-  // All kinds of types, empty or full of zeros.
+  // Messages of all kinds of types, empty or full of zeros.
   Bytes zeros(200);
   for (const std::uint8_t encoding : {0, 1, 6, 7, 8, 9}) {
     zeros[1] = encoding;

@@ -38,7 +38,7 @@ bool try_vision(std::span<const std::byte> bytes) {
       SIDESTEP_REQUIRE(is_within(ball.position_m, 100.001) && is_probability(ball.confidence));
     }
   }
-  // An accepted packet is accepted again after encoding, except for times at the end of their range.
+  // An accepted packet must be accepted again after encoding, unless a time is at the end of its range.
   const auto again = league::decode_vision(encode(packet));
   SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kTime);
   if (!again.packet) return true;
@@ -136,11 +136,11 @@ bool try_log(std::span<const std::byte> bytes) {
     SIDESTEP_REQUIRE(read_to_end(reader) <= all);
     return all > 0;
   } catch (const std::runtime_error&) {
-    return false;  // inputs that are no log are reported by exception
+    return false;  // the input is not a log, which is reported by an exception
   }
 }
 
-/// Takes capture times, sending times and the waits between frames from the input. All are valid.
+/// Takes capture times, sending times and the waits between frames from the input. Any values are valid.
 bool try_clock(std::span<const std::byte> bytes) {
   constexpr std::uint64_t kMaxCapture_ns = 8'589'934'592'000'000'000;
   SenderClock clock;
@@ -166,8 +166,8 @@ bool try_clock(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-/// The first byte selects the reader: of the packets of vision, tracker, referee, teams or simulator, of log
-/// files, or the clock that converts frame times.
+/// The first byte of an input selects the reader: of packets of vision, tracker, referee, teams or simulator,
+/// of log files, or the clock that converts frame times.
 bool try_input(View input) {
   if (input.empty()) return false;
   const std::span<const std::byte> rest = std::as_bytes(input.subspan(1));

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// The entry points of libFuzzer. With SIDESTEP_SEEDS=FOLDER a program writes its seeds there and ends.
+// SPDX-License-Identifier: Apache-2.0 The entry points of libFuzzer. With SIDESTEP_SEEDS=FOLDER a fuzzer
+// writes its seeds there and exits.
 #include <cstdlib>
 #include <fstream>
 
@@ -18,7 +18,7 @@ void write_seeds(const std::string& folder) {
 
 }  // namespace
 
-// Hidden symbols are not found by libFuzzer's own main function.
+// The functions must be visible to libFuzzer's own main function.
 extern "C" __attribute__((visibility("default"))) int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                                                              std::size_t size) {
   sidestep::fuzz::try_input({data, size});

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Maps. An input is a byte that says whether checksums are to be corrected, the YAML file, a zero byte, and
-// the image, whose name in the YAML file is `image`.
+// SPDX-License-Identifier: Apache-2.0 Fuzzes the reader of maps. An input is a byte that selects whether
+// checksums are corrected, the YAML file, a zero byte, and the image, which the YAML file calls `image`.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +15,7 @@
 namespace sidestep::fuzz {
 namespace {
 
-/// Corrects the checksums of a PNG image's chunks: random changes would never pass them.
+/// Corrects the checksums of a PNG image's chunks, because random changes would never pass them.
 void correct_checksums(Bytes& image) {
   constexpr std::size_t kSignature = 8, kOverhead = 12;
   for (std::size_t at = kSignature; image.size() >= at + kOverhead;) {
@@ -36,11 +35,12 @@ void check(const LoadedMap& map) {
   const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
   SIDESTEP_REQUIRE(cells <= 64u << 20 && map.unknown <= cells);
   SIDESTEP_REQUIRE(grid.resolution_m >= 0.001 && grid.resolution_m <= 10);
-  // A yaw turns the origin, which is within a square.
+  // The origin in the file is within a square, which the yaw rotates.
   SIDESTEP_REQUIRE(grid.origin_m.norm() <= 1e6 * std::sqrt(2.0) && std::isfinite(map.yaw_rad));
 }
 
-/// Blocked cells are found by distance and by contact; a map that is written is read as the same.
+/// Checks that blocked cells are found by distance and by contact, and that a written map is read as the same
+/// map.
 void check_use(const LoadedMap& map, const TemporaryFolder& folder) {
   const MapGrid& grid = map.cells.grid();
   constexpr int kMaxSide = 256;
@@ -69,7 +69,7 @@ void try_floor(const LoadedMap& map) {
     const FloorMap floor(map.cells, "map");
     SIDESTEP_REQUIRE(floor.boxes_on({}).size() <= FloorMap::kMaxRectangles + 4);
   } catch (const std::invalid_argument&) {
-    // too many rectangles
+    // the map has too many rectangles
   }
 }
 

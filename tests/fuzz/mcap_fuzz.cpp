@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recordings.
+// Fuzzes the reader of recordings.
 #include <set>
 #include <stdexcept>
 
@@ -35,7 +35,7 @@ void observe_all(PlaybackBus& bus, std::uint64_t& seen) {
   });
 }
 
-/// Returns whether it is a recording of Sidestep.
+/// Returns whether the file is a recording of Sidestep.
 bool try_playback(const std::string& path) {
   try {
     PlaybackBus bus(path);
@@ -57,7 +57,7 @@ bool try_playback(const std::string& path) {
   }
 }
 
-/// Counts what the reader returns, by the simplest path.
+/// Counts the messages that the reader returns, in the simplest way.
 void check_info(const std::string& path, std::size_t file_bytes) {
   const BagInfo info = bag_info(path);
   SIDESTEP_REQUIRE(info.file_bytes == file_bytes);
@@ -95,8 +95,8 @@ Bytes recording(bool is_compressed, std::uint64_t max_chunk_ns) {
   return file_content(path);
 }
 
-/// Sets all checksums to 0, which means that there is none: random changes would never pass them. Positions
-/// are those of the writer's own records.
+/// Sets all checksums to 0, which means "no checksum", because random changes would never pass them. Finds
+/// them at the positions of the writer's own records.
 void remove_checksums(Bytes& file) {
   const auto number_at = [&](std::size_t at) {
     std::uint64_t value = 0;

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// What browsers send to the monitor's planning page. Messages are separated by zero bytes.
+// SPDX-License-Identifier: Apache-2.0 Fuzzes the messages that browsers send to the monitor's planning page.
+// Messages are separated by zero bytes.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +10,7 @@
 namespace sidestep::fuzz {
 namespace {
 
-/// No answer exceeds what a browser can draw, and none contains a number that is not finite.
+/// Checks that an answer is not larger than a browser can draw, and contains finite numbers only.
 void check_answer(const PlanningScene& scene) {
   const nlohmann::ordered_json answer = scene.json();
   SIDESTEP_REQUIRE(answer.at("obstacles").size() <= PlanningScene::kMaxObstacles);

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Runs a fuzzer without libFuzzer: its seeds, and random changes of them.
+// SPDX-License-Identifier: Apache-2.0 Runs a fuzzer without libFuzzer, on its seeds and on random changes of
+// them.
 #include <algorithm>
 
 #include "common/random/rng.hpp"
@@ -51,7 +51,7 @@ Bytes mutated(Bytes bytes, const Bytes& other, Rng& rng) {
   return bytes;
 }
 
-TEST_CASE("seed inputs are accepted, and random mutations of them break nothing") {
+TEST_CASE("seed inputs are accepted, and random mutations of them are read without failure") {
   const std::vector<Bytes> seeds = fuzz::seeds();
   REQUIRE(!seeds.empty());
   for (std::size_t i = 0; i < seeds.size(); ++i) {
@@ -63,11 +63,11 @@ TEST_CASE("seed inputs are accepted, and random mutations of them break nothing"
   Rng rng(seed);
   int accepted = 0;
   for (int i = 0; i < SIDESTEP_REPLAYED_INPUTS; ++i) {
-    // What is accepted wrongly ends the program.
+    // A wrongly accepted input ends the program.
     const std::size_t begin = rng.below(seeds.size()), part = rng.below(seeds.size());
     accepted += fuzz::try_input(mutated(seeds[begin], seeds[part], rng));
   }
-  // Enough inputs are accepted and enough are refused.
+  // Enough inputs must be accepted and enough refused.
   CAPTURE(accepted);
   CHECK(accepted > SIDESTEP_REPLAYED_INPUTS / 100);
   CHECK(accepted < SIDESTEP_REPLAYED_INPUTS * 19 / 20);

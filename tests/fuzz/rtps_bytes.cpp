@@ -15,7 +15,7 @@ class Body {
  public:
   Body& u16(std::size_t value) { return number(value, 2); }
   Body& u32(std::size_t value) { return number(value, 4); }
-  /// High half, low half.
+  /// The high half comes first.
   Body& sequence_number(std::size_t value) { return u32(0).u32(value); }
   Body& zeros(std::size_t count) {
     bytes_.resize(bytes_.size() + count);
@@ -48,7 +48,7 @@ Body data_header(std::size_t reader, std::size_t writer) {
   return Body().u16(0).u16(kBytesToInlineQos).u32(reader).u32(writer).sequence_number(7);
 }
 
-/// Any reader, and the writer that announces endpoints.
+/// Addressed to any reader, from the writer that announces endpoints.
 Body discovery_entities() { return Body().u32(0).u32(kEndpointWriter); }
 
 }  // namespace

@@ -13,9 +13,9 @@ Bytes datagram(const ParticipantId& sender, std::initializer_list<Bytes> submess
 
 Bytes timestamp();
 Bytes destination();
-/// Of the writer that announces endpoints, with a payload.
+/// DATA of the writer that announces endpoints, with a payload.
 Bytes data();
-/// Of the writer that announces participants, with the participant's GUID and user data.
+/// DATA of the writer that announces participants, with the participant's GUID and user data.
 Bytes announcement(const ParticipantId& participant, const Bytes& user_data);
 /// The first message of a handshake.
 Bytes handshake();
@@ -24,7 +24,7 @@ Bytes gap();
 Bytes heartbeat();
 /// Prefix, body and postfix of an encrypted submessage of `stated` bytes, padded to `present` bytes.
 Bytes encrypted(std::uint32_t stated, std::size_t present);
-/// What Fast DDS adds to the end of each datagram.
+/// The statistics submessage that Fast DDS appends to each datagram.
 Bytes statistics();
 
 }  // namespace sidestep::fuzz::rtps

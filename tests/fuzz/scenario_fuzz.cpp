@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenario files.
+// Fuzzes the reader of scenario files.
 #include <cmath>
 #include <set>
 
@@ -30,7 +30,7 @@ bool is_near(const Vec2& p, double bound_m) {
   return std::abs(p.x()) <= bound_m && std::abs(p.y()) <= bound_m;
 }
 
-/// The bounds of deploy/scenarios/README.md.
+/// Checks the bounds of deploy/scenarios/README.md.
 void check_numbers(const Scenario& scenario) {
   SIDESTEP_REQUIRE_WITHIN(scenario.field.length_m, 0.5, 1000);
   SIDESTEP_REQUIRE_WITHIN(scenario.field.width_m, 0.5, 1000);
@@ -64,7 +64,8 @@ void check_numbers(const Scenario& scenario) {
   }
 }
 
-/// Robots start and end on the field, apart from each other, from obstacles and from blocked cells.
+/// Checks that robots start and end on the field, apart from each other, from obstacles and from blocked
+/// cells.
 void check_robots(const Scenario& scenario) {
   constexpr double kRounding_m = 1e-6;
   const double x_m = scenario.field.length_m / 2 - scenario.radius_m + kRounding_m,
@@ -110,7 +111,7 @@ void check_floor(const Scenario& scenario) {
     SIDESTEP_REQUIRE(is_near(scenario.ball->position_m, 500) && is_near(scenario.ball->velocity_mps, 20));
 }
 
-/// Rules that processes send each other can be decoded by the receiver.
+/// Checks that the receiver can decode the rules that processes send each other.
 void check_rules(const Scenario& scenario) {
   const SharedRules rules(scenario);
   const auto heard = SharedRules::parse(rules.text());

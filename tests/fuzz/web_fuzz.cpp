@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// What browsers and viewers send to the monitor: paths and bodies of HTTP, and messages of web sockets. The
-// first byte of an input selects the reader; its parts are separated by zero bytes.
+// SPDX-License-Identifier: Apache-2.0 Fuzzes what browsers and viewers send to the monitor: paths and bodies
+// of HTTP requests, and messages of web sockets. The first byte of an input selects the reader; its parts are
+// separated by zero bytes.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -33,7 +33,7 @@ std::vector<std::string> parts_of(View input) {
   return parts;
 }
 
-/// Checks that a viewer gets what it can read, and counts it.
+/// A viewer that checks that it can read what it gets, and counts it.
 class Viewer : public WebSocket {
  public:
   void send_state(unsigned, WebMessage message) override { check(message); }
@@ -62,7 +62,7 @@ struct Run {
   }
 };
 
-/// Of nobody, for a second.
+/// The run that the monitor under test shows.
 Run& shown_run() {
   static Run run;
   return run;
@@ -80,7 +80,7 @@ bool try_target(const std::string& target) {
   return true;
 }
 
-/// Host, origin and authorization. Only those of this server, and of those that it allows, pass.
+/// Tests host, origin and authorization. Only this server's own and the origins that it allows must pass.
 bool try_access(const std::vector<std::string>& headers) {
   const AccessSettings settings{"127.0.0.1", 8080, {"https://example.org"}, "0123456789abcdef"};
   const auto header = [&](std::size_t i) { return i < headers.size() ? std::string_view(headers[i]) : ""; };
@@ -102,7 +102,8 @@ void check(const msg::Disturbance& fault) {
   SIDESTEP_REQUIRE(fault.duration_ns() > 0 && fault.duration_ns() <= 3'600'000'000'000);
 }
 
-/// Method, path, query-less body, and whether the request may command. All that is sent is valid.
+/// Tests requests with method, path, body and permission to command. Every message that a request causes must
+/// be valid.
 bool try_control(const std::vector<std::string>& parts, bool may_command) {
   SimNetwork network(1, kBegin, {});
   SimBus bus(network), others(network);
@@ -141,7 +142,7 @@ bool try_foxglove(const std::vector<std::string>& messages) {
   }
   server.publish_scene(floor, 0.09, kBegin);
   server.remove(viewer);
-  // Much more than what it gets at the beginning means that it can fill the memory.
+  // If a viewer gets much more than at the beginning, it can fill the memory.
   SIDESTEP_REQUIRE(viewer.bytes() < 4 << 20);
   return all_made_sense;
 }

@@ -7,7 +7,7 @@
 #define HAS_ACKNOWLEDGED(i, k) (acknowledged[A(i, k)] == epoch[A(i, k)])
 #endif
 
-/* Messages that the agent sends whenever its state changes: fences, commands, its registration. */
+/* The messages that an agent sends whenever its state changes: fences, commands, its registration. */
 inline send(i, k) {
   fences[i] = fences[i] | BIT(3 * ((k) - 1) + epoch[A(i, k)]);
   if
@@ -114,7 +114,7 @@ inline process_fact(i, k, e) {
   send(i, k)
 }
 
-/* The agent proposes its next version on any version that its robot may execute. */
+/* The agent proposes its next version, with any version that its robot may execute as the base. */
 #define AGENT_PROPOSES(i, k)                                                                               \
   ::atomic {                                                                                               \
     now < T && LAST_OF(i, k) >= FIRST_OF(i, k) && starts[V(i, LAST_OF(i, k))] == 0 && IS_REGISTERING(i, k) ->                  \
@@ -143,7 +143,7 @@ inline next_number(i, k) {
   :: else -> break
   od
 }
-/* A version numbered before the agent knows of the robot's own stop has a lower number than that stop. */
+/* A version that the agent numbered before it knew of the robot's own stop has a lower number than that stop. */
 #ifdef UNGRANTED
 #define NUMBERED_AFTER(i, k, b) \
   (number_ <= LAST_OF(i, k) && ((i) == 1 || (k) == 2 || (number_ != UNGRANTED && (b >= UNGRANTED || number_ < UNGRANTED))))

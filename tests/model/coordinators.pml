@@ -7,7 +7,7 @@
 #endif
 
 #ifdef QUARANTINE
-/* A fact under agent o that contradicts the ledger. */
+/* A fact that contradicts the ledger, reported while the robot obeyed agent o. */
 #define COORDINATOR_RECEIVES_CONTRADICTION(o, e) \
   CHOICE(registered[C(0, e)] != 0 && base_of[V(0, UNGRANTED)] == UNGRANTED, EACH_T(CHOOSE_CONTRADICTION, o, e), \
          printf("%d: coordinator %d receives: robot 0 executes %d at %d, obeys %d\n", now, e, UNGRANTED, t_, o); quarantine(o, e))
@@ -73,7 +73,7 @@ inline decide(i, j, e) {
 #else
 #define IS_UNSUSPENDED(i, e) !IS_QUARANTINED(i, e)
 #endif
-/* A denial changes nothing, so only grants are modelled. */
+/* Only grants are modelled, because a denial changes nothing. */
 #define COORDINATOR_RECEIVES_PROPOSAL(i, j, e) \
   CHOICE(IS_GRANTING(i, e) && IS_UNSUSPENDED(i, e), EACH_V(CHOOSE_PROPOSAL, i, e), decide(i, j, e))
 #define CHOOSE_PROPOSAL(i, e, v)                                                                           \
@@ -156,7 +156,7 @@ inline register_versions(i, k, e) {
 #define IS_TRULY_ABSENT true
 #else
 #define IS_TRULY_ABSENT (EXECUTES_NOTHING(0) && !IS_UPCOMING(1) && !IS_UPCOMING(2) && !IS_UPCOMING(3) && !IS_UPCOMING(4))
-#define IS_UPCOMING(v) (starts[V(0, v)] > now && base_of[V(0, v)] == 0) /* a place that the robot may be put down at */
+#define IS_UPCOMING(v) (starts[V(0, v)] > now && base_of[V(0, v)] == 0) /* a place where the robot may be put down */
 #endif
 #ifdef ATTEST_REGISTERED
 #define AWAITS_REGISTRATION true

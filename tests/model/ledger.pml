@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/* Rules of the ledger. Agents use the same ones for the versions that their robots may execute. */
-/* Off its reference the robot executes a version that was not granted. */
+/* Rules of the ledger. Agents use the same rules for the versions that their robots may execute. */
+/* A robot off its reference executes a version that was not granted. */
 #ifdef REPLACE_BY_OLD_FACT
 #define MAY_REPLACE(set, i, f) IS_OWN_STOP(i, f)
 #else
@@ -83,7 +83,7 @@ inline forget(set, i) {
 #endif
 
 #ifdef QUARANTINE
-/* 60 facts in a row that agree with the ledger: one that is later than the contradiction. */
+/* Stands for 60 consecutive facts that agree with the ledger: one fact later than the contradiction. */
 #ifdef RELEASE_BY_LATE_FACT
 #define RELEASES(e, t) true
 #else
@@ -191,7 +191,7 @@ inline allow_conflicts(v, e) {
   :: else -> break
   od
 }
-/* Where the base is in conflict already, its successor may be too. */
+/* If the base is already in conflict, its successor may be too. */
 #define IS_ESCAPE(i, j, v, w) ((places[V(i, v)] & places[V(j, w)] & ~places[V(i, base_of[V(i, v)])]) == 0)
 #else
 #define IS_ESCAPE(i, j, v, w) false

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who remembers a hold: two robots with an agent each, which may restart, and two coordinators, of which the
-// second may be the first one restarted. Messages are lost, repeated and reordered: each may be received
-// at any time after it was sent. One client holds robot 0. See coordinator/ORDERS.md.
+// Models which processes remember a hold: two robots, an agent for each, which may restart, and two coordinators, of
+// which the second may be the first one after a restart. Messages are lost, repeated and reordered: each may be
+// received at any time after it was sent. One client holds robot 0. See coordinator/ORDERS.md.
 
 #define RUNS 2
 
 byte robot_epoch[2];          // run r has epoch r + 1
-bool agent_knows[2];          // remembers the hold
+bool agent_knows[2];          // the agent remembers the hold
 bool agent_has_restarted[2];
 bool is_told[4];              // 2 * run + agent: the run has told all that the agent remembers
 bool knows[RUNS];             // the run remembers the hold
 bool has_begun[RUNS];
 bool registered[4];           // 2 * run + agent
 bool is_confirmed;
-bool is_witness[2];            // has remembered the hold since it was confirmed, when its robot obeyed that run
+bool is_witness[2];            // the agent has remembered the hold since its confirmation, when its robot obeyed that run
 // Messages that were sent.
 bool sent_with[RUNS], sent_without[RUNS];  // whole memories, with and without the hold
-bool sent_missing;                         // an agent tells coordinators of the hold
-bool sent_held;                            // the agent of robot 0 reports to be held
+bool sent_missing;                         // an agent has told coordinators of the hold
+bool sent_held;                            // the agent of robot 0 has reported that the robot is held
 bool sent_registration[4];
 
 #define TOLD(run, agent) is_told[2 * (run) + (agent)]
@@ -60,7 +60,7 @@ inline hear_without(a, r) {
 #ifdef CONFIRM_SUPERSEDED
 #define MAY_CONFIRM(r) sent_held
 #else
-// The agent of robot 0 has reported, and the robot obeys the run after that.
+// The agent of robot 0 has reported the hold, and the robot has afterwards obeyed the run.
 #define MAY_CONFIRM(r) (sent_held && robot_epoch[0] == (r) + 1)
 #endif
 #endif
@@ -94,7 +94,7 @@ init {
           agent_has_restarted[a] = true; agent_knows[a] = false; is_witness[a] = false;
           TOLD(0, a) = false; TOLD(1, a) = false;
           if
-          :: a == 0 -> sent_held = false  // counts only as long as that agent lives
+          :: a == 0 -> sent_held = false  // the report counts only as long as that agent lives
           :: else
           fi
        :: else
@@ -102,10 +102,10 @@ init {
 #ifdef GOAL_HELD
        assert(!(is_confirmed && registered[2] && registered[3] && robot_epoch[0] == 2 && knows[1]))
 #else
-       // Nothing is granted against a hold as long as an agent lives that remembered it when it was confirmed.
+       // Nothing is granted against a hold as long as an agent lives that remembered the hold at its confirmation.
        assert(!((is_witness[0] || is_witness[1]) && PROPOSES && (GRANTS(0) || GRANTS(1))));
 #ifdef CHECK_WITNESS
-       // When a hold is confirmed there is such an agent.
+       // At the confirmation of a hold there is such an agent.
        assert(!is_confirmed || is_witness[0] || is_witness[1] || agent_has_restarted[0])
 #endif
 #endif

@@ -18,7 +18,7 @@ inline check() {
 #ifdef GOAL_TAKEOVER /* one robot has moved under the first coordinator, the other moves under the second */
 #define GOAL executing[0] == 1 && epoch_of[V(0, 1)] == 1 && executing[1] == 1 && epoch_of[V(1, 1)] == 2
 #endif
-#ifdef GOAL_LIFT /* lifted, put down, moved again */
+#ifdef GOAL_LIFT /* a robot is lifted, put down and moves again */
 #define GOAL lifting == PUT_DOWN && base_of[V(0, executing[0])] != 0 && places[V(0, executing[0])] == 1
 #endif
 #ifdef GOAL_FREE_PLACE /* one robot uses a place that the other would use if it had not been lifted */
@@ -33,7 +33,7 @@ inline check() {
 #ifdef GOAL_RELEASED_BY_FACTS /* the robot moves on after a forged fact */
 #define GOAL is_reported && contradicted_at[0] == 0 && executing[0] != 0 && starts[V(0, executing[0])] > starts[V(0, UNGRANTED)] + 1
 #endif
-#ifdef GOAL_ATTESTED /* the other robot moves while robot 0 is attested as absent, which then returns and moves */
+#ifdef GOAL_ATTESTED /* the other robot moves while robot 0 is attested as absent; then robot 0 returns and moves */
 #define GOAL lifting == PUT_DOWN && executing[1] != 0 && HAS(granted_without_other, executing[1])
 #endif
 #ifdef GOAL

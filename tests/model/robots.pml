@@ -19,8 +19,8 @@
 #define REPORTED_NOTHING 0
 #define LIFTS
 #endif
-/* The motors of robot 0 obey so late that they have been sent all versions that it holds. A new agent does not discard
-   them, and is acknowledged when the last of them has started. */
+/* The motors of robot 0 obey so late that all versions that it holds have already been sent to them. A new agent does
+   not discard these versions, and is acknowledged when the last of them has started. */
 #ifdef LEAD
 #define ACKNOWLEDGED(i) acknowledged_agent[i]
 #ifdef ACKNOWLEDGE_EARLY
@@ -169,7 +169,7 @@ inline obey(i, k, e) {
 #define TICK                                                                                               \
   STEP(now < T, now++; printf("%d: time passes\n", now); make_switches(0); make_switches(1); report(0);       \
        report(1); drop_late_commands(); check())
-/* A command whose start has passed is always refused; removing it only reduces the number of states. */
+/* Commands whose start has passed are always refused; removing them only reduces the number of states. */
 #ifdef LATE_START
 inline drop_late_commands() { skip }
 #else

@@ -4,7 +4,7 @@
 #define N0 2 /* versions of robot 0 by its first agent ... */
 #endif
 #ifndef M0
-#define M0 0 /* ... and by its second, which may run at the same time */
+#define M0 0 /* ... and by its second agent, which may run at the same time */
 #endif
 #ifndef N1
 #define N1 1
@@ -23,8 +23,8 @@
 #endif
 
 #if defined(OWN_STOP) || defined(QUARANTINE)
-/* Robot 0 executes a version that was not granted, once: OWN_STOP, its own stop after a push; QUARANTINE, any other, or
-   a fact claims so (FORGED). Its first agent proposes up to AFTER versions afterwards. */
+/* Once, robot 0 executes a version that was not granted: with OWN_STOP its own stop after a push; with QUARANTINE any
+   other version, or a forged fact claims so (FORGED). Its first agent then proposes up to AFTER versions. */
 #define UNGRANTED (N0 + 1)
 #ifdef OWN_STOP
 #define AFTER OWN_STOP
@@ -32,7 +32,7 @@
 #define AFTER QUARANTINE
 #endif
 #define BY_FIRST_AGENT(i) ((i) == 0 -> N0 + 1 + AFTER : N1)
-byte allowed_conflicts[5]; /* by version of robot 0: versions of robot 1 in conflict with it because of the event */
+byte allowed_conflicts[5]; /* indexed by version of robot 0: the versions of robot 1 in conflict with it because of the event */
 bool is_reported;
 #else
 #define BY_FIRST_AGENT(i) ((i) == 0 -> N0 : N1)
@@ -45,7 +45,7 @@ bool is_reported;
 #endif
 
 #ifdef ATTEST
-/* An operator may attest to the second coordinator that robot 0 is absent: said, and accepted. Requires LIFT. */
+/* An operator may attest to the second coordinator that robot 0 is absent: attested, and accepted. Requires LIFT. */
 bool is_attested, is_taken_as_absent;
 #define HAS_ATTESTATION(i, e) ((i) == 0 && (e) == 2 && is_taken_as_absent)
 /* The operator requests a place for the robot only after its agent has registered. */
@@ -69,13 +69,13 @@ byte contradicted_at[2], contradicted_under[2];
 #endif
 
 #ifdef LIFT
-/* Robot 0 may be lifted once. While it is in somebody's hand it executes nothing, and executing[0] is the highest
-   version that it has executed. */
+/* Robot 0 may be lifted once. While a person holds it, it executes nothing, and executing[0] is the highest version
+   that it has executed. */
 #define IN_HAND 1
 #define PUT_DOWN 2
 byte lifting;
-bool told_lifted[2];  /* agents of robot 0 */
-byte lifted_before[2]; /* by coordinator: facts of robot 0 about earlier times are late */
+bool told_lifted[2];  /* by agent of robot 0: knows that the robot was lifted */
+byte lifted_before[2]; /* by coordinator: facts of robot 0 about times before this one are late */
 #define EXECUTES_NOTHING(i) ((i) == 0 && lifting == IN_HAND)
 #define IS_ABSENT(i, e) ((i) == 0 && ledger[C(i, e)] == 0)
 #else
@@ -83,7 +83,7 @@ byte lifted_before[2]; /* by coordinator: facts of robot 0 about earlier times a
 #define IS_ABSENT(i, e) false
 #endif
 
-/* The version that the next one continues, and whose places are in use. */
+/* The version that the next version continues, and whose places are in use. */
 #define REFERENCE(i) (EXECUTES_NOTHING(i) -> 0 : executing[i])
 
 #define STEP(condition, body) :: d_step { (condition) -> body }
@@ -122,31 +122,31 @@ byte places[2 * NV], starts[2 * NV], base_of[2 * NV], epoch_of[2 * NV];
 /* Robots. */
 byte executing[2], pending[2], obeyed[2], obeyed_epoch[2];
 #ifdef LEAD
-byte acknowledged_agent[2]; /* that facts acknowledge, obeyed[i] or an earlier one */
+byte acknowledged_agent[2]; /* the agent that facts acknowledge: obeyed[i] or an earlier agent */
 #endif
 
-/* Agents: the first of each robot, and its successor. */
+/* Agents: the first agent of each robot, and its successor. */
 bool fenced[4];
 byte held[4], epoch[4], acknowledged[4];
 
-/* Coordinators: per robot, a set of versions and the registered agent, 0: none. */
+/* Coordinators: for each robot, a set of versions and the registered agent (0: none). */
 byte ledger[2 * 2], registered[2 * 2];
 
 /* The network. */
 byte granted[2];             /* verdicts */
-byte commands[2 * 2];        /* by their epoch */
+byte commands[2 * 2];        /* by the epoch of the command */
 byte fences[2];              /* bit 3 (agent - 1) + epoch */
 int facts[2 * 4];            /* by obeyed agent and epoch: a set of (executing, at) */
 int registrations[2 * 2 * 2]; /* by agent and epoch: a set of sets of versions */
 
 #if defined(GOAL_NEIGHBOUR) || defined(GOAL_ATTESTED)
 #define WITHOUT_OTHER
-byte granted_without_other; /* while the other robot was quarantined, or attested as absent */
+byte granted_without_other; /* a version was granted while the other robot was quarantined, or attested as absent */
 #endif
 
 /* Scratch variables within one step. These are not part of the state, so they are valid only until the next choice ... */
 hidden byte i_, v_, w_, f_, t_, u_, set_, conflict_;
-/* ... and these last over several choices; they are 0 between steps. */
+/* ... and these remain valid over several choices; they are 0 between steps. */
 byte number_, base_, start_;
 #define NONE 255
 

@@ -13,9 +13,9 @@ namespace sidestep::blocked_test {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr double kRadius_m = 0.09, kNear_m = 0.08;  // kNear_m: margin, extra clearance, and room for noise
+constexpr double kRadius_m = 0.09, kNear_m = 0.08;  // kNear_m covers margin, extra clearance and noise
 
-/// The robot reports that it is blocked, and rests.
+/// Whether the robot reports that it is blocked, and rests.
 bool rests_blocked(OrderedSystem& run, RobotId robot, msg::BlockReason reason) {
   return run.run_until(seconds(15), [&] {
     const msg::OrderStatus& status = run.statuses[robot];
@@ -28,9 +28,9 @@ double distance(OrderedSystem& run, RobotId robot, const Vec2& place) {
   return (run.bodies[robot].position_m - place).norm();
 }
 
-TEST_CASE("a robot waits beside another one that rests on its goal, and goes on when it leaves") {
+TEST_CASE("a robot waits beside another robot that rests on its goal, and continues when the goal is free") {
   OrderedSystem run(waiting_robots(4), 1);
-  const Vec2 place(2, -1.5);  // place of robot 1
+  const Vec2 place(2, -1.5);  // position of robot 1
   run.system.run_for(seconds(1));
   const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
   REQUIRE(rests_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
@@ -47,7 +47,8 @@ TEST_CASE("a robot waits beside another one that rests on its goal, and goes on 
   run.require_safe();
 }
 
-TEST_CASE("a robot waits beside another one that is held on its goal, and both arrive when it is resumed") {
+TEST_CASE(
+    "a robot waits beside another robot that is held on its goal, and both arrive after the hold is lifted") {
   OrderedSystem run(waiting_robots(2), 1);
   run.system.run_for(seconds(1));
   const auto first = run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{-2, 2}}});
@@ -64,13 +65,13 @@ TEST_CASE("a robot waits beside another one that is held on its goal, and both a
   run.require_safe();
 }
 
-TEST_CASE("robots that rest on each other's goals swap places") {
+TEST_CASE("robots that rest on each other's goals exchange places") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     INFO("seed " << seed);
     OrderedSystem run(waiting_robots(6), seed);
     Rng rng(seed);
     run.system.run_for(seconds(1));
-    // Robots 0, 2 and 4 start in a row; they rotate their places, or two of them swap.
+    // Robots 0, 2 and 4 start in a row. All three rotate their positions, or two of them swap.
     std::vector<OrderNumber> orders;
     const std::size_t count = 2 + rng.below(2);
     for (std::size_t i = 0; i < count; ++i) {
@@ -84,10 +85,11 @@ TEST_CASE("robots that rest on each other's goals swap places") {
   }
 }
 
-TEST_CASE("a robot leaves a zone that is drawn over it or its goal, and returns to its goal when it may") {
+TEST_CASE(
+    "a robot leaves a zone drawn over it or its goal, and returns to its goal when the zone is removed") {
   OrderedSystem run(waiting_robots(4), 1);
   run.system.run_for(seconds(1));
-  const Vec2 place(0, 0), home(2, -0.5);  // places of robot 3, which has no order
+  const Vec2 place(0, 0), home(2, -0.5);  // positions of robot 3, which has no order
   const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
   REQUIRE(run.run_until(seconds(5), [&] { return run.bodies[0].position_m.x() > -1.5; }));
   run.draw(4, {{{-0.2, -0.4}, {0.2, -0.4}, {0.2, 0.4}, {-0.2, 0.4}}, 0});
@@ -98,7 +100,7 @@ TEST_CASE("a robot leaves a zone that is drawn over it or its goal, and returns 
   run.erase(4);
   CHECK(run.run_until(seconds(5), [&] { return run.arrived.contains(order); }));
   CHECK(run.run_until(seconds(1), [&] { return distance(run, 0, place) < 0.01; }));
-  // Robots that have arrived, or were never given an order, leave too.
+  // Robots without an order, and robots that have already arrived, leave the zone too.
   run.draw(5, {{place}, 0.3});
   run.draw(6, {{home, home + Vec2(0, 1)}, 0.2});
   const auto are_out = [&] {
@@ -115,13 +117,13 @@ TEST_CASE("a robot leaves a zone that is drawn over it or its goal, and returns 
   run.require_safe();
 }
 
-TEST_CASE("robots leave zones that overlap") {
+TEST_CASE("robots inside several overlapping zones leave all of them") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     INFO("seed " << seed);
     OrderedSystem run(waiting_robots(4), seed);
     Rng rng(seed);
     run.system.run_for(seconds(1));
-    const Vec2 home(-2, -1.5);  // place of robot 0
+    const Vec2 home(-2, -1.5);  // position of robot 0
     std::vector<Order> zones(3);
     for (std::uint32_t i = 0; i < 3; ++i) {
       Zone& zone = zones[i].zone;
@@ -139,7 +141,8 @@ TEST_CASE("robots leave zones that overlap") {
   }
 }
 
-TEST_CASE("a robot gets as near as it can to a goal in an obstacle or behind a closed ring") {
+TEST_CASE(
+    "a robot drives as near as possible to a goal in an obstacle or behind a closed ring of obstacles") {
   std::string obstacles = "obstacles:\n  - {centre_m: [0, -1], radius_m: 0.3}\n";
   for (int i = 0; i < 12; ++i) {
     const Vec2 centre = Vec2(0, 1) + rotated({0.6, 0}, i * 0.5236);
@@ -160,7 +163,7 @@ TEST_CASE("a robot gets as near as it can to a goal in an obstacle or behind a c
   run.require_safe();
 }
 
-TEST_CASE("no robot enters a zone drawn earlier, or exceeds the speed limit in one") {
+TEST_CASE("no robot enters a keep-out zone or exceeds a zone's speed limit") {
   int arrived = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     INFO("seed " << seed);

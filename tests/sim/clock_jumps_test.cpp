@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// Clocks that jump, and agree again.
+// SPDX-License-Identifier: Apache-2.0 Clocks that jump and later agree again.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -12,10 +11,10 @@
 namespace sidestep::clock_jumps_test {
 
 constexpr Duration kMaxRecovery = std::chrono::seconds(5);
-// Clocks that go back by an hour must not show a negative time.
+// The start time, so late that clocks that go back by an hour show no negative time.
 constexpr Time kBegin = time_from_ns(100'000'000'000'000);
 
-/// From this time on, a clock is off by this amount.
+/// A jump of a clock: from `at` on it is off by `offset`.
 struct Jump {
   Duration at{0};
   std::string clock;  ///< the clock of this process, or of a robot if it begins with "robot "
@@ -126,7 +125,7 @@ TEST_CASE("after clocks have jumped back and forth, all robots drive within five
   run_all(1, 500);
 }
 
-TEST_CASE("a robot whose clock goes back drives again once the clock is right") {
+TEST_CASE("a robot whose clock was set back drives again once the clock is right") {
   const double back_s = GENERATE(0.001, 0.1, 2.5, 5.0, 60.0, 3000.0);
   CAPTURE(back_s);
   SimSystem system(shuttles(3, 1), 1, {}, kBegin);
@@ -142,14 +141,17 @@ TEST_CASE("a robot whose clock goes back drives again once the clock is right") 
   CHECK(system.metrics().report().audit->violations == 0);
 }
 
-TEST_CASE("an agent whose clock was ahead hears its robot again although epochs are nearly an hour ahead") {
-  // What the agent hears decides how it corrects its clock, so what it may hear must not depend on that.
+TEST_CASE(
+    "an agent whose clock was ahead hears its robot again even if the epoch's number is nearly an hour "
+    "ahead") {
+  // The agent corrects its clock by the messages that it accepts, so which messages it accepts must not
+  // depend on its clock.
   const double ahead_s = GENERATE(10.0, 500.0, 3400.0);
   CAPTURE(ahead_s);
   SimSystem system(shuttles(3, 2), 1, {}, kBegin);
   MotionWatch motion(system);
   system.run_for(std::chrono::seconds(1));
-  // The coordinator that begins the next epoch numbers it by this clock.
+  // The next coordinator numbers its epoch by this clock.
   system.set_clock("coordinator", std::chrono::seconds(3400));
   system.kill("coordinator 1");
   system.kill("coordinator");

@@ -40,7 +40,9 @@ struct Statuses {
   }
 };
 
-TEST_CASE("a new agent helps a robot to find its pose although its host's clock is wrong") {
+TEST_CASE(
+    "a new agent forwards vision to a robot that has lost its pose, even if the agent's host has a wrong "
+    "clock") {
   const double ahead_s = GENERATE(-4.0, 4.0);
   CAPTURE(ahead_s);
   const Scenario scenario = circle_scenario(4);
@@ -79,7 +81,7 @@ TEST_CASE("agents drive their robots although their hosts' clocks are wrong") {
 }
 
 TEST_CASE(
-    "robots whose clocks are within the bound undercut the margin by at most the clocks' share of the "
+    "robots whose clocks are within the bound reduce clearance by at most the clocks' share of the safety "
     "budget") {
   double smallest = 1;
   Scenario scenario = circle_scenario(16);
@@ -96,12 +98,12 @@ TEST_CASE(
     REQUIRE(floor.arrived() == 16);
     smallest = std::min(smallest, clearance);
   }
-  // Without an effect of the clock offsets on the clearance, the test would prove nothing.
+  // If clock offsets had no effect on the clearance, the test would prove nothing.
   CHECK(smallest < scenario.margin_m);
 }
 
 TEST_CASE(
-    "a robot whose clock is beyond the bound is not driven, the others are, and it continues once the clock "
+    "a robot whose clock is beyond the bound stands still while others drive, and continues once its clock "
     "is set") {
   const double ahead_s = GENERATE(0.005, -0.005, 0.3, -900.0);
   CAPTURE(ahead_s);
@@ -127,7 +129,7 @@ TEST_CASE(
   REQUIRE(floor.run_until_speed(0.8));
   REQUIRE(floor.granting_coordinator() == 0);
   floor.coordinator_bus(0).set_clock_offset(from_seconds(0.1));
-  // The next verdicts reveal the jump; versions granted until then are still executed.
+  // The next verdicts reveal the jump. Versions granted before are still executed.
   (void)floor.run(0.1 + 2.0 / floor.scenario.limits.deceleration_mps2);
   CHECK(floor.max_speed_mps() == 0);
   (void)floor.run(3);
@@ -142,12 +144,13 @@ TEST_CASE(
 
 /// The results of runs with one delay.
 struct SlowRuns {
-  double max_offset_s = 0;     ///< between a robot's clock and the coordinator's that an interval permitted
-  double min_clearance_m = 1;  ///< between two references, each at its own robot's time
+  double max_offset_s = 0;     ///< largest offset of a robot's clock that the measured intervals permitted
+  double min_clearance_m = 1;  ///< between the references of two robots, each at its robot's time
   double max_makespan_s = 0;
 };
 
-/// Every second robot's clock is 0.8 times the delay ahead of the others', which round trips cannot show.
+/// Every second robot's clock is ahead of the others' by 0.8 times the delay, which round trips cannot
+/// reveal.
 void drive_on_slow_network(Duration delay, std::uint64_t seed, SlowRuns& runs) {
   CAPTURE(seed);
   Scenario scenario = circle_scenario(16);
@@ -171,7 +174,8 @@ void drive_on_slow_network(Duration delay, std::uint64_t seed, SlowRuns& runs) {
   runs.max_makespan_s = std::max(runs.max_makespan_s, to_seconds(floor.network.now() - begin));
 }
 
-TEST_CASE("on slow networks, which hide large offsets, robots drive so slowly that the budget still holds") {
+TEST_CASE(
+    "on slow networks, which hide clock offsets, robots drive so slowly that the safety budget still holds") {
   constexpr int kSeeds = 10;
   std::string table = fmt::format("{:>8} {:>9} {:>12} {:>13} {:>11}\n", "delay ms", "apart ms", "possible ms",
                                   "clearance mm", "makespan s");
@@ -186,15 +190,15 @@ TEST_CASE("on slow networks, which hide large offsets, robots drive so slowly th
     rows.push_back(runs);
   }
   const Scenario scenario = circle_scenario(16);
-  WARN("clocks are 'apart', offsets up to 'possible' cannot be excluded\n"
+  WARN("apart: true offset of the clocks, possible: largest offset that measurements cannot exclude\n"
        << table << "budget: at least " << 2e3 * scenario.tracking_bound_m << " mm, " << kSeeds
        << " seeds for each delay");
-  // Otherwise nothing would depend on the delay.
+  // Otherwise the delay would have had no effect.
   CHECK(rows.back().max_makespan_s > 10 * rows.front().max_makespan_s);
 }
 
 TEST_CASE(
-    "a clock that jumps while its robot drives breaks no rule, and the robot drives again once it is set") {
+    "a robot whose clock jumps while it drives breaks no rule, and drives again once the clock is set") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -217,7 +221,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a robot measures the clocks again after a long wait before it continues") {
+TEST_CASE("after a long wait, a robot continues only after the clocks have been measured again") {
   // A robot with a wrong clock rests at the other robot's goal until its clock is corrected.
   Scenario scenario = parse_scenario(
       "field: {length_m: 6, width_m: 4}\nrobots:\n"

@@ -78,10 +78,10 @@ TEST_CASE("a healthy robot with Sidestep's firmware conforms") {
   CHECK(report.is_conformant());
 }
 
-// Measured in the first examination; see the test of the measured latency.
+// The latency that an earlier examination has measured; see the test of the measured latency.
 constexpr Duration kObeysAfter = 118ms;
 
-TEST_CASE("a third-party base that is driven in single precision conforms") {
+TEST_CASE("a third-party base conforms when it is driven in single precision") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const ConformanceReport report = examine_driven(lone_league_robot(), {}, kObeysAfter, seed);
   INFO("seed " << seed << "\n" << to_text(report));
@@ -104,7 +104,7 @@ TEST_CASE("a robot conforms if it assumes the latency that was measured") {
   CHECK(std::abs(measured_ms - static_cast<int>(to_seconds(latency) * 1e3) - 18) <= 5);
 }
 
-TEST_CASE("a robot that brakes at 60 % fails the check of braking") {
+TEST_CASE("a robot that brakes with 60 % of its stated deceleration fails the braking check") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;
   bases.braking_mps2 = 3;
@@ -114,7 +114,7 @@ TEST_CASE("a robot that brakes at 60 % fails the check of braking") {
   CHECK_FALSE(report.figures.is_within_limits);
 }
 
-TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails the check of latency") {
+TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails the latency check") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;
   bases.latency = 150ms - 18ms;
@@ -123,7 +123,7 @@ TEST_CASE("a robot that assumes 100 ms of latency but has 150 ms fails the check
   CHECK(failed(report) == std::vector<std::string>{"latency"});
 }
 
-TEST_CASE("a robot whose clock is 5 ms off fails the check of the clock") {
+TEST_CASE("a robot whose clock is 5 ms off fails the clock check") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const Duration offset = GENERATE(5ms, -5ms);
   Scenario scenario = lone_robot();
@@ -133,11 +133,11 @@ TEST_CASE("a robot whose clock is 5 ms off fails the check of the clock") {
   CHECK(failed(report) == std::vector<std::string>{"clock"});
 }
 
-TEST_CASE("a robot that ignores fences fails the check of fences") {
+TEST_CASE("a robot that still obeys fenced agents fails the fence check") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const Scenario scenario = lone_league_robot();
   SimNetwork network(seed, kBegin, scenario.network);
-  // It treats every command as one from the latest agent and epoch.
+  // Makes the robot treat every command as one from the latest agent and epoch.
   const auto ignore_fences = [latest =
                                   std::pair<std::uint64_t, std::uint64_t>()](msg::Command& command) mutable {
     const Time now = kBegin + 300s;
@@ -154,7 +154,7 @@ TEST_CASE("a robot that ignores fences fails the check of fences") {
   CHECK(failed(report) == std::vector<std::string>{"fences"});
 }
 
-TEST_CASE("a robot that obeys new agents late fails the check of pending versions") {
+TEST_CASE("a robot that acknowledges a new agent too late fails the check of pending versions") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const Scenario scenario = lone_league_robot();
   SimNetwork network(seed, kBegin, scenario.network);
@@ -174,7 +174,7 @@ TEST_CASE("a robot that obeys new agents late fails the check of pending version
   CHECK(failed(report) == std::vector<std::string>{"pending versions"});
 }
 
-TEST_CASE("a robot that is neither driven nor seen is not judged further") {
+TEST_CASE("a robot that sends no reports fails that check, and no further checks are made") {
   const Scenario scenario = lone_robot();
   SimNetwork network(1, kBegin, scenario.network);
   const ConformanceReport report = examine(network, scenario);

@@ -21,7 +21,8 @@ Scenario crossing() {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/crossing.yaml");
 }
 
-/// A process that knows the scenario's rules, if it gets them, and the latest messages about robot 0.
+/// A process outside the system that sends faulty messages. It knows the latest messages about robot 0, and
+/// the scenario's rules if it is given them.
 class Stranger {
  public:
   Stranger(SimSystem& system, const std::optional<Scenario>& rules)
@@ -86,7 +87,7 @@ msg::DetectionFrame frame_of(const Stranger& stranger) {
   return frame;
 }
 
-/// A command of the obeyed agent, with a version that it has not sent.
+/// A command in the name of the obeyed agent, with a version that the agent has not sent.
 msg::Command with_version(const Stranger& stranger, VersionNumber base, Duration until_start) {
   msg::Command command = stranger.command;
   command.epoch(stranger.feedback.obeyed_epoch());
@@ -111,7 +112,7 @@ void answer_proposals(Stranger& stranger, bool is_grant, std::optional<Time> sta
   };
 }
 
-/// A reason, the process that has it, and how to cause it.
+/// A reason to drop a message, the process that drops it, and how to cause it.
 struct Cause {
   DropReason reason;
   const char* process;
@@ -373,12 +374,12 @@ const std::vector<Cause> kCauses{
      }},
 };
 
-/// Reasons that no message on SimBus causes, and the tests that cause them.
+/// Reasons that no message on SimBus can cause, and the tests that cause them.
 const std::set<DropReason> kElsewhere{
     DropReason::kUnreadable,          // dds/robustness_test
     DropReason::kMalformedDatagram,   // dds/robustness_test
-    DropReason::kForgottenPeer,       // dds/presence_test, of processes that sleep for seconds
-    DropReason::kUnknownParticipant,  // dds/participant_filter_test, of processes with keys, like the next
+    DropReason::kForgottenPeer,       // dds/presence_test
+    DropReason::kUnknownParticipant,  // dds/participant_filter_test, like the next
                                       // one
     DropReason::kRefusedParticipant,
     DropReason::kMalformedNetworkFault,  // process/network_faults_test
@@ -389,7 +390,7 @@ const std::set<DropReason> kElsewhere{
     DropReason::kMalformedOdometry,   // adapters/velocity_driver_test
     DropReason::kMisdatedOdometry,    // adapters/robot_driver_node_test
     DropReason::kRejectedByBase,      // adapters/league_driver_test
-    DropReason::kImplausibleEpoch,    // failover_test: codecs refuse such messages earlier
+    DropReason::kImplausibleEpoch,    // failover_test; codecs refuse such messages before it
 };
 
 TEST_CASE("each reason to drop a message is counted where it happens") {
@@ -417,7 +418,7 @@ TEST_CASE("each reason to drop a message is counted where it happens") {
   }
 }
 
-TEST_CASE("nothing unusual is dropped in a run without faults") {
+TEST_CASE("a run without faults drops messages for the expected reasons only") {
   SimSystem system(crossing(), 1);
   CHECK(system.run_until_arrived(system.begin() + 20s));
   for (const auto& [process, counts] : system.metrics().report().counters) {

@@ -12,7 +12,7 @@ namespace sidestep::crowd_test {
 
 constexpr std::size_t kPeople = 32;
 
-/// Samples what the robots see, how fast they may be, and how fast their messages are.
+/// Samples the vision, the speed limits and the network of a scenario.
 void sample_conditions(Scenario& scenario, Rng& rng) {
   scenario.radius_m = rng.uniform(0.06, 0.15);
   scenario.limits.speed_mps = rng.uniform(0.8, 2);
@@ -32,7 +32,8 @@ void sample_conditions(Scenario& scenario, Rng& rng) {
   if (rng.chance(0.3)) network.loss = rng.uniform(0, 0.1);
 }
 
-/// Walks on a random route. Some people are as fast as the robots' assumed maximum, others stand still.
+/// Samples a person on a random route. Some people walk at the maximum speed that robots assume, others stand
+/// still.
 OpponentSpec sample_person(test::PositionSampler& starts, double min_distance_m, double max_speed_mps) {
   Rng& rng = starts.rng;
   OpponentSpec person;
@@ -52,7 +53,7 @@ Scenario crowded_scene(std::uint64_t seed) {
   scenario.field = {rng.uniform(7, 14), rng.uniform(6, 10)};
   sample_conditions(scenario, rng);
   test::PositionSampler starts{rng, scenario.field, {}}, goals{rng, scenario.field, {}};
-  constexpr double kSeparation_m = 0.5;  // more than the largest radii and margin together
+  constexpr double kSeparation_m = 0.5;  // more than the sum of the largest radii and the margin
   for (std::uint64_t i = 0, robots = 2 + rng.below(7); i < robots; ++i) {
     RobotSpec robot;
     robot.id = static_cast<RobotId>(i);

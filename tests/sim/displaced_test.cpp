@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Robots that lose power while they drive, and robots without power that somebody carries through the others.
+// SPDX-License-Identifier: Apache-2.0 Robots that lose power while they drive, and robots without power that
+// a person carries among the others.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -50,7 +50,7 @@ Scenario random_floor(std::uint64_t seed) {
   return scenario;
 }
 
-/// A moment of the ground truth.
+/// The ground truth at one time.
 struct Moment {
   Time at;
   std::map<RobotId, State> robots;
@@ -83,8 +83,8 @@ struct BodyPath {
   }
 };
 
-/// Whether a robot that moves as in `undisturbed` for the detection time and then brakes stays clear of the
-/// body. Half the margin covers its tracking error.
+/// Whether a robot stays clear of the body if it moves as in `undisturbed` for the detection time and then
+/// brakes. Half the margin covers its tracking error.
 bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const BodyPath& body, Time fault,
                     const Scenario& scenario) {
   const auto is_clear = [&](const Vec2& position, double t_s) {
@@ -98,7 +98,7 @@ bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const
     last_s = to_seconds(moment.at - fault);
     if (!is_clear(last.position_m, last_s)) return false;
   }
-  // Up to the end of the detection time at the last speed, then braking.
+  // Until the detection time has passed it keeps its last speed, then it brakes.
   const double speed = last.velocity_mps.norm();
   const Vec2 direction = speed > 0 ? Vec2(last.velocity_mps / speed) : Vec2(0, 0);
   const double brakes_at_s = to_seconds(kDetectionTime);
@@ -115,7 +115,7 @@ bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const
 struct Fault {
   RobotId robot = 0;
   Time switched_off{};
-  Time moved{};  ///< time at which its body begins its uncontrolled motion
+  Time moved{};  ///< when the body begins its uncontrolled motion
   bool is_carried = false;
   Vec2 target_m{0, 0};
   Duration duration{0};
@@ -141,7 +141,7 @@ struct Run {
   std::vector<Moment> truths;
   struct Touch {
     msg::ContactPair pair;
-    std::size_t moment;  ///< index of the first truth that shows it
+    std::size_t moment;  ///< index of the first ground truth that shows the motion
   };
   std::vector<Touch> touches;
   std::uint64_t contacts = 0;
@@ -151,7 +151,7 @@ struct Run {
 struct Totals {
   int cases = 0;
   int judged = 0;          ///< robots that could stop without touching the body
-  int touched = 0;         ///< number of those that touched
+  int touched = 0;         ///< number of judged robots that touched it
   int other_contacts = 0;  ///< number of contacts between two robots that were not displaced
   int unnamed = 0;         ///< bodies not named within a second
   int wrongly_named = 0;   ///< robots named before the fault
@@ -220,7 +220,7 @@ void count_touches(const Run& run, std::size_t first, const Fault& fault, const 
                    << " m/s touch " << to_seconds(before.at - fault.moved) << " s after robot " << fault.robot
                    << (fault.is_carried ? " was carried" : " lost power"));
     }
-    // A body that hits a robot leaves the path for which the other robots were judged.
+    // A body that hits a robot leaves its predicted path, so the other robots cannot be judged.
     if (is_with_body && !is_judged) is_on_path = false;
   }
 }
@@ -243,7 +243,7 @@ void run_case(std::uint64_t seed, bool is_carried, Totals& totals) {
   run.system.disturb(off);
   if (is_carried) {
     run.system.run_until(fault.moved);
-    run.named.erase(fault.robot);  // named as displaced because it has rolled
+    run.named.erase(fault.robot);  // it counted as displaced because it coasted
     auto carry = disturbance(fault.robot, msg::DisturbanceKind::DISTURBANCE_CARRY);
     carry.x_m(fault.target_m.x());
     carry.y_m(fault.target_m.y());
@@ -288,19 +288,20 @@ void check(const Totals& totals) {
 }
 
 TEST_CASE(
-    "robots stay clear of robots that roll without power or are carried, and the coordinator names these") {
+    "robots stay clear of robots that coast without power or are carried, which the coordinator reports as "
+    "displaced") {
   check(run_cases(1, 40));
 }
 
-// The agents' handling of such robots was tuned on the seeds 1 to 1000.
-TEST_CASE("a thousand coasting and carried robots are named, and no robot drives into them",
+// Seeds 1 to 1000 are not used, because the agents' handling of displaced robots was tuned on them.
+TEST_CASE("a thousand coasting and carried robots are reported as displaced, and no robot drives into them",
           "[.long][slow]") {
   check(run_cases(1001, 1000));
 }
 
-// Robot 1 loses power and is carried to where robot 0 is about to drive. By the coordinator's clock, vision
-// may see robots in the future.
-TEST_CASE("a carried robot is named, or no robot drives, for all clocks within their bound") {
+// Robot 1 loses power and is carried to where robot 0 is about to drive. By the coordinator's clock,
+// observations may be dated in the future.
+TEST_CASE("a carried robot is reported as displaced or no robot drives, for all clocks within their bound") {
   Scenario scenario;
   scenario.name = "lax clocks";
   scenario.field = {6, 4};
@@ -342,7 +343,8 @@ TEST_CASE("a carried robot is named, or no robot drives, for all clocks within t
   CHECK(is_named == is_in_bound);
 }
 
-TEST_CASE("a robot that is switched on elsewhere resumes driving, and is no longer named") {
+TEST_CASE(
+    "a robot that is carried elsewhere and switched on drives again, and no longer counts as displaced") {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     CAPTURE(seed);
     Scenario scenario = random_floor(seed);

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// The protocol under external events: robots that are pushed, lifted and placed, firmware restarts, false
-// facts.
+// SPDX-License-Identifier: Apache-2.0 The protocol under external events: pushed, lifted and placed robots,
+// firmware restarts, forged reports.
 #include <algorithm>
 
 #include "common/config/scenario_loader.hpp"
@@ -59,7 +58,7 @@ TEST_CASE("pushed robots stop, and all robots reach their goals in the same epoc
   }
 }
 
-TEST_CASE("a robot pushed too close to another is in conflict with it, and the two move apart again") {
+TEST_CASE("a robot pushed too close to another is in conflict with it until they have moved apart") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -78,7 +77,7 @@ TEST_CASE("a robot pushed too close to another is in conflict with it, and the t
     CHECK(floor.coordinator(0).state().conflicts() == 1);
     CHECK(floor.coordinator(0).state().conflict_first() == 1);
     CHECK(floor.coordinator(0).state().conflict_second() == 2);
-    // A coordinator whose epoch begins with the conflict resolves it too.
+    // A new coordinator that inherits the conflict resolves it too.
     if (takes_over) floor.kill_coordinator(0);
     clearance = std::min(clearance, floor.run_until_arrived(10));
     CHECK(clearance >= 0.002 - 1e-6);
@@ -110,7 +109,7 @@ TEST_CASE("a robot whose firmware restarts reaches its goal in the same epoch") 
   }
 }
 
-TEST_CASE("a false fact about a robot quarantines it for a moment, and all continue in the same epoch") {
+TEST_CASE("a forged report quarantines a robot only briefly, and all robots continue in the same epoch") {
   IdealFloor floor(circle_scenario(8, 2), 3);
   SimBus attacker(floor.network);
   auto writer = attacker.advertise(topics::kFeedback, 2);
@@ -140,7 +139,7 @@ TEST_CASE("a false fact about a robot quarantines it for a moment, and all conti
   CHECK(floor.unknown_versions() == 0);
 }
 
-TEST_CASE("a robot that computes with lower precision is quarantined and named, and the others arrive") {
+TEST_CASE("a robot that computes in single precision is quarantined and reported, and the others arrive") {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) {
     CAPTURE(seed);
     IdealFloor floor(circle_scenario(8, 2), seed);
@@ -157,14 +156,14 @@ TEST_CASE("a robot that computes with lower precision is quarantined and named, 
     const Epoch epoch = highest_epoch(floor);
     clearance = std::min(clearance, floor.run(20));
     CHECK(highest_epoch(floor) == epoch);
-    // The quarantined robot rests at the goal of the robot opposite, so both do not arrive.
+    // The quarantined robot rests at the goal of the opposite robot, so neither arrives.
     CHECK(floor.arrived() == 6);
     // Rounding moves the robot by less than a micrometre.
     CHECK(clearance >= floor.scenario.margin_m - 1e-6);
   }
 }
 
-TEST_CASE("robots are lifted and placed among others while agents and coordinators restart") {
+TEST_CASE("robots are lifted and put down among others without harm while agents and coordinators restart") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     CAPTURE(seed);
     Scenario scenario = circle_scenario(8, 2);
@@ -190,7 +189,7 @@ TEST_CASE("robots are lifted and placed among others while agents and coordinato
       }
       clearance = std::min(clearance, floor.run(rng.uniform(0.05, 0.5)));
       REQUIRE_FALSE(floor.robots.is_on_floor(lifted));
-      // A random position: if another robot may be there, the request is refused, and another position is
+      // A random position. If another robot may be there, the request is refused and another position is
       // tried.
       const Time requested = floor.network.now();
       while (!floor.robots.is_on_floor(lifted) &&
@@ -209,7 +208,7 @@ TEST_CASE("robots are lifted and placed among others while agents and coordinato
   }
 }
 
-TEST_CASE("an absent robot does not block others, and joins when it is placed") {
+TEST_CASE("an absent robot does not block others, and drives once it is put down on the floor") {
   // The corridor is wide enough for only one robot.
   IdealFloor floor(
       parse_scenario("field: {length_m: 6, width_m: 0.5}\nrobots:\n" + robot(1, "[-2, 0]", "[2, 0]") +

@@ -9,11 +9,11 @@ namespace sidestep::drift_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("robots that are seen rarely and late drive slowly enough to stay on their references") {
+TEST_CASE("with rare and late vision, robots drive slowly enough to stay on their references") {
   std::uint64_t own_stops = 0;
   double max_position_error_m = 0;
   Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/two-teams-22.yaml");
-  // The network is fast. On a slow one the clocks would limit the speed more than dead reckoning does.
+  // On a slow network, clock offsets would limit the speed more than dead reckoning does.
   scenario.vision.rate_hz = 10;
   scenario.vision.delay = 100ms;
   scenario.odometry.scale_error = 0.01;

@@ -28,7 +28,7 @@ class DefectiveBus : public SimBus {
   std::function<void(msg::Command&)> defect_;
 };
 
-/// A floor of bases and the process that drives them, on SimBus.
+/// A floor of simulated bases and the process that drives them, on SimBus.
 class DrivenFloor {
  public:
   DrivenFloor(SimNetwork& network, const Scenario& scenario, const BaseSettings& bases, Duration latency,

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// Sequences of single messages with a one-way partition, or an agent that receives nothing, between the real
-// negotiation of agents, real coordinators and real firmware. If robots did not fence epochs, each sequence
-// would bring two robots too close together.
+// SPDX-License-Identifier: Apache-2.0 Sequences of single messages between real agents (their negotiation),
+// coordinators and firmware, with a one-way partition or an agent that receives nothing. If robots did not
+// fence epochs, each sequence would bring two robots too close together.
 #include "agents/agent/negotiation.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/negotiation_codec.hpp"
@@ -116,7 +115,8 @@ struct Floor {
   }
 };
 
-TEST_CASE("a restarted agent does not return to a coordinator that its robot has left") {
+TEST_CASE(
+    "a restarted agent does not register with an old coordinator after its robot has obeyed a newer one") {
   Floor floor;
   floor.both_obey(floor.second);
   REQUIRE(floor.second.is_granting());
@@ -133,7 +133,7 @@ TEST_CASE("a restarted agent does not return to a coordinator that its robot has
   floor.require_clear();
   CHECK(floor.right.rest_x() == 1);
 
-  // Under the new coordinator the robot approaches the other one up to the required separation.
+  // Under the new coordinator the robot approaches the other robot up to the required separation.
   successor.receive_heartbeat(floor.second, floor.now);
   successor.register_with(floor.second, floor.now);
   successor.drive(floor.second, floor.right, -1, 60, floor.now);
@@ -141,9 +141,9 @@ TEST_CASE("a restarted agent does not return to a coordinator that its robot has
   CHECK(floor.right.rest_x() < 0.9);
 }
 
-TEST_CASE("an agent whose robot obeys a later one cannot register in a new epoch") {
+TEST_CASE("an agent whose robot obeys a later agent cannot register in a new epoch") {
   Floor floor;
-  Driver fenced_agent = floor.left_driver;  // receives no report from here on
+  Driver fenced_agent = floor.left_driver;  // receives no more reports
   Driver successor(0, 2000);
   successor.fence(floor.left, floor.now);
   successor.receive_heartbeat(floor.first, floor.now);

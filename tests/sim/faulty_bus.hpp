@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// A simulated process that can be stopped and resumed (SIGSTOP, SIGCONT), and cut off in one direction or
-/// for single topics.
+/// The bus of a simulated process that can be stopped and resumed (like SIGSTOP, SIGCONT), and cut off in one
+/// direction or for single topics.
 class FaultyBus : public SimBus {
  public:
   using SimBus::SimBus;
@@ -21,7 +21,7 @@ class FaultyBus : public SimBus {
   /// Sets how far the process's clock is ahead of the network's clock from now on.
   void set_clock_offset(Duration offset) { clock_offset_ = offset; }
 
-  /// From now on nothing runs; timers and messages are queued.
+  /// From now on no callback runs; timers and messages are queued.
   void stop() { is_stopped_ = true; }
   void resume();
   /// While blocked, all incoming messages are lost.

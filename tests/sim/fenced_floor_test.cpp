@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Bases that obey late, driven as sidestep-robot does, while agents restart and run twice.
+// SPDX-License-Identifier: Apache-2.0 Bases with latency, driven as by sidestep-robot, while agents restart
+// or run twice.
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
-// After this time all robots know their poses and drive.
+// Warm-up, after which all robots know their poses and drive.
 constexpr Duration kWarmUp = 8s;
 
 /// Eight robots that drive back and forth across each other's paths.
@@ -36,8 +36,8 @@ Scenario shuttles() {
 
 struct Outcome {
   std::uint64_t contacts = 0, violations = 0;
-  int own_stops = 0;  ///< after the warm-up, not counting those of the next line
-  int drifts = 0;     ///< stops of robots that had drifted, which happens without restarts too
+  int own_stops = 0;  ///< own stops after the warm-up, not counting drifts
+  int drifts = 0;     ///< own stops of robots that had drifted, which happen without restarts too
   int restarts = 0, twins = 0;
   double driven_m = 0;
   std::string first_violation;
@@ -45,7 +45,7 @@ struct Outcome {
 
 class FencedFloor {
  public:
-  /// `latency`: until a base moves as it was commanded.
+  /// `latency`: time until a base moves as commanded.
   FencedFloor(std::uint64_t seed, Duration latency)
       : scenario_(shuttles()),
         network_(seed, kBegin, scenario_.network),
@@ -69,7 +69,7 @@ class FencedFloor {
 
   void run(Duration duration) { network_.run_until(network_.now() + duration); }
   RobotId random_robot(Rng& rng) const { return scenario_.robots[rng.below(scenario_.robots.size())].id; }
-  /// Another agent of the robot, besides those that run.
+  /// Starts another agent of the robot; running ones continue.
   void start(RobotId robot) {
     Agent agent{std::make_unique<SimBus>(network_), nullptr};
     agent.node = std::make_unique<AgentNode>(*agent.bus, scenario_, robot,
@@ -96,7 +96,7 @@ class FencedFloor {
   struct Agent {
     std::unique_ptr<SimBus> bus;
     std::unique_ptr<AgentNode> node;
-    ~Agent() { bus.reset(); }  // first, so that it makes no more calls
+    ~Agent() { bus.reset(); }  // first, so that the bus makes no more callbacks
     Agent(std::unique_ptr<SimBus> agent_bus, std::unique_ptr<AgentNode> agent)
         : bus(std::move(agent_bus)), node(std::move(agent)) {}
     Agent(Agent&&) = default;
@@ -184,15 +184,16 @@ double from_environment(const char* name, double otherwise) {
 
 }  // namespace
 
-TEST_CASE("restarts and second agents make no driven robot leave its version, and robots never touch") {
+TEST_CASE("restarts and second agents never cause a driven base to leave its version or touch another") {
   const Outcome outcome = run_floors(1, 0.5, true);
   CHECK(outcome.restarts > 100);
   CHECK(outcome.twins > 50);
   CHECK(outcome.driven_m > 200);
 }
 
-TEST_CASE("restarts and second agents make no driven robot leave its version, for a thousand robot-hours",
-          "[.][slow]") {
+TEST_CASE(
+    "restarts and second agents never cause a driven base to leave its version in a thousand robot-hours",
+    "[.][slow]") {
   const double hours = from_environment("SIDESTEP_ROBOT_HOURS", 1000);
   const auto first = static_cast<std::uint64_t>(from_environment("SIDESTEP_FIRST_SEED", 1'000'000));
   const Outcome outcome = run_floors(first, hours, true);
@@ -201,7 +202,7 @@ TEST_CASE("restarts and second agents make no driven robot leave its version, fo
              << " of drift, " << outcome.violations << " violations, " << outcome.driven_m / 1000 << " km");
 }
 
-TEST_CASE("driven robots whose agents do not restart make no own stop either", "[.][slow]") {
+TEST_CASE("driven bases make no own stop if their agents do not restart", "[.][slow]") {
   const Outcome outcome = run_floors(1, 0.5, false);
   WARN(outcome.own_stops << " own stops, " << outcome.drifts << " of drift, " << outcome.driven_m / 1000
                          << " km");

@@ -12,7 +12,7 @@ Scenario shipped(const std::string& name) {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/" + name + ".yaml");
 }
 
-/// Counts facts of robots off their references.
+/// Counts reports of robots that are off their references.
 struct OffReference {
   OffReference(SimSystem& system, const Scenario& scenario) : bus(system.network()) {
     for (const RobotSpec& robot : scenario.robots) {
@@ -43,7 +43,9 @@ TEST_CASE("in undisturbed runs no robot is ever off its reference") {
   }
 }
 
-TEST_CASE("a pushed robot reports it within the latency of cameras, vision and radio") {
+TEST_CASE(
+    "a pushed robot reports that it is off its reference within the latency of cameras and vision and "
+    "radio") {
   const auto [name, max_ms] =
       GENERATE(table<const char*, int>({{"two-teams-22", 120}, {"crossing-noisy", 180}}));
   const double push_mps = GENERATE(0.5, 1.0);
@@ -67,7 +69,7 @@ TEST_CASE("a pushed robot reports it within the latency of cameras, vision and r
   }
 }
 
-TEST_CASE("among opponents every robot arrives, and is at rest when touched") {
+TEST_CASE("among opponents every robot arrives, and is at rest whenever an opponent touches it") {
   Scenario scenario = shipped("opponents");
   // One opponent drives back and forth over the goals.
   scenario.opponents.at(1).path_m = {{3.45, 2.6}, {3.45, -2.6}};
@@ -84,7 +86,7 @@ TEST_CASE("among opponents every robot arrives, and is at rest when touched") {
     CHECK(report.max_robot_crash_speed_mps < 0.05);
     crashes += report.crashes;
   }
-  CHECK(crashes > 0);  // else the test would prove nothing
+  CHECK(crashes > 0);  // without crashes the test would prove nothing
 }
 
 /// A system and a writer for disturbances.
@@ -117,7 +119,7 @@ TEST_CASE("pushed or rebooted robots continue to their goals without contact") {
       const auto kind =
           rng.chance(0.5) ? msg::DisturbanceKind::DISTURBANCE_PUSH : msg::DisturbanceKind::DISTURBANCE_REBOOT;
       msg::Disturbance message = disturbance(static_cast<RobotId>(rng.below(8)), kind);
-      // The slide is shorter than the margin.
+      // After the push the robot slides by less than the margin.
       const Vec2 change = rotated(Vec2(0.3, 0), rng.uniform(-3.14, 3.14));
       message.vx_mps(change.x());
       message.vy_mps(change.y());
@@ -132,7 +134,7 @@ TEST_CASE("pushed or rebooted robots continue to their goals without contact") {
   }
 }
 
-TEST_CASE("robots that slipped, or had a blocked wheel, continue to their goals") {
+TEST_CASE("robots continue to their goals after slipping or a blocked wheel") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -153,7 +155,7 @@ TEST_CASE("robots that slipped, or had a blocked wheel, continue to their goals"
   }
 }
 
-TEST_CASE("a robot is taken off the floor and put down elsewhere while the others drive on") {
+TEST_CASE("a robot is taken off the floor and put down elsewhere while the other robots keep driving") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const bool begins_absent = GENERATE(false, true);
   CAPTURE(seed, begins_absent);

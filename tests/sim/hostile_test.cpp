@@ -14,7 +14,7 @@ Scenario crossing() {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/crossing.yaml");
 }
 
-TEST_CASE("one hostile message of any kind disturbs no robot for more than a moment") {
+TEST_CASE("a single hostile message of any kind disturbs robots only briefly") {
   for (const Forgery& forgery : forgeries()) {
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       CAPTURE(forgery.name, seed);
@@ -33,7 +33,7 @@ TEST_CASE("one hostile message of any kind disturbs no robot for more than a mom
   }
 }
 
-TEST_CASE("a hostile message of any kind stops no robot that has lost its pose") {
+TEST_CASE("a hostile message of any kind does not keep a robot that has lost its pose from recovering") {
   Scenario scenario = crossing();
   scenario.tracking_bound_m = 0.014;
   scenario.margin_m = 0.032;
@@ -42,7 +42,7 @@ TEST_CASE("a hostile message of any kind stops no robot that has lost its pose")
     SimSystem system(scenario, 1, {}, SimSystem::kBegin, 100ms);
     Forger forger(system.network(), scenario, kVictim);
     system.run_for(2s);
-    // Long enough that robots lose their poses and that processes accept another sender.
+    // Long enough for robots to lose their poses and for processes to accept another sender.
     system.pause("simulator", 2500ms, 0);
     system.run_for(2000ms);
     forgery.change(forger);
@@ -52,7 +52,7 @@ TEST_CASE("a hostile message of any kind stops no robot that has lost its pose")
   }
 }
 
-TEST_CASE("robots arrive although a hostile process reports higher and higher epochs") {
+TEST_CASE("robots arrive although a hostile process keeps reporting higher epochs") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   SimSystem system(crossing(), seed);

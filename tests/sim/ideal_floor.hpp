@@ -36,13 +36,13 @@ class IdealFloor {
 
   /// Runs for some seconds. Returns the minimum clearance between any two robots in that time.
   double run(double seconds);
-  /// Number of times that a robot executed a version missing from the ledger of the granting coordinator. A
-  /// robot's own stop off its reference counts only once the coordinator knows of it.
+  /// Number of times that a robot executed a version missing from the ledger of the granting coordinator. An
+  /// own stop is not compared until the coordinator has received a report of it.
   int unknown_versions() const { return unknown_versions_; }
   /// Rule violations found by the audit.
   std::uint64_t violations() const;
   int arrived();
-  /// Runs until all have arrived, or max_seconds are over. Returns the minimum clearance in that time.
+  /// Runs until all robots have arrived, or for max_seconds. Returns the minimum clearance in that time.
   double run_until_arrived(double max_seconds);
   /// Runs until a robot reaches this speed; false if none does within ten seconds.
   bool run_until_speed(double speed_mps);

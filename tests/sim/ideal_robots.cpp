@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-// Agents number their versions upwards from their incarnations. No agent counts this far in a year.
+// Agents number their versions upwards from their incarnations, and do not count this far in a year.
 constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 32;
 
 Vec2 rounded(const Vec2& v) { return v.cast<float>().cast<double>(); }
@@ -140,7 +140,7 @@ void IdealRobots::advance(Robot& robot, Time now) {
         (!robot.is_lifted || is_rest_version)) {
       robot.executing = robot.pending.front();
       robot.has_moved = true;
-      robot.is_off_reference = robot.is_lifted = false;  // a lifted robot is put down now
+      robot.is_off_reference = robot.is_lifted = false;  // a lifted robot has now been put down
     }
     robot.pending.erase(robot.pending.begin());
   }

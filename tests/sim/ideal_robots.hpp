@@ -29,7 +29,8 @@ class IdealRobots {
   bool is_off_reference(RobotId robot) const { return robots_.at(robot).is_off_reference; }
   bool is_on_floor(RobotId robot) const { return !robots_.at(robot).is_lifted; }
 
-  /// Displaces a robot and sets its velocity. The robot notices and brakes off its reference.
+  /// Displaces a robot and sets its velocity. The robot notices that it is off its reference, and makes an
+  /// own stop.
   void push(RobotId robot, const Vec2& shift_m, const Vec2& velocity_mps, double inflation_m = 0);
   /// Restarts its firmware, which keeps only the incarnation, epoch and version number that it has obeyed.
   void reboot(RobotId robot) { push(robot, Vec2::Zero(), velocity_mps(robot, bus_.now())); }
@@ -47,7 +48,7 @@ class IdealRobots {
     Duration clock_offset{0};
     std::optional<RobotReport::CommandEcho> last_command;
     Version executing;
-    VersionNumber highest = 0;  // of all version numbers and incarnations received
+    VersionNumber highest = 0;  // highest version number or incarnation received
     bool is_off_reference = false, is_lifted = false, has_moved = false;
     bool rounds_versions = false;
     std::vector<Version> pending;  // ascending by start

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// Robots that see opponents and people by their own lasers only.
+// SPDX-License-Identifier: Apache-2.0 Robots that see opponents and people only with their own lasers.
 #include <algorithm>
 #include <chrono>
 
@@ -25,7 +24,8 @@ Scenario one_robot(const Vec2& start, const Vec2& goal) {
   return scenario;
 }
 
-TEST_CASE("no robot is moving when a person steps out of a place that its laser does not see") {
+TEST_CASE(
+    "no robot is moving when it collides with a person who steps out of a place hidden from its laser") {
   int arrived = 0, cases = 0;
   std::uint64_t touched_at_rest = 0;
   for (std::size_t kind = 0; kind < kCornerKinds.size(); ++kind) {
@@ -41,10 +41,12 @@ TEST_CASE("no robot is moving when a person steps out of a place that its laser 
     }
   }
   CHECK(arrived > cases * 7 / 10);
-  CHECK(touched_at_rest > 10);  // people do walk into robots
+  CHECK(touched_at_rest > 10);  // otherwise people hardly ever met robots
 }
 
-TEST_CASE("no robot is moving when a person steps out of a doorway that is hardly wider than the person") {
+TEST_CASE(
+    "no robot is moving when it collides with a person who steps out of a doorway hardly wider than the "
+    "person") {
   int arrived = 0, cases = 0;
   std::uint64_t touched_at_rest = 0;
   for (std::size_t kind = 0; kind < kDoorwayKinds.size(); ++kind) {
@@ -63,7 +65,7 @@ TEST_CASE("no robot is moving when a person steps out of a doorway that is hardl
   CHECK(touched_at_rest > 10);
 }
 
-TEST_CASE("six robots work among ten people whom they see only with their own lasers") {
+TEST_CASE("six robots drive safely among ten people whom they see only with their own lasers") {
   const Scenario scenario =
       load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/house-laser.yaml");
   SimSystem system(scenario, 1);
@@ -75,10 +77,10 @@ TEST_CASE("six robots work among ten people whom they see only with their own la
   CHECK(report.crashes > 0);
 }
 
-//   |  A  |     Through the gap A no speed is safe: somebody may stand
+//   |  A  |     Through the gap A no speed is safe: a person may stand
 //   |     |     right behind its edges. With a second, wider gap the
 //   o ->  * robot goes that way.
-TEST_CASE("a robot takes another way around a corner that leaves no safe speed, or reports it") {
+TEST_CASE("a robot avoids a blind corner where no speed is safe, or reports that it is blocked") {
   const bool has_other_way = GENERATE(false, true);
   CAPTURE(has_other_way);
   Scenario scenario = one_robot({-3, 0}, {3, 0});
@@ -100,7 +102,7 @@ TEST_CASE("a robot takes another way around a corner that leaves no safe speed, 
   CHECK(system.metrics().report().contacts == 0);
 }
 
-TEST_CASE("a robot stops while scans of its laser fail to arrive, and goes on with the next one") {
+TEST_CASE("a robot stops while its laser scans fail to arrive, and continues with the next scan") {
   const Scenario scenario = one_robot({-4, 0}, {4, 0});
   Scenario rarely = scenario;  // the laser's scan rate is not one of the rules that processes compare
   rarely.laser->rate_hz = 0.5;
@@ -120,7 +122,7 @@ TEST_CASE("a robot stops while scans of its laser fail to arrive, and goes on wi
   system.on_truth([&](const msg::GroundTruth& truth) {
     if (truth.robots().empty() || scans == 0) return;
     const double speed_mps = std::hypot(truth.robots()[0].vx_mps(), truth.robots()[0].vy_mps());
-    // 0.3 s without a scan, a few cycles, and the time to brake from 2 m/s.
+    // The robot rests after 0.3 s without a scan, a few cycles, and the time to brake from 2 m/s.
     const bool is_late = system.now() - last_scan > 0.3s + 0.1s + 0.5s;
     if (is_late) CHECK(speed_mps < 0.05);
     has_stopped = has_stopped || is_late;

@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// Robots that local methods drive, in whole systems.
+// SPDX-License-Identifier: Apache-2.0 Robots driven by local methods, in whole systems.
 #include <fmt/format.h>
 
 #include "common/config/scenario_loader.hpp"
@@ -34,7 +33,7 @@ Scenario random_crossing(const std::string& planner, std::uint64_t seed) {
   return parse_scenario(text, "crossing.yaml");
 }
 
-TEST_CASE("local methods that follow a path drive robots among each other to their goals, without contact") {
+TEST_CASE("local methods that follow a path drive several robots to their goals without contact") {
   const std::string planner = GENERATE(as<std::string>(), "nf1-dynamic-window", "bubble-band",
                                        "nf1-band-dynamic-window", "nf1-potential-field");
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 9));

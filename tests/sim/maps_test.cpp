@@ -21,8 +21,8 @@ void require_safe(const SimSystem& system) {
   CHECK(report.audit->verdict() == AuditVerdict::kPassed);
 }
 
-/// Robots at random places of a random floor plan of 12 x 9 m, with single blocked cells as a laser's map has
-/// them.
+/// Robots at random places of a random floor plan of 12 x 9 m, with single blocked cells as in maps made with
+/// a laser.
 Scenario random_building(std::uint64_t seed, int robots) {
   Rng rng(seed);
   Scenario scenario;
@@ -62,8 +62,8 @@ TEST_CASE("robots drive through buildings that a map describes, without contact"
   require_safe(system);
 }
 
-/// Two rooms, joined by a corridor of 0.25 to 0.35 m, in which robots of 0.18 m cannot pass each other. It
-/// has one to three bays.
+/// Two rooms joined by a corridor 0.25 to 0.35 m wide, in which robots of 0.18 m cannot pass each other
+/// except in its one to three bays.
 Scenario random_corridor(std::uint64_t seed) {
   Rng rng(seed);
   Scenario scenario;
@@ -96,7 +96,7 @@ Scenario random_corridor(std::uint64_t seed) {
   return scenario;
 }
 
-TEST_CASE("robots that meet in a corridor as wide as one of them let each other pass") {
+TEST_CASE("robots that meet in a corridor too narrow for two let each other pass") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 13));
   CAPTURE(seed);
   SimSystem system(random_corridor(seed), seed);
@@ -131,7 +131,7 @@ TEST_CASE("robots find their way through buildings of 100 x 100 m, without conta
   require_safe(system);
 }
 
-TEST_CASE("robots of the shipped buildings arrive among people, and none crashes in motion") {
+TEST_CASE("robots in the shipped buildings arrive among people, and no moving robot touches a person") {
   const auto name = GENERATE(as<std::string>(), "corridor", "house");
   CAPTURE(name);
   SimSystem system(load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/" + name + ".yaml"), 3);

@@ -10,7 +10,7 @@
 
 namespace sidestep::opponents_test {
 
-/// A few robots, and opponents on random routes with speeds up to the bound.
+/// A few robots, and opponents on random routes with speeds up to the assumed maximum.
 Scenario random_scene(std::uint64_t seed) {
   Rng rng(seed);
   Scenario scenario;
@@ -67,8 +67,8 @@ RobotSpec robot_with_goal(std::size_t index, const Vec2& start_m, const Vec2& go
   return robot;
 }
 
-/// Four robots cross the paths of four opponents at full speed. Fifty-six more are stationary along the
-/// sides, and are listed first or last in the scenario.
+/// Four robots cross the paths of four opponents at full speed. Fifty-six more opponents stand along the
+/// sides, and come first or last in the scenario's list.
 Scenario crowded_scene(std::uint64_t seed, bool standing_first) {
   Rng rng(seed);
   Scenario scenario;
@@ -93,8 +93,7 @@ Scenario crowded_scene(std::uint64_t seed, bool standing_first) {
   return scenario;
 }
 
-TEST_CASE(
-    "none of sixty opponents touches a moving robot, whether the nearest are the oldest or the newest") {
+TEST_CASE("none of sixty opponents touches a moving robot, wherever the nearest are in the scenario's list") {
   const bool standing_first = GENERATE(true, false);
   std::uint64_t crashes = 0;
   int arrived = 0;
@@ -113,7 +112,8 @@ TEST_CASE(
   CHECK(arrived > 0);
 }
 
-TEST_CASE("among more opponents than a list holds, robots drive, and none is moving when it is touched") {
+TEST_CASE(
+    "with more opponents than an obstacle list holds, robots drive, and none is moving when it is touched") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -140,7 +140,7 @@ TEST_CASE("among more opponents than a list holds, robots drive, and none is mov
     ++lists;
     if (list.obstacles().size() < msg::MAX_OBSTACLES || list.complete_within_m() >= kCompleteEverywhere_m)
       return;
-    incomplete += list.complete_within_m() > 1;  // and far enough to be useful
+    incomplete += list.complete_within_m() > 1;  // complete far enough to be useful
   });
   double longest_way_m = 0;
   system.on_truth([&](const msg::GroundTruth& truth) {

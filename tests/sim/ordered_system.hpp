@@ -40,7 +40,7 @@ struct OrderedSystem {
   std::map<RobotId, State> bodies;  ///< true states
   Vec2 ball_m{0, 0};                ///< true position
   OrderNumber number = 0;
-  Time moved_at{};  ///< last time at which a robot was in motion
+  Time moved_at{};  ///< when a robot last moved
 
   OrderedSystem(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {
     system.on_order_status([this](const msg::OrderStatus& status) {

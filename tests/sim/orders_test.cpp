@@ -22,7 +22,7 @@ Scenario shipped(const std::string& name) {
   return load_scenario(std::string(SIDESTEP_SOURCE_DIR) + "/deploy/scenarios/" + name + ".yaml");
 }
 
-TEST_CASE("robots without goals wait, and go where they are ordered, pose by pose") {
+TEST_CASE("robots without goals wait for orders, and drive through the ordered poses one after another") {
   OrderedSystem run(waiting_robots(4), 1);
   run.system.run_for(seconds(2));
   CHECK(run.max_speed_mps() < kAtRest_mps);
@@ -42,7 +42,8 @@ TEST_CASE("robots without goals wait, and go where they are ordered, pose by pos
   run.require_safe();
 }
 
-TEST_CASE("twenty-two robots that are held at full speed rest after the braking time and three cycles") {
+TEST_CASE(
+    "twenty-two robots that are held at full speed come to rest within the braking time and three cycles") {
   const double loss = GENERATE(0.0, 0.05);
   CAPTURE(loss);
   std::vector<double> delays_s;
@@ -71,7 +72,9 @@ TEST_CASE("twenty-two robots that are held at full speed rest after the braking 
   CHECK(delays_s.back() <= budget_s);
 }
 
-TEST_CASE("a hold outlives the coordinator, the agents, or both, until its owner or an operator resumes") {
+TEST_CASE(
+    "a hold survives the restart of the coordinator or agents or both, until its owner or an operator "
+    "resumes") {
   const int coordinators = GENERATE(1, 2);
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(coordinators, seed);
@@ -93,13 +96,13 @@ TEST_CASE("a hold outlives the coordinator, the agents, or both, until its owner
   CHECK(stays(seconds(4)));
   for (const RobotSpec& robot : scenario.robots) restart(agent_process(robot.id));
   CHECK(stays(seconds(4)));
-  // All at once.
+  // Kills coordinators and agents all at once.
   for (const std::string& process : system_process_names(scenario)) {
     if (process != "simulator" && process != "vision") run.system.kill(process);
   }
   for (const std::string& process : system_process_names(scenario)) run.system.restart(process);
   CHECK(stays(seconds(5)));
-  // Another client cannot lift it, and after a restart of everything the owner cannot either.
+  // Another client cannot lift the hold. After a restart of everything its owner cannot either.
   run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kOtherClient);
   run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kClient);
   CHECK(stays(seconds(2)));
@@ -136,7 +139,7 @@ TEST_CASE("no order is lost while agents and coordinators are killed") {
       }
       run.system.run_for(milliseconds(rng.below(500)));
     }
-    // Each robot carries out its last order, or rests as near to the goal as others permit.
+    // Each robot carries out its last order, or rests as near to the goal as other robots permit.
     run.run_until(seconds(40), [&] {
       return std::ranges::all_of(latest, [&](const auto& l) { return run.arrived.contains(l.second); });
     });
@@ -148,7 +151,7 @@ TEST_CASE("no order is lost while agents and coordinators are killed") {
   }
 }
 
-/// A client on its own link, which gives robots random goals, each on a place of its own.
+/// A client with its own link, which sends robots to random goals that do not overlap.
 struct RandomClient {
   static constexpr int kColumns = 6, kRows = 5;
   SimBus bus;
@@ -172,7 +175,7 @@ struct RandomClient {
   }
 };
 
-TEST_CASE("a client learns the outcome of every order, whatever is killed meanwhile") {
+TEST_CASE("a client learns the outcome of every order although any agents and coordinators are killed") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);
@@ -184,7 +187,7 @@ TEST_CASE("a client learns the outcome of every order, whatever is killed meanwh
     for (int i = 0; i < 400; ++i) {
       run.system.run_for(milliseconds(100));
       if (rng.below(3) == 0) random.send_one(static_cast<RobotId>(rng.below(8)));
-      // If every process that knows that there was no order before is killed, robots are held until an
+      // If all processes that remember that there was no earlier order are killed, robots are held until an
       // operator resumes them.
       if (run.system.now() < run.system.begin() + seconds(3)) continue;
       for (const std::string& process : system_process_names(scenario)) {
@@ -210,7 +213,8 @@ TEST_CASE("a client learns the outcome of every order, whatever is killed meanwh
   }
 }
 
-TEST_CASE("orders take effect in the order in which clients give them, although their clocks differ") {
+TEST_CASE(
+    "orders take effect in the sequence in which clients give them, although the clients' clocks differ") {
   OrderedSystem run(shipped("crossing"), 1);
   SimNetwork& network = run.system.network();
   SimBus early_bus(network, {network.new_process(), {seconds(-20), 0, run.system.begin()}});
@@ -238,7 +242,7 @@ TEST_CASE("orders take effect in the order in which clients give them, although 
   CHECK(early.find(last)->phase == OrderPhase::kDriving);
 }
 
-TEST_CASE("robots that stopped by themselves before anything was granted are not held") {
+TEST_CASE("robots that have made own stops before the first grant are not held") {
   OrderedSystem run(shipped("crossing"), 1);
   run.system.kill("coordinator");
   run.system.run_for(milliseconds(100));
@@ -251,8 +255,8 @@ TEST_CASE("robots that stopped by themselves before anything was granted are not
 }
 
 TEST_CASE(
-    "another robot's agent restores an order that the coordinator and the robot's own agent have both "
-    "forgotten") {
+    "another robot's agent restores an order after the coordinator and the robot's own agent have "
+    "restarted") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     INFO("seed " << seed);
     OrderedSystem run(waiting_robots(3), seed);
@@ -270,7 +274,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a client that sends each order only once gets answers only for orders that outlive the coordinator") {
+    "a client that sends each order only once gets answers only for orders that survive the coordinator") {
   int answered = 0, lost = 0, unanswered = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
@@ -278,7 +282,7 @@ TEST_CASE(
     const int coordinators = 1 + static_cast<int>(rng.below(2));
     OrderedSystem run(waiting_robots(3, coordinators), seed);
     run.system.run_for(seconds(2));
-    // The active coordinator is cut off, so that nobody hears it, and dies later.
+    // The active coordinator is cut off, so that no other process hears it, and dies later.
     const std::string victim = "coordinator";
     const Duration until_cut = milliseconds(rng.below(40)), until_death = milliseconds(rng.below(300));
     const OrderNumber zone = run.draw(7, {{{2.5, 2}}, 0.1});
@@ -319,7 +323,7 @@ TEST_CASE(
   CHECK(unanswered > 100);
 }
 
-TEST_CASE("ten thousand orders a second neither stop a run nor fill the memory") {
+TEST_CASE("ten thousand orders a second neither stop a run nor fill memory") {
   OrderedSystem run(waiting_robots(4), 1);
   run.system.run_for(seconds(1));
   const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kOperator, {{{1, 0}}});
@@ -329,7 +333,7 @@ TEST_CASE("ten thousand orders a second neither stop a run nor fill the memory")
     const auto kind = static_cast<msg::OrderKind>(rng.below(6));
     const auto robot = static_cast<RobotId>(rng.below(5));
     Order flood{kind, robot, kClient + static_cast<ClientId>(rng.below(100'000)), run.number};
-    // Their own holds would stop the robot, as they should.
+    // Holds of robot 0 would stop it, as they should, so the flood holds other robots only.
     if (flood.kind == msg::OrderKind::ORDER_HOLD || flood.kind == msg::OrderKind::ORDER_RESUME)
       flood.robot = 1 + robot % 4;
     if (flood.kind == msg::OrderKind::ORDER_GO) flood.goals = {{{rng.uniform(-5, 5), 0}}};

@@ -32,7 +32,7 @@ TEST_CASE("ideal robots keep their margin through loss, delay, duplicates and re
   }
 }
 
-TEST_CASE("an undisturbed robot never brakes because a verdict is missing") {
+TEST_CASE("an undisturbed robot never brakes for lack of a verdict") {
   Scenario scenario = parse_scenario(
       "field: {length_m: 8, width_m: 4}\nrobots:\n  - {id: 7, team: blue, start_m: [-3, 0], goals_m: [[3, "
       "0]]}\n",
@@ -47,7 +47,7 @@ TEST_CASE("an undisturbed robot never brakes because a verdict is missing") {
     (void)run.run(0.02);
     const Vec2 here = run.robots.position_m(7, run.network.now());
     const double now_mps = (here - last).norm() / 0.02;
-    // Counts braking before the stop at the goal begins.
+    // Counts braking, except for the stop at the goal.
     slower += now_mps < speed - 0.02 && (here - Vec2(3, 0)).norm() > 0.55;
     peak = std::max(peak, now_mps);
     speed = now_mps;
@@ -58,8 +58,9 @@ TEST_CASE("an undisturbed robot never brakes because a verdict is missing") {
   CHECK(peak == Approx(scenario.limits.speed_mps).margin(0.02));
 }
 
-TEST_CASE("neither of two robots with equal claims always yields") {
-  // Two robots cross at right angles, almost simultaneously, at a random time of the control cycle.
+TEST_CASE("neither of two crossing robots with equal claims always yields") {
+  // Two robots drive to the crossing of their paths almost simultaneously, starting at a random time of the
+  // control cycle.
   int won[2] = {0, 0};
   Rng rng(1);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {

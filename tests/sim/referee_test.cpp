@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// The league's referee, in whole systems.
+// SPDX-License-Identifier: Apache-2.0 Whole systems that obey the league's referee.
 #include "agents/tactics/referee_node.hpp"
 #include "common/motion/rolling_ball.hpp"
 #include "tests/sim/ordered_system.hpp"
@@ -36,7 +35,7 @@ struct RefereedSystem {
   SimBus bus;
   RefereeNode node;
   Time next_packet;
-  double max_speed_mps = 0, min_distance_m = 1e9;  ///< while the last command was played, after its delay
+  double max_speed_mps = 0, min_distance_m = 1e9;  ///< since the last command, after its delay
 
   RefereedSystem(const Scenario& scenario, std::uint64_t seed)
       : run(scenario, seed),
@@ -66,7 +65,8 @@ struct RefereedSystem {
   }
 };
 
-TEST_CASE("robots rest after HALT, keep the rules after STOP, and go on after FORCE_START") {
+TEST_CASE(
+    "robots rest after HALT, obey the speed and distance limits after STOP, and continue after FORCE_START") {
   double halted_mps = 0, fastest_mps = 0, nearest_m = 1e9;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     INFO("seed " << seed);
@@ -94,14 +94,14 @@ TEST_CASE("robots rest after HALT, keep the rules after STOP, and go on after FO
                         << " m/s in STOP; nearest to the ball " << nearest_m << " m");
 }
 
-TEST_CASE("robots give way to a ball that rolls through them after STOP") {
+TEST_CASE("robots make way for a ball that rolls between them after STOP") {
   double nearest_m = 1e9;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     INFO("seed " << seed);
     const double angle_rad = 0.6 * static_cast<double>(seed);
     RefereedSystem match(busy_teams({rotated(Vec2(-3, 0.3), angle_rad), rotated(Vec2(1.2, 0), angle_rad)}),
                          seed);
-    // In a crowd, some robots block others.
+    // The robots are crowded, so some block others.
     match.play(RefereeCommand::kStop, seconds(5), seconds(2));
     CHECK(match.max_speed_mps <= kMaxSpeed_mps);
     CHECK(match.min_distance_m >= 0.3);

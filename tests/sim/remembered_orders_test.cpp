@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Holds outlive partitions and crashes as long as one process that remembers them lives (S-47, S-48), and
-// nobody drives after a restart of everything.
+// SPDX-License-Identifier: Apache-2.0 Holds survive partitions and crashes as long as a process that
+// remembers them lives (S-47, S-48), and no robot drives after a restart of everything.
 #include <set>
 
 #include "common/client/order_client.hpp"
@@ -16,7 +15,7 @@ using std::chrono::seconds;
 
 constexpr auto kRemembered = msg::OrderResult::RESULT_REMEMBERED;
 
-/// Robots that have driven, and rest.
+/// A system whose robots have driven and now rest.
 struct Fleet : OrderedSystem {
   Fleet(int robots, int coordinators, std::uint64_t seed)
       : OrderedSystem(waiting_robots(robots, coordinators), seed) {
@@ -25,7 +24,7 @@ struct Fleet : OrderedSystem {
     REQUIRE(run_until(seconds(5), [&] { return arrived.contains(first); }));
     system.run_for(seconds(2));
   }
-  /// A hold that was confirmed.
+  /// Gives a hold and waits for its confirmation.
   OrderNumber hold(RobotId robot) {
     const auto hold = send(msg::OrderKind::ORDER_HOLD, robot, kClient);
     CHECK(run_until(seconds(4), [&] { return answers.contains(hold); }));
@@ -40,7 +39,7 @@ struct Fleet : OrderedSystem {
     send(msg::OrderKind::ORDER_GO, robot, kOtherClient, {{{2, 1}}});
     CHECK_FALSE(moves(seconds(10)));
     CHECK(statuses[robot].is_held());
-    // Only the hold stops it.
+    // Only the hold stops the robot.
     const auto resume = send(msg::OrderKind::ORDER_RESUME, robot, kClient);
     CHECK(run_until(seconds(3), [&] { return answers.contains(resume); }));
     CHECK(run_until(seconds(5), [&] { return max_speed_mps() > 0.5; }));
@@ -50,7 +49,9 @@ struct Fleet : OrderedSystem {
 
 // The standby's host is partitioned while a client holds robot 0. Then the host with coordinator 0 and robot
 // 0's agent loses power, and the partition heals. The memory of coordinator 1 claims to be complete.
-TEST_CASE("a hold outlives its coordinator and its robot's agent, although the standby was partitioned") {
+TEST_CASE(
+    "a hold survives the death of its coordinator and its robot's agent, even if the standby was "
+    "partitioned") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 2, seed);
@@ -66,8 +67,8 @@ TEST_CASE("a hold outlives its coordinator and its robot's agent, although the s
   run.require_held(0);
 }
 
-// Agent 2 does not hear the coordinator while the hold is given, and agent 1 not while it restarts.
-TEST_CASE("a hold outlives its only coordinator, although another agent's memory is older") {
+// Agent 2 does not hear the coordinator while the hold is given. Agent 1 does not hear it while it restarts.
+TEST_CASE("a hold survives the restart of the only coordinator, even if another agent has not heard of it") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 1, seed);
@@ -88,9 +89,11 @@ TEST_CASE("a hold outlives its only coordinator, although another agent's memory
   run.require_held(0);
 }
 
-// The agent that remembers the hold hears coordinator 1, which does not hear it for a while.
+// The agent that remembers the hold hears coordinator 1, but for a while coordinator 1 does not hear that
+// agent.
 TEST_CASE(
-    "a hold that one agent remembers stays in force although the new coordinator does not hear that agent") {
+    "a hold that only one agent remembers stays in force although the new coordinator does not hear that "
+    "agent") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 2, seed);
@@ -110,8 +113,8 @@ TEST_CASE(
   run.require_held(0);
 }
 
-// Coordinator 0 hears everybody, but only the client hears it.
-TEST_CASE("a coordinator that no agent hears confirms no hold") {
+// Coordinator 0 hears every process, but only the client hears coordinator 0.
+TEST_CASE("a coordinator does not confirm a hold while no agent hears it") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 2, seed);
@@ -120,7 +123,7 @@ TEST_CASE("a coordinator that no agent hears confirms no hold") {
   const auto hold = run.send(msg::OrderKind::ORDER_HOLD, 0, kClient);
   run.system.run_for(milliseconds(100));
   CHECK_FALSE(run.answers.contains(hold));
-  // Coordinator 1 takes over, and confirms it once it remembers it.
+  // Coordinator 1 takes over, and confirms the hold once it remembers the hold.
   CHECK(run.run_until(seconds(5), [&] {
     Order again{msg::OrderKind::ORDER_HOLD, 0, kClient, hold};
     run.system.send(again);
@@ -130,7 +133,7 @@ TEST_CASE("a coordinator that no agent hears confirms no hold") {
   run.require_held(0);
 }
 
-TEST_CASE("an order and a zone outlive their coordinator too, although the standby was partitioned") {
+TEST_CASE("an order and a zone survive the death of their coordinator, even if the standby was partitioned") {
   Fleet run(3, 2, 1);
   run.isolate("coordinator 1");
   run.system.run_for(milliseconds(500));
@@ -148,13 +151,13 @@ TEST_CASE("an order and a zone outlive their coordinator too, although the stand
   run.require_safe();
 }
 
-TEST_CASE("after a restart of everything robots are held, even if none has moved") {
+TEST_CASE("robots are held after coordinators and agents have all restarted, even if no robot has moved") {
   const int coordinators = GENERATE(1, 2);
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(coordinators, seed);
   OrderedSystem run(waiting_robots(3, coordinators), seed);
   run.system.run_for(seconds(2));
-  const bool is_held = GENERATE(true, false);  // it is unknown whether one was
+  const bool is_held = GENERATE(true, false);  // after the restart no process knows whether a robot was held
   if (is_held) {
     const auto hold = run.send(msg::OrderKind::ORDER_HOLD, 0, kOperator);
     REQUIRE(run.run_until(seconds(3), [&] { return run.answers.contains(hold); }));
@@ -168,7 +171,8 @@ TEST_CASE("after a restart of everything robots are held, even if none has moved
   run.require_safe();
 }
 
-TEST_CASE("robots with goals are held after a restart of everything, at any time from the first epoch on") {
+TEST_CASE(
+    "robots with goals keep resting after a confirmed hold even if coordinators and agents all restart") {
   for (const int started_ms : {100, 300, 1000, 1300, 1700}) {
     const int coordinators = GENERATE(1, 2);
     CAPTURE(started_ms, coordinators);
@@ -186,7 +190,7 @@ TEST_CASE("robots with goals are held after a restart of everything, at any time
   }
 }
 
-TEST_CASE("coordinators and agents that restart while a fleet starts do not cause it to be held") {
+TEST_CASE("restarts of single coordinators or agents while a fleet starts do not cause it to be held") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);
@@ -195,7 +199,7 @@ TEST_CASE("coordinators and agents that restart while a fleet starts do not caus
     for (RobotSpec& robot : scenario.robots) robot.goals = {{robot.start_m + Vec2(0, 1)}};
     OrderedSystem run(scenario, seed);
     run.system.run_for(milliseconds(rng.below(1500)));
-    // Only one process: if a coordinator and an agent die together, an order might be forgotten.
+    // Restarts only one process: if a coordinator and an agent die together, an order might be forgotten.
     const std::string victim = rng.below(2)
                                    ? agent_process(rng.below(4))
                                    : coordinator_process(rng.below(static_cast<std::uint32_t>(coordinators)));
@@ -207,8 +211,8 @@ TEST_CASE("coordinators and agents that restart while a fleet starts do not caus
   }
 }
 
-// Each trial holds a robot by the library, lets partitions and crashes happen, but never kills the last
-// process that remembers the hold, and then orders the robot away.
+// Each trial holds a robot with the client library, causes partitions and crashes, and then orders the robot
+// away. It never kills the last process that remembers the hold.
 TEST_CASE("no confirmed hold is lost in random partitions and crashes") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     INFO("seed " << seed);

@@ -18,14 +18,14 @@ Scenario without_robot(Scenario scenario, RobotId robot) {
   return scenario;
 }
 
-/// Starts a process again with another scenario.
+/// Restarts a process with another scenario.
 void replace(SimSystem& system, const std::string& process, const Scenario& scenario) {
   system.kill(process);
   system.use_scenario(process, scenario);
   system.restart(process);
 }
 
-/// The rules in which this process was reported to differ.
+/// The keys of the rules in which a process differs, according to the report.
 std::vector<std::string> differing_keys(const Report& report, const std::string& process) {
   std::vector<std::string> keys;
   const auto found = report.mismatches.find(process);
@@ -40,7 +40,7 @@ double max_speed_mps(const SimSystem& system) {
   return result;
 }
 
-TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and no robot moves") {
+TEST_CASE("a coordinator whose scenario lacks a robot is refused and reported, and no robot moves") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
     const Scenario scenario = crossing();
@@ -59,7 +59,7 @@ TEST_CASE("a coordinator whose scenario lacks a robot is refused and named, and 
   }
 }
 
-TEST_CASE("a standby with different rules is named within a second, and never takes over") {
+TEST_CASE("a standby with different rules is reported within a second, and never takes over") {
   const RuleMutation& other = rule_mutations().at(GENERATE(range(std::size_t{0}, rule_mutations().size())));
   CAPTURE(other.key);
   Scenario scenario = crossing();
@@ -97,7 +97,9 @@ TEST_CASE("a later agent with different rules does not take over its robot") {
   CHECK(differing_keys(report, "agent 3") == std::vector<std::string>{"radius_m"});
 }
 
-TEST_CASE("an agent with different rules is refused and named, and no other robot drives without it") {
+TEST_CASE(
+    "an agent with different rules is refused and reported, and no robot drives until it has the same "
+    "rules") {
   const Scenario scenario = crossing();
   SimSystem system(scenario, 5);
   Scenario changed = scenario;
@@ -110,7 +112,7 @@ TEST_CASE("an agent with different rules is refused and named, and no other robo
   CHECK(system.run_until_arrived(system.now() + 20s));
 }
 
-TEST_CASE("observations by a vision process with a different roster are not used") {
+TEST_CASE("observations of a vision process with a different roster are not used") {
   const Scenario scenario = crossing();
   SimSystem system(scenario, 6);
   system.run_for(1s);

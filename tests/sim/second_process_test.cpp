@@ -1,5 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0
-// Two processes of a kind of which there must be only one.
+// SPDX-License-Identifier: Apache-2.0 Two processes of kinds that may run only once in a domain.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -24,7 +23,7 @@ Scenario circle(int coordinators = 1) {
                         "circle.yaml");
 }
 
-/// The first simulator's truth, and what processes report.
+/// Records the first simulator's ground truth, and what processes report.
 struct Watch {
   SimSystem& system;
   SimBus bus;
@@ -67,7 +66,7 @@ struct Watch {
 };
 
 TEST_CASE(
-    "a second simulator ends by itself at any time, and the first one's robots touch nobody and arrive") {
+    "a second simulator exits whenever it is started, and the first one's robots arrive without contact") {
   const auto seed = GENERATE(range(1u, 41u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -85,7 +84,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "as long as two simulators run, robots stay at rest, and every process that hears both names them") {
+    "while two simulators run, robots stay at rest, and every process that hears both reports the conflict") {
   const auto seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -108,8 +107,7 @@ TEST_CASE(
   watch.require_safe();
 }
 
-TEST_CASE(
-    "a robot that only a second simulator reports, because its own is silent, breaks no rule of the ledger") {
+TEST_CASE("a silent robot for which only a second simulator reports causes no audit violation") {
   const auto seed = GENERATE(range(1u, 11u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -130,7 +128,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a robot that was silent while a second simulator spoke for it is judged by its own facts afterwards") {
+    "a robot for which a second simulator reported while it was silent is judged by its own reports "
+    "afterwards") {
   const auto seed = GENERATE(range(1u, 6u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -159,7 +158,7 @@ TEST_CASE(
   watch.require_safe();
 }
 
-TEST_CASE("two simulators on a bad network, and processes that restart meanwhile, cause no contact") {
+TEST_CASE("two simulators on a lossy network cause no contact, even if other processes restart") {
   const auto seed = GENERATE(range(1u, 31u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -184,7 +183,7 @@ TEST_CASE("two simulators on a bad network, and processes that restart meanwhile
   watch.require_safe();
 }
 
-TEST_CASE("a second vision ends by itself, and robots arrive") {
+TEST_CASE("a second vision process exits, and robots arrive") {
   const auto seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -199,7 +198,7 @@ TEST_CASE("a second vision ends by itself, and robots arrive") {
   watch.require_safe();
 }
 
-TEST_CASE("two coordinators with the same number are named, and robots arrive") {
+TEST_CASE("two coordinators with the same number report each other, and robots arrive") {
   const auto seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);
   Rng rng(seed);

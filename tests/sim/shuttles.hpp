@@ -29,7 +29,7 @@ inline Scenario shuttles(int robots, int coordinators, bool crosses = false, con
   return parse_scenario(text, "shuttles.yaml");
 }
 
-/// When each robot was in motion.
+/// Records when each robot was in motion.
 class MotionWatch {
  public:
   static constexpr double kMotion_mps = 0.05;
@@ -40,7 +40,7 @@ class MotionWatch {
         if (std::hypot(robot.vx_mps(), robot.vy_mps()) > kMotion_mps) note_motion(robot.robot());
     });
   }
-  /// From now on.
+  /// Starts the measurement.
   void begin() {
     moved_at_.clear();
     longest_rest_s_.clear();

@@ -89,7 +89,7 @@ TEST_CASE("simulated robots obey any motion limits that a scenario specifies") {
   CHECK(own_stops == 0);
 }
 
-TEST_CASE("a robot arrives whatever the length of its control cycle and the strength of its motors") {
+TEST_CASE("a robot arrives with any control cycle and any motor strength that a scenario may specify") {
   const auto seed = GENERATE(range(1u, 61u));
   Rng rng(seed);
   const double rate_hz = 5 * std::pow(100, rng.uniform()),
@@ -126,7 +126,7 @@ TEST_CASE("in every shipped scenario all robots arrive without contact") {
   CHECK(report.max_reference_error_m < run.scenario.margin_m);
 }
 
-TEST_CASE("equal seeds give equal reports, different seeds different ones") {
+TEST_CASE("equal seeds give equal reports, and different seeds give different reports") {
   const auto report_of = [](std::uint64_t seed) {
     MonitoredSystem run(shipped("crossing-noisy"), seed);
     (void)run.system.run_until_arrived(run.system.begin() + from_seconds(20));
@@ -154,14 +154,13 @@ TEST_CASE(
     run.require_safe();
     arrived += run.system.metrics().arrived();
   }
-  // A system without motion would be safe, too. Here clocks are known only within tens of milliseconds, so
-  // robots are slow, and keep far away from silent ones.
+  // Robots that never move would be safe too, so some must arrive. Clocks are known only within tens of
+  // milliseconds here, so robots are slow, and stay far from silent robots.
   CHECK(arrived > 120);
 }
 
 TEST_CASE(
-    "when an agent dies its robot stops by itself without contact, the others arrive, and the report names "
-    "the "
+    "when an agent dies, its robot stops without contact, the others arrive, and the report lists the "
     "agent") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
@@ -182,7 +181,7 @@ TEST_CASE(
   CHECK(report.deaths[0].process == "agent 2");
 }
 
-TEST_CASE("a restarted agent drives its robot on to its goal") {
+TEST_CASE("a restarted agent drives its robot the rest of the way to its goal") {
   MonitoredSystem run(shipped("crossing"), 4);
   run.run_until_speed(5);
   run.system.kill(agent_process(5));
@@ -193,7 +192,7 @@ TEST_CASE("a restarted agent drives its robot on to its goal") {
 }
 
 TEST_CASE(
-    "without a coordinator all robots stop within v/D and a cycle, and with a new one they continue to their "
+    "without a coordinator all robots stop within v/D plus a cycle, and with a new one they reach their "
     "goals") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
@@ -201,7 +200,8 @@ TEST_CASE(
   run.run_until_speed(0);
   const double speed = run.max_speed_mps();
   run.system.kill("coordinator");
-  // A version granted just before is still executed: it begins within a cycle and accelerates for another.
+  // A version granted just before the kill is still executed: it begins within a cycle and accelerates for a
+  // cycle.
   const MotionLimits& limits = run.scenario.limits;
   const double cycle_s = to_seconds(run.scenario.cycle);
   const double max_speed = speed + 2 * cycle_s * limits.acceleration_mps2;
@@ -216,7 +216,7 @@ TEST_CASE(
   run.require_safe();
 }
 
-TEST_CASE("robots stop without vision, and continue when it is back") {
+TEST_CASE("robots stop when vision dies, and continue after its restart") {
   MonitoredSystem run(shipped("crossing"), 3);
   run.run_until_speed(0);
   run.system.kill("vision");
@@ -227,7 +227,7 @@ TEST_CASE("robots stop without vision, and continue when it is back") {
   run.require_safe();
 }
 
-TEST_CASE("the report lists the epochs with their reasons, and the processes report why they begin") {
+TEST_CASE("the report lists each epoch with its reason, and processes log the same reason") {
   Scenario scenario = shipped("crossing");
   scenario.coordinators = 2;
   MonitoredSystem run(scenario, 1);

@@ -15,8 +15,8 @@ Scenario circle_scenario(int robots, int coordinators) {
                         "circle.yaml");
 }
 
-/// The time from a kill until a robot accelerates again; call right after the kill. The first two cycles do
-/// not count, because versions granted before the kill begin in them.
+/// Returns the time from a kill until a robot accelerates again; call it right after the kill. The first two
+/// cycles do not count, because versions granted before the kill may still begin.
 double seconds_until_faster(IdealFloor& floor) {
   const Time killed = floor.network.now();
   (void)floor.run(2.1 * to_seconds(floor.scenario.cycle));
@@ -56,7 +56,7 @@ TEST_CASE("the standby takes over when the active coordinator dies, and robots a
                                   << seconds.back() * 1e3 << " ms");
 }
 
-TEST_CASE("coordinators that repeatedly die and restart only interrupt the robots") {
+TEST_CASE("coordinators that repeatedly die and restart delay robots but cause no contact") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     IdealFloor floor(circle_scenario(10, 3), seed);
@@ -77,7 +77,7 @@ TEST_CASE("coordinators that repeatedly die and restart only interrupt the robot
   }
 }
 
-TEST_CASE("a coordinator that is stopped and resumed does no harm and becomes a standby") {
+TEST_CASE("a coordinator that is suspended and resumed causes no contact and becomes a standby") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     IdealFloor floor(circle_scenario(12, 2), seed);
@@ -91,7 +91,7 @@ TEST_CASE("a coordinator that is stopped and resumed does no harm and becomes a 
     floor.coordinator_bus(0).resume();
     clearance = std::min(clearance, floor.run(0.1));
     CHECK_FALSE(floor.coordinator(0).is_active());
-    // Now the second coordinator is stopped, and the first one takes over again.
+    // Then the second coordinator is suspended, and the first one takes over again.
     floor.coordinator_bus(1).stop();
     clearance = std::min(clearance, floor.run(0.6));
     CHECK(floor.coordinator(0).is_granting());
@@ -121,7 +121,8 @@ TEST_CASE("robots arrive although coordinators do not receive each other's heart
   }
 }
 
-TEST_CASE("one-way partitions of agents and coordinators cost motion, never clearance, and heal") {
+TEST_CASE(
+    "one-way partitions of agents and coordinators stop robots for a while but never reduce clearance") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Scenario scenario = circle_scenario(10, 2);
@@ -153,7 +154,7 @@ TEST_CASE("one-way partitions of agents and coordinators cost motion, never clea
   }
 }
 
-TEST_CASE("a plausible hostile epoch costs one change of epoch, an implausible one nothing") {
+TEST_CASE("a forged epoch causes one change of epoch if plausible, and none otherwise") {
   IdealFloor floor(circle_scenario(8, 2), 1);
   SimBus attacker(floor.network);
   auto writer = attacker.advertise(topics::kCoordinator);
@@ -181,9 +182,7 @@ TEST_CASE("a plausible hostile epoch costs one change of epoch, an implausible o
   CHECK(floor.arrived() == 8);
 }
 
-TEST_CASE(
-    "standbys do not replace a coordinator that serves, even if messages take so long that robots slow "
-    "down") {
+TEST_CASE("standbys do not replace a coordinator that serves, even if slow messages slow the robots down") {
   for (const double delay_ms : {0.2, 0.6, 1.0, 3.0}) {
     const int coordinators = GENERATE(2, 4);
     CAPTURE(delay_ms, coordinators);

@@ -20,7 +20,7 @@ struct AgentTraffic {
   std::map<Incarnation, int> messages;
 };
 
-TEST_CASE("if two agents of one robot run, the later one drives it, and clearances are kept") {
+TEST_CASE("if one robot has two agents, the one started later drives it, and clearances are kept") {
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     CAPTURE(seed);
     Scenario scenario = parse_scenario(
@@ -39,7 +39,7 @@ TEST_CASE("if two agents of one robot run, the later one drives it, and clearanc
       floor.start_agent(3);
       clearance = std::min(clearance, floor.run(rng.uniform(0.01, 0.6)));
       if (twin == 1) floor.kill_coordinator(0);
-      // The first agent may receive nothing for a while, so it does not notice the new one.
+      // The first agent may receive nothing for a while, and then does not notice the new agent.
       FaultyBus& earlier = *floor.agent_buses(3).front();
       earlier.block_incoming(rng.chance(0.5));
       clearance = std::min(clearance, floor.run(rng.uniform(0.01, 0.6)));
@@ -53,7 +53,7 @@ TEST_CASE("if two agents of one robot run, the later one drives it, and clearanc
     (void)floor.run(1);
     REQUIRE(traffic.messages.size() == 4);
     const auto before = traffic.messages;
-    // The robot is pushed away from its goal: only the last agent may send messages.
+    // After the robot has been pushed away from its goal, only the last agent may send messages.
     floor.robots.push(3, -0.3 * floor.robots.position_m(3, floor.network.now()).normalized(), {0, 0});
     (void)floor.run_until_arrived(10);
     CHECK(floor.arrived() == 8);

@@ -18,7 +18,7 @@ void require_safe(const SimSystem& system) {
   CHECK(report.audit->verdict() == AuditVerdict::kPassed);
 }
 
-/// Two walls across the floor with a door each, some furniture, and robots that all change rooms.
+/// A floor with two walls across it with a door each, some furniture, and robots that all change rooms.
 std::string random_rooms(Rng& rng) {
   std::string text = fmt::format("field: {{length_m: {}, width_m: {}}}\nobstacles:\n", kLength_m, kWidth_m);
   for (const double x : {-1.3, 1.3}) {
@@ -51,7 +51,7 @@ TEST_CASE("robots change rooms through doors of random floor plans, without cont
   require_safe(system);
 }
 
-TEST_CASE("robots that are localised in camera images move from room to room among walls and map cells") {
+TEST_CASE("robots localised in camera images drive from room to room among walls and map cells") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -75,7 +75,7 @@ TEST_CASE("every planner drives robots from room to room") {
   const std::string text = "planner: " + planner + "\n" + random_rooms(rng);
   SimSystem system(parse_scenario(text, "rooms.yaml"), 1);
   const bool arrived = system.run_until_arrived(system.begin() + std::chrono::seconds(60));
-  // Without a path, a window stops in front of the walls.
+  // A dynamic window without a path stops in front of walls.
   if (planner != "dynamic-window") CHECK(arrived);
   require_safe(system);
 }

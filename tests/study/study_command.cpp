@@ -37,7 +37,9 @@ void add_clutter_study(const CliCommand& study, std::function<int()>& action) {
   const auto planners = std::make_shared<std::vector<std::string>>();
   const CliCommand clutter = add_study(
       study, "clutter", "Every planner among obstacles and people: time, contacts, crashes", *options);
-  clutter.add_option("--planner", *planners, "planners, separated by commas [all that drive robots]")
+  clutter
+      .add_option("--planner", *planners,
+                  "planners, separated by commas [all planners that can drive robots]")
       .comma_separated()
       .check(one_of(driving_planners()));
   add_jobs_option(clutter, options->jobs);
@@ -49,7 +51,7 @@ void add_clutter_study(const CliCommand& study, std::function<int()>& action) {
 void add_buildings_study(const CliCommand& study, std::function<int()>& action) {
   const auto options = std::make_shared<BuildingsOptions>();
   const CliCommand buildings = add_study(
-      study, "buildings", "Robots that drive to random places of scenarios again and again", options->study);
+      study, "buildings", "Robots that repeatedly drive to random places of scenarios", options->study);
   buildings.add_option("SCENARIO", options->scenario_files, "scenario files; their goals are the places")
       .required();
   buildings.add_option("--planner", options->planners, "planners, separated by commas")
@@ -85,12 +87,12 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<StudyOptions>();
   const CliCommand safety =
       add_study(study, "safety",
-                "The safety search: traversals with and without it, margins against noise, time", *options);
+                "The safety search: traversals with and without it, margins under noise, time", *options);
   add_jobs_option(safety, options->jobs);
   safety.on_parsed([&action, options] { action = [options] { return study_safety(*options); }; });
-  const CliCommand planning = add_study(
-      study, "planning",
-      "Planners and collision structures: caches, trees, graphs, roadmaps, obstacles, terrain", *options);
+  const CliCommand planning =
+      add_study(study, "planning",
+                "Planners and collision structures: caches, trees, graphs, roadmaps, terrain", *options);
   planning.on_parsed([&action, options] { action = [options] { return study_planning(*options); }; });
   add_clutter_study(study, action);
   add_buildings_study(study, action);
@@ -100,14 +102,17 @@ void add_study_command(const CliCommand& root, std::function<int()>& action) {
   add_sight_study(study, "doorways",
                   "A robot with a laser, and people who stand in doorways and step out: crashes, time",
                   study_doorways, action);
-  const CliCommand joint = add_study(
-      study, "explicit", "Robots planned as one or by priority, against the safety search", *options);
+  const CliCommand joint =
+      add_study(study, "explicit",
+                "Joint planning of robots as one or by priority, compared with the safety search", *options);
   joint.on_parsed([&action, options] { action = [options] { return study_joint_planning(*options); }; });
-  const CliCommand potential = add_study(
-      study, "potential", "Potential fields: local minima and oscillation, against E* and NF1", *options);
+  const CliCommand potential =
+      add_study(study, "potential",
+                "Potential fields: local minima and oscillation, compared with E* and NF1", *options);
   potential.on_parsed([&action, options] { action = [options] { return study_potential(*options); }; });
-  const CliCommand camera = add_study(
-      study, "camera", "A robot guided by blobs of a camera's image: drives, stages, paths", *options);
+  const CliCommand camera =
+      add_study(study, "camera",
+                "A robot guided by colour blobs in one camera's image: drives, stages, paths", *options);
   camera.on_parsed([&action, options] { action = [options] { return study_camera(*options); }; });
   const CliCommand navigation =
       add_study(study, "navigation", "Navigation functions on grids: errors, replanning, costs", *options);

@@ -16,7 +16,8 @@
 namespace sidestep {
 namespace {
 
-/// The camera of a picture: from the file, or from the scenario's camera grid with the picture's size.
+/// The camera of a picture: from the cameras file, or from the scenario's camera grid with the picture's
+/// size.
 CameraModel camera_of(const CalibrateColoursOptions& options, std::uint32_t number, const Scenario& scenario,
                       const ImageView& picture, const std::string& picture_file) {
   if (options.cameras_file.empty()) {

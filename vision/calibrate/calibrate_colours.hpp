@@ -14,16 +14,16 @@ struct CalibrateColoursOptions {
   std::vector<std::string> frame_files;
   std::vector<std::uint32_t> cameras{0};  ///< cameras of the frames: one for all frames, or one for each
   std::string cameras_file{};             ///< empty: the scenario's cameras
-  std::string layout_file{};              ///< empty: the butterfly
-  std::string format{};                   ///< empty: the scenario's
+  std::string layout_file{};              ///< empty: the butterfly layout
+  std::string format{};                   ///< empty: the scenario's format
 };
 
 /// Learns colours from pictures of a scenario's floor at the start. Throws ConfigError for an invalid file,
 /// and std::invalid_argument for options or pictures that do not fit the scenario.
 [[nodiscard]] LearnedColours calibrate_colours(const CalibrateColoursOptions& options);
 
-/// Whether the thresholds recognise most pixels of every colour that the pictures show; if not, the pictures
-/// do not match the scenario.
+/// Whether the thresholds recognise most pixels of every colour. If not, the pictures do not match the
+/// scenario.
 [[nodiscard]] bool is_plausible(const LearnedColours& learned);
 
 }  // namespace sidestep

@@ -16,8 +16,8 @@ struct FloorLabels {
   std::vector<LabelledDisc> ignored;  ///< obstacles and opponents, whose colours are unknown
 };
 
-/// Labels for a scenario's floor at the start. Each robot wears the pattern of its number; throws
-/// std::invalid_argument if the layout has no such pattern.
+/// Labels for a scenario's floor at the start. Each robot has the marker pattern of its number; throws
+/// std::invalid_argument if the layout lacks that pattern.
 [[nodiscard]] FloorLabels floor_labels_at_start(const Scenario& scenario, const MarkerLayout& layout,
                                                 const CameraModel& camera);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kMinPixels = 30;
 constexpr double kMinRecall = 0.95;
-constexpr double kMaxGroundFalsePositives = 0.002;  // about as many pixels in a frame as a dot has
+constexpr double kMaxGroundFalsePositives = 0.002;  // of a frame: about the area of a dot
 
 bool overlap(const ColourBox& a, const ColourBox& b) {
   const auto intersect = [](std::uint8_t al, std::uint8_t ah, std::uint8_t bl, std::uint8_t bh) {

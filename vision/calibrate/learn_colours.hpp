@@ -20,14 +20,14 @@ struct LabelledImage {
 struct LearnedColour {
   Colour colour{};
   std::uint64_t pixels = 0;  ///< number of pixels labelled with this colour
-  double recall = 0;         ///< fraction of them that the thresholds classify as this colour
+  double recall = 0;         ///< fraction of these pixels that the thresholds classify as this colour
 };
 
 struct LearnedColours {
   ColourThresholds thresholds;
   std::vector<LearnedColour> colours;  ///< one element per expected colour
   double ground_false_positives = 0;   ///< fraction of the background classified as a named colour
-  std::vector<std::string> warnings;   ///< for the user, about data that is bad for calibration
+  std::vector<std::string> warnings;   ///< for the user: what makes the data unsuitable for calibration
 };
 
 /// Learns thresholds from labelled images, and evaluates them on the same images. `expected` are the colours

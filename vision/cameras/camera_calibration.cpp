@@ -17,12 +17,12 @@ namespace {
 
 constexpr double kMaxRobotTopSd_px = 0.5;  ///< upper limit of CalibrationResult::robot_top_sd_px
 
-// Focal length, distortion, principal point (2), rotation vector applied after the current rotation (3),
-// translation (3).
+// The parameters: focal length, distortion, principal point (2), rotation vector applied after the current
+// rotation (3), translation (3).
 constexpr int kParameters = 10;
 constexpr int kMaxIterations = 200;
 constexpr double kRobotTop_m = 0.15;
-constexpr double kMinNoise_px = 0.05;  // no measured pixel is more accurate
+constexpr double kMinNoise_px = 0.05;  // assumed minimum error of a measured pixel
 using Step = Eigen::Matrix<double, kParameters, 1>;
 using NormalMatrix = Eigen::Matrix<double, kParameters, kParameters>;
 using Jacobian = Eigen::Matrix<double, 2, kParameters>;
@@ -38,7 +38,7 @@ FreeParameters free_parameters(const CalibrationSettings& s) {
   return result;
 }
 
-/// Derivative of the pixel of a visible point with respect to the camera's parameters.
+/// Derivative of a visible point's pixel with respect to the camera's parameters.
 Jacobian jacobian_of(const CameraModel& camera, const Vec3& point_m) {
   const CameraParameters& c = camera.parameters();
   const Vec3 rotated_point = c.rotation * point_m;

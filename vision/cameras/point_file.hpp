@@ -21,9 +21,9 @@ struct CameraPoints {
 };
 
 /// Reads and validates a file of calibration points; throws ConfigError ("FILE:LINE: ...") for any error.
-/// A point has its pixel and its position on the field, with the height above the floor when it is not 0.
-/// A focal length or distortion that is given is not estimated. The principal point is the image centre
-/// unless it is given; it is estimated only on request.
+/// Each point has its pixel and its position on the field, with its height above the floor unless that is 0.
+/// The focal length and the distortion are estimated unless the file gives them. The principal point is the
+/// image centre unless it is given; it is estimated only on request.
 /// ```
 /// cameras:
 ///   - id: 0

@@ -12,11 +12,12 @@ namespace sidestep {
 /// Thresholds that classify the colours in frames of one format.
 struct ColourThresholds {
   PixelFormat format = PixelFormat::kYuv422;
-  std::vector<ColourBox> boxes;  ///< numbers are those of Colour, or kOtherColour
+  std::vector<ColourBox> boxes;  ///< colour numbers: those of Colour, or kOtherColour
 };
 
-/// Reads and validates a file of thresholds; throws ConfigError ("FILE:LINE: ...") for any error. The
-/// numbers are those of pixel_at(). Where boxes overlap the first one wins; a colour may have several.
+/// Reads and validates a file of thresholds; throws ConfigError ("FILE:LINE: ...") for any error. The limits
+/// of a box apply to the values that pixel_at() returns. Where boxes overlap, the first one wins. A colour
+/// may have several boxes.
 /// ```
 /// format: yuv422                                          # or rgb
 /// boxes:

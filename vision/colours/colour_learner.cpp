@@ -11,8 +11,9 @@ namespace sidestep {
 namespace {
 
 constexpr int kGrey = 128;
-constexpr int kMinChroma = 25;      // distance from grey on U or V that identifies a colour
-constexpr int kRangeMargin = 14;    // margin around the observed range, on U or V below that distance
+constexpr int kMinChroma = 25;  // distance from grey on U or V beyond which a pixel is coloured
+constexpr int kRangeMargin =
+    14;  // margin around the observed range on a channel (U or V) that is nearer to grey
 constexpr double kEdgeShare = 0.4;  // fraction of the way from grey to a colour at which a region ends
 // Weight of gaps in brightness relative to U and V, because light is uneven.
 constexpr double kBrightnessWeight = 0.5;
@@ -22,7 +23,7 @@ constexpr double kOutlierShare = 0.002, kFloorOutlierShare = 0.1;
 constexpr std::array<int, 4> kBandEdges{0, 96, 160, 256};  // limits in brightness
 constexpr double kGroundOutlierShare = 0.001;              // white lines cover less than 1 % of the floor
 constexpr int kGroundMargin = 8;                           // margin around the observed background, on U or V
-// Fraction of the brightness: chroma of grey with a tenth more red or blue.
+// Chroma of grey with 10 % more red or blue, as a fraction of its brightness.
 constexpr double kTintShare = 0.07;
 constexpr int kNoiseMargin = 4;  // margin on U or V
 constexpr int kCoarseStep = 16;  // range of a high nibble, by which segmentation excludes pixels
@@ -69,7 +70,7 @@ void ColourLearner::add(const ImageView& image, std::span<const LabelledDisc> di
       [&](int x, int y) { add_background(pixel_at(image, x, y)); });
 }
 
-/// The box of a colour before it is cut at its neighbours.
+/// The box of a colour before it is separated from its neighbours.
 ColourLearner::Ranges ColourLearner::extended_box(const Histogram& histogram) const {
   const Ranges observed = histogram.ranges(kOutlierShare);
   Ranges box;
@@ -106,8 +107,8 @@ bool ColourLearner::overlap(const Ranges& a, const Ranges& b) {
   return true;
 }
 
-/// Cuts two overlapping boxes on the channel with the widest gap between their observed ranges; leaves them
-/// as they are where there is no gap.
+/// Cuts two overlapping boxes on the channel with the widest gap between their observed ranges, if there is a
+/// gap.
 void ColourLearner::separate(Ranges& a, const Ranges& observed_a, Ranges& b, const Ranges& observed_b) {
   if (!overlap(a, b)) return;
   const auto weighted_gap = [&](std::size_t c) {

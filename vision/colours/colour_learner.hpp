@@ -44,7 +44,7 @@ class ColourLearner {
   explicit ColourLearner(double min_light_ratio = 0.5) : min_light_ratio_(min_light_ratio) {}
 
   /// Adds a frame. The inner parts of `discs` show their colours; pixels far from all discs are background,
-  /// mostly floor. Nothing is learned from the discs in `ignored`.
+  /// mostly floor. Pixels near the discs in `ignored` are skipped.
   void add(const ImageView& image, std::span<const LabelledDisc> discs,
            std::span<const LabelledDisc> ignored = {});
   /// Adds one pixel of a colour.
@@ -53,14 +53,14 @@ class ColourLearner {
   void add_background(const Yuv& pixel);
 
   /// One box per observed colour. It starts at two fifths of the way from grey to the colour, so that regions
-  /// keep their size and darker light is tolerated, and ends at the end of the range. Towards another colour
-  /// or the floor, the border is midway between the observed ranges. Where no border separates two colours,
+  /// keep their size and darker light is tolerated, and extends to the end of the channel. Towards another
+  /// colour or the floor it ends midway between the observed ranges. If two colours cannot be separated,
   /// their boxes overlap, and the first one wins.
   [[nodiscard]] std::vector<ColourBox> named_boxes() const;
 
   /// Boxes of kOtherColour for everything clearly outside the observed background and not grey in tinted
-  /// light; empty when no background was observed. They overlap with each other and with named boxes, which
-  /// must precede them.
+  /// light; empty when no background was observed. They overlap each other and named boxes; named boxes must
+  /// come first.
   [[nodiscard]] std::vector<ColourBox> other_boxes() const;
 
   /// Named boxes, followed by other boxes up to kMaxColours.

@@ -16,12 +16,12 @@ struct LightRange {
 };
 constexpr LightRange kAll{0.55, 1}, kBright{0.75, 1}, kDim{0.55, 0.75};
 constexpr double kStep = 0.05;
-// Relative to the dimmest light: regions would grow too large closer to black.
+// Relative to the dimmest light. With thresholds closer to black, regions would grow too large.
 constexpr double kMinLightRatio = 0.7;
 constexpr double kNoise = 4;      // in levels of 255, in red, green and blue
 constexpr int kFieldWeight = 20;  // frequency of the field surface, relative to white and black
 
-/// The numbers of two neighbouring pixels of one colour in a frame.
+/// The value of a colour in a frame, taken from two neighbouring pixels that show it.
 Yuv yuv_in_frame(PixelFormat format, const Rgb& colour) {
   Image pair(PixelFormat::kRgb, 2, 1);
   for (int x = 0; x < 2; ++x) {
@@ -68,8 +68,8 @@ ColourThresholds default_colours(PixelFormat format, const MarkerLayout& layout)
     });
   }
   ColourThresholds thresholds{format, {}};
-  // Orange in dim light has the U and V of yellow in bright light: each colour gets a box for bright and one
-  // for dim light, which adjoin in brightness.
+  // Orange in dim light has the U and V of yellow in bright light: each colour gets one box for bright and
+  // one for dim light, which adjoin in brightness.
   for (const LightRange& lights : {kBright, kDim}) {
     ColourLearner learner = ground;
     for (const Colour colour : known)

@@ -7,9 +7,9 @@
 
 namespace sidestep {
 
-/// Thresholds for use without a file. They are what a ColourLearner learns from the named colours
-/// (common/marking/colours.hpp) between full light and 55 % of it, with sensor noise. They cover the colours
-/// of the layout and the ball. The ground consists of the field surface, white and black.
+/// Thresholds for use without a file, for the colours of the layout and the ball. A ColourLearner learns them
+/// from the named colours (common/marking/colours.hpp) between full light and 55 % of it, with sensor noise.
+/// The ground consists of the field surface, white and black.
 [[nodiscard]] ColourThresholds default_colours(PixelFormat format, const MarkerLayout& layout = butterfly());
 
 }  // namespace sidestep

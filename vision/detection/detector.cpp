@@ -17,7 +17,7 @@ constexpr double kMinObstacleRadius_m = 0.03;
 // Lit from above, a ball shows its colour on only part of its disc.
 constexpr double kMinBallAreaRatio = 0.25, kMaxBallAreaRatio = 2.0;
 
-// A small merge gap keeps dots of one colour apart.
+// Dots of one colour must not be merged, so the merge gap is small.
 constexpr SegmentationSettings kSegmentation{3, 1};
 
 double confidence_of(const DetectedPattern& pattern, const MarkerLayout& layout) {

@@ -20,7 +20,7 @@ namespace sidestep {
 inline constexpr Colour kBallColour = Colour::kOrange;
 
 struct DetectorSettings {
-  std::vector<ColourBox> boxes;  ///< numbers are those of Colour, or kOtherColour
+  std::vector<ColourBox> boxes;  ///< colour numbers: those of Colour, or kOtherColour
   MarkerLayout layout;
   std::vector<RosterEntry> roster;
   double robot_radius_m = 0.09;
@@ -28,8 +28,8 @@ struct DetectorSettings {
   std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported either; null: no map
 };
 
-/// Detects robots, balls and obstacles in the frames of one camera. Everything that is neither robot, ball
-/// nor ground is an obstacle (ObstacleFinder).
+/// Detects robots, balls and obstacles in the frames of one camera. Everything else except the ground is an
+/// obstacle (ObstacleFinder).
 class Detector {
  public:
   Detector(const CameraModel& camera, const DetectorSettings& settings);

@@ -15,9 +15,9 @@ constexpr double kShadedShare = 0.5;    // minimum fraction of the obstacle's ch
 constexpr double kMaxFloorShare = 0.3;  // maximum fraction of the obstacle's chroma on the floor
 // Offset from the middle, in half widths, at which the floor is sampled.
 constexpr double kFloorOffset = 1.5;
-constexpr double kSampleHalfWidth = 0.2;  // half widths to either side that are averaged
+constexpr double kSampleHalfWidth = 0.2;  // in half widths: samples within this offset are averaged
 constexpr int kSamplesPerSide = 2;
-// Fraction of near_m: no obstacle is high enough for its foot to be nearer.
+// Minimum distance of the foot as a fraction of near_m; no obstacle is high enough for less.
 constexpr double kMinNearRatio = 0.6;
 constexpr double kStepRatio = 0.004;  // fraction of near_m: about half a pixel
 
@@ -27,9 +27,8 @@ class HueSampler {
              const VerticalCylinders& robots)
       : silhouette_(silhouette), camera_(camera), image_(image), robots_(robots) {}
 
-  /// The fraction of the obstacle's chroma at a distance and at an offset from the middle in half widths. It
-  /// is the mean over the samples that are in the image and not occluded; 1 is the obstacle's own chroma.
-  /// nullopt if there is no such sample.
+  /// The chroma at this distance and this offset from the middle (in half widths), relative to the obstacle's
+  /// own: the mean over the samples that are in the image and not occluded. nullopt if there is none.
   std::optional<double> at(double distance_m, double offset) const {
     double sum = 0;
     int count = 0;

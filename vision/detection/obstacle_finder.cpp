@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t kMaxBlobs = 1024;  // more blobs would take too long to merge
 constexpr int kMaxGap_px = 2;            // between adjacent regions
-// Fraction of the smallest obstacle's area: smaller regions are noise.
+// Minimum area of a region relative to the smallest obstacle; smaller regions are noise.
 constexpr double kMinRegionAreaRatio = 0.15;
-// Relative to the largest dot's area: larger blobs are neither dot nor ball.
+// Maximum area of a dot or ball relative to the largest dot.
 constexpr double kMaxDotAreaRatio = 3;
 constexpr double kMinFillRatio = 0.6;      // minimum coloured fraction of the pixels inside the contour
 constexpr double kMaxHalfWidthSine = 0.7;  // beyond this, the obstacle is treated as being below the camera
@@ -76,7 +76,7 @@ void ObstacleFinder::collect_blobs(std::span<const Region> regions, const Vertic
       merged.area_px += other.area_px;
       blobs_[i] = blobs_.back();
       blobs_.pop_back();
-      i = 0;  // the larger blob may touch blobs that the smaller one did not
+      i = 0;  // the merged blob may touch blobs that were passed over
     }
     blobs_.push_back(merged);
   }
@@ -150,16 +150,16 @@ bool ObstacleFinder::is_in_known_shadow() const {
          std::ranges::all_of(contour_, [&](const Vec2& point) { return is_in_shadow_of_floor(point); });
 }
 
-/// This does not depend on the known obstacle's height.
+/// Whether a circle lies within a known obstacle, which does not depend on the obstacle's height.
 bool ObstacleFinder::is_within_known(const Circle& circle) const {
   return std::ranges::any_of(settings_.known_obstacles, [&](const Shape& known) {
     return signed_distance(circle.centre_m, known) + circle.radius_m <= kKnownMargin_m;
   });
 }
 
-/// The circle whose tangents from the point below the camera enclose the contour, and whose nearest point is
-/// the contour's: vertical sides extend radially away from that point. An obstacle almost below the camera is
-/// taken at its apparent size.
+/// Fits the circle whose tangents from the point below the camera enclose the contour and whose nearest point
+/// to it is that of the contour, because in the image vertical sides extend radially away from the point
+/// below the camera. An obstacle almost below the camera gets its apparent size.
 Circle ObstacleFinder::fit_circle(const ImageView& image, const VerticalCylinders& robots) const {
   const Vec2 below_m = camera_.position_m().head<2>();
   Vec2 low = contour_[0], high = contour_[0];

@@ -31,21 +31,21 @@ struct ObstacleFinderSettings {
 
 /// Finds obstacles on the floor that are neither robot nor ball, from regions of any colour. Adjacent regions
 /// form one blob; a blob counts if it is too large for a dot or the ball. The height of an obstacle is
-/// unknown, but irrelevant for a vertical cylinder: around the point below the camera, the cylinder subtends
-/// the same angle as its base whatever its height, and its nearest point lies on the floor. Objects that
-/// float, or show their colour only on top, are estimated to be farther away and larger, by the ratio of
-/// their height to the camera's. A blob is attributed to a known obstacle if it lies in the shadow that the
-/// obstacle would cast from a lamp at the camera, or if its circle lies within the known one. Circles are
-/// assumed to be 0.3 m high; other shapes and map cells, whose long shadows could hide a person, as high as
-/// robots.
+/// unknown, but does not matter for a vertical cylinder: seen from the point below the camera, the cylinder
+/// subtends the same angle as its base, and its nearest point lies on the floor. Objects that float, or show
+/// their colour only on top, are estimated to be farther away and larger, by the ratio of their height to the
+/// camera's. A blob is attributed to a known obstacle if it lies in the shadow that the obstacle would cast
+/// from a lamp at the camera, or if its circle lies within the known one. Circles are assumed to be 0.3 m
+/// high. Other shapes and map cells are assumed to be as high as robots, because long shadows could hide a
+/// person.
 class ObstacleFinder {
  public:
   ObstacleFinder(const CameraModel& camera, const ObstacleFinderSettings& settings)
       : camera_(camera), settings_(settings) {}
 
   /// Obstacles, largest first; the caller may reorder them. Ignores pixels on or behind one of the `robots`,
-  /// which fill these circles from the floor to their tops. Valid until the next call. Allocates only if the
-  /// scene has more blobs or contour points than any before.
+  /// which fill these circles from the floor to their tops. Valid until the next call. Allocates only if a
+  /// scene has more blobs or contour points than all earlier ones.
   std::span<Circle> find(const ImageView& image, const ColourClasses& classes,
                          std::span<const Region> regions, std::span<const Circle> robots);
 

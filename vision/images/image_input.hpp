@@ -26,7 +26,7 @@ class ImageInput {
   VisionNode& node_;
   msg::DetectionFrame frame_;
   std::uint64_t rejected_ = 0;
-  std::uint64_t next_report_ = 1;  ///< value of rejected_ at which it is reported
+  std::uint64_t next_report_ = 1;  ///< value of rejected_ at which the next report is due
 };
 
 }  // namespace sidestep

@@ -7,11 +7,11 @@
 
 namespace sidestep {
 
-/// Files that describe cameras and markers beyond the scenario.
+/// Files that describe cameras, colours and markers in addition to the scenario.
 struct ImageOptions {
   std::string colours_file{};  ///< empty: default_colours()
   std::string cameras_file{};  ///< empty: the scenario's cameras
-  std::string layout_file{};   ///< empty: the butterfly
+  std::string layout_file{};   ///< empty: the butterfly layout
 };
 
 /// Creates the reader for a scenario's images. Throws ConfigError for an invalid file, and

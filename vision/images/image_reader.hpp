@@ -15,8 +15,8 @@ namespace sidestep {
 /// The image in a message; nullopt if its size or format does not match its bytes or the camera.
 [[nodiscard]] std::optional<ImageView> view_of(const msg::CameraImage& message, const CameraModel& camera);
 
-/// Detector settings for a scenario. Robots wear the layout's pattern of their number; throws
-/// std::invalid_argument if there is no pattern for a robot's number.
+/// Detector settings for a scenario. Each robot has the layout's pattern with its number; throws
+/// std::invalid_argument if the layout lacks that pattern.
 [[nodiscard]] DetectorSettings detector_settings(const Scenario& scenario,
                                                  const std::vector<ColourBox>& boxes,
                                                  const MarkerLayout& layout);

@@ -36,7 +36,7 @@ class LeagueInput {
   VisionNode& node_;
   LeagueSource source_;
   league::MulticastReceiver receiver_;
-  std::uint64_t next_report_ = 1;  ///< number of rejected packets at which it is reported
+  std::uint64_t next_report_ = 1;  ///< number of rejected packets at which the next report is due
   bool has_reported_field_ = false;
   std::uint64_t reported_jumps_ = 0;
 };

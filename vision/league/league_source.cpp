@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxSenders = 16;
-/// The league limits robots to a diameter of 180 mm.
+/// Radius of a league robot; the rules limit the diameter to 180 mm.
 constexpr double kLeagueRadius_m = 0.09;
 
 std::size_t index_of(Team team) { return team == Team::kBlue ? 0 : 1; }

@@ -18,9 +18,9 @@
 namespace sidestep {
 
 /// Converts the league's vision packets to detection frames. Robots are identified by team and number; a
-/// robot without a number, or with a number that is not in the scenario, becomes an obstacle with the radius
-/// of a league robot. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets,
-/// and packets whose capture time cannot be determined, are counted and dropped.
+/// robot without a number, or with a number that is not in the scenario, becomes an obstacle of a league
+/// robot's radius. Each sender's clock is estimated separately. Malformed, invalid and duplicate packets, and
+/// packets whose capture time cannot be determined, are counted and dropped.
 class LeagueSource {
  public:
   struct Counts {
@@ -76,7 +76,7 @@ class LeagueSource {
   void add_robot(Team team, const league::DetectedRobot& robot);
   void add_balls(std::span<const league::DetectedBall> balls);
 
-  /// Indexed by team and number.
+  /// Robot ids, indexed by team and number.
   std::array<std::array<std::optional<RobotId>, league::kRobotNumbers>, 2> ids_;
   std::vector<Sender> senders_;
   msg::DetectionFrame frame_;

@@ -6,7 +6,7 @@
 namespace sidestep {
 
 Time Replay::due(Time received) const {
-  // A log's times range from 1970 to 2043, and the speed is arbitrary: pauses are limited to ten years.
+  // Limits delays to ten years, because a log's times range from 1970 to 2043 and the speed is arbitrary.
   constexpr double kMaxElapsed_s = 3e8;
   const double elapsed_s = to_seconds(received - *first_received_) / speed_;
   return began_at_ + from_seconds(std::clamp(elapsed_s, 0.0, kMaxElapsed_s));

@@ -16,12 +16,12 @@ namespace sidestep {
 /// The sender's clock must run at the rate of the local one.
 class SenderClock {
  public:
-  /// A message with a longer delay is useless, or the sender's clock has been set.
+  /// A message with a longer apparent delay is useless, or shows that the sender's clock has been set.
   static constexpr Duration kMaxDelay{500'000'000};
   /// A lag below the minimum by more than this is accepted only after other messages agree.
   static constexpr Duration kMaxAhead{50'000'000};
 
-  /// Initial time without output: a process that was suspended receives old messages all at once.
+  /// Initial time without output, because a process that was suspended receives old messages all at once.
   static constexpr Duration kSettlingTime{100'000'000};
 
   /// The local time of a frame's capture. `captured` and `sent` are by the sender's clock; a `sent` before

@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-/// Maximum distance from the expected position; the radius of a robot.
+/// Maximum distance from the expected position: the radius of a robot.
 constexpr double kRobotGate_m = 0.09;
 constexpr double kRobotGate_rad = 0.8;  ///< maximum deviation from the expected heading
 constexpr double kMaxRobotSpeed_mps = 3;
@@ -50,8 +50,8 @@ bool Identifier::is_within_gates(const ExpectedRobot& expected, const DetectedPa
          std::abs(wrapped_rad(expected.pose.heading_rad - pattern.pose.heading_rad)) <= kRobotGate_rad;
 }
 
-/// Two robots cannot occupy one position: a pattern found there belongs to the expected robot, or its dots
-/// were misread.
+/// The robots expected at the position of a pattern. Two robots cannot occupy one position, so the pattern
+/// belongs to one of them even if its dots show another robot.
 Identifier::RosterMask Identifier::robots_expected_at(const DetectedPattern& pattern,
                                                       std::span<const ExpectedRobot> expected) const {
   RosterMask robots(roster_.size());

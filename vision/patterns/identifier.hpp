@@ -29,9 +29,9 @@ struct IdentifiedRobot {
 };
 
 /// Identifies robots by the colours of their dots. A complete pattern identifies one robot. If a dot is
-/// missing, several robots may match; then the robot expected at that position is chosen, or else the only
-/// one that matches everything observed there so far. A robot expected at a position is not confused with
-/// another if a dot was misread. An ambiguous pattern remains unidentified.
+/// missing, several robots may match. The robot expected at that position is then chosen, or else the only
+/// robot that matches everything observed there so far. Where a robot is expected, a pattern is never
+/// identified as a different robot, even if a dot was misread. An ambiguous pattern remains unidentified.
 class Identifier {
  public:
   explicit Identifier(std::span<const RosterEntry> roster);

@@ -8,7 +8,8 @@
 namespace sidestep {
 namespace {
 
-/// Maximum distance of a dot from the position that the pose predicts.
+/// Maximum distance of a dot from the position that the pose predicts. All limits apply in the plane of the
+/// dots rather than in pixels, so that they hold at any camera height.
 constexpr double kDotTolerance_m = 0.012;
 // Minimum and maximum area of a region, as fractions of the dot's area.
 constexpr double kMinDotAreaRatio = 0.3, kMaxDotAreaRatio = 2.5;
@@ -104,7 +105,7 @@ std::optional<PatternFinder::Candidate> PatternFinder::candidate_at(const Pose& 
   return candidate;
 }
 
-/// The better of two candidates: one at the guessed pose, and one at the pose fitted there.
+/// Tries the guessed pose and the pose fitted to the dots found there. Returns the better candidate.
 std::optional<PatternFinder::Candidate> PatternFinder::refined(const Pose& guess, int centre) const {
   const auto first = candidate_at(guess, centre);
   if (!first) return std::nullopt;
@@ -112,8 +113,8 @@ std::optional<PatternFinder::Candidate> PatternFinder::refined(const Pose& guess
   return second && is_better(second->pattern, first->pattern) ? second : first;
 }
 
-/// Each dot near a centre proposes a heading for each layout dot at the same distance from the layout's
-/// centre; the best of these candidates is returned.
+/// Returns the best candidate around a centre dot. Each dot near the centre suggests a heading for each
+/// layout dot at the same distance from the layout's centre.
 std::optional<PatternFinder::Candidate> PatternFinder::best_around(int centre) const {
   const Vec2& centre_m = centres_[static_cast<std::size_t>(centre)].position_m;
   std::optional<Candidate> best;
@@ -156,7 +157,8 @@ void PatternFinder::find_with_centres() {
   }
 }
 
-/// With the centre missing, all other dots must be present: the layout's first two propose the pose.
+/// If the centre dot is missing, all others must be present, and each pair of dots that may be the layout's
+/// first two suggests a pose.
 void PatternFinder::find_without_centres() {
   if (layout_.dots.size() < 3) return;
   const Vec2 &first = layout_.dots[0].position_m, &second = layout_.dots[1].position_m;

@@ -13,8 +13,6 @@
 
 namespace sidestep {
 
-/// Limits, all measured in the plane of the dots rather than in pixels, so that they hold at any camera
-/// height.
 /// A set of dots arranged as in the layout; at most one dot is missing.
 struct DetectedPattern {
   Pose pose;

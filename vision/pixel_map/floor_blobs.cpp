@@ -9,8 +9,8 @@ namespace sidestep {
 namespace {
 
 constexpr int kMaxGap_px = 2;              // between adjacent regions
-constexpr int kAround_px = 3;              // margin of a target in which little else may be coloured
-constexpr std::uint32_t kMaxRest_px = 25;  // maximum part of a target that does not show its colour
+constexpr int kAround_px = 3;              // margin around a target that must show almost no colour
+constexpr std::uint32_t kMaxRest_px = 25;  // maximum number of other coloured pixels within the margin
 
 bool are_adjacent(const ObstacleBlob& a, const ObstacleBlob& b) {
   return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) <= kMaxGap_px &&
@@ -43,7 +43,8 @@ std::optional<Vec2> FloorBlobFinder::robot(std::span<const Region> regions) cons
   return found;
 }
 
-/// Whether little beside a region is coloured. Patches of obstacles may have the target's colour.
+/// Whether there is almost no other colour around a region. Patches of obstacles may have the target's
+/// colour.
 bool FloorBlobFinder::is_isolated(const ImageView& image, const ColourClasses& classes,
                                   const Region& region) const {
   std::uint32_t coloured_px = 0;
@@ -118,7 +119,7 @@ void FloorBlobFinder::measure(const ImageView& image, const ColourClasses& class
       }
     }
   }
-  // The corners of a pixel are at ±1 of its sum and difference.
+  // At a pixel's corners, the sum and the difference of the coordinates deviate by up to 1.
   min_sum -= 1, max_sum += 1, min_difference -= 1, max_difference += 1;
   const auto corner = [](double sum, double difference) {
     return Vec2(0.5 * (sum + difference), 0.5 * (sum - difference));

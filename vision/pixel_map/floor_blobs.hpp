@@ -20,10 +20,10 @@ struct FloorBlobSettings {
   Colour target = Colour::kOrange;  ///< colour of the target
   std::uint32_t ground_colours =
       1U << static_cast<unsigned>(Colour::kField) | 1U << static_cast<unsigned>(Colour::kWhite) |
-      1U << static_cast<unsigned>(Colour::kBlack);  ///< bit c: no obstacle has colour c
+      1U << static_cast<unsigned>(Colour::kBlack);  ///< bit c: colour c is ground, so no obstacle has it
   Vec2 below_camera_px{0, 0};                       ///< pixel of the floor point below the camera
-  /// The foot of the highest obstacle appears at this fraction of its top's distance from below_camera_px;
-  /// its side may be too dark to be seen. 1: obstacles are flat.
+  /// Distance of the highest obstacle's foot from below_camera_px, as a fraction of its top's distance,
+  /// because its side may be too dark to be seen. 1: obstacles are flat.
   double foot_share = 1;
 };
 
@@ -54,8 +54,8 @@ class FloorBlobFinder {
   const FloorBlobs& find(const ImageView& image, const ColourClasses& classes,
                          std::span<const Region> regions);
 
-  /// The pixel of the floor point below what a pixel shows, assuming that this is as high as an obstacle can
-  /// be.
+  /// The pixel of the floor point below the object that a pixel shows, if the object is as high as an
+  /// obstacle can be.
   Vec2 foot_of(const Vec2& pixel) const {
     return settings_.below_camera_px + settings_.foot_share * (pixel - settings_.below_camera_px);
   }
@@ -75,7 +75,7 @@ class FloorBlobFinder {
 
   static constexpr std::uint32_t kMinMarker_px = 4;   // minimum area of the robot's dot and of the target
   static constexpr std::uint32_t kMaxMarker_px = 80;  // a larger region is an obstacle
-  // Anything nearer than this to the robot's dot belongs to the robot.
+  // Pixels nearer than this to the robot's dot belong to the robot.
   static constexpr double kMaxRobot_px = 20;
 
   FloorBlobSettings settings_;

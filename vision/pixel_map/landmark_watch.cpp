@@ -17,9 +17,9 @@ constexpr double kSpacing_m = 0.08;  ///< distance between landmarks along a lin
 constexpr int kReach_px = 8;
 constexpr int kMinContrast = 30;       ///< minimum contrast of a line against the surface beside it, of 255
 constexpr double kMaxOffset_px = 1.5;  ///< maximum offset of a landmark that counts as in place
-/// Minimum fraction of landmarks that are visible, and of these that are in place.
+/// Minimum fraction of landmarks that are visible, and of visible landmarks that are in place.
 constexpr double kMinShare = 0.7;
-constexpr int kGoodFrames = 5;  ///< number of good frames until a lost camera is known again
+constexpr int kGoodFrames = 5;  ///< number of good frames after which a lost camera counts as known again
 
 /// The offset along the normal at which a line is brightest; nullopt if it is not visible.
 std::optional<double> line_offset_px(const ImageView& image, const Vec2& pixel, const Vec2& normal) {
@@ -59,7 +59,7 @@ LandmarkWatch::LandmarkWatch(const CameraModel& camera, const Field& field) {
 void LandmarkWatch::add_line(const CameraModel& camera, const Vec2& from_m, const Vec2& to_m) {
   const double length_m = (to_m - from_m).norm();
   const Vec2 along_m = (to_m - from_m) / length_m;
-  // Omits crossings of lines at their ends, and half of the spacing.
+  // Skips the ends of the line, where other lines cross it, and half a spacing.
   for (double at_m = kSpacing_m; at_m < length_m - kSpacing_m / 2; at_m += kSpacing_m) {
     const Vec2 point_m = from_m + at_m * along_m, next_m = point_m + 0.01 * along_m;
     const auto pixel = camera.pixel_of({point_m.x(), point_m.y(), 0});

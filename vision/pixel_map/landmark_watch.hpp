@@ -12,14 +12,14 @@ namespace sidestep {
 
 /// Detects that a camera has been moved. In every image it locates points of the field's lines, whose pixels
 /// the camera model predicts. Lines along x and along y are judged separately, because a shift along a line
-/// is not visible on that line. After one bad image the camera counts as lost; it counts as known again after
-/// several consecutive good images.
+/// is not visible on that line. After one bad image the camera counts as lost: its pose is unknown. It counts
+/// as known again after several consecutive good images.
 class LandmarkWatch {
  public:
   /// Throws std::invalid_argument if the camera sees too few points of the lines in either direction.
   LandmarkWatch(const CameraModel& camera, const Field& field);
 
-  /// Processes an image of the camera's size. Returns whether the camera is known.
+  /// Processes an image of the camera's size. Returns whether the camera's pose is known.
   bool update(const ImageView& image);
   bool is_known() const { return is_known_; }
 

@@ -12,7 +12,7 @@ void mark_seen(const ImageView& image, const ColourClasses& classes, const Floor
   for (int y = blob.top_px; y <= blob.bottom_px; ++y) {
     for (int x = blob.left_px; x <= blob.right_px; ++x) {
       if (!finder.is_obstacle(pixel_at(image, x, y), classes)) continue;
-      // Marks everything down to the foot, in steps shorter than a cell.
+      // Marks the cells between this pixel and its foot, in steps shorter than a cell.
       const Vec2 top(x, y), down = finder.foot_of(top) - top;
       const int steps = static_cast<int>(down.norm() / (0.7 * cells.cell_px)) + 1;
       for (int step = 0; step <= steps; ++step) {
@@ -25,7 +25,7 @@ void mark_seen(const ImageView& image, const ColourClasses& classes, const Floor
   }
 }
 
-/// Blocks the cells around a seen one, row by row, as far as a disc reaches.
+/// Blocks the cells around a seen cell within the disc's radius, row by row.
 void block_around(const Cell& seen, double radius_px, PixelCells& cells) {
   const int reach = static_cast<int>(radius_px / cells.cell_px) + 1;
   for (int dy = -reach; dy <= reach; ++dy) {
@@ -40,7 +40,7 @@ void block_around(const Cell& seen, double radius_px, PixelCells& cells) {
   }
 }
 
-/// Blocks the cells from which a disc leaves the image.
+/// Blocks the cells in which a disc would extend beyond the image.
 void block_border(const ImageView& image, double radius_px, PixelCells& cells) {
   const int columns = cells.blocked.columns(), side = cells.cell_px;
   for (int row = 0; row < cells.blocked.rows(); ++row) {

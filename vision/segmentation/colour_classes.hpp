@@ -15,10 +15,10 @@
 
 namespace sidestep {
 
-/// The values of a pixel to which thresholds apply. With kYuv422 they are the frame's values. With kRgb,
-/// where thresholds on red, green and blue would not tolerate uneven light, they are Y = ((R + B + 1) / 2 + G
-/// + 1) / 2, U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, all rounded down. Precondition: column x and row y
-/// exist.
+/// The values of a pixel to which thresholds apply. With kYuv422 they are the frame's values. With kRgb they
+/// are computed, because thresholds on red, green and blue would not tolerate uneven light: Y = ((R + B + 1)
+/// / 2 + G + 1) / 2, U = (B - Y + 256) / 2, V = (R - Y + 256) / 2, all rounded down. Precondition: column x
+/// and row y exist.
 Yuv pixel_at(const ImageView& image, int x, int y);
 
 /// The pixels of a colour: all three values lie between low and high, inclusive. Precondition: no component

@@ -33,8 +33,8 @@ std::uint32_t RegionBuilder::united(std::uint32_t a, std::uint32_t b) {
   return a;
 }
 
-/// The merged region of all runs above that a run touches, or a new one. `above` is the index of the first
-/// run above that may touch; it advances from run to run.
+/// Returns the region of a run: the union of the regions that it touches in the row above, or a new region.
+/// `above` is the index of the first run above that it may touch, and advances from run to run.
 std::uint32_t RegionBuilder::region_for(const Run& run, std::size_t& above) {
   while (above < row_above_.size() && row_above_[above].end_px < run.begin_px) ++above;
   std::uint32_t region = kNone;

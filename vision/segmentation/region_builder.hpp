@@ -12,7 +12,7 @@ namespace sidestep {
 /// Joins the runs of one colour to regions, row by row: a run belongs to the regions of all runs in the row
 /// above that it touches, including at corners, and union-find merges these regions (CMVision; Bruce,
 /// CMU-CS-06-181, appendix A.1). Stores two rows of runs, and sums for each region. Allocates only if a frame
-/// has more runs in a row, or more regions, than any before.
+/// has more regions, or more runs in a row, than all earlier frames.
 class RegionBuilder {
  public:
   /// A frame with more regions of one colour than this is noise: further regions are dropped.

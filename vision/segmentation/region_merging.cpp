@@ -29,7 +29,7 @@ double density(const Region& region) {
 
 bool is_absorbed(const Region& region) { return region.area_px == 0; }
 
-/// False for a region of another colour or too far below, and thus for all regions after it.
+/// False for a region of another colour or too far below. It is then false for all later regions too.
 bool is_within_rows(const Region& upper, const Region& lower, int max_gap_px) {
   return lower.colour == upper.colour && lower.top_px - upper.bottom_px - 1 <= max_gap_px;
 }

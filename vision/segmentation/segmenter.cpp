@@ -56,8 +56,8 @@ struct HighNibbles {
   int pairs() const { return std::popcount(of[1]) * std::popcount(of[2]); }
 };
 
-/// Adds a box to the group that accepts the fewest additional pairs as a result; an empty group counts as one
-/// additional pair. Returns the group's bit.
+/// Adds a box to the group that then accepts the fewest additional pairs; for an empty group this counts as
+/// one pair. Returns the group's bit.
 std::uint32_t add_to_group(std::array<HighNibbles, kBoxGroups>& groups, const ColourBox& box) {
   std::size_t best = 0;
   int min_added = std::numeric_limits<int>::max();
@@ -97,7 +97,7 @@ void add_runs_of(std::uint64_t bits, int begin_px, RegionBuilder& builder) {
     const int first = std::countr_zero(bits);
     const int length = std::countr_one(bits >> first);
     builder.add_run(begin_px + first, begin_px + first + length);
-    // Shifting by 64 is undefined; a run that reaches the end of the word is the last one.
+    // A run that reaches the end of the word is the last one, and shifting by 64 would be undefined.
     bits = first + length == 64 ? 0 : bits & (~std::uint64_t{0} << (first + length));
   }
 }

@@ -23,7 +23,7 @@ struct SegmentationSettings {
 
 /// Finds the colour regions of a frame in one pass: each row is classified, cut into runs and joined to the
 /// regions above while it is in the cache. Pixels without a colour cost almost nothing. Allocates only if a
-/// frame is wider or has more regions than any before.
+/// frame is wider or has more regions than all earlier frames.
 class Segmenter {
  public:
   explicit Segmenter(const ColourClasses& classes, const SegmentationSettings& settings = {});

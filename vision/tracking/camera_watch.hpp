@@ -11,8 +11,8 @@ namespace sidestep {
 
 /// Whether the cameras have watched the floor for long enough that every obstacle in their view has been
 /// observed. Otherwise, for example after a pause of this process, there may be obstacles that have not been
-/// seen. The set of cameras is configured, because a camera may see an obstacle however long it has been
-/// silent.
+/// seen. The set of cameras is configured, because a camera that has long been silent may still see an
+/// obstacle.
 class CameraWatch {
  public:
   /// A camera watches as long as its frames are no farther apart than this, by their capture times.
@@ -30,7 +30,8 @@ class CameraWatch {
   void on_frame(std::uint32_t camera, Time captured_at);
   /// Whether all cameras watch. False if there are no cameras.
   bool is_complete(Time now) const;
-  /// Every camera must establish its watch again, and earlier frames do not make later ones count as late.
+  /// Resets all cameras: each must send kFrames frames again, and frames with earlier capture times are no
+  /// longer late.
   void forget();
 
  private:

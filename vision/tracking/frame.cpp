@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMaxPosition_m = 100;
 constexpr double kMaxObstacle_m = 10;
-constexpr double kMaxHeading_rad = 7;  // a full turn either way covers every sender's range
+constexpr double kMaxHeading_rad = 7;  // a full turn either way: no sender exceeds it
 constexpr Duration kMaxAge{500'000'000};
 
 // Comparisons with NaN are false, so both functions reject NaN.

@@ -51,7 +51,7 @@ class Frame {
   std::span<const Vec2> balls() const { return {balls_.data(), ball_count_}; }
   std::span<const ObstacleObservation> obstacles() const { return {obstacles_.data(), obstacle_count_}; }
   /// Every obstacle that the camera detected nearer than this to one of the frame's robots is in obstacles().
-  /// It is 0 if an obstacle was rejected, because that one may be anywhere.
+  /// It is 0 if an obstacle was rejected, because the rejected obstacle may be anywhere.
   double obstacles_complete_within_m() const { return obstacles_complete_within_m_; }
   /// Number of detections in the message that were rejected; at least 1 for an unusable frame.
   std::uint64_t rejected() const { return rejected_; }

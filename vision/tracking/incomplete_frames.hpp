@@ -19,13 +19,13 @@ class IncompleteFrames {
   IncompleteFrames(double max_speed_mps, double max_error_m, Duration max_age)
       : max_speed_mps_(max_speed_mps), max_error_m_(max_error_m), max_age_(max_age) {}
 
-  /// Replaces the last frame of the frame's camera, unless that one is newer. Precondition: every obstacle of
+  /// Replaces the last frame of the same camera, unless that frame is newer. Precondition: every obstacle of
   /// the frame that is nearer than `complete_within_m` to one of the frame's robots is tracked. Allocates
   /// only for incomplete frames.
   void update(const Frame& frame, double complete_within_m);
   bool is_empty() const { return frames_.empty(); }
   void clear() { frames_.clear(); }
-  /// A lower bound of the distance between missing obstacles and the robots at a time.
+  /// A lower bound on the distance of missing obstacles from the robots at a time.
   [[nodiscard]] double complete_within_m(std::span<const Vec2> robots_m, Time t) const;
 
  private:

@@ -19,8 +19,8 @@ struct ObstacleTrackerSettings {
   double position_noise_m = 0.0015;  ///< standard deviation of an observation on each axis
 };
 
-/// Tracks moving obstacles, which cannot be identified: each observation updates the nearest track that can
-/// have reached it, or starts a track. Allocates only in the constructor, for incomplete frames, and when
+/// Tracks moving obstacles. Obstacles have no identity, so each observation updates the nearest track that
+/// can have reached it, or starts a track. Allocates only in the constructor, for incomplete frames, and when
 /// more observations are within reach of tracks than ever before.
 class ObstacleTracker {
  public:
@@ -34,9 +34,8 @@ class ObstacleTracker {
   void update(const Frame& frame);
   /// Forgets all obstacles, but remembers which numbers have been used.
   void forget();
-  /// Writes the confirmed tracks that are current at a time, those nearest to a robot first, and the distance
-  /// up to which they are complete. See ObstacleList in idl/vision.idl. `robots` contains the robots at that
-  /// time.
+  /// Writes the confirmed tracks at a time, nearest to a robot first, and the distance up to which the list
+  /// is complete. See ObstacleList in idl/vision.idl. `robots` contains the robots at that time.
   void list_at(Time t, std::span<const msg::TrackedRobot> robots, msg::ObstacleList& list);
   /// Number of observations rejected because all tracks were in use.
   std::uint64_t rejected() const { return rejected_; }

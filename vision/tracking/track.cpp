@@ -83,7 +83,8 @@ bool extend_candidate(TrackState& state, const Observation& observation, const T
   return true;
 }
 
-/// An observation nearer to the confirmed track is a better candidate for its continuation.
+/// Whether the observation continues the confirmed track better than the candidate: it is nearer to the
+/// track.
 bool is_better_candidate(const TrackState& state, const Observation& observation) {
   const Vec2& track_m = state.filter.position.position();
   return state.is_confirmed && (observation.position_m - track_m).squaredNorm() <

@@ -65,10 +65,10 @@ struct TrackState {
   int candidate_hits = 0;  ///< number of consistent observations elsewhere, or before the track is confirmed
   Time candidate_at{};
   PoseFilter candidate;
-  std::uint64_t rejected = 0;  ///< number of observations that turned out to belong to no track
+  std::uint64_t rejected = 0;  ///< number of observations that were not accepted
 };
 
-/// The state after one more observation, which was not captured earlier than the previous ones.
+/// The state after one more observation. Precondition: no previous observation was captured later.
 [[nodiscard]] TrackState advanced(const TrackState& state, const Observation& observation,
                                   const TrackModel& model);
 

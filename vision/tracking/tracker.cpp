@@ -41,7 +41,8 @@ msg::TrackedBall tracked_ball(const State& state) {
 constexpr double kDotError_px =
     0.19;  // error of single dots in images, measured by sidestep-evaluation study vision
 constexpr double kRobotHeight_m = 0.15;  // height of the dots
-// Cameras observe an obstacle's contour from different sides, and thresholds affect its edge.
+// Error of an obstacle's position: cameras observe its contour from different sides, and thresholds affect
+// its edge.
 constexpr double kContourError_m = 0.008;
 
 void set_image_noise(const Scenario& scenario, TrackModel& robot) {
@@ -67,14 +68,14 @@ TrackModel TrackerSettings::ball_model() {
 }
 
 TrackerSettings tracker_settings(const Scenario& scenario) {
-  // Lower bounds, so that a scenario without noise does not make the gates infinitely narrow.
+  // Lower bounds of the noise, so that gates are not infinitely narrow in a scenario without noise.
   constexpr double kMinPositionNoise_m = 0.0002, kMinHeadingNoise_rad = 0.002;
   TrackerSettings settings;
   settings.robot.position_noise_m = std::max(kMinPositionNoise_m, scenario.vision.position_noise_m);
   settings.robot.heading_noise_rad = std::max(kMinHeadingNoise_rad, scenario.vision.heading_noise_rad);
   if (scenario.vision.images) set_image_noise(scenario, settings.robot);
   settings.robot.gate_m = scenario.radius_m;
-  // Slow cameras must not miss any frame until they have found an object.
+  // With slow cameras, consecutive frames must be within max_gap for a track to be confirmed.
   const Duration between_frames = from_seconds(1.5 / scenario.vision.rate_hz);
   settings.robot.max_gap = settings.ball.max_gap =
       std::clamp(between_frames, settings.robot.max_gap, CameraWatch::kMaxGap);

@@ -42,7 +42,7 @@ class Tracker {
   Tracker(const TrackerSettings& settings, std::span<const RobotId> roster);
 
   void update(const Frame& frame);
-  /// Forgets all observations, because the clock was set back and later observations would seem older.
+  /// Forgets all observations. Call when the clock was set back: later observations would seem older.
   void forget();
   /// Adds the counts of detections that were not used.
   void count_drops(DropCounters& drops) const;

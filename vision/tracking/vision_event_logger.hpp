@@ -24,10 +24,10 @@ class VisionEventLogger {
 
   VisionEventLogger(const EventReporter& events, const std::vector<std::uint32_t>& cameras);
 
-  /// A frame from a camera that is not among these has arrived. A hostile sender may invent any number of
-  /// cameras.
+  /// Reports a frame from a camera that is not configured. The number of reports is limited, because a
+  /// hostile sender may invent any number of cameras.
   void on_unknown_camera(std::uint32_t camera);
-  /// A frame from one of the cameras has arrived, usable or not.
+  /// Processes a frame of a configured camera, usable or not.
   void on_frame(const Frame& frame, Time now);
   /// Processes the tracked world; call it once per period.
   void update(const msg::WorldState& world, Time now);
@@ -37,8 +37,8 @@ class VisionEventLogger {
     Time heard_at{};
     bool is_lost = false;
     std::uint64_t refused = 0;
-    std::uint64_t next_report = 1;  // value of `refused` at which it is reported
-    bool is_missing = false;        // it was reported that the camera has not sent anything yet
+    std::uint64_t next_report = 1;  // value of `refused` at which the next report is due
+    bool is_missing = false;        // already reported that no usable frame has arrived yet
   };
   void report_missing(std::uint32_t number, Camera& camera, Time now);
   void report_refusal(const Frame& frame, Camera& camera, Time now);

@@ -43,7 +43,7 @@ class VisionNode {
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
-  /// For sources of this node's frames.
+  /// The reporter that sources of this node's frames use too.
   const EventReporter& events() const { return events_; }
   /// Registers a source of this node's frames, which adds its own drop counts.
   void add_drop_source(std::function<void(DropCounters&)> source) {
@@ -55,8 +55,8 @@ class VisionNode {
 
  private:
   void publish();
-  /// This process's clock was set back by this duration: frames that arrive now would seem older than earlier
-  /// ones.
+  /// Resets the tracker and the camera watch after this process's clock was set back, because new frames
+  /// would seem older than earlier ones.
   void on_clock_set_back(Duration by);
 
   Bus& bus_;

@@ -13,7 +13,7 @@
 namespace sidestep {
 namespace {
 
-constexpr int kFractionBits = 4;  // of pixel coordinates passed to OpenCV
+constexpr int kFractionBits = 4;  // fixed-point bits of pixel coordinates passed to OpenCV
 const Ink kBlueTeam{255, 190, 90}, kYellowTeam{70, 230, 255}, kBall{40, 140, 255}, kObstacle{200, 200, 255};
 
 }  // namespace

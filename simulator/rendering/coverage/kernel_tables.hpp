@@ -5,7 +5,7 @@
 
 namespace sidestep::coverage {
 
-// The kernels of each instruction set. dispatch.cpp lists those that the machine can run.
+// The kernels of each instruction set. dispatch.cpp selects the ones that the machine can run.
 extern const Kernels kBaselineKernels;
 #ifdef __x86_64__
 extern const Kernels kAvx2Kernels, kAvx512Kernels;

@@ -7,7 +7,7 @@
 
 namespace sidestep::coverage {
 
-/// The cross-section of a vertical body: a disc about the origin, cut off at x = front.
+/// The cross-section of a vertical body: the part of a disc about the origin where x <= front.
 struct CrossSection {
   float radius = 0;
   float front = 0;
@@ -34,8 +34,8 @@ struct Kernels {
   int (*count_in_disc)(const PixelSamples& samples, float x, float y, float radius);
   int (*count_in_cross_section)(const PixelSamples& samples, const CrossSection& section);
   /// Counts the samples whose rays meet the cross-section. The rays start at the samples. Their directions
-  /// are those of the rays at `still_offsets` from the pixel's centre, which are the samples before they were
-  /// shifted by the body's motion.
+  /// are those of the rays through `still_offsets` from the pixel's centre, the samples before the body's
+  /// motion has shifted them.
   int (*count_rays_hitting)(const Points& still_offsets, const PixelSamples& samples, const ViewingRays& rays,
                             const CrossSection& section);
 };

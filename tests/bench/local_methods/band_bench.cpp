@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-/// The peer of ObstaclePoints: a plain loop in double precision.
+/// The baseline for ObstaclePoints: a plain loop in double precision.
 struct PlainPoints {
   std::vector<Vec2> points_m;
   FreeDistance operator()(const Vec2& at_m, double) const {

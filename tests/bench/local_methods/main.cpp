@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Measures the local methods of navigation: dynamic windows with exact arcs and with tables, and the bubble
-// band. Fails if a result is wrong; times are printed only.
+// SPDX-License-Identifier: Apache-2.0 Measures the local methods of navigation: dynamic windows with exact
+// arcs and with tables, and the bubble band. Fails if a result is wrong. Times are only printed.
 #include <fmt/core.h>
 
 #include "tests/bench/local_methods/measurement.hpp"

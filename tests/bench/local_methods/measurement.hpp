@@ -13,7 +13,7 @@ namespace sidestep {
 inline constexpr std::uint64_t kBenchSeed = 1;
 inline constexpr std::size_t kBenchScenes = 1200, kBeams = 360;
 
-/// One of the methods to compare, measured on scenes; `run` returns a checksum.
+/// A method under comparison, measured on scenes. `run` returns a checksum.
 struct Contestant {
   std::string name;
   std::size_t scenes;

@@ -11,8 +11,8 @@ namespace sidestep {
 /// A regular octagon with this distance from its centre to its edges.
 ConvexPolygon octagon(double inner_radius_m);
 
-/// What a laser with `beams` beams all around sees from the middle of a random room with posts, none of them
-/// nearer than `nearest_m`.
+/// The points that a laser with `beams` beams over 360 degrees sees from the middle of a random room with
+/// posts. No point is nearer than `nearest_m`.
 std::vector<Vec2> laser_scan(Rng& rng, std::size_t beams, double nearest_m);
 
 /// A winding corridor along the x axis.

@@ -12,8 +12,8 @@
 namespace sidestep {
 namespace {
 
-/// How far stored times are below exact ones, over all stored cells and allowed velocities that collide
-/// within the horizon.
+/// Measures how far stored times are below exact ones, over all stored cells and allowed velocities that
+/// collide within the horizon.
 struct TableError {
   double sum_s = 0, sum_ratio = 0, sum_exact_s = 0, worst_s = 0;
   std::size_t entries = 0, too_late = 0;

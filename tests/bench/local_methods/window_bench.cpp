@@ -26,7 +26,8 @@ double value_of(const WindowChoice& choice) {
   return choice.best ? static_cast<double>(choice.admissible[*choice.best].value) : 0;
 }
 
-/// Whether what a table admits is admissible exactly, with times that are not later.
+/// Whether every velocity that a table admits is also admissible by exact computation, with a collision time
+/// that is not later.
 bool is_safe(const std::vector<RatedWheelSpeeds>& exact, const WindowChoice& table) {
   auto next = exact.begin();  // both are in the grid's order
   for (const RatedWheelSpeeds& rated : table.admissible) {

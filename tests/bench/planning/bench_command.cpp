@@ -10,17 +10,18 @@
 namespace sidestep {
 
 void add_bench_command(const CliCommand& root, std::function<int()>& action) {
-  const CliCommand bench = root.add_subcommand("bench", "Benchmarks parts of the system against their peers");
+  const CliCommand bench =
+      root.add_subcommand("bench", "Benchmarks parts of the system against other libraries");
   bench.require_subcommand();
   const CliCommand command = bench.add_subcommand(
       "planning",
-      "All planners in all worlds: time, length, validity. Exits with 1 when a path is not valid, or when a "
-      "namesake of an OMPL planner solves significantly fewer queries than it (p < 0.01)");
+      "All planners in all worlds: time, length, validity. Exits with 1 if a path is invalid, or if our "
+      "version of an OMPL planner solves significantly fewer queries than OMPL's (p < 0.01)");
   const auto options = std::make_shared<PlanningBenchOptions>();
   std::vector<std::string> planners;
   for (const BenchPlanner& planner : bench_planners()) planners.push_back(planner.name);
   command.add_option("--world", options->worlds, "these worlds only").check(one_of(world_names()));
-  command.add_option("--planner", options->planners, "these planners only, and the peers of namesakes")
+  command.add_option("--planner", options->planners, "these planners only, with OMPL's versions of them")
       .check(one_of(planners));
   command.add_option("--queries", options->queries, "queries in each world; a p99 needs 1000")
       .check(in_range(1, 1'000'000))

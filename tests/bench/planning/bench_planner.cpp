@@ -34,8 +34,8 @@ class OwnPlanner {
         domain_settings_(planner_.domain_settings(world.world.field, world.world.radius_m)),
         rng_(seed) {}
 
-  /// Limited only by time, like the peers, except for anytime planners. Making the domain is part of the
-  /// measured time.
+  /// Like the peers, limited only by time, except for anytime planners. The measured time includes making the
+  /// domain.
   TimedPlan plan(const PlanQuery& query, double max_ms) {
     const std::size_t samples = planner_.kind == PlannerKind::kAnytime ? kAnytimeSamples : kUnlimited;
     const double begin_us = cpu_us();
@@ -67,7 +67,7 @@ class OwnPlanner {
   Rng rng_;
 };
 
-/// Returns a function that owns a planner of this type and plans with it.
+/// Returns a function that owns a planner of this type and answers queries with it.
 template <typename Planner>
 QueryFunction prepared(const std::string& name, const BenchmarkWorld& world, std::uint64_t seed) {
   const auto planner = std::make_shared<Planner>(name, world, seed);

@@ -12,7 +12,7 @@ double free_fraction(const ObstacleWorld& obstacles, const Vec2& from_m, const V
   const double length_m = (to_m - from_m).norm();
   if (length_m == 0) return 0;
   const double fraction = std::max(contact->fraction - kStandoff_m / length_m, 0.0);
-  // If the motion grazes an obstacle, the disc may still touch it a micrometre earlier.
+  // If the motion grazes an obstacle, the disc may still touch it at a micrometre before the contact.
   return obstacles.touches(from_m, from_m + fraction * (to_m - from_m), radius_m) ? 0 : fraction;
 }
 

@@ -41,7 +41,7 @@ class ExactMotions : public ob::MotionValidator {
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
     return !obstacles_.touches(position_of(from), position_of(to), radius_m_);
   }
-  /// KPIECE uses the free fraction of a blocked motion.
+  /// KPIECE also asks for the free fraction of a blocked motion.
   bool checkMotion(const ob::State* from, const ob::State* to,
                    std::pair<ob::State*, double>& last_valid) const override {
     if (checkMotion(from, to)) return true;
@@ -55,8 +55,8 @@ class ExactMotions : public ob::MotionValidator {
   double radius_m_;
 };
 
-/// The position itself, in 20 by 20 cells. Replaces OMPL's equivalent default projection for a plane, whose
-/// code fails an Eigen assertion in Debian's build.
+/// Projects a state to its position, in 20 by 20 cells. Replaces OMPL's equivalent default projection for a
+/// plane, whose code fails an Eigen assertion in Debian's build.
 class PositionProjection : public ob::ProjectionEvaluator {
  public:
   PositionProjection(const ob::StateSpacePtr& space, const Vec2& cell_m)
@@ -134,7 +134,7 @@ std::string ompl_build() {
   const std::string package = SIDESTEP_OMPL_PACKAGE;
   return fmt::format(
       "OMPL {}.{}.{}: {}", OMPL_MAJOR_VERSION, OMPL_MINOR_VERSION, OMPL_PATCH_VERSION,
-      package.empty() ? "not from a Debian package; how it was compiled is not known"
+      package.empty() ? "not from a Debian package, so its compile options are unknown"
                       : "the shared library of the Debian package " + package +
                             ", compiled with Debian's default flags (-O2, no -march), assertions included");
 }

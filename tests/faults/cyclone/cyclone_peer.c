@@ -128,7 +128,7 @@ static void print_truth(const sidestep_msg_GroundTruth* m) {
 
 static dds_entity_t participant, wait_set;
 
-/// Reliability as Sidestep's: states are best effort, events reliable. The encoding is version 1.
+/// The same reliability as in Sidestep: best effort for states, reliable for events. XCDR version 1.
 static dds_qos_t* make_qos(bool is_event) {
   dds_qos_t* qos = dds_create_qos();
   const dds_data_representation_id_t version_1 = DDS_DATA_REPRESENTATION_XCDR1;
@@ -165,7 +165,7 @@ PRINTER(print_page, sidestep_msg_LedgerPage)
 PRINTER(print_world, sidestep_msg_WorldState)
 PRINTER(print_truth, sidestep_msg_GroundTruth)
 
-/// Prints messages until there are enough. Returns how many are missing.
+/// Prints the wanted number of messages. Returns how many are missing.
 static int print_messages(struct input* input) {
   void* samples[8] = {NULL};
   dds_sample_info_t infos[8];
@@ -238,7 +238,7 @@ static int go(uint32_t robot, double x_m, double y_m) {
   while (dds_time() < deadline) {
     dds_publication_matched_status_t matched;
     check(dds_get_publication_matched_status(writer, &matched), "order");
-    // The coordinator may be found after others. A repeated order changes nothing.
+    // Repeats the order, which changes nothing, because DDS may discover the coordinator late.
     if (matched.current_count > 0 && dds_time() >= next_sending) {
       send_order(writer, robot, number, x_m, y_m);
       is_sent = true;

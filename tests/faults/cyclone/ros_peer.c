@@ -2,7 +2,7 @@
 // A program of another vendor's DDS, built from ROS 2's message definitions alone.
 //   ros_peer read DOMAIN ROBOT COUNT   prints COUNT twists and COUNT odometries of a robot, as lines
 //                                      "twist VX VY WZ" and "odom FRAME CHILD X Y YAW VX VY WZ"
-//   ros_peer write DOMAIN ROBOT VX     sends a twist to a robot and an odometry of it, until it is killed
+//   ros_peer write DOMAIN ROBOT VX     sends twists to a robot and odometry of it, until it is killed
 #include <dds/dds.h>
 #include <math.h>
 #include <stdio.h>

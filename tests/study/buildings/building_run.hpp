@@ -17,7 +17,8 @@ struct BuildingResult {
   double missed_percent = 0;                ///< of the agents' cycles
   bool audit_passed = false;                ///< the audit passed and no process died
 
-  /// Whether nothing went wrong: all goals were reached or reported as blocked, and nothing was touched.
+  /// Whether all goals were reached or reported as blocked, nothing was touched by a moving robot, and the
+  /// audit passed.
   bool is_good() const { return trips.stuck == 0 && contacts == 0 && crashes_in_motion == 0 && audit_passed; }
 };
 

@@ -20,7 +20,7 @@
 namespace sidestep {
 namespace {
 
-/// Writes the scenario to a file in another folder, without the goals, which clients give.
+/// Writes the scenario to a file in another folder, without its goals, because a client sends the robots.
 void write_without_goals(const std::string& file, const std::string& to) {
   YAML::Node scenario = parse_yaml(read_yaml_file(file, "a scenario"), file, "a scenario");
   for (YAML::Node robot : scenario["robots"]) robot.remove("goals_m");

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// The same run over DDS, in real time and with one process for each part of the system.
+/// A building run over DDS, in real time and with one process for each part of the system.
 struct BuildingRunOverDds {
   std::string scenario_file;
   std::string planner;
@@ -17,8 +17,8 @@ struct BuildingRunOverDds {
   std::uint64_t seed = 1;
 };
 
-/// Like run_building(), but in a separate domain on the loopback interface. Throws std::runtime_error with
-/// what failed, including aborted runs.
+/// Like run_building() in building_run.hpp, but in a separate domain on the loopback interface. Throws
+/// std::runtime_error if the run fails or is aborted.
 [[nodiscard]] BuildingResult run_building(const BuildingRunOverDds& run);
 
 }  // namespace sidestep

@@ -17,11 +17,11 @@ struct BuildingsOptions {
   int trials = 2;         ///< number of trials with consecutive seeds
 };
 
-/// Studies robots that repeatedly drive to random places among people, in the scenarios and with the planners
-/// of the options. Prints the results, and writes buildings.csv and .png into the folder, which it creates.
+/// Studies robots that repeatedly drive to random places among people, in the given scenarios and with the
+/// given planners. Prints the results, and writes buildings.csv and .png into the folder, which it creates.
 /// Shows progress on stderr. Returns 1 if a goal was neither reached nor reported as blocked, anything was
 /// touched by a moving robot, or an audit did not pass. Throws ConfigError for an invalid scenario, and
-/// std::runtime_error with what failed.
+/// std::runtime_error if a run fails.
 int study_buildings(const BuildingsOptions& options);
 
 }  // namespace sidestep

@@ -6,9 +6,9 @@
 namespace sidestep {
 namespace {
 
-/// A robot stays at a goal for a random time, at most this long.
+/// Maximum of the random time that a robot stays at a goal.
 constexpr Duration kMaxPause{3'000'000'000};
-/// A goal that has been reported as blocked for longer than this is given up.
+/// Time after which a goal that is reported as blocked is given up.
 constexpr Duration kPatience{30'000'000'000};
 
 // Robots at their positions leave this much more than the margin between each other.

@@ -24,7 +24,7 @@ struct TripCounts {
 /// the scenario. Places of different robots never overlap.
 class RandomTrips {
  public:
-  /// An order that takes longer than this without being blocked is given up.
+  /// Time after which an unfinished order that is not blocked is given up.
   static constexpr Duration kStuckAfter{180'000'000'000};
 
   /// `bus` must outlive this object.
@@ -37,7 +37,7 @@ class RandomTrips {
   void finish() { is_finishing_ = true; }
   /// Whether all orders are over.
   bool is_over() const;
-  /// The counts if orders that are not over count as blocked or stuck.
+  /// The counts, in which unfinished orders count as blocked or stuck.
   TripCounts counts(Time now) const;
 
  private:

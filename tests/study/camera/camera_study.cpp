@@ -12,7 +12,7 @@ namespace sidestep {
 namespace {
 
 struct CameraSizes {
-  int drives = 25;  ///< for each event and planner
+  int drives = 25;  ///< number of drives for each event and planner
   int views = 100, searches = 50;
 };
 constexpr CameraSizes kQuick{1, 4, 10};
@@ -20,7 +20,7 @@ constexpr CameraSizes kQuick{1, 4, 10};
 constexpr std::array<PixelPlanner, 2> kDriving{PixelPlanner::kCells, PixelPlanner::kDiamonds};
 constexpr std::array<const char*, kPixelPlanners> kPlannerNames{"cells", "diamonds", "discs"};
 
-/// The results of the drives of one row.
+/// The summed results of the drives in one row of the table.
 struct DriveSum {
   int drives = 0, arrived = 0, contacts = 0, replans = 0, without_cause = 0, false_alarms = 0;
   int noticed = 0, max_frames = 0;

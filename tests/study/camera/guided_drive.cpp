@@ -93,8 +93,8 @@ Vec2 braking(const Vec2& velocity_mps) {
   return -std::min(kLimits.deceleration_mps2, speed_mps / 0.02) / speed_mps * velocity_mps;
 }
 
-/// Drives towards the carrot, or brakes, until the next frame. The position is the seen one, advanced by
-/// odometry.
+/// Drives towards the carrot, or brakes, until the next frame. Uses the position seen by the camera, advanced
+/// by odometry.
 void step_body(DriveWorld& world, const PixelGuide::Guidance& guidance, DriveResult& result) {
   Body& body = world.body();
   const Vec2 rolled_m = body.rolled_position_m();
@@ -121,7 +121,7 @@ void count(const PixelGuide::Guidance& guidance, int frame, const DriveWorld& wo
   if (guidance.camera_is_known) return;
   if (world.is_bumped(frame) && !result.noticed_after_frames)
     result.noticed_after_frames = frame - world.first_event() + 1;
-  // The robot counts as known again after some good frames.
+  // After an event this is no false alarm: a bumped camera counts as known again only after some good frames.
   const bool is_returning = frame >= world.first_event();
   result.false_alarms += is_returning ? 0 : 1;
 }

@@ -20,7 +20,7 @@ constexpr double kGuideMargin_m = 0.045;
 constexpr PathFollowerSettings kFollowing{10, 4, 10};  // in pixels
 constexpr SegmentationSettings kSegmentation{3, 1};
 
-/// Measures a stage.
+/// Measures the processor time of a stage.
 template <typename Stage>
 auto timed(Distribution& times, const Stage& stage) {
   const double begin_us = cpu_us();
@@ -34,7 +34,7 @@ auto timed(Distribution& times, const Stage& stage) {
   }
 }
 
-/// The largest scale of the image on the floor.
+/// The largest scale of the image on the floor, in pixels per metre.
 double max_px_per_m(const CameraModel& camera) {
   double scale = 0;
   for (int i = 0; i <= 16; ++i) {
@@ -72,7 +72,8 @@ PixelGuide::PixelGuide(const CameraModel& camera, const Field& field, PixelPlann
       cells_(camera.parameters().width_px, camera.parameters().height_px),
       follower_(kFollowing) {}
 
-/// Finds obstacles, robot and target. The robot's dot is at the height of its top; the pixel below it counts.
+/// Finds obstacles, robot and target. The robot's dot is at the height of its top, so its position is the
+/// pixel of the floor point below the dot.
 void PixelGuide::look(const ImageView& image) {
   image_ = image;
   const auto regions = timed(times_.segmentation, [&] { return segmenter_.segment(image); });
@@ -84,8 +85,7 @@ void PixelGuide::look(const ImageView& image) {
     has_robot_ = pixel && camera_.is_in_image(*pixel);
     if (has_robot_) robot_px_ = *pixel;
   }
-  // A target that is not seen is assumed where it was, because the robot hides it or it will be seen
-  // elsewhere.
+  // A target that is not seen keeps its last position: the robot hides it, or it will soon be seen elsewhere.
   if (!blobs_->target) return;
   target_px_ = *blobs_->target;
   has_target_ = true;

@@ -18,7 +18,7 @@
 
 namespace sidestep {
 
-/// What the path is planned on.
+/// How the path is planned.
 enum class PixelPlanner {
   kCells,     ///< A* on cells of 10 x 10 pixels
   kDiamonds,  ///< the visibility graph around the blobs' diamonds
@@ -34,8 +34,7 @@ struct StageTimes {
   Distribution registration, segmentation, blobs, cells, astar, diamonds, discs;
 };
 
-/// Guides a robot to a target using only one camera. From image to image it determines where to drive; it has
-/// no other input.
+/// Guides a robot to a target using only the images of one camera: determines from each image where to drive.
 class PixelGuide {
  public:
   PixelGuide(const CameraModel& camera, const Field& field, PixelPlanner planner);

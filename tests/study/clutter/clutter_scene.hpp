@@ -8,8 +8,7 @@
 
 namespace sidestep {
 
-/// Settings of a scene: robots with three goals each, and people who walk around obstacles but not around
-/// robots.
+/// Settings of a scene: robots with three goals each, and people who avoid obstacles but not robots.
 struct ClutterSettings {
   bool is_building =
       false;  ///< true: rooms and corridors of a random floor plan; false: an open hall with ten obstacles
@@ -17,8 +16,8 @@ struct ClutterSettings {
   std::string planner = "lazy-visibility";
 };
 
-/// Makes a scene. The same seed gives the same floor, people, starts and goals, whatever the planner. All
-/// goals can be reached.
+/// Makes a scene in which all goals can be reached. The same seed gives the same floor, people, starts and
+/// goals for all planners.
 [[nodiscard]] Scenario clutter_scene(const ClutterSettings& settings, std::uint64_t seed);
 
 struct ClutterResult {

@@ -17,7 +17,7 @@ constexpr double kMinWay_m = 3;       // minimum length of the robot's path
 constexpr double kPersonApart_m = 1;  // distance from the robot's start
 constexpr int kTries = 2000;
 
-/// A vertical wall from one height to another.
+/// A wall parallel to the y axis.
 void add_wall(Scenario& scenario, double x, double low_y, double high_y) {
   scenario.obstacles.emplace_back(Box{{x - kWall_m / 2, low_y}, {x + kWall_m / 2, high_y}});
 }
@@ -104,7 +104,8 @@ Vec2 point_on(const Vec2& from_m, const std::vector<Vec2>& way_m, double part) {
   return last;
 }
 
-/// Somebody who walks out of a place that the robot does not see from its start, onto its way, and back.
+/// A person who walks from a place that the robot does not see from its start onto the robot's path, and
+/// back.
 std::optional<OpponentSpec> sample_person(const Scenario& scenario, const RobotSpec& robot,
                                           const std::vector<Vec2>& way_m, Rng& rng) {
   const double smallest_m = scenario.laser->person_radius_m;
@@ -120,7 +121,7 @@ std::optional<OpponentSpec> sample_person(const Scenario& scenario, const RobotS
     if (finder.is_seen(robot.start_m, hidden) || (hidden - robot.start_m).norm() < kPersonApart_m) continue;
     const auto walk = finder.path(hidden, meeting);
     if (!walk) continue;
-    // People begin anywhere on their way, so that they and the robot meet at any time.
+    // People start anywhere on their routes, so that they meet the robot at random times.
     const Vec2 first = point_on(hidden, *walk, rng.uniform(0, 0.6));
     if ((first - robot.start_m).norm() < kPersonApart_m) continue;
     if (const auto rest = finder.path(first, meeting)) {

@@ -23,7 +23,7 @@ struct CornerResult {
   bool audit_passed = false;
 };
 
-/// Runs a scene in virtual time. If there are no lasers, cameras above the floor see people everywhere.
+/// Runs a scene in virtual time. Without the laser, cameras above the floor see people everywhere.
 [[nodiscard]] CornerResult run_corner(Scenario scenario, std::uint64_t seed, bool has_laser);
 
 }  // namespace sidestep

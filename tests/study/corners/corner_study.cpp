@@ -22,7 +22,7 @@ struct Batch {
   int arrived = 0, blocked = 0;
   std::uint64_t contacts = 0, crashes = 0, crashes_in_motion = 0;
   int failed_audits = 0;
-  double laser_s = 0, camera_s = 0;  // of the cases that arrived both times
+  double laser_s = 0, camera_s = 0;  // over cases in which the robot arrived with laser and with cameras
 };
 
 /// Makes a random scene of a kind.
@@ -54,7 +54,7 @@ double number(const std::string& text) {
   return value;
 }
 
-/// Prints a row per kind, and says whether nothing happened that must not.
+/// Prints a row per kind. Returns whether there was no crash in motion, no contact and no failed audit.
 bool summarise(const StudyTable& table) {
   std::map<std::string, std::vector<double>> sums;
   for (const auto& row : table.rows) {

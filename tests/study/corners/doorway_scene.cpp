@@ -47,7 +47,7 @@ void sample_driver(Scenario& scenario, Rng& rng) {
   laser.person_radius_m = rng.uniform(0.1, 0.35);
 }
 
-/// A person who walks back and forth in a doorway for a while, then out of it, and back.
+/// A person who walks back and forth in a doorway for a while, then steps out and goes back.
 OpponentSpec sample_waiting_person(const Scenario& scenario, const Layout& layout, double middle_m,
                                    double width_m, double radius_m, Rng& rng) {
   OpponentSpec person;

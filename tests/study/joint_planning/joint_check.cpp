@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStep_s = 0.001, kDistanceTolerance_m = 1e-6, kSpeedTolerance_mps = 1e-4,
                  kAccelerationTolerance_mps2 = 1e-2;
-// Where a robot turns round, the average of two phases may exceed the limit of either.
+// Below this speed the higher of both limits applies: where a robot reverses, a sample averages two phases.
 constexpr double kSlow_mps = 0.02;
 
 /// A robot's positions at all sample times.
@@ -33,7 +33,7 @@ std::vector<Vec2> sampled(const Course& course, std::size_t samples) {
       v += a * seconds;
       begin_s += seconds;
     }
-    // The robot rests here until the next leg, which overwrites these positions.
+    // The robot rests here unless a next leg overwrites these positions.
     for (; k < samples; ++k) positions[k] = p;
   }
   return positions;

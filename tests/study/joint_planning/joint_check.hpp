@@ -9,9 +9,9 @@
 namespace sidestep {
 
 /// Checks the motions of robots: they must lead from starts to goals, keep the required distances and obey
-/// the limits. Returns what is wrong in one line, or an empty string. Samples positions every millisecond,
-/// and computes them from the phases of the trajectories; shares no code with the planners. `obstacles` are
-/// the obstacles of the problem's world.
+/// the limits. Returns the first fault in one line, or an empty string. Samples positions every millisecond,
+/// computed from the phases of the trajectories; shares no code with the planners. `obstacles` are the
+/// obstacles of the problem's world.
 [[nodiscard]] std::string fault_of(const JointProblem& problem, std::span<const Shape> obstacles,
                                    std::span<const Course> courses);
 

@@ -13,8 +13,8 @@ namespace {
 
 struct ExplicitSizes {
   std::vector<int> robots{2, 4, 6, 8, 12, 16};
-  int trials = kMinForP99;  // of explicit planners
-  int driven_trials = 200;  // of the safety search: the first ones
+  int trials = kMinForP99;  // number of trials of explicit planners
+  int driven_trials = 200;  // the first trials, which the safety search also drives
   double budget_s = 1;
 };
 ExplicitSizes quick_explicit_sizes() { return {{2, 4}, 3, 2, 0.5}; }
@@ -72,8 +72,8 @@ StudyTable empty_table(JointScene scene) {
   return table;
 }
 
-/// The bars leave out the extremes: the safety search is timed by the wall clock, so some include other
-/// processes.
+/// The error bars exclude extremes, because the safety search is timed by the wall clock and some times
+/// include other processes.
 PlotPoint point_of(double x, const Distribution& values, double scale) {
   return {x, scale * values.median(), scale * values.quantile(0.1), scale * values.quantile(0.9)};
 }

@@ -15,10 +15,11 @@ namespace {
 
 double microseconds(Duration duration) { return 1e6 * to_seconds(duration); }
 
-/// A thread that was not preempted plans within a few tens of microseconds.
+/// Maximum duration without preemption: a thread that is not preempted plans within a few tens of
+/// microseconds.
 constexpr Duration kPreempted = std::chrono::milliseconds(1);
 
-/// The sum of a histogram's durations, each counted as the upper edge of its bucket. Leaves out those that
+/// The sum of a histogram's durations, each counted as the upper edge of its bucket. Excludes durations that
 /// contain a preemption.
 double sum_us(const DurationHistogram& histogram) {
   double sum = 0;
@@ -43,7 +44,7 @@ JointTrial drive(const Scenario& scenario, const JointProblem& problem, std::uin
 
 template <typename Planner>
 JointTrial plan(const Scenario& scenario, const JointProblem& problem, double budget_s, std::uint64_t seed) {
-  // Only the time limits the effort.
+  // The effort is limited only by time.
   constexpr std::size_t kUnlimited = 100'000'000;
   Rng rng(seed);
   Planner planner;

@@ -9,8 +9,8 @@
 namespace sidestep {
 
 enum class JointMethod {
-  kComposite,    ///< all robots planned as one
-  kPrioritised,  ///< one after another
+  kComposite,    ///< all robots planned together as one
+  kPrioritised,  ///< robots planned one after another
   kSafetySearch  ///< no joint planning: the whole system in virtual time
 };
 [[nodiscard]] const char* name_of(JointMethod method);
@@ -18,9 +18,9 @@ enum class JointMethod {
 struct JointTrial {
   bool solved = false;
   std::string fault{};  ///< fault found by the independent check; empty: none
-  /// Total over all robots and the whole run. For planners this is processor time. For the safety search it
-  /// is wall-clock time, accurate to 12 %, without cycles of more than a millisecond, in which other
-  /// processes ran.
+  /// Planning time, total over all robots and the whole run. For planners this is processor time. For the
+  /// safety search it is wall-clock time, accurate to 12 %, without cycles of more than a millisecond, which
+  /// other processes have interrupted.
   double plan_us = 0;
   double makespan_ratio = 0;  ///< makespan relative to the longest straight motion; 0 unless solved
   double cycle_us = 0,

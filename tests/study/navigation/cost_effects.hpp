@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// Measures how costs affect the path of a robot that drives 8 m: a square region of 3 m in its way with a
-/// higher cost, and a person who crosses its way and would meet it in the middle. Clearance is the distance
+/// Measures how costs affect the path of a robot that drives 8 m: a square region of 3 m with a higher cost
+/// on its way, and a person who crosses its way and would meet it in the middle. Clearance is the distance
 /// between the person and the robot at equal times, if the robot drives along the path at 1 m/s.
 StudyTable cost_effects();
 

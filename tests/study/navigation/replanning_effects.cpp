@@ -17,7 +17,7 @@ std::size_t count_changed(const EStar& a, const EStar& b) {
   return count;
 }
 
-/// The farthest that a path's vertices are from a straight way, in cells.
+/// The largest distance of a path's vertices from the straight line, in cells.
 double largest_offset(const std::vector<Vec2>& path_m, const Segment& straight, double resolution_m) {
   double largest2 = 0;
   for (const Vec2& at : path_m) largest2 = std::max(largest2, squared_distance(at, straight));

@@ -9,7 +9,7 @@
 namespace sidestep {
 namespace {
 
-// With the usual 0.1, the highest waypoint probability would leave no uniform samples.
+// Goal probability. With the usual 0.1, the highest waypoint probability would leave no uniform samples.
 constexpr double kGoalProbability = 0.05;
 
 struct Strategy {
@@ -22,8 +22,8 @@ constexpr std::array kStrategies{Strategy{"random", CacheReplacement::kRandom},
                                  Strategy{"whole plan", CacheReplacement::kWholePlan}};
 
 std::vector<MeasuredPlanner> planners_with(double waypoint_probability, std::uint64_t seed) {
-  // Each planner gets its own seed: if all took the same branches, later ones would be faster, because the
-  // processor would already predict them.
+  // Each planner gets its own seed. With a common seed all would take the same branches, which the processor
+  // would already predict for later planners.
   Rng seeds(seed);
   std::vector<MeasuredPlanner> planners;
   for (const Strategy& strategy : kStrategies) {

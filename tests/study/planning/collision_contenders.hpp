@@ -8,13 +8,13 @@
 
 namespace sidestep {
 
-/// A structure with the obstacles of a problem, which must outlive it.
+/// A structure that contains the obstacles of a problem. The problem must outlive it.
 struct CollisionContender {
   std::string name;
   std::function<bool(const Segment&)> touches;
-  /// Mean time per query over all motions, one after another. The caller only counts the answers.
+  /// Returns the mean time per query over all motions, one after another. The answers are only counted.
   std::function<double()> query_ns;
-  /// Mean time of a query for one motion, repeated many times.
+  /// Returns the mean time of a query for one motion, repeated many times.
   std::function<double(const Segment&, std::size_t repetitions)> repeated_ns;
 };
 

@@ -17,7 +17,7 @@ struct CollisionDomain {
 };
 constexpr CollisionDomain kCollisionDomains[] = {{"random", ObstacleLayout::kRandom},
                                                  {"grid", ObstacleLayout::kGrid}};
-constexpr double kPlotStep = 0.02;  // of the fraction of queries
+constexpr double kPlotStep = 0.02;  // step of the plotted fraction of queries
 
 /// The times of all queries, for each structure.
 std::vector<Distribution> times_by_query(const CollisionProblem& problem, const CollisionDomains& settings,

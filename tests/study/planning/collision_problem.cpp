@@ -8,14 +8,14 @@
 namespace sidestep {
 namespace {
 
-/// In the unit square.
+/// A random point in the unit square.
 Vec2 sample_position(Rng& rng) {
   // y is drawn first, because the evaluation order of arguments is unspecified.
   const double y = rng.uniform(), x = rng.uniform();
   return {x, y};
 }
 
-/// The centre of one of `count` equal squares.
+/// The centre of one of `count` equal squares that divide the unit square.
 Vec2 grid_position(std::size_t i, std::size_t count) {
   const auto columns = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(count))));
   const Vec2 square(static_cast<double>(i % columns), static_cast<double>(i / columns));

@@ -11,10 +11,10 @@
 namespace sidestep {
 namespace {
 
-// Marked in the plot: the number of obstacles in the domains of the thesis (Bruce 2006).
+// The number of obstacles in the domains of the thesis (Bruce 2006), marked in the plot.
 constexpr double kMarkedObstacles = 64;
 
-/// Times of each structure, by round: all structures get the same queries, in shuffled order.
+/// Measures each structure in rounds. In each round all structures get the same queries, in shuffled order.
 std::vector<Distribution> query_times(const std::vector<CollisionContender>& contenders, std::size_t rounds,
                                       Rng& order) {
   std::vector<Distribution> ns(contenders.size());

@@ -57,7 +57,7 @@ MeasuredPlanner plain_rrt_connect(std::uint64_t seed) {
   return {"RRT-Connect", plan_function(planner), seed, {.contact_probability = 0}};
 }
 
-/// The planners of one world, the kept graph first. Caches begin empty.
+/// The planners of one world, beginning with the kept graph. Caches are empty at first.
 std::vector<MeasuredPlanner> planners_of(const BenchmarkWorld& world, std::uint64_t seed) {
   return {{"graph kept", plan_function(std::make_shared<KeptGraph>(world)), seed},
           measured_planner<LazyVisibility>("lazy graph", seed),

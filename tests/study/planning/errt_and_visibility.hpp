@@ -14,8 +14,8 @@ struct ErrtAndVisibility {
 /// Compares planners with one and two trees to visibility graphs. The tree planners are ERRT, whose cache is
 /// filled by the earlier queries in a world, raw and smoothed, and plain RRT and RRT-Connect without our
 /// additions. The visibility graphs are the full graph, either kept for a world or rebuilt for each query as
-/// moving obstacles require, and the lazy graph, which keeps nothing. Times and lengths are functions of the
-/// number of circles; the field grows with it, so that the density is constant.
+/// moving obstacles would require, and the lazy graph, which keeps nothing between queries. Times and lengths
+/// are functions of the number of circles; the field grows with it, so that the density is constant.
 StudyTable errt_and_visibility(const ErrtAndVisibility& settings, std::uint64_t seed,
                                const ProgressCallback& progress);
 

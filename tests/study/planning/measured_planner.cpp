@@ -71,7 +71,7 @@ void replan_all(std::vector<MeasuredPlanner>& planners, std::size_t cycles, std:
   Rng order(seed);
   for (std::size_t cycle = 0; cycle < cycles; ++cycle) {
     course.step();
-    // For a blocked goal, planners may reach different substitutes, so lengths are not comparable.
+    // If the goal is blocked, planners may reach different fallback goals, so lengths are not comparable.
     const bool is_comparable = course.shortest().arrives() && !course.domain().goal_is_blocked();
     const double shortest_m = is_comparable ? course.shortest().length : 0;
     const auto domain = [&](const DiscDomainSettings& settings) { return course.domain(settings); };

@@ -28,7 +28,7 @@ std::vector<std::string> plan_columns(std::vector<std::string> key);
 /// A row of that table. The 99th percentile is empty for fewer than kMinForP99 plans.
 std::vector<std::string> plan_cells(std::vector<std::string> key, const PlanStatistics& statistics);
 
-/// Creates a query's domain with the settings that a planner needs.
+/// Creates a query's domain with a planner's settings.
 using DomainFactory = std::function<DiscDomain(const DiscDomainSettings&)>;
 DomainFactory domain_factory(const ObstacleWorld& obstacles, const PlanWorld& world, const PlanQuery& query);
 

@@ -19,7 +19,7 @@ struct Variant {
   std::string method, parameter;
   ConnectionSettings connection;
   Distribution edges_per_node{}, build_us{};
-  std::vector<PlanStatistics> plans{};  // by displacement
+  std::vector<PlanStatistics> plans{};  // indexed by displacement
 };
 
 std::vector<Variant> variants_of(const RoadmapConnections& settings) {
@@ -39,7 +39,7 @@ std::vector<Variant> variants_of(const RoadmapConnections& settings) {
   return variants;
 }
 
-/// The world after each obstacle has moved this far in a random direction, with new queries.
+/// The world after each obstacle has moved this far in a random direction, and new queries.
 BenchmarkWorld world_after(PlanWorld world, double displacement_m, std::size_t queries, Rng& rng) {
   for (Shape& shape : world.obstacles)
     shape = moved(shape, rotated({displacement_m, 0}, rng.uniform(0, 6.283185307179586)));
@@ -67,7 +67,7 @@ Roadmaps build(const RoadmapConnections& settings, const BenchmarkWorld& world, 
 }
 
 PlanStatistics plan_queries(const Roadmaps& built, const BenchmarkWorld& world) {
-  // With its current size as budget, the roadmap does not grow.
+  // The budget is the current size of the roadmap, so that it does not grow.
   const Budget budget{.nodes = built.roadmap().size()};
   PlanStatistics statistics;
   Roadmaps roadmap = built;

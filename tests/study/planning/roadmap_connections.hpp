@@ -18,8 +18,7 @@ struct RoadmapConnections {
 
 /// Compares connection methods of a dynamic roadmap among 64 circles: the nearest node in each sector, the
 /// nearest nodes, and all nodes within a radius. Sectors are compared without and with blocked motions. All
-/// methods connect the same nodes. Every query gets the roadmap as it was built, and must not add samples to
-/// it.
+/// methods connect the same nodes. Every query uses the roadmap as it was built; no samples are added.
 StudyTable roadmap_connections(const RoadmapConnections& settings, std::uint64_t seed,
                                const ProgressCallback& progress);
 

@@ -36,7 +36,7 @@ TerrainContender contender(std::size_t name, const std::shared_ptr<Terrain>& ter
            [terrain](const Flight& f) { return terrain->clearance_m(f.from_m, f.to_m, kRadius_m); }}};
 }
 
-/// TerrainTree with the interface of the others.
+/// TerrainTree with the interface of the other structures.
 class BallOverTerrain {
  public:
   explicit BallOverTerrain(const TerrainProblem& problem) : tree_(problem.points_m, problem.triangles) {}

@@ -14,7 +14,7 @@ constexpr MotionLimits kDriveLimits{.speed_mps = 0.5};
 constexpr double kDriveCycle_s = 1.0 / 60;
 constexpr double kDriveArrival_m = 0.05;  ///< distance from the goal that counts as arrived
 constexpr double kDriveTimeLimit_s = 60;
-constexpr double kStuck_m = 0.1;       ///< a robot that moves less than this ...
+constexpr double kStuck_m = 0.1;       ///< a robot that moves by less than this ...
 constexpr double kStuck_s = 4;         ///< ... in this time is in a local minimum
 constexpr double kReversal_rad = 0.2;  ///< see ReversalCounter
 
@@ -50,7 +50,7 @@ FieldDrive drive_by(const DriveDirection& direction, const PlanWorld& world, con
     return true;
   };
   while (!has_ended()) {
-    // Half the deceleration leaves some for turning.
+    // Plans the stop with half of the deceleration, so that the robot can turn meanwhile.
     const double left_m = (query.goal_m - state.position_m).norm();
     const double speed = std::min(kDriveLimits.speed_mps, std::sqrt(kDriveLimits.deceleration_mps2 * left_m));
     const Vec2 change = speed * direction(state.position_m) - state.velocity_mps;

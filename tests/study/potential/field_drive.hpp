@@ -20,7 +20,7 @@ struct FieldDrive {
   std::vector<Vec2> path_m;  ///< one position per cycle, beginning at the start
 };
 
-/// Returns the unit vector in which to drive from a position; zero: nowhere.
+/// Returns the direction in which to drive from a position, as a unit vector; zero: do not drive.
 using DriveDirection = std::function<Vec2(const Vec2&)>;
 
 /// Drives a disc with limited acceleration to the goal of the world's query. In each cycle it accelerates

@@ -15,9 +15,9 @@ struct FieldMethod {
 };
 [[nodiscard]] std::string name_of(const FieldMethod& method);
 
-/// Creates a method's direction function for a world. The world and its obstacles must outlive it. Navigation
-/// functions are computed here for a slightly larger disc; in cells that they block, the direction leads away
-/// from the nearest obstacle.
+/// Creates a method's direction function for a world. The world and its obstacles must outlive it. Computes
+/// navigation functions for a slightly larger disc. In cells that are blocked for that disc, the direction
+/// leads away from the nearest obstacle.
 [[nodiscard]] DriveDirection direction_of(const FieldMethod& method, const PlanWorld& world,
                                           const ObstacleWorld& obstacles);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPixels_pm = 100;
 constexpr double kArrowSpacing_m = 0.2, kArrow_m = 0.14;
-// Points of paths that are nearer to each other are not drawn.
+// Minimum distance between drawn points of a path.
 constexpr double kPathStep_m = 0.02;
 
 std::string arrows(const PlanWorld& world, const DriveDirection& field) {

@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-// Room that every method has on some path.
+// Clearance that some path to the goal has in every scene.
 constexpr double kExtraRadius_m = 0.09;
 
 void add_u(PlanWorld& world, Rng& rng) {
@@ -48,7 +48,7 @@ void add_discs(PlanWorld& world, Rng& rng) {
   }
 }
 
-/// A floor with start and goal, for obstacles between them.
+/// A floor with start and goal; obstacles between them are added later.
 PlanWorld open_floor(Rng& rng) {
   PlanWorld world;
   world.field = {8, 5};

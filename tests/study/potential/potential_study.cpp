@@ -29,7 +29,7 @@ std::vector<FieldMethod> methods() {
 /// The drives of one method in one kind of scene.
 struct Drives {
   int count = 0, ends[4] = {};
-  Distribution seconds, reversals_pm, compute_us;  // seconds: of drives that arrive
+  Distribution seconds, reversals_pm, compute_us;  // seconds: only of drives that arrive
 
   void add(const FieldMethod& method, const PlanWorld& world) {
     const ObstacleWorld obstacles(world.obstacles);
@@ -118,7 +118,7 @@ StudyTable study_oscillation(std::uint64_t seed, const PotentialSizes& sizes,
   return table;
 }
 
-/// A U in which the plain field is trapped, and what others do there.
+/// The picture of a U in which the plain field is trapped, with the paths of all methods.
 std::string picture_of_a_trap(std::uint64_t seed) {
   using Kind = FieldMethod::Kind;
   const PlanWorld world = field_scene(FieldScene::kU, seed);

@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Counts how often a path changes between turning left and turning right: a reversal is a turn back by more
-/// than `threshold_rad` from the farthest heading since the last one.
+/// Counts how often a path changes between turning left and turning right. A reversal is a turn back by more
+/// than `threshold_rad` from the extreme heading since the last reversal.
 class ReversalCounter {
  public:
   explicit ReversalCounter(double threshold_rad) : threshold_rad_(threshold_rad) {}

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kGoalTolerance_m = 0.1;
 
-/// The position at `length_m` along a path, or the path's end if it is shorter.
+/// The position at `length_m` along a path, or the end of a shorter path.
 Vec2 position_on(const std::vector<Vec2>& path, double length_m) {
   for (std::size_t i = 1; i < path.size(); ++i) {
     const double leg_m = (path[i] - path[i - 1]).norm();

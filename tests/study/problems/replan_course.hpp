@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Budget of one plan of a course: counts instead of time, so that a seed gives the same plans on every
+/// Budget of one plan of a course, in counts instead of time, so that a seed gives the same plans on every
 /// machine.
 inline const Budget kReplanBudget{.nodes = 2000, .samples = 20'000};
 

@@ -29,7 +29,7 @@ std::string columns_of(const TraversalResult& r) {
   return fmt::format("{:.9f},{},{:.6f},{},{:.6f}", r.penetration_m_s, r.contacts, r.min_clearance_m,
                      r.traversals, r.reference_error_m);
 }
-/// The columns of a traversal run, after those of the key.
+/// The columns of a traversal run: the key's columns, then the measurements.
 std::vector<std::string> traversal_columns(std::vector<std::string> columns) {
   for (const char* name :
        {"penetration_m_s", "contacts", "min_clearance_m", "traversals", "max_reference_error_m"})

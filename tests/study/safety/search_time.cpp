@@ -19,8 +19,8 @@ constexpr Time kNow = time_from_ns(1'000'000'000'000);
 constexpr Duration kCycle{16'666'667};
 constexpr int kWarmUps = 2;
 
-/// Motions on a jittered grid that are clear of each other; a robot without such a motion after kMaxAttempts
-/// samples rests.
+/// Samples motions of robots on a jittered grid that are clear of each other. A robot rests if kMaxAttempts
+/// samples give no such motion.
 std::vector<Version> sample_versions(int robots, const FloorRules& rules, Rng& rng) {
   const double cell_m = std::sqrt(kArea_m2);
   const int columns = static_cast<int>(std::ceil(std::sqrt(robots)));

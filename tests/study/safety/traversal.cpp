@@ -15,11 +15,11 @@ namespace sidestep {
 namespace {
 
 constexpr int kRows = 8;
-// Distance between slots on one side; robots can pass between others that rest there.
+// Distance between slots on one side, large enough to pass between robots that rest there.
 constexpr double kSlotSpacing_m = 0.45;
 constexpr double kFirstColumn_m = 1.4;
 constexpr double kWallDistance_m = 0.4;
-// More than a robot can reach in a run.
+// Number of goals, more than a robot can reach in a run.
 constexpr int kGoals = 100;
 constexpr double kPoorOdometryFactor = 10;
 constexpr double kBodyRadius_m = 0.05;

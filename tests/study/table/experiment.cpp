@@ -13,7 +13,7 @@
 namespace sidestep {
 namespace {
 
-/// Measures all runs, each in a process of its own.
+/// Measures all runs, each in its own process.
 std::vector<std::string> results_of(const Experiment& experiment) {
   const std::vector<Run>& runs = experiment.runs;
   std::vector<std::string> results(runs.size());

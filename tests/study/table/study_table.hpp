@@ -54,8 +54,8 @@ class StudyProgress {
 void require_study_output(const StudyOptions& options);
 
 /// Writes the table as .csv, with the command and the commit in its head, and its plots, if any, as .png into
-/// the folder, and prints their names. `study` is the name of the command. Throws std::runtime_error with
-/// what failed.
+/// the folder, and prints their names. `study` is the name of the command. Throws std::runtime_error with the
+/// reason if that fails.
 void write_study_table(const StudyTable& table, const std::string& study, const StudyOptions& options);
 
 /// The table with aligned columns, as Markdown.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMaxDotError_m = 0.012;
 
-/// Spread of errors about their mean, per axis.
+/// Standard deviation of errors about their mean, per axis.
 class Spread {
  public:
   void add(const Vec2& error) {
@@ -34,7 +34,7 @@ class Spread {
   double square_ = 0;
 };
 
-/// Errors in the robots' frames.
+/// Errors of dots in the robots' frames.
 struct Errors {
   std::vector<Spread> dots{butterfly().dots.size() + 1};
   Spread centroids;
@@ -64,7 +64,7 @@ std::optional<Vec2> error_at(const std::vector<ProjectedRegion>& regions, Colour
   return largest ? std::optional<Vec2>(largest->position_m - true_m) : std::nullopt;
 }
 
-/// The errors of all dots of a robot in its frame; nothing when a dot was not found.
+/// The errors of all dots of a robot in its frame; empty if a dot was not found.
 std::optional<std::vector<Vec2>> dot_errors(const std::vector<ProjectedRegion>& regions,
                                             const SceneRobot& robot) {
   const MarkerLayout& layout = butterfly();

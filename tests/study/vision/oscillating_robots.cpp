@@ -10,12 +10,13 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kPatterns = 16;
-constexpr double kCellMargin_m = 0.1;  // radius of a robot that stays in its cell, and some clearance
+constexpr double kCellMargin_m = 0.1;  // keeps a robot inside its cell, with some clearance
 constexpr double kMinAmplitude_m = 0.05;
 constexpr double kMaxSpeed_mps = 1.6;
 constexpr double kMaxAngularSpeed_radps = 4;
 
-/// Centres of a grid of at least `count` cells that covers the field; sets the cells' size.
+/// Returns the centres of a grid of at least `count` cells that covers the field, and sets the size of a
+/// cell.
 std::vector<Vec2> cell_centres(const Field& field, std::size_t count, Vec2& size_m) {
   std::size_t rows = 1;
   const auto columns = [&] { return (count + rows - 1) / rows; };

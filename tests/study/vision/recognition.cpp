@@ -19,7 +19,7 @@ struct Condition {
   int covered_dots = 0;
   double far_light = RenderSpec{}.far_light;
   Eigen::Vector3d colour_gain{1, 1, 1};
-  bool is_learned = true;  ///< thresholds are learned before colours drift; otherwise the default ones
+  bool is_learned = true;  ///< thresholds are learned before colours drift; false: default thresholds
 };
 
 const Condition kConditions[] = {
@@ -87,7 +87,7 @@ Score score_of(const Condition& condition, const Recognition& settings, Rng& rng
   for (std::size_t frame = 0; frame < settings.frames; ++frame) {
     if (frame % settings.frames_per_scene == 0) {
       testbed.reset(condition.robots_per_team);
-      // All robots are identified once before their dots are covered.
+      // All robots must be identified once before their dots are covered.
       for (std::size_t i = 0; condition.covered_dots > 0 && i < kUncoveredFrames; ++i) {
         testbed.step();
         testbed.run_vision();

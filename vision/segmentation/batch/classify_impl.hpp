@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// Classification kernels for one instruction set; see vectors.hpp. Sources that include this must not include
-// anything with inline functions: the linker keeps one copy, which may be that of an instruction set that the
-// machine does not have.
+// SPDX-License-Identifier: Apache-2.0 Classification kernels for one instruction set; see vectors.hpp.
+// Sources that include this must not include anything with inline functions: the linker keeps one copy of
+// each, which may use instructions that the machine does not have.
 #include "vision/segmentation/batch/vectors.hpp"
 
 namespace sidestep::segmentation {

@@ -15,16 +15,16 @@ struct alignas(64) VectorConstant {
   std::uint8_t bytes[64];
 };
 
-/// The thresholds of a box: lowest value, and distance to the highest. Those of U and V are also stored
-/// interleaved, as in a frame.
+/// The thresholds of a box: the lowest value, and the span to the highest. Thresholds of U and V are also
+/// stored interleaved, as in a frame.
 struct Thresholds {
   VectorConstant y_low, y_span, u_low, u_span, v_low, v_span, uv_low, uv_span;
   std::uint32_t colour;
   std::uint32_t group;  ///< bit of the box's group in CoarseTables
 };
 
-/// Indexed by the high nibble of a value: the groups of boxes that may accept it, with bit k for group k of
-/// eight. Tables of 16 bytes, repeated to fill a vector.
+/// Tables of the groups of boxes that may accept a value, indexed by its high nibble; bit k stands for group
+/// k of eight. Each table has 16 bytes, repeated to fill a vector.
 struct CoarseTables {
   VectorConstant y, u, v;
 };

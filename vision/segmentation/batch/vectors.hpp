@@ -32,8 +32,8 @@ inline std::uint64_t range_mask(Bytes a, const VectorConstant& low, const Vector
   return _mm512_cmple_epu8_mask(_mm512_sub_epi8(a, load(low.bytes)), load(span.bytes));
 }
 
-/// Shuffle that selects every third byte of three consecutive vectors, starting with byte `first`: from the
-/// first two vectors, then from the last.
+/// Shuffle that selects every third byte of three consecutive vectors, starting with byte `first`. Bytes come
+/// from the first two vectors, then from the last.
 struct Deinterleave3 {
   alignas(64) std::uint8_t from[64];
   std::uint64_t is_last = 0;
@@ -100,8 +100,8 @@ inline std::uint64_t range_mask(Bytes a, const VectorConstant& low, const Vector
   return static_cast<std::uint32_t>(_mm256_movemask_epi8(is_within));
 }
 
-/// Shuffle that selects every third byte of three consecutive blocks of 16, starting with byte `first`; the
-/// same in both halves of a vector.
+/// Shuffle that selects every third byte of three consecutive blocks of 16, starting with byte `first`, in
+/// both halves of a vector.
 struct Deinterleave3 {
   alignas(32) std::uint8_t from[3][32];
   constexpr explicit Deinterleave3(int first) : from{} {
