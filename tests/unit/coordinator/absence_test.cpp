@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots that are not on the floor, by their own word or by the operator's.
+// Robots that are absent from the floor, according to their own report or to the operator.
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/coordinator_fixture.hpp"
 
 namespace sidestep::coordinator_test {
 
-TEST_CASE("an operator can attest the absence of a robot that has not registered, until it registers") {
+TEST_CASE("an operator can attest that a robot is absent until the robot registers") {
   Floor floor;
   CHECK_FALSE(floor.coordinator.on_attestation(3));  // not on the roster
   floor.receive(registration_of(floor.b, kEpoch));
-  CHECK_FALSE(floor.coordinator.on_attestation(2));  // it has registered
+  CHECK_FALSE(floor.coordinator.on_attestation(2));  // robot 2 has registered
   CHECK(floor.coordinator.on_attestation(1));
   CHECK_FALSE(floor.coordinator.on_attestation(1));
   CHECK(floor.coordinator.is_granting());
@@ -17,7 +17,7 @@ TEST_CASE("an operator can attest the absence of a robot that has not registered
   CHECK(floor.coordinator.state().absent() == 1);
   const Version crossing = continued(floor.b, 20, 1, {-3, 0}, 0.6);
   CHECK(floor.ask(proposal_of({crossing}, kEpoch)).granted_version == 20);
-  // It is on the floor after all.
+  // Robot 1 is on the floor after all.
   CHECK(floor.receive(registration_of(floor.a, kEpoch))->reasons[0] == msg::Reason::REASON_GRANTED);
   CHECK(floor.coordinator.is_granting());
   CHECK(floor.coordinator.state().absent() == 0);
@@ -26,7 +26,8 @@ TEST_CASE("an operator can attest the absence of a robot that has not registered
 }
 
 TEST_CASE(
-    "an attestation is valid for one epoch, and an attested robot that reports after all is quarantined") {
+    "an attestation is valid for one epoch, and a robot that reports despite its attestation is "
+    "quarantined") {
   Floor floor;
   floor.receive(registration_of(floor.b, kEpoch));
   REQUIRE(floor.coordinator.on_attestation(1));
@@ -42,7 +43,7 @@ TEST_CASE(
   CHECK(missing(floor.coordinator).size() == 2);
 }
 
-TEST_CASE("a held robot in motion is granted nothing, however many versions it may execute") {
+TEST_CASE("a moving robot that is held is granted nothing, however many versions it may execute") {
   Floor floor;
   floor.register_both();
   Version last = floor.a;
@@ -63,7 +64,7 @@ TEST_CASE("a held robot in motion is granted nothing, however many versions it m
   }
 }
 
-TEST_CASE("a held robot is granted nothing until it is released, in every epoch") {
+TEST_CASE("a held robot is granted nothing in any epoch until it is released") {
   Floor floor;
   floor.coordinator.set_held(1, true);
   for (const Epoch epoch : {kEpoch, kEpoch + 1}) {
@@ -79,7 +80,7 @@ TEST_CASE("a held robot is granted nothing until it is released, in every epoch"
   CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch + 1)).granted_version == 10);
 }
 
-TEST_CASE("an absent robot registers without versions and is granted a rest version only") {
+TEST_CASE("an absent robot registers without versions and is granted only a rest version") {
   Floor floor;
   auto absent = registration_of(floor.a, kEpoch);
   absent.is_absent(true);

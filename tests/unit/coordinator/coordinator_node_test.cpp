@@ -39,13 +39,13 @@ struct Floor {
     run();
   }
 
-  /// Runs for longer than the period of heartbeats.
+  /// Runs for longer than the heartbeat period.
   void run() { run_for(std::chrono::milliseconds(30)); }
   void run_for(Duration duration) { network.run_until(network.now() + duration); }
   template <typename Message>
   void send(const Topic<Message>& topic, Message message, RobotId channel = 1) {
     auto writer = outside.advertise(topic, channel);
-    if (topic.qos == Qos::kEvent) run_for(std::chrono::milliseconds(200));  // the node finds the writer
+    if (topic.qos == Qos::kEvent) run_for(std::chrono::milliseconds(200));  // the node discovers the writer
     writer.publish(message, network.now());
     run();
   }
@@ -82,22 +82,23 @@ TEST_CASE("a coordinator answers registrations and proposals on the robot's chan
   CHECK(drops_of(floor.node).total() == 0);
 }
 
-TEST_CASE("messages that cannot be decoded are counted, get no answer and change nothing") {
+TEST_CASE("messages that cannot be decoded are counted, not answered, and change nothing") {
   Floor floor;
   floor.register_both();
   const Epoch epoch = floor.node.coordinator().epoch();
-  SECTION("a proposal of another sender") {
+  SECTION("a proposal from another sender") {
     auto proposal = floor.proposal();
     proposal.header().sender(2);
     floor.send(topics::kProposal, proposal);
   }
-  SECTION("a registration of another sender") {
+  SECTION("a registration from another sender") {
     auto registration = registration_of(floor.a, epoch, 2);
     registration.header().sender(2);
     floor.send(topics::kRegistration, registration);
   }
-  auto robot_report = make_report(continued(floor.a, 10, 1001, {0, 3}), 1001);  // would contradict the ledger
-  SECTION("a fact of another sender") {
+  auto robot_report =
+      make_report(continued(floor.a, 10, 1001, {0, 3}), 1001);  // this fact contradicts the ledger
+  SECTION("a fact from another sender") {
     robot_report.header().sender(2);
     floor.send(topics::kFeedback, robot_report);
   }
@@ -118,7 +119,7 @@ TEST_CASE("messages that cannot be decoded are counted, get no answer and change
     other.epoch(Epoch{1} << 61);
     floor.send(topics::kCoordinator, other);
   }
-  SECTION("a heartbeat with an unknown reason of its role") {
+  SECTION("a heartbeat with an unknown role reason") {
     other.epoch(epoch + 1);
     other.role_reason(static_cast<msg::RoleReason>(99));
     floor.send(topics::kCoordinator, other);
@@ -158,7 +159,7 @@ TEST_CASE("malformed candidates and registrations are answered and counted") {
   CHECK(drops_of(floor.node).total() == 1);
 }
 
-TEST_CASE("an agent that registers nobody receives all orders, and nothing counts as malformed") {
+TEST_CASE("an empty registration is answered with all orders and does not count as malformed") {
   Floor floor;
   auto registration = registration_of(floor.a, floor.node.coordinator().epoch());
   registration.knows_orders(true);
@@ -179,7 +180,7 @@ TEST_CASE("an agent that registers nobody receives all orders, and nothing count
     floor.send(topics::kRegistration, asking);
     floor.run_for(std::chrono::milliseconds(60));
   }
-  // It announces them once a second anyway.
+  // The coordinator announces the orders once per second anyway.
   REQUIRE(floor.network.now() - begin < std::chrono::seconds(3));
   CHECK(told >= 8);
   CHECK(floor.verdicts.size() == verdicts);
@@ -187,7 +188,9 @@ TEST_CASE("an agent that registers nobody receives all orders, and nothing count
   CHECK(floor.node.coordinator().is_granting());
 }
 
-TEST_CASE("an agent that obeys an implausible epoch is counted and does not change the coordinator's") {
+TEST_CASE(
+    "a robot's report of an implausible obeyed epoch is counted and does not change the coordinator's "
+    "epoch") {
   Floor floor;
   floor.register_both();
   const Epoch epoch = floor.node.coordinator().epoch();
@@ -209,7 +212,7 @@ struct Attested : Floor {
   }
 };
 
-TEST_CASE("an operator attests that a silent robot is absent, and the coordinator says so and grants") {
+TEST_CASE("when an operator attests that a silent robot is absent, the coordinator says so and grants") {
   Attested floor;
   floor.attest(1);
   CHECK(floor.node.coordinator().is_granting());
@@ -219,24 +222,24 @@ TEST_CASE("an operator attests that a silent robot is absent, and the coordinato
 }
 
 TEST_CASE(
-    "an attestation is ignored if the robot was just heard or is not missing, or if it is not from an "
+    "an attestation is ignored if the robot was just heard or is not missing, or if the sender is not an "
     "operator") {
   Attested floor;
-  SECTION("it was heard") {
+  SECTION("the robot was just heard") {
     floor.send(topics::kFeedback, make_report(floor.a, 1000));
     floor.attest(1);
     CHECK(floor.events.count("robot 1 reports that it is on the floor") == 1);
   }
-  SECTION("another robot has registered") { floor.attest(2); }
-  SECTION("no such robot") { floor.attest(77); }
-  SECTION("the sender is no operator") {
+  SECTION("the robot has registered") { floor.attest(2); }
+  SECTION("the robot is not on the roster") { floor.attest(77); }
+  SECTION("the sender is not an operator") {
     floor.attest(1, Sender::kVision);
     CHECK(drops_of(floor.bus).total(DropReason::kForgedSender) == 1);
   }
   CHECK_FALSE(floor.node.coordinator().is_granting());
 }
 
-TEST_CASE("a coordinator reports its role, each registration, and that it grants") {
+TEST_CASE("a coordinator reports its role, each registration, and when it starts to grant") {
   Floor floor;
   const LogEvents events(floor.node);
   CHECK(events.count("begins epoch " + std::to_string(floor.node.coordinator().epoch()) + ": started") == 1);
@@ -251,7 +254,7 @@ TEST_CASE("a coordinator reports its role, each registration, and that it grants
   CHECK(events.all().size() == 4);
 }
 
-TEST_CASE("a coordinator names the robots whose registrations it awaits, once per second") {
+TEST_CASE("a coordinator names the robots whose registrations it awaits once per second") {
   Floor floor;
   const LogEvents events(floor.node);
   floor.send(topics::kRegistration, registration_of(floor.a, floor.node.coordinator().epoch()));
@@ -260,7 +263,7 @@ TEST_CASE("a coordinator names the robots whose registrations it awaits, once pe
   CHECK(events.count("waits for the registrations of robots 2") == 3);
 }
 
-TEST_CASE("a coordinator reports robots that are quarantined and released") {
+TEST_CASE("a coordinator reports when robots are quarantined and released") {
   Floor floor;
   floor.register_both();
   const LogEvents events(floor.node);
@@ -285,7 +288,7 @@ TEST_CASE("a coordinator reports why it stands by") {
   CHECK(events.count("stands by: coordinator 3 has the higher epoch " + std::to_string(other.epoch())) == 1);
 }
 
-TEST_CASE("the place of a displaced robot is published with every world state") {
+TEST_CASE("a displaced robot's position is published after every world state") {
   Floor floor;
   floor.register_both();
   msg::WorldState world;
@@ -314,7 +317,7 @@ TEST_CASE("the place of a displaced robot is published with every world state") 
   CHECK(drops_of(floor.bus).total(DropReason::kForgedSender) == 1);
 }
 
-TEST_CASE("a world from the future is counted, displaces nobody and does not count as watching") {
+TEST_CASE("a world state from the future is counted, displaces no robot and does not count as watching") {
   Floor floor;
   floor.register_both();
   msg::WorldState world;
@@ -322,7 +325,8 @@ TEST_CASE("a world from the future is counted, displaces nobody and does not cou
   auto& robot = world.robots().emplace_back();
   robot.robot(1);
   robot.observed_x_m(0.3);
-  // It takes 0.2 to 0.6 ms to arrive. Two clocks may differ by 1 ms, and vision's may be ahead by 0.1 s.
+  // The message takes 0.2 to 0.6 ms to arrive. Two clocks may differ by 1 ms, and vision's may be ahead by
+  // 0.1 s.
   const auto see_ahead = [&](std::chrono::microseconds ahead) {
     world.valid_at_ns(to_ns(floor.network.now() + ahead));
     robot.observed_at_ns(to_ns(floor.network.now()));
@@ -338,7 +342,7 @@ TEST_CASE("a world from the future is counted, displaces nobody and does not cou
   CHECK(drops_of(floor.node).total() == 1);
 }
 
-TEST_CASE("a malformed observation is counted, and its world does not count as watching") {
+TEST_CASE("a malformed observation is counted, and its world state does not count as watching") {
   Floor floor;
   floor.register_both();
   msg::WorldState world;
@@ -358,7 +362,7 @@ TEST_CASE("a malformed observation is counted, and its world does not count as w
   CHECK(floor.state.watched_until_ns() == world.robots()[0].observed_at_ns());
 }
 
-TEST_CASE("a coordinator that stands by answers nothing") {
+TEST_CASE("a coordinator that stands by answers no messages") {
   Floor floor(true);
   floor.send(topics::kRegistration, registration_of(floor.a, 0));
   floor.send(topics::kProposal, floor.proposal());
@@ -367,7 +371,8 @@ TEST_CASE("a coordinator that stands by answers nothing") {
   CHECK_FALSE(floor.node.coordinator().is_active());
 }
 
-TEST_CASE("a coordinator that has yielded publishes its state at a standby's rate, whatever it knew") {
+TEST_CASE(
+    "a coordinator that has yielded publishes its state at a standby's rate, even if robots were silent") {
   Floor floor;
   floor.register_both();
   msg::WorldState world;
@@ -403,7 +408,7 @@ TEST_CASE("a coordinator that has yielded publishes its state at a standby's rat
   CHECK(published <= 1 + to_seconds(floor.network.now() - begin) / 0.2);
 }
 
-TEST_CASE("a coordinator whose clock was set back works as before") {
+TEST_CASE("a coordinator keeps working after its clock is set back") {
   Floor floor;
   floor.register_both();
   floor.send(topics::kFeedback, make_report(floor.a, 1000));
@@ -437,7 +442,7 @@ TEST_CASE("a coordinator announces all orders as soon as its epoch begins") {
   REQUIRE(begun_at);
   REQUIRE(told_at);
   CHECK(*told_at == *begun_at);
-  // It repeats them until all agents have registered, for those that have not heard them.
+  // The coordinator repeats the orders until all agents have registered, in case some have missed them.
   whole_memories = 0;
   for (int i = 0; i < 20; ++i) floor.run();
   CHECK(whole_memories >= 2);
@@ -452,7 +457,7 @@ msg::Order hold_of(RobotId robot, OrderNumber number) {
   return hold;
 }
 
-TEST_CASE("a hold stops its robot at once, and is confirmed when the robot's agent reports it") {
+TEST_CASE("a hold stops its robot immediately and is confirmed when the robot's agent reports it") {
   Floor floor;
   floor.register_both();
   std::vector<msg::OrderAnswer> answers;
@@ -478,7 +483,7 @@ TEST_CASE("a hold stops its robot at once, and is confirmed when the robot's age
 }
 
 TEST_CASE(
-    "a drive order is answered once an agent or another coordinator remembers it, and announced until then") {
+    "a drive order is announced until an agent or another coordinator remembers it, and then answered") {
   Floor floor;
   floor.register_both();
   std::vector<msg::OrderAnswer> answers;
@@ -507,7 +512,7 @@ TEST_CASE(
     memory.header().sender(process);
     floor.send(by_agent ? topics::kAgentOrders : topics::kOrderMemory, memory);
   };
-  remember(7);  // not on the roster
+  remember(7);  // process 7 is not on the roster
   CHECK(answers.empty());
   remember(by_agent ? 2 : static_cast<std::uint32_t>(Sender::kCoordinator) + 1);
   REQUIRE(answers.size() == 1);
@@ -515,7 +520,7 @@ TEST_CASE(
   CHECK(answers[0].result() == msg::OrderResult::RESULT_REMEMBERED);
 }
 
-TEST_CASE("an order that changes nothing, or is refused, is answered at once") {
+TEST_CASE("an order that changes nothing or is refused is answered immediately") {
   Floor floor;
   floor.register_both();
   std::vector<msg::OrderAnswer> answers;
@@ -524,7 +529,7 @@ TEST_CASE("an order that changes nothing, or is refused, is answered at once") {
   floor.send(topics::kOrder, encode(Order{msg::OrderKind::ORDER_CANCEL, 99, 1'000'001, 1000}));
   REQUIRE(answers.size() == 1);
   CHECK(answers[0].result() == msg::OrderResult::RESULT_UNKNOWN_ROBOT);
-  // The operator's later resume already lifts everything that this one would lift.
+  // The operator's later resume already lifts everything that the client's resume would lift.
   floor.send(topics::kOrder, encode(Order{msg::OrderKind::ORDER_RESUME, kAllRobots,
                                           static_cast<ClientId>(Sender::kOperator), 2000}));
   answers.clear();

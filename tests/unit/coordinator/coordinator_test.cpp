@@ -4,7 +4,7 @@
 
 namespace sidestep::coordinator_test {
 
-TEST_CASE("nothing is granted until every robot of the roster has registered") {
+TEST_CASE("nothing is granted until every robot on the roster has registered") {
   Floor floor;
   const auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
   CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_NOT_ALL_REGISTERED);
@@ -15,7 +15,7 @@ TEST_CASE("nothing is granted until every robot of the roster has registered") {
   CHECK(floor.ask(proposal).granted_version == 10);
 }
 
-TEST_CASE("the first clear candidate is granted, and the verdict gives the reasons for the others") {
+TEST_CASE("the first clear candidate is granted, and the verdict gives reasons for the others") {
   Floor floor;
   floor.register_both();
   const auto verdict =
@@ -40,7 +40,7 @@ TEST_CASE("a repeated proposal gets the same verdict again") {
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
 }
 
-TEST_CASE("versions must be proposed in increasing order") {
+TEST_CASE("versions must be proposed in increasing order of their numbers") {
   Floor floor;
   floor.register_both();
   CHECK(floor.ask(proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch)).granted_version == 10);
@@ -48,17 +48,18 @@ TEST_CASE("versions must be proposed in increasing order") {
         msg::Reason::REASON_OLD_VERSION);
 }
 
-TEST_CASE("a denied version is not granted later, when its verdict is forgotten") {
+TEST_CASE("a denied version is not granted later, even after its verdict has been forgotten") {
   Floor floor;
   floor.register_both();
-  // The first one would drive through the other robot.
+  // This version would drive through the other robot.
   const auto denied = proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6)}, kEpoch);
   REQUIRE(floor.ask(denied).reasons[0] == msg::Reason::REASON_CONFLICT);
-  for (VersionNumber number = 1; number <= 9; ++number)  // older ones, which are answered, but not remembered
+  for (VersionNumber number = 1; number <= 9;
+       ++number)  // older versions, which are answered but not remembered
     CHECK(floor.ask(proposal_of({continued(floor.a, number, 1, {0, 3})}, kEpoch)).granted_version == 0);
   for (VersionNumber number = 11; number <= 20; ++number)
     CHECK(floor.ask(proposal_of({continued(floor.a, number, 1, {3, 0}, 0.6)}, kEpoch)).granted_version == 0);
-  // The other robot is lifted: the path is free.
+  // The other robot is lifted, so the path is free.
   auto lifted = make_report(rest_version(2, {1, 0}), 2);
   lifted.is_lifted(true);
   floor.receive(lifted);
@@ -92,7 +93,7 @@ TEST_CASE("a new agent's registration cannot add versions that were never grante
   CHECK(floor.coordinator.drops().total(DropReason::kMalformedRegistration) == 1);
 }
 
-TEST_CASE("a standby answers no messages, and begins its own epoch with an empty ledger") {
+TEST_CASE("a standby answers no messages and begins its own epoch with an empty ledger") {
   Floor floor;
   floor.register_both();
   floor.coordinator.begin_epoch(0);
@@ -111,7 +112,7 @@ TEST_CASE("a standby answers no messages, and begins its own epoch with an empty
   CHECK(floor.ask(proposal).reasons[0] == msg::Reason::REASON_WRONG_EPOCH);
 }
 
-TEST_CASE("every registration is answered, and the answer echoes its time stamp") {
+TEST_CASE("every registration is answered, and the answer echoes its timestamp") {
   Floor floor;
   const auto answer = [&](msg::Registration registration) {
     registration.header().stamp_ns(4711);
@@ -139,7 +140,7 @@ TEST_CASE("every registration is answered, and the answer echoes its time stamp"
   CHECK(missing(floor.coordinator) == std::vector<RobotId>{2});
 }
 
-TEST_CASE("a verdict echoes the time stamp of its proposal, even if the proposal is a repetition") {
+TEST_CASE("a verdict echoes the timestamp of its proposal, even if the proposal is a repetition") {
   Floor floor;
   floor.register_both();
   auto proposal = proposal_of({continued(floor.a, 10, 1, {0, 3})}, kEpoch);
@@ -162,7 +163,7 @@ TEST_CASE("a registration that lists a version twice is refused") {
   CHECK(floor.coordinator.drops().total(DropReason::kMalformedRegistration) == 1);
 }
 
-TEST_CASE("a fact from a robot removes the versions that it has left") {
+TEST_CASE("a fact from a robot removes the versions that the robot has left") {
   Floor floor;
   floor.register_both();
   const Version p = continued(floor.a, 10, 1, {0, 3});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Candidates that do not exist, and rest versions that are none.
+// Candidates that do not exist, and first versions of absent robots that are not rest versions.
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/coordinator_fixture.hpp"
 
@@ -8,7 +8,7 @@ namespace sidestep::denied_candidates_test {
 using coordinator_test::Floor;
 using coordinator_test::kEpoch;
 
-TEST_CASE("a verdict judges as many candidates as the proposal has") {
+TEST_CASE("a verdict evaluates only as many candidates as the proposal has") {
   Floor floor;
   floor.register_both();
   const auto verdict = floor.ask(proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6)}, kEpoch));
@@ -20,7 +20,7 @@ TEST_CASE("a verdict judges as many candidates as the proposal has") {
   }
 }
 
-TEST_CASE("a robot that is not on the floor is granted a rest version on base 0 only") {
+TEST_CASE("a robot that is off the floor is granted only a rest version on base 0") {
   Ledger ledger(floor_for_tests(), {1});
   ledger.register_robot(1, {});
   Version on_other_base = rest_version(1, {0, 0}, 5);

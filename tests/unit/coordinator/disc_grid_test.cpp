@@ -8,7 +8,7 @@
 
 namespace sidestep::disc_grid_test {
 
-TEST_CASE("a grid finds exactly the discs that touch a circle while discs are moved, added and removed") {
+TEST_CASE("while discs are moved, added and removed, a grid finds exactly the discs that touch a circle") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   CAPTURE(seed);
   Rng rng(seed);

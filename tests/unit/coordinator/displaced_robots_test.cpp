@@ -23,7 +23,7 @@ struct One {
 };
 
 TEST_CASE(
-    "a robot is displaced if it is off by more than half the margin plus vision's error and its inflation") {
+    "a robot is displaced if it is off by more than half the margin plus vision's error plus its inflation") {
   One one;
   one.see({0.0169, 0}, 1);
   CHECK_FALSE(one.displaced.contains(1));
@@ -46,7 +46,7 @@ TEST_CASE(
   CHECK(inflated.displaced.contains(1));
 }
 
-TEST_CASE("a displaced robot is back after three observations in a row that agree with the ledger") {
+TEST_CASE("a displaced robot is back after three consecutive observations that agree with the ledger") {
   One one;
   one.see({1, 0}, 1);
   one.see({0, 0}, 1.1);
@@ -56,13 +56,13 @@ TEST_CASE("a displaced robot is back after three observations in a row that agre
   one.see({0, 0}, 1.5);
   REQUIRE(one.displaced.contains(1));
   CHECK(one.displaced.last_observation(1)->observed_at == at_s(1.5));
-  one.see({0, 0}, 1.5);  // the same observation again
+  one.see({0, 0}, 1.5);  // a repeated observation, which does not count
   CHECK(one.displaced.contains(1));
   one.see({0, 0}, 1.6);
   CHECK_FALSE(one.displaced.contains(1));
 }
 
-TEST_CASE("a robot that rests is displaced if the mean of its observations is half the margin away") {
+TEST_CASE("a resting robot is displaced if the mean of its observations is half the margin away") {
   const std::uint64_t seed = 5;
   CAPTURE(seed);
   Rng rng(seed);
@@ -77,16 +77,16 @@ TEST_CASE("a robot that rests is displaced if the mean of its observations is ha
   CHECK_FALSE(one.displaced.contains(1));
   see_often(0.009, kEnough);
   CHECK(one.displaced.contains(1));
-  // It stays displaced, although each single observation is within the error of vision.
+  // The robot stays displaced, although each single observation is within vision's error.
   for (int i = 0; i < 100; ++i) {
     see_often(0.009, 1);
     REQUIRE(one.displaced.contains(1));
   }
-  SECTION("until it is back") {
+  SECTION("until the robot is back") {
     see_often(0.002, kEnough + DisplacedRobots::kObservationsUntilBack);
     CHECK_FALSE(one.displaced.contains(1));
   }
-  SECTION("until it executes a stop of its own where it is") {
+  SECTION("until the robot executes its own stop there") {
     Version stop = rest_version(1, {0.009, 0}, 1000);
     stop.trajectory = Trajectory::resting(at_s(now), {0.009, 0});
     REQUIRE(one.ledger.on_executing(stop, at_s(now), true) == ReportOutcome::kApplied);
@@ -95,7 +95,7 @@ TEST_CASE("a robot that rests is displaced if the mean of its observations is ha
   }
 }
 
-TEST_CASE("the mean of observations is not used for a robot that has moved in the meantime") {
+TEST_CASE("the mean of observations is not used while a robot moves or has just stopped") {
   One one;
   const Version p = continued(one.a, 10, 1, {3, 0}, 0.3);
   REQUIRE(one.ledger.grant(p).is_granted());
@@ -113,7 +113,9 @@ TEST_CASE("the mean of observations is not used for a robot that has moved in th
   CHECK(one.displaced.contains(1));
 }
 
-TEST_CASE("the velocity of a robot is its mean over the last 15 cm, or 1.5 cm if it has not moved farther") {
+TEST_CASE(
+    "a robot's velocity is its mean over the last 15 cm, or over at least 1.5 cm if it has not moved "
+    "farther") {
   One one;
   const auto velocity = [&] { return one.displaced.last_observation(1)->velocity_mps; };
   for (int i = 0; i <= 2; ++i) one.see({0.005 * i, 0}, 1 + 0.02 * i);
@@ -126,17 +128,17 @@ TEST_CASE("the velocity of a robot is its mean over the last 15 cm, or 1.5 cm if
   CHECK_FALSE(one.displaced.last_observation(2));
 }
 
-TEST_CASE("an observation is compared with what the robot executed then, however late it arrives") {
+TEST_CASE("an observation is compared with what the robot executed at its time, however late it arrives") {
   One one;
   const Version p = continued(one.a, 10, 1, {3, 0}, 0.3);
   REQUIRE(one.ledger.grant(p).is_granted());
   const Vec2 place_m = p.trajectory.state_at(at_s(1.2)).position_m;
-  SECTION("while both versions are possible") {
+  SECTION("both versions are still possible") {
     one.see(place_m, 1.2);
     one.see({0, 0}, 1.21);
     CHECK_FALSE(one.displaced.contains(1));
   }
-  SECTION("when the robot has left the first one for certain") {
+  SECTION("the robot has certainly left the first version") {
     REQUIRE(one.ledger.on_executing(p, at_s(1.25), false) == ReportOutcome::kApplied);
     one.see({0, 0}, 1.24);
     CHECK_FALSE(one.displaced.contains(1));
@@ -145,8 +147,8 @@ TEST_CASE("an observation is compared with what the robot executed then, however
   }
 }
 
-//   version a at x = 0, version p begins elsewhere, as an own stop does
-TEST_CASE("after a robot has left a version, it counts for as long as two clocks may differ") {
+// Version a rests at x = 0, the own stop at x = 0.5.
+TEST_CASE("a version that a robot has left still counts for as long as two clocks may differ") {
   const Duration max_difference = GENERATE(Duration{1'000'000}, Duration{4'000'000}, Duration{100'000'000});
   CAPTURE(to_seconds(max_difference));
   const Duration late = max_difference * GENERATE(1, 2, 3, 4, 5) / 4;
@@ -173,7 +175,7 @@ TEST_CASE("an observation older than all versions that the ledger remembers is n
     return one.displaced.observe({1, at_s(at), {0, 0}, Vec2(0, 0), 0}, restarted);
   };
   CHECK_FALSE(is_compared(2));
-  CHECK_FALSE(is_compared(2));  // the same again
+  CHECK_FALSE(is_compared(2));  // a repeated observation
   CHECK(is_compared(3.1));
   CHECK(is_compared(3.1));
 }
@@ -181,13 +183,13 @@ TEST_CASE("an observation older than all versions that the ledger remembers is n
 TEST_CASE("an absent robot that is seen on the floor is displaced") {
   One one;
   one.ledger.on_lifted(1, at_s(1));
-  one.see({0, 0}, 0.99);  // captured before
+  one.see({0, 0}, 0.99);  // captured before the lifting
   CHECK_FALSE(one.displaced.contains(1));
   one.see({0, 0}, 1.1);
   CHECK(one.displaced.contains(1));
 }
 
-TEST_CASE("the distance from a robot's versions is the smallest over all that it may execute") {
+TEST_CASE("the distance from a robot's versions is the smallest over all versions that it may execute") {
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Rng rng(seed);

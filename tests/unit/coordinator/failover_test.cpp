@@ -27,7 +27,7 @@ msg::CoordinatorState heartbeat(Epoch epoch, CoordinatorNumber number = 0, Incar
   return state;
 }
 
-/// Decodes a heartbeat as CoordinatorNode does; false if it is refused.
+/// Decodes a heartbeat as CoordinatorNode does. Returns false if the heartbeat is refused.
 bool receive(Failover& failover, const msg::CoordinatorState& message, Time now) {
   const auto heartbeat = decode(message, now);
   if (heartbeat) failover.on_heartbeat(*heartbeat, now);
@@ -40,13 +40,13 @@ void update(Failover& failover, Time now) {
   failover.update(now);
 }
 
-/// A standby whose update() is called every 5 ms, as in its process, and that hears robots.
+/// A standby that hears robots. Its update() is called every 5 ms, as in its process.
 struct Standby {
   Failover failover{{1, 99}, true, kBegin};
   double now_ms = 0;
   int refused = 0;
 
-  /// Runs until a time, with a heartbeat of the epoch `other` every 20 ms unless that is 0.
+  /// Runs until this time. Every 20 ms a heartbeat of the epoch `other` arrives, unless `other` is 0.
   void run_until(double ms, Epoch other = 0) {
     for (; now_ms <= ms; now_ms += 5) {
       if (other != 0 && static_cast<int>(now_ms) % 20 == 0)
@@ -54,7 +54,7 @@ struct Standby {
       update(failover, after_ms(now_ms));
     }
   }
-  /// Runs until it takes over, and returns the time of the takeover in ms.
+  /// Runs until the standby takes over. Returns the time of the takeover in ms.
   double run_until_takeover_ms() {
     const double begin = now_ms;
     while (!failover.is_active() && now_ms < begin + 100'000) run_until(now_ms);
@@ -64,7 +64,8 @@ struct Standby {
 
 constexpr Epoch kEpoch = 1'000'000'000'000;
 
-TEST_CASE("an active coordinator begins an epoch immediately, a standby waits a second for others") {
+TEST_CASE(
+    "an active coordinator begins an epoch immediately, but a standby first waits a second for others") {
   Failover active({0, 5}, false, kBegin);
   CHECK(active.is_active());
   CHECK(active.epoch() >= static_cast<Epoch>(to_ns(kBegin)));
@@ -75,7 +76,7 @@ TEST_CASE("an active coordinator begins an epoch immediately, a standby waits a 
   CHECK(standby.failover.epoch() >= static_cast<Epoch>(to_ns(kBegin)));
 }
 
-TEST_CASE("a standby takes over within 170 ms of the last heartbeat, with a higher epoch") {
+TEST_CASE("a standby takes over with a higher epoch within 170 ms of the last heartbeat") {
   Standby standby;
   const Epoch implausible = kEpoch + 5'000'000'000'000;  // more than an hour ahead of the clock
   standby.run_until(300, implausible);
@@ -110,7 +111,7 @@ TEST_CASE("a coordinator knows the reason for its role") {
 
   Standby standby;
   CHECK(reason_of(standby.failover) == ROLE_STARTED);
-  SECTION("a standby hears no coordinator after its start") {
+  SECTION("a standby has heard no coordinator since its start") {
     standby.run_until_takeover_ms();
     CHECK(reason_of(standby.failover) == ROLE_NO_COORDINATOR);
     CHECK(standby.failover.cause().silence >= std::chrono::milliseconds(1200));
@@ -124,7 +125,7 @@ TEST_CASE("a coordinator knows the reason for its role") {
     CHECK(standby.failover.cause().silence <= std::chrono::milliseconds(170));
     CHECK_THAT(describe(standby.failover.cause()), ContainsSubstring("no heartbeat of coordinator 0 for 1"));
   }
-  SECTION("a robot or an agent knows a higher epoch than one that does not grant yet") {
+  SECTION("a robot or an agent knows a higher epoch before the coordinator grants") {
     const auto holder = GENERATE(EpochHolder::kRobot, EpochHolder::kAgent);
     const Epoch higher = active.epoch() + 1000;
     active.on_obeyed_epoch(higher, false, kBegin, 7, holder);
@@ -133,7 +134,8 @@ TEST_CASE("a coordinator knows the reason for its role") {
     CHECK(active.cause().peer == 7);
     CHECK(active.cause().learned == higher);
   }
-  SECTION("a robot knows a higher epoch than one that grants, which yields and returns") {
+  SECTION(
+      "a robot knows a higher epoch while the coordinator grants, so the coordinator yields and returns") {
     active.on_obeyed_epoch(active.epoch() + 1000, true, kBegin, 7, EpochHolder::kRobot);
     REQUIRE_FALSE(active.is_active());
     CHECK(reason_of(active) == ROLE_EPOCH_OF_ROBOT);
@@ -148,7 +150,7 @@ TEST_CASE("a coordinator knows the reason for its role") {
     CHECK(reason_of(active) == ROLE_EPOCH_OF_COORDINATOR);
     CHECK(active.cause().peer == 3);
   }
-  SECTION("a process with the same number has begun the same epoch") {
+  SECTION("a process with the same coordinator number has begun the same epoch") {
     Failover later({0, 6}, false, kBegin);
     const Epoch shared = active.epoch();
     receive(active, heartbeat(shared, 0, 6), after_ms(1));
@@ -168,7 +170,7 @@ TEST_CASE("a standby waits longer if heartbeats are irregular") {
   }
   REQUIRE_FALSE(standby.failover.is_active());
   CHECK(standby.failover.takeover_timeout() >= std::chrono::milliseconds(200));
-  // With regular heartbeats the timeout recovers.
+  // With regular heartbeats, the timeout recovers.
   standby.run_until(standby.now_ms + 1500, kEpoch);
   CHECK(standby.failover.takeover_timeout() < std::chrono::milliseconds(160));
 }
@@ -183,10 +185,10 @@ TEST_CASE("a standby that was paused processes queued heartbeats before it may t
   CHECK_FALSE(standby.failover.is_active());
 }
 
-TEST_CASE("a coordinator stands by for a higher epoch, and takes over again when its heartbeats stop") {
+TEST_CASE("a coordinator yields to a higher epoch and takes over again when the heartbeats stop") {
   Failover active({0, 5}, false, kBegin);
   const Epoch own = active.epoch();
-  receive(active, heartbeat(own, 0, 5), after_ms(1));  // itself
+  receive(active, heartbeat(own, 0, 5), after_ms(1));  // the coordinator's own heartbeat
   CHECK(active.epoch() == own);
   receive(active, heartbeat(own - 8, 1), after_ms(1));
   CHECK(active.epoch() == own);
@@ -197,7 +199,7 @@ TEST_CASE("a coordinator stands by for a higher epoch, and takes over again when
 }
 
 TEST_CASE(
-    "a coordinator begins above a higher epoch that agents obey, or yields to it if it grants already") {
+    "a coordinator that learns of a higher obeyed epoch begins above it, or yields if it already grants") {
   Failover active({0, 5}, false, kBegin);
   const Epoch own = active.epoch();
   active.on_obeyed_epoch(own - 1, false, kBegin, 7, EpochHolder::kRobot);
@@ -209,7 +211,8 @@ TEST_CASE(
   CHECK_FALSE(active.is_active());
   const Duration first = active.takeover_timeout();
   Duration last = first;
-  // It yields for longer each time, up to a limit, while no heartbeats of the other coordinator arrive.
+  // While no heartbeats of the other coordinator arrive, the coordinator yields for longer each time, up to a
+  // limit.
   Time now = kBegin;
   for (int i = 0; i < 5; ++i) {
     const Time yielded = now;
@@ -228,7 +231,7 @@ TEST_CASE(
   CHECK(active.takeover_timeout() < std::chrono::milliseconds(300));
 }
 
-TEST_CASE("a coordinator keeps working while another process reports higher and higher epochs") {
+TEST_CASE("a coordinator keeps working while another process reports ever higher epochs") {
   const bool is_granting = GENERATE(true, false);
   const Duration period = std::chrono::milliseconds(GENERATE(5, 100, 3000));
   CAPTURE(is_granting, to_seconds(period));
@@ -253,7 +256,7 @@ TEST_CASE("a coordinator keeps working while another process reports higher and 
   CHECK((active.too_frequent() > 0) == (period < std::chrono::seconds(5)));
 }
 
-TEST_CASE("coordinators never share an epoch, except two instances with one number, which then give it up") {
+TEST_CASE("two coordinators share an epoch only if they have the same number, and then both give it up") {
   Rng rng(3);
   std::set<Epoch> epochs;
   for (int round = 0; round < 200; ++round) {
@@ -275,7 +278,7 @@ TEST_CASE("coordinators never share an epoch, except two instances with one numb
   CHECK(later.epoch() > shared);
 }
 
-TEST_CASE("epochs far ahead are ignored, and plausible hostile ones cost one change of epoch each") {
+TEST_CASE("epochs far ahead are ignored, and plausible hostile epochs cost one change of epoch each") {
   Failover active({0, 5}, false, kBegin);
   const Epoch own = active.epoch();
   for (const Epoch hostile : {Epoch{1} << 61, (Epoch{1} << 62) - 1, Epoch{1} << 62, ~Epoch{0},
@@ -293,7 +296,7 @@ TEST_CASE("epochs far ahead are ignored, and plausible hostile ones cost one cha
   while (!active.is_active() && now < kBegin + std::chrono::seconds(5))
     update(active, now += std::chrono::milliseconds(5));
   CHECK(active.epoch() > just_plausible);
-  // By then the new epoch is plausible to the others.
+  // By then, other processes find the new epoch plausible.
   CHECK(is_plausible(active.epoch(), now));
 }
 

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// Versions and messages for tests of the ledger and the coordinator. Times are in seconds; the floor is
+/// Versions and messages for tests of the ledger and the coordinator. Times are in seconds. The floor is
 /// empty.
 inline Time at_s(double seconds) { return from_seconds(seconds) + Time{}; }
 

@@ -8,7 +8,7 @@
 
 namespace sidestep::coordinator_test {
 
-TEST_CASE("hostile proposals get a refusal or no answer, and change nothing") {
+TEST_CASE("hostile proposals are refused or not answered, and change nothing") {
   Floor floor;
   floor.register_both();
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();

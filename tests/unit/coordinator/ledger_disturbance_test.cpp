@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// External events in the ledger: robots that lost their reference, epochs that begin with conflicts, robots
-// that are lifted and placed.
+// External events in the ledger: robots lose their references, epochs begin with conflicts, robots are lifted
+// and placed.
 #include <algorithm>
 #include <map>
 
@@ -35,7 +35,7 @@ struct Two {
   }
 };
 
-/// Minimum distance between two trajectories' points from a time on: by sampling, and a ternary search around
+/// Minimum distance between two trajectories' points from `from` on: by sampling, and a ternary search around
 /// each local minimum of the samples.
 double min_distance_m(const Trajectory& a, const Trajectory& b, Time from) {
   const auto distance = [&](double t_s) {
@@ -74,7 +74,7 @@ double shortfall_m(const Ledger& ledger, RobotId i, RobotId j, double min_separa
   return worst;
 }
 
-TEST_CASE("the stop of a robot that lost its reference replaces all its versions without checks") {
+TEST_CASE("the own stop of a robot that lost its reference replaces all its versions without checks") {
   Two two({0, 0}, {1, 0});
   const Version p = continued(two.a, 10, 1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());
@@ -84,19 +84,19 @@ TEST_CASE("the stop of a robot that lost its reference replaces all its versions
   CHECK(two.ledger.versions(1)[0].number == 1000);
   REQUIRE(two.ledger.conflicts().size() == 1);
   CHECK(two.ledger.conflicts()[0] == Conflict{1, 2});
-  // The same fact again, then a late earlier one.
+  // The same fact arrives again, then an earlier one.
   CHECK(two.ledger.on_executing(stop, at_s(0.95), true) == ReportOutcome::kApplied);
   CHECK(two.ledger.on_executing(two.a, at_s(0.8), false) == ReportOutcome::kStale);
   CHECK(two.ledger.grant(continued(p, 11, 1.1, {3, 0})).reason == msg::Reason::REASON_BASE_UNKNOWN);
 }
 
-TEST_CASE("a stop off reference that is not newer than all versions is a contradiction") {
+TEST_CASE("an own stop that is not newer than all versions is a contradiction") {
   Two two({0, 0}, {1, 0});
   const Version p = continued(two.a, 10, 1, {0, 3});
   REQUIRE(two.ledger.grant(p).is_granted());
   CHECK(two.ledger.on_executing(off_reference(1, 5, 0.9, {0, 0.1}, {0, 0}), at_s(0.9), true) ==
         ReportOutcome::kContradiction);
-  CHECK(two.ledger.versions(1).size() == 3);  // and the robot is quarantined
+  CHECK(two.ledger.versions(1).size() == 3);  // the robot is quarantined, and its stop is kept in addition
 }
 
 TEST_CASE("other robots keep clear of a robot's inflation, which ends only where the robot rests") {
@@ -104,7 +104,8 @@ TEST_CASE("other robots keep clear of a robot's inflation, which ends only where
   const Version stop = off_reference(1, 1000, 0.5, {0, 0}, {0, 0.5}, 0.05);
   REQUIRE(two.ledger.on_executing(stop, at_s(0.5), true) == ReportOutcome::kApplied);
   CHECK(two.ledger.conflicts().empty());
-  // Robot 2 comes to rest near robot 1: clear of it without inflation, but not with 0.05 m of it.
+  // Robot 2 comes to rest near robot 1. It is clear of robot 1 without inflation, but not with an inflation
+  // of 0.05 m.
   Version near = continued(two.b, 20, 1, {-3, 0}, 0.3);
   const double rest_m = near.trajectory.rest_position_m().x();
   CAPTURE(rest_m);
@@ -137,14 +138,14 @@ TEST_CASE("robots in conflict may move apart but not closer together") {
   CHECK(two.ledger.grant(continued(two.a, 11, 1, {0.1, 2.9})).reason == msg::Reason::REASON_CONFLICT);
   const Version away = continued(two.a, 12, 1, {-3, 0}, 0.2);
   REQUIRE(two.ledger.grant(away).is_granted());
-  CHECK(two.ledger.conflicts().size() == 1);  // it may not have left yet
+  CHECK(two.ledger.conflicts().size() == 1);  // the robot may still execute its previous version
   REQUIRE(two.ledger.on_executing(away, at_s(1), false) == ReportOutcome::kApplied);
-  CHECK(two.ledger.conflicts().size() == 1);  // the version begins there
+  CHECK(two.ledger.conflicts().size() == 1);  // the robot has only begun to move away
   const Version on = continued(away, 13, 1.19, {-1, 0}, 0.2);
   REQUIRE(two.ledger.grant(on).is_granted());
   REQUIRE(two.ledger.on_executing(on, at_s(1.2), false) == ReportOutcome::kApplied);
   CHECK(two.ledger.conflicts().empty());
-  // Once apart they must keep their full separation: moving back as close as before is refused.
+  // Once apart, the robots must keep their full separation, so moving back as close as before is refused.
   const auto distance = [&](double seconds) {
     return (continued(on, 14, 3, {3, 0}, seconds).trajectory.rest_position_m() -
             two.b.trajectory.rest_position_m())
@@ -172,7 +173,7 @@ TEST_CASE("a robot pushed too close to an obstacle or off the field may move out
   CHECK(ledger.grant(continued(out, 12, 1, {0, 3})).is_granted());
 }
 
-TEST_CASE("lifting a robot removes its versions except those still to start") {
+TEST_CASE("lifting a robot removes its versions except those that are still to start") {
   Two two({0, 0}, {1, 0});
   const Version p = continued(two.a, 10, 1, {0, 3});
   REQUIRE(two.ledger.grant(p).is_granted());
@@ -195,12 +196,12 @@ TEST_CASE("lifting a robot removes its versions except those still to start") {
   two.ledger.on_lifted(1, at_s(1.9));  // the robot has not switched to it yet
   CHECK(two.ledger.versions(1).size() == 1);
   CHECK(two.ledger.on_executing(placed, at_s(2), false) == ReportOutcome::kApplied);
-  // Lifted again, it no longer executes that version.
+  // The robot is lifted again, so it no longer executes that version.
   two.ledger.on_lifted(1, at_s(2.5));
   CHECK(two.ledger.versions(1).empty());
 }
 
-TEST_CASE("a lifting does not outlive a restart of the robot, after which its clock may be behind") {
+TEST_CASE("a lifting ends when the robot restarts, even if its clock is then behind") {
   Two two({0, 0}, {1, 0});
   const Incarnation first = 100, second = 200;
   two.ledger.on_lifted(1, at_s(100), first);
@@ -212,13 +213,13 @@ TEST_CASE("a lifting does not outlive a restart of the robot, after which its cl
   stop.number = 14;
   CHECK(two.ledger.on_executing(stop, at_s(2.5), true, second) == ReportOutcome::kApplied);
   CHECK(two.ledger.versions(1).front().number == 14);
-  // Lifted again, by its new clock.
+  // The robot is lifted again, by its new clock.
   two.ledger.on_lifted(1, at_s(3), second);
   CHECK(two.ledger.versions(1).empty());
   CHECK(two.ledger.on_executing(stop, at_s(2.9), true, second) == ReportOutcome::kStale);
 }
 
-TEST_CASE("no grant brings two robots closer than external events have left them, in random histories") {
+TEST_CASE("in random histories, no grant brings two robots closer than external events have left them") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);

@@ -27,7 +27,7 @@ Ledger ledger_of(std::size_t robots, double half_side_m, Rng& rng) {
   return ledger;
 }
 
-TEST_CASE("the ledger's pages hold every version once, each within its page's bounding box") {
+TEST_CASE("each version is on one ledger page, within that page's bounding box") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -57,9 +57,9 @@ TEST_CASE("the ledger's pages hold every version once, each within its page's bo
   }
 }
 
-TEST_CASE("the robots of a page are close together on a crowded floor") {
+TEST_CASE("on a crowded floor, the robots of a page are close together") {
   Rng rng(4);
-  // At 0.7 m² per robot, a page covers a square of 4.7 m, or a rectangle of twice that length if it spans two
+  // At 0.7 m² per robot, a page covers a square of 4.7 m, or a rectangle twice as long if it spans two
   // strips.
   for (const msg::LedgerPage& page : ledger_pages(ledger_of(1000, 13.2, rng), 1)) {
     CHECK(page.max_x_m() - page.min_x_m() < 10);

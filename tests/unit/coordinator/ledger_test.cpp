@@ -23,7 +23,7 @@ struct Two {
   }
 };
 
-TEST_CASE("a clear candidate is granted, added, and removes nothing") {
+TEST_CASE("a clear candidate is granted and added, and nothing is removed") {
   Two two(1);
   const Version p = continued(two.a, 10, 1, {3, 0});
   CHECK(two.ledger.grant(p).is_granted());
@@ -32,7 +32,7 @@ TEST_CASE("a clear candidate is granted, added, and removes nothing") {
   CHECK(two.ledger.versions(1)[1].number == 10);
 }
 
-TEST_CASE("a candidate in conflict is refused and changes nothing, and the ruling names the other robot") {
+TEST_CASE("a conflicting candidate is refused and changes nothing, and the ruling names the other robot") {
   Two two(0.2);
   const Ruling ruling = two.ledger.grant(continued(two.a, 10, 1, {3, 0}, 0.2));
   CHECK(ruling.reason == msg::Reason::REASON_CONFLICT);
@@ -48,7 +48,7 @@ TEST_CASE("candidates are checked against all versions that a robot may execute,
   const Version towards = continued(two.a, 20, 1, {3, 0}, 0.4);
   CHECK(is_clear(towards.trajectory, away.trajectory, 0.19));
   CHECK(two.ledger.grant(towards).reason == msg::Reason::REASON_CONFLICT);
-  // Once it is known to execute the move, its old position is free.
+  // Once robot 2 is known to execute the move, its old position is free.
   REQUIRE(two.report(away, 1.01) == ReportOutcome::kApplied);
   CHECK(two.ledger.grant(towards).is_granted());
 }
@@ -76,14 +76,15 @@ TEST_CASE("a candidate must continue its base, obey the limits, come to rest and
   CHECK(two.ledger.versions(1).size() == 1);
 }
 
-TEST_CASE("a fact removes older versions, and newer ones that start at or before its time") {
+TEST_CASE("a fact removes older versions, and newer versions that start at or before its time") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}),
                 r = continued(p, 12, 3, {0, 3});
   for (const Version& v : {p, q, r}) REQUIRE(two.ledger.grant(v).is_granted());
   REQUIRE(two.report(two.a, 1 - 1e-9) == ReportOutcome::kApplied);
   CHECK(two.ledger.versions(1).size() == 4);
-  REQUIRE(two.report(two.a, 1.0) == ReportOutcome::kApplied);  // the robot did not switch to 10 at its start
+  REQUIRE(two.report(two.a, 1.0) ==
+          ReportOutcome::kApplied);  // the robot did not switch to version 10 at its start
   REQUIRE(two.ledger.versions(1).size() == 3);
   REQUIRE(two.report(q, 2.5) == ReportOutcome::kApplied);
   REQUIRE(two.ledger.versions(1).size() == 2);
@@ -125,7 +126,7 @@ TEST_CASE("a fact that is inconsistent with the ledger is a contradiction and re
   CHECK(two.ledger.is_quarantined(1));
 }
 
-TEST_CASE("a fact about a version older than all held ones is late, not a contradiction") {
+TEST_CASE("a fact about a version older than all held versions is late, not a contradiction") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 12, 1.1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());
@@ -135,7 +136,7 @@ TEST_CASE("a fact about a version older than all held ones is late, not a contra
   CHECK_FALSE(two.ledger.is_quarantined(1));
 }
 
-TEST_CASE("a quarantine ends after sixty facts in a row that agree with the ledger") {
+TEST_CASE("a quarantine ends after sixty consecutive facts that agree with the ledger") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());
@@ -157,7 +158,7 @@ TEST_CASE("a quarantine ends after sixty facts in a row that agree with the ledg
   CHECK(two.ledger.versions(1)[0].number == 10);
 }
 
-TEST_CASE("a quarantined robot that is pushed keeps its versions, and its own stop besides") {
+TEST_CASE("a quarantined robot that is pushed keeps its versions in addition to its own stop") {
   Two two(5);
   REQUIRE(two.report(continued(two.a, 999, 1, {3, 0}), 1.2) == ReportOutcome::kContradiction);
   Version stop = rest_version(1, {0.5, 0}, 5000);
@@ -183,7 +184,7 @@ TEST_CASE("without facts the ledger fills up and then grants nothing") {
   CHECK(two.ledger.versions(1).size() == VersionSet::kCapacity);
 }
 
-TEST_CASE("all versions of different robots stay clear through random grants, losses and facts") {
+TEST_CASE("versions of different robots stay clear of each other through random grants, losses and facts") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -211,7 +212,7 @@ TEST_CASE("all versions of different robots stay clear through random grants, lo
     grants += ruling.is_granted();
     conflicts += ruling.reason == msg::Reason::REASON_CONFLICT;
     if (rng.chance(0.5)) {
-      // The robot switches to one of its due versions, or keeps its current one.
+      // The robot switches to one of its due versions or keeps its current one.
       Version& current = executing[robot];
       for (const Version& v : ledger.versions(robot)) {
         const bool possible = v.base == current.number && v.trajectory.start() > current.trajectory.start() &&
@@ -221,7 +222,7 @@ TEST_CASE("all versions of different robots stay clear through random grants, lo
           break;
         }
       }
-      // A true fact: the robot did not switch to any other version that starts before now.
+      // The fact is true: the robot did not switch to any other version that starts before now.
       REQUIRE(ledger.on_executing(current, at_s(now), false) == ReportOutcome::kApplied);
     }
     if (number % 100 != 0) continue;

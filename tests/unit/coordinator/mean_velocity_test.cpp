@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// In which direction an observed robot moves, for all who keep clear of it.
+// The direction in which an observed robot moves, which other robots use to keep clear of it.
 #include <vector>
 
 #include "coordinator/displaced_robots.hpp"
@@ -13,8 +13,9 @@ struct Seen {
   Vec2 position_m;
 };
 
-/// The velocity since the newest observation that is at least 15 cm away, or else since the one that is
-/// farthest away, at least 1.5 cm; of those of the last 0.7 s. By all observations, without a buffer.
+/// The mean velocity since the newest observation that is at least 15 cm away. If there is none, since the
+/// farthest observation that is at least 1.5 cm away. Uses all observations of the last 0.7 s, without a
+/// buffer.
 Vec2 slow_velocity_mps(const std::vector<Seen>& seen) {
   const Seen& last = seen.back();
   const Seen* from = nullptr;
@@ -28,7 +29,7 @@ Vec2 slow_velocity_mps(const std::vector<Seen>& seen) {
   return (last.position_m - from->position_m) / to_seconds(last.at - from->at);
 }
 
-TEST_CASE("the velocity of an observed robot is the mean one over its last 15 cm, for any motion") {
+TEST_CASE("an observed robot's velocity is its mean over the last 15 cm, for any motion") {
   const std::uint64_t seed = GENERATE(range(1u, 9u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -58,7 +59,7 @@ TEST_CASE("the velocity of an observed robot is the mean one over its last 15 cm
   CHECK(moving > 100);
 }
 
-TEST_CASE("a robot that has moved by less than 1.5 cm has no direction") {
+TEST_CASE("a robot that has moved by less than 1.5 cm has no known direction") {
   const Version a = rest_version(1, {0, 0});
   Ledger ledger(floor_for_tests(), {1});
   ledger.register_robot(1, {&a, 1});

@@ -18,7 +18,7 @@ struct Floor {
     confirmations.add(order);
     return order;
   }
-  /// An agent's report, and a fact of its robot after it.
+  /// Delivers an agent's report, followed by a fact of its robot.
   void report(RobotId robot, bool is_held) {
     OrderReport report;
     report.robot = robot;
@@ -29,9 +29,9 @@ struct Floor {
   std::size_t confirmed() { return confirmations.take_confirmed(book).size(); }
 };
 
-TEST_CASE("a hold is confirmed once, when its robot's agent reports that the robot is held") {
+TEST_CASE("a hold is confirmed once, when the robot's agent reports that its robot is held") {
   Floor floor;
-  floor.report(3, true);  // by an earlier hold
+  floor.report(3, true);  // held by an earlier order
   floor.hold(3);
   CHECK(floor.confirmed() == 0);
   floor.report(4, true);
@@ -42,7 +42,7 @@ TEST_CASE("a hold is confirmed once, when its robot's agent reports that the rob
   CHECK(floor.confirmed() == 0);
 }
 
-TEST_CASE("a hold of all robots is confirmed when the agent of any of them reports that its robot is held") {
+TEST_CASE("a hold of all robots is confirmed when any robot's agent reports that its robot is held") {
   Floor floor;
   floor.hold(kAllRobots);
   floor.report(3, false);
@@ -51,7 +51,7 @@ TEST_CASE("a hold of all robots is confirmed when the agent of any of them repor
   CHECK(floor.confirmed() == 1);
 }
 
-TEST_CASE("a hold is not confirmed by an agent whose robot may obey another coordinator by then") {
+TEST_CASE("an agent's report does not confirm a hold while its robot may obey another coordinator") {
   Floor floor;
   floor.hold(3);
   floor.confirmations.on_obeyed(3);
@@ -66,7 +66,7 @@ TEST_CASE("a hold is not confirmed by an agent whose robot may obey another coor
   CHECK(floor.confirmed() == 1);
 }
 
-TEST_CASE("a hold is not confirmed as long as no agent of its robots reports that its robot is held") {
+TEST_CASE("a hold is not confirmed until an agent of its robots reports that its robot is held") {
   Floor floor;
   floor.hold(3);
   for (int i = 0; i < 100; ++i) {
@@ -81,7 +81,7 @@ TEST_CASE("a hold that was lifted or replaced before its confirmation is no long
   Floor floor;
   floor.hold(3);
   floor.book.merge({{msg::OrderKind::ORDER_RESUME, 3, kClient, ++floor.number}});
-  CHECK(floor.confirmed() == 1);  // with the answer that it is replaced
+  CHECK(floor.confirmed() == 1);  // the answer says that the hold was replaced
   const Order first = floor.hold(3), last = floor.hold(3);
   const auto replaced = floor.confirmations.take_confirmed(floor.book);
   REQUIRE(replaced.size() == 1);
@@ -115,7 +115,7 @@ TEST_CASE("an order other than a hold is confirmed once another process's memory
   CHECK_FALSE(floor.confirmations.is_waiting());
 }
 
-TEST_CASE("a memory that lists a hold does not confirm it: the robot may obey another coordinator by then") {
+TEST_CASE("a memory that lists a hold does not confirm it, because the robot may obey another coordinator") {
   Floor floor;
   const Order hold = floor.hold(3);
   floor.confirmations.on_page({.process = 3, .orders = {{hold}}});

@@ -33,7 +33,7 @@ struct Keeper {
   bool is_held() const { return keeper.is_held(3) || keeper.is_held(4); }
 };
 
-TEST_CASE("before anything has moved, a coordinator gives the scenario's orders") {
+TEST_CASE("before any robot has moved, a coordinator gives the scenario's orders") {
   Keeper k;
   CHECK(k.is_held());
   CHECK_FALSE(k.keeper.update(false, false, kNow));
@@ -47,13 +47,13 @@ TEST_CASE("before anything has moved, a coordinator gives the scenario's orders"
 }
 
 TEST_CASE(
-    "a coordinator that has forgotten the orders waits for another memory, and then holds all robots for an "
-    "operator") {
+    "a coordinator that has forgotten the orders waits for another memory, then holds all robots until an "
+    "operator resumes them") {
   Keeper k;
   CHECK_FALSE(k.keeper.update(true, true, kNow));
   CHECK_FALSE(k.keeper.update(true, true, kNow + OrderKeeper::kMaxWait - Duration{1}));
   CHECK(k.is_held());
-  CHECK_FALSE(k.keeper.update(false, true, kNow + OrderKeeper::kMaxWait));  // others must register again
+  CHECK_FALSE(k.keeper.update(false, true, kNow + OrderKeeper::kMaxWait));  // the robots must register again
   CHECK_FALSE(k.keeper.update(true, true, kNow + kSecond * 9));
   CHECK(k.keeper.update(true, true, kNow + kSecond * 9 + OrderKeeper::kMaxWait));
   CHECK(k.keeper.is_complete());
@@ -66,16 +66,16 @@ TEST_CASE(
   CHECK_FALSE(k.is_held());
 }
 
-TEST_CASE("a coordinator learns the orders from the whole memory of a process that knows them") {
+TEST_CASE("a coordinator learns the orders from the complete memory of a process that knows them") {
   const RememberedOrder hold{of_kind(msg::OrderKind::ORDER_HOLD, 3, kClient, 7)};
   for (const std::uint32_t process : {kOther, 4U}) {
     Keeper k;
-    k.keeper.on_page({process, true, 1, 2, {}});  // the first page was not heard
+    k.keeper.on_page({process, true, 1, 2, {}});  // the first page was lost
     CHECK_FALSE(k.keeper.is_complete());
     k.keeper.on_page({process, false, 0, 2, {}});
     k.keeper.on_page({process, false, 1, 2, {}});
     CHECK_FALSE(k.keeper.is_complete());
-    k.keeper.on_page({process, true, 0, 0, {hold}});  // only changes
+    k.keeper.on_page({process, true, 0, 0, {hold}});  // a page with changes only
     CHECK_FALSE(k.keeper.is_complete());
     k.keeper.on_page({process, true, 0, 2, {hold}});
     k.keeper.on_page({process, true, 1, 2, {}});
@@ -106,7 +106,7 @@ const Scenario& hundreds() {
   return scenario;
 }
 
-/// Clients whose orders are numbered in the order in which they are made.
+/// Clients whose orders are numbered in the order of creation.
 struct Clients {
   OrderNumber number = 1'700'000'000'000'000'000;
   Order make(msg::OrderKind kind, RobotId robot, ClientId client) { return {kind, robot, client, ++number}; }
@@ -126,7 +126,8 @@ struct Clients {
 
 constexpr auto kRemembered = msg::OrderResult::RESULT_REMEMBERED;
 
-TEST_CASE("clients that have lifted their holds, and removed their zones, can hold and draw again") {
+TEST_CASE(
+    "clients that have lifted their holds and removed their zones can hold robots and draw zones again") {
   OrderKeeper keeper(hundreds(), kSelf);
   Clients clients;
   for (RobotId robot = 0; robot < 300; ++robot) {
@@ -140,7 +141,7 @@ TEST_CASE("clients that have lifted their holds, and removed their zones, can ho
   CHECK(keeper.on_order(clients.zone(msg::OrderKind::ORDER_ZONE, 1000)) == kRemembered);
 }
 
-TEST_CASE("a client whose holds have used up all room can lift them") {
+TEST_CASE("a client whose holds fill the memory can lift them") {
   OrderKeeper keeper(hundreds(), kSelf);
   Clients clients;
   for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)
@@ -150,10 +151,10 @@ TEST_CASE("a client whose holds have used up all room can lift them") {
   CHECK(keeper.on_order(clients.resume(0)) == kRemembered);
   CHECK(keeper.on_order(clients.hold(299)) == kRemembered);
   CHECK(keeper.on_order(clients.resume(kAllRobots)) == kRemembered);
-  CHECK(keeper.book().hold_count() == 1);  // the operator's
+  CHECK(keeper.book().hold_count() == 1);  // the operator's hold remains
 }
 
-TEST_CASE("a hold that one coordinator has accepted is stored by all others, however full they are") {
+TEST_CASE("a hold accepted by one coordinator is stored by all others, however full their memories are") {
   OrderKeeper active(hundreds(), kSelf), standby(hundreds(), kOther);
   for (OrderKeeper* keeper : {&active, &standby}) (void)keeper->update(true, false, kNow);
   const auto page = [](const OrderKeeper& from, std::uint32_t process) {
@@ -165,7 +166,7 @@ TEST_CASE("a hold that one coordinator has accepted is stored by all others, how
     REQUIRE(active.on_order(hold) == kRemembered);
     REQUIRE(standby.on_order(hold) == kRemembered);
   }
-  // Two clients hold two robots at the same time; the coordinators hear them in different order.
+  // Two clients hold two robots at the same time, and the coordinators receive the holds in different order.
   const Order a = clients.hold(280), b = clients.hold(281, kClient + 1);
   CHECK(standby.on_order(b) == kRemembered);
   CHECK(active.on_order(a) == kRemembered);
@@ -179,7 +180,7 @@ TEST_CASE("a hold that one coordinator has accepted is stored by all others, how
   }
 }
 
-TEST_CASE("if somebody floods a memory with holds, all robots are held until an operator resumes them") {
+TEST_CASE("if a client floods a memory with holds, all robots are held until an operator resumes them") {
   OrderKeeper keeper(hundreds(), kSelf);
   (void)keeper.update(true, false, kNow);
   Clients clients;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hold counts from the message on that brings it.
+// A hold takes effect as soon as its message arrives.
 #include <vector>
 
 #include "common/messaging/order_codec.hpp"
@@ -26,7 +26,7 @@ Scenario two_robots() {
   return scenario;
 }
 
-TEST_CASE("a proposal that arrives right after a hold is refused, and granted right after the resume") {
+TEST_CASE("a proposal right after a hold is refused, and a proposal right after the resume is granted") {
   const Scenario scenario = two_robots();
   SimNetwork network{1, time_from_ns(1'000'000'000'000), {}};
   SimBus bus{network}, outside{network};
@@ -47,7 +47,7 @@ TEST_CASE("a proposal that arrives right after a hold is refused, and granted ri
   REQUIRE(node.coordinator().is_granting());
   verdicts.clear();
 
-  // Less than a heartbeat period each.
+  // Both waits together are shorter than a heartbeat period.
   const auto order_and_propose = [&](msg::OrderKind kind, OrderNumber number, VersionNumber version) {
     Order order{kind, 1, kOperator, number};
     msg::Order message = encode(order);

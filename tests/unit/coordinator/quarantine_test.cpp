@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots whose facts contradict the ledger, or report a stop of their own.
+// Robots whose facts contradict the ledger or report own stops.
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/coordinator_fixture.hpp"
 
 namespace sidestep::coordinator_test {
 
-TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the others continue") {
+TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and other robots continue") {
   Floor floor;
   floor.register_both();
   const Version granted = continued(floor.a, 10, 1, {0, 3});
   REQUIRE(floor.ask(proposal_of({granted}, kEpoch)).granted_version == 10);
-  Version rounded = granted;  // as by firmware that computes with less precision
+  Version rounded = granted;  // as reported by firmware with less precision
   rounded.trajectory = Trajectory(granted.trajectory.start(), {{1e-7, 0}, {0, 0}});
   rounded.trajectory.append(from_seconds(1.0 / 60), {0, 3});
   append_stop(rounded.trajectory, 5);
@@ -22,7 +22,7 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
   CHECK(state.notices()[0].robot() == 1);
   CHECK(state.notices()[0].is_quarantined());
   CHECK_FALSE(state.notices()[0].is_missing());
-  // Its versions and the reported one remain, whatever it reports.
+  // The robot's versions and the reported one remain, whatever the robot reports.
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
   floor.receive(make_report(floor.a, 1.02));
   floor.receive(make_report(granted, 1.5));
@@ -30,7 +30,7 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and the oth
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
   CHECK(floor.ask(proposal_of({continued(granted, 11, 2, {0, 3})}, kEpoch)).reasons[0] ==
         msg::Reason::REASON_QUARANTINED);
-  // A verdict that was given before is repeated.
+  // An earlier verdict is repeated.
   CHECK(floor.ask(proposal_of({granted}, kEpoch)).granted_version == 10);
   CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version == 20);
 }
@@ -43,7 +43,7 @@ TEST_CASE("a robot that obeys a higher epoch is not quarantined for executing wh
   floor.receive(granted_elsewhere);
   CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
   CHECK(floor.coordinator.ledger().versions(1).size() == 1);
-  SECTION("its own stop enters the ledger all the same") {
+  SECTION("the robot's own stop still enters the ledger") {
     auto stop = make_report(rest_version(1, {0.5, 0}, 1'000'000), 1.1);
     stop.obeyed_epoch(kEpoch + 1);
     stop.is_off_reference(true);
@@ -51,7 +51,7 @@ TEST_CASE("a robot that obeys a higher epoch is not quarantined for executing wh
     REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
     CHECK(floor.coordinator.ledger().versions(1).front().number == 1'000'000);
   }
-  SECTION("within its epoch the same fact contradicts the ledger") {
+  SECTION("a fact under the coordinator's own epoch contradicts the ledger") {
     granted_elsewhere.obeyed_epoch(kEpoch);
     floor.receive(granted_elsewhere);
     CHECK(floor.coordinator.ledger().is_quarantined(1));
@@ -70,13 +70,13 @@ TEST_CASE("other robots keep clear of what a quarantined robot has reported") {
   CHECK(floor.ask(towards(21)).blockers[0] == 1);
 }
 
-TEST_CASE("a quarantined robot is released by a new agent, a new epoch, or when it is lifted") {
+TEST_CASE("a quarantined robot is released by a new agent, a new epoch or a lifting") {
   Floor floor;
   floor.register_both();
   const Version unknown = rest_version(1, {0.5, 0}, 7);
   floor.receive(make_report(unknown, 1));
   REQUIRE(floor.coordinator.ledger().is_quarantined(1));
-  SECTION("the same agent does not release it") {
+  SECTION("the same agent does not release the robot") {
     CHECK(floor.receive(registration_of(floor.a, kEpoch))->reasons[0] == msg::Reason::REASON_GRANTED);
     CHECK(floor.coordinator.ledger().is_quarantined(1));
   }
@@ -115,30 +115,32 @@ TEST_CASE("a registration sent before the robot left its versions does not end t
   CHECK(floor.coordinator.ledger().is_quarantined(1));
   const Version towards = continued(floor.b, 20, 2, {-3, 0}, 0.5);
   CHECK(floor.ask(proposal_of({towards}, kEpoch)).reasons[0] == msg::Reason::REASON_CONFLICT);
-  SECTION("one that lists other contents under the same number does not end it either") {
+  SECTION("a registration with different content under the same number does not end the quarantine") {
     CHECK(floor.receive(registration_of(rest_version(1, {0, 0}, 7), kEpoch, 2))->reasons[0] ==
           msg::Reason::REASON_QUARANTINED);
     CHECK(floor.coordinator.ledger().is_quarantined(1));
   }
-  SECTION("one that lists what the robot has reported ends it") {
+  SECTION("a registration of the reported version ends the quarantine") {
     CHECK(floor.receive(registration_of(unknown, kEpoch, 2))->reasons[0] == msg::Reason::REASON_GRANTED);
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
     CHECK(floor.coordinator.ledger().versions(1).front().number == 7);
   }
-  SECTION("a later agent ends it") {
+  SECTION("a later agent's registration ends the quarantine") {
     CHECK(floor.receive(registration_of(floor.a, kEpoch, 3))->reasons[0] == msg::Reason::REASON_GRANTED);
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
   }
 }
 
-TEST_CASE("the stop of a robot that lost its reference enters the ledger, and its conflicts are reported") {
+TEST_CASE(
+    "the own stop of a robot that lost its reference enters the ledger, and its conflicts are reported") {
   Floor floor;
   floor.register_both();
   Version stop = rest_version(1, {0.85, 0}, 1'000'000);
   stop.inflation_m = 0.01;
   auto robot_report = make_report(stop, 1);
   floor.receive(robot_report);
-  CHECK(floor.coordinator.ledger().is_quarantined(1));  // the fact does not say that it lost its reference
+  CHECK(floor.coordinator.ledger().is_quarantined(
+      1));  // the fact does not say that the robot lost its reference
   floor.coordinator.begin_epoch(kEpoch);
   floor.register_both();
   robot_report.is_off_reference(true);
@@ -150,7 +152,7 @@ TEST_CASE("the stop of a robot that lost its reference enters the ledger, and it
   CHECK(state.conflicts() == 1);
   CHECK(state.conflict_first() == 1);
   CHECK(state.conflict_second() == 2);
-  // A version that does not end at rest is refused, also off reference.
+  // A version that does not end at rest is refused, even as an own stop.
   robot_report.executing().vx_mps(1);
   robot_report.executing().version_number(2'000'000);
   floor.receive(robot_report);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which coordinator takes over, depending on what it hears.
+// How a coordinator decides from what it hears whether to take over.
 #include "common/protocol/senders.hpp"
 #include "coordinator/failover.hpp"
 #include "tests/catch.hpp"
@@ -15,8 +15,8 @@ struct Coordinator {
   Failover failover{{1, 99}, true, kBegin, {kRoster}};
   Time now = kBegin;
   std::vector<RobotId> heard_robots = kRoster, heard_agents = kRoster, asking{};
-  Epoch other = 0;                 ///< of coordinator 0 that is heard, 0: none
-  std::vector<RobotId> missing{};  ///< with that coordinator
+  Epoch other = 0;                 ///< epoch of coordinator 0, whose heartbeats are heard; 0: none are heard
+  std::vector<RobotId> missing{};  ///< robots that coordinator 0 has not registered
   bool hears_vision = true, is_fleet_served = false, is_granting = false;
   VersionNumber number = 10;
 
@@ -52,7 +52,7 @@ struct Coordinator {
   void run(double seconds) {
     for (const Time end = now + from_seconds(seconds); now < end;) step();
   }
-  /// Time until it becomes active; `limit_s` if it does not.
+  /// Time until the coordinator becomes active; `limit_s` if it does not.
   double takeover_s(double limit_s) {
     const Time begin = now;
     while (!failover.is_active() && now < begin + from_seconds(limit_s)) step();
@@ -72,7 +72,7 @@ TEST_CASE("a coordinator that hears no robot does not take over until shortly af
   CHECK(c.takeover_s(1) < 0.1);
 }
 
-TEST_CASE("a coordinator that hears a minority of the robots that it heard does not take over") {
+TEST_CASE("a coordinator that hears only a minority of its former robots does not take over") {
   Coordinator c;
   c.other = kEpoch;
   c.run(3);
@@ -91,15 +91,15 @@ TEST_CASE("a coordinator that never heard a robot does not begin an epoch") {
   CHECK(c.takeover_s(1) < 0.1);
 }
 
-TEST_CASE("a standby takes over from a coordinator that does not register an agent which the standby hears") {
+TEST_CASE("a standby takes over from a coordinator that does not register an agent heard by the standby") {
   Coordinator c;
   c.other = kEpoch;
   c.missing = {2};
   c.heard_agents = {1, 3};
   c.run(3);
-  // The agent is dead: no other coordinator could do better.
+  // The agent is dead, so another coordinator could do no better.
   CHECK_FALSE(c.failover.is_active());
-  c.asking = {3};  // registered
+  c.asking = {3};  // this agent is registered
   c.run(10);
   CHECK_FALSE(c.failover.is_active());
   c.asking.clear();
@@ -114,7 +114,7 @@ TEST_CASE("a standby takes over from a coordinator that does not register an age
 }
 
 TEST_CASE(
-    "only a standby that hears all agents and vision takes over from a coordinator that does not serve one") {
+    "only a standby that hears all agents and vision takes over from a coordinator that fails to serve one") {
   const bool hears_agents = GENERATE(true, false), hears_vision = GENERATE(true, false);
   const bool hears_all = hears_agents && hears_vision;
   CAPTURE(hears_agents, hears_vision);
@@ -133,9 +133,7 @@ TEST_CASE(
   CHECK(waited_s <= 0.7);
 }
 
-TEST_CASE(
-    "a standby does not take over while robots begin versions granted by a coordinator that it does not "
-    "hear") {
+TEST_CASE("a standby does not take over while robots begin versions granted by an unheard coordinator") {
   Coordinator c;
   c.other = kEpoch;
   c.is_fleet_served = true;
@@ -150,7 +148,7 @@ TEST_CASE(
   CHECK(c.takeover_s(1) < 0.2);
 }
 
-TEST_CASE("a standby takes over soon after the last heartbeat although robots begin a few more versions") {
+TEST_CASE("a standby takes over soon after the last heartbeat even if robots begin a few more versions") {
   Coordinator c;
   c.other = kEpoch;
   c.is_fleet_served = true;
@@ -161,7 +159,8 @@ TEST_CASE("a standby takes over soon after the last heartbeat although robots be
   CHECK(c.takeover_s(1) < 0.1);
 }
 
-TEST_CASE("a coordinator that could not serve waits longer, a bounded time, until it has served") {
+TEST_CASE(
+    "after each failure to serve, a coordinator waits longer before it takes over again, up to a limit") {
   Coordinator c;
   Epoch epoch = kEpoch;
   c.is_fleet_served = true;
@@ -200,11 +199,12 @@ TEST_CASE("a coordinator that could not serve waits longer, a bounded time, unti
 }
 
 TEST_CASE(
-    "faced with a higher obeyed epoch, a coordinator that waited in vain yields, a new one begins above it") {
+    "on learning of a higher epoch, a new coordinator begins above it, but one that waited in vain to grant "
+    "yields") {
   Coordinator c;
   REQUIRE(c.takeover_s(5) < 5);
   const Epoch own = c.failover.epoch();
-  SECTION("new") {
+  SECTION("a new coordinator") {
     c.failover.on_obeyed_epoch(own + 1000, false, c.now, 1, EpochHolder::kRobot);
     const Epoch risen = c.failover.epoch();
     CHECK(risen > own + 1000);
@@ -212,7 +212,7 @@ TEST_CASE(
     c.failover.on_obeyed_epoch(risen + 1000, false, c.now, 1, EpochHolder::kRobot);
     CHECK_FALSE(c.failover.is_active());
   }
-  SECTION("in vain") {
+  SECTION("a coordinator that waited in vain to grant") {
     c.run(0.5);
     c.failover.on_obeyed_epoch(own + 1000, false, c.now, 1, EpochHolder::kRobot);
     CHECK_FALSE(c.failover.is_active());
@@ -234,7 +234,7 @@ TEST_CASE("a standby whose clock is set back or forward takes over in time") {
   CHECK(c.takeover_s(2) < 0.3);
 }
 
-TEST_CASE("a coordinator whose clock is set back learns of higher epochs as quickly as before") {
+TEST_CASE("a coordinator whose clock was set back still learns of higher epochs quickly") {
   const Time ahead = kBegin + std::chrono::hours(1);
   Failover failover({0, 5}, false, ahead);
   Epoch learned = failover.epoch();

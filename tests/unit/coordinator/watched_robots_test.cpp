@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots that are silent, or that vision sees away from their versions.
+// Robots that are silent or that vision sees away from their versions.
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/coordinator_fixture.hpp"
 
@@ -22,14 +22,14 @@ TEST_CASE(
   floor.receive(make_report(p, 1.01));
   CHECK_FALSE(silent_at(1.05));
   CHECK(silent_at(1.07));
-  // After a gap of 60 ms it may be silent for 120 ms.
+  // After a gap of 60 ms, the robot may be silent for 120 ms.
   floor.receive(make_report(p, 1.07));
   CHECK_FALSE(silent_at(1.18));
   CHECK(silent_at(1.2));
   CHECK_FALSE(silent_at(to_seconds(p.trajectory.end().time_since_epoch()) + 0.01));
 }
 
-TEST_CASE("a robot that reports facts rarely counts as silent once three are missing") {
+TEST_CASE("a robot that reports facts rarely counts as silent after three missing facts") {
   const Version a = rest_version(1, {0, 0});
   for (const double period_s : {1.0 / 60, 0.1, 0.2}) {
     CAPTURE(period_s);
@@ -50,9 +50,7 @@ TEST_CASE("a robot that reports facts rarely counts as silent once three are mis
   }
 }
 
-TEST_CASE(
-    "a robot whose own stop starts in the future because its clock jumped ahead counts as silent until "
-    "then") {
+TEST_CASE("a robot whose clock jumped ahead counts as silent until its own stop starts") {
   Floor floor;
   floor.register_both();
   const auto is_silent_at = [&](double at) {
@@ -74,8 +72,7 @@ TEST_CASE(
   CHECK_FALSE(is_silent_at(1.01 + ahead_s));
 }
 
-TEST_CASE(
-    "a robot with a slow clock within the bound counts as silent until its version has ended by that clock") {
+TEST_CASE("a robot with a slow clock counts as silent until its version has ended by that clock") {
   const Duration max_difference{100'000'000};
   Floor floor;
   floor.coordinator = Coordinator(floor_for_tests(), {1, 2}, kEpoch, max_difference);
@@ -91,7 +88,7 @@ TEST_CASE(
   const double end_s = to_seconds(p.trajectory.end().time_since_epoch());
   CHECK(is_silent_at(end_s + 0.09));
   CHECK_FALSE(is_silent_at(end_s + 0.11));
-  // Nor does a clock that is ahead within the bound make a robot silent.
+  // A clock that is ahead within the bound does not make a robot silent either.
   Version stop = rest_version(2, {1, 0}, 1'000'000);
   stop.trajectory = Trajectory::resting(at_s(3.14), {1, 0});
   auto message = make_report(stop, 3.14);
@@ -121,11 +118,11 @@ TEST_CASE("dropped or uncompared observations do not count as watching") {
     CHECK(watched_until() == at_s(1.01));
     CHECK(floor.coordinator.drops().total(DropReason::kFutureObservation) == 1);
   }
-  SECTION("a world of which the caller dropped an observation") {
+  SECTION("a world state of which the caller dropped an observation") {
     see({seen(1, 1.1)}, 1.11, false);
     CHECK(watched_until() == at_s(1.01));
   }
-  SECTION("a world without robots, and one without a new observation") {
+  SECTION("a world state without robots, and one without a new observation") {
     see({}, 1.5);
     see({seen(1, 1), seen(2, 1.01)}, 1.6);
     CHECK(watched_until() == at_s(1.01));
@@ -142,7 +139,7 @@ TEST_CASE("dropped or uncompared observations do not count as watching") {
     see({seen(1, 1.21), seen(2, 1.21)}, 1.22);
     CHECK(watched_until() == at_s(1.21));
   }
-  SECTION("observations a little ahead of the clock count up to now") {
+  SECTION("observations slightly ahead of the clock count up to the present") {
     see({seen(1, 1.1005), seen(2, 1.1005)}, 1.1);
     CHECK(watched_until() == at_s(1.1));
   }
@@ -152,7 +149,7 @@ TEST_CASE("dropped or uncompared observations do not count as watching") {
   }
 }
 
-TEST_CASE("an observation is from the future if it is ahead by more than the rules' bound") {
+TEST_CASE("an observation that is ahead by more than the clock bound counts as being from the future") {
   const double bound_s = GENERATE(0.0005, 0.05, 0.2);
   CAPTURE(bound_s);
   Floor floor;
@@ -170,7 +167,7 @@ TEST_CASE("an observation is from the future if it is ahead by more than the rul
   CHECK(floor.coordinator.state().watched_until_ns() == to_ns(at_s(1)));
 }
 
-TEST_CASE("nothing is granted to a robot that vision sees away from its versions, and it is named") {
+TEST_CASE("a robot that vision sees away from its versions is granted nothing, and a notice names it") {
   Floor floor;
   floor.register_both();
   const auto see = [&](RobotId robot, Vec2 position, double at) {
@@ -209,7 +206,7 @@ TEST_CASE("a coordinator that begins an epoch or stands by names no robot as sil
   CHECK_FALSE(floor.coordinator.has_uncontrolled_robots());
 }
 
-TEST_CASE("a coordinator whose clock was set back uses observations again") {
+TEST_CASE("a coordinator whose clock was set back uses new observations again") {
   Floor floor;
   floor.register_both();
   const auto see = [&](double x, double at) {
@@ -217,7 +214,7 @@ TEST_CASE("a coordinator whose clock was set back uses observations again") {
     floor.coordinator.on_world_state({&observation, 1}, at_s(at));
     return floor.coordinator.displaced().contains(1);
   };
-  // Its host's clock, and the cameras', were an hour ahead.
+  // The coordinator's clock and the cameras' clocks were an hour ahead.
   CHECK_FALSE(see(0, 3600));
   floor.coordinator.forget_times();
   CHECK(floor.coordinator.state().watched_until_ns() == 0);

@@ -29,7 +29,7 @@ struct Pose {
 /// Ground truth of a motion at every millisecond.
 class TrueMotion {
  public:
-  /// Constant acceleration from an initial state.
+  /// Constant acceleration from an initial pose.
   static TrueMotion accelerating(Pose pose, const Vec2& acceleration_mps2, double turn_radps,
                                  double duration_s) {
     TrueMotion motion;
@@ -40,7 +40,7 @@ class TrueMotion {
     return motion;
   }
 
-  /// A robot that changes its acceleration, up to 5 m/s², every 50 to 400 ms; speeds up to 2 m/s.
+  /// A robot that changes its acceleration, up to 5 m/s², every 50 to 400 ms, at speeds of up to 2 m/s.
   static TrueMotion driving(Rng& rng, double duration_s) {
     TrueMotion motion;
     Pose pose;
@@ -121,7 +121,7 @@ inline void add_noisy_robot(msg::DetectionFrame& frame, RobotId id, const Pose& 
   add_robot(frame, id, pose.position_m + noise.position_m * normal_vector(rng), heading_rad);
 }
 
-/// A tracker for robots 0 .. count - 1 that receives messages.
+/// A tracker for robots 0 to count - 1 that receives messages.
 class TrackerFixture {
  public:
   explicit TrackerFixture(RobotId count, const TrackerSettings& settings = {})
@@ -131,7 +131,7 @@ class TrackerFixture {
     frame_.assign(message, arrival);
     tracker_.update(frame_);
   }
-  /// Arrives at its time of capture.
+  /// The message arrives at its time of capture.
   void feed(const msg::DetectionFrame& message) { feed(message, time_from_ns(message.captured_at_ns())); }
 
   const msg::WorldState& world_at(Time t) {
@@ -142,9 +142,9 @@ class TrackerFixture {
     tracker_.obstacles_at(world_at(t), list_);
     return list_;
   }
-  /// Number of detections that were not used.
+  /// Number of rejected detections.
   std::uint64_t rejected() const { return drops_of(tracker_).total(); }
-  /// A robot in the world at a time, or nullptr.
+  /// The robot's entry in the world state at a time, or nullptr.
   const msg::TrackedRobot* robot_at(RobotId id, Time t) {
     for (const auto& robot : world_at(t).robots()) {
       if (robot.robot() == id) return &robot;

@@ -10,7 +10,7 @@ namespace sidestep::commanded_motion_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a base moves as it was commanded, delayed by its latency") {
+TEST_CASE("a base executes its commands after its latency") {
   const Time begin = time_from_ns(1'000'000'000'000);
   CommandedMotion motion(100ms);
   CHECK(motion.mean(begin, begin + 10ms).linear_mps == Vec2(0, 0));
@@ -25,7 +25,7 @@ TEST_CASE("a base moves as it was commanded, delayed by its latency") {
   CHECK(motion.latest().linear_mps.x() == 3);
 }
 
-TEST_CASE("the mean of commanded velocities equals an integral in small steps") {
+TEST_CASE("the mean of the commanded velocities equals a numerical integral") {
   Rng rng(5);
   const Time begin = time_from_ns(1'000'000'000'000);
   CommandedMotion motion(70ms);

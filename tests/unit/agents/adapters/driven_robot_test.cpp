@@ -14,13 +14,12 @@ using test::kDrivenRobot;
 using Scene = test::DrivenScene;
 
 TEST_CASE(
-    "a driven robot is at rest and silent until fixes agree on its position, and then reports its own stop "
-    "there") {
+    "a driven robot rests silently until fixes agree on its position, then reports its own stop there") {
   Scene scene;
   scene.sees = false;
   scene.run(1s);
   CHECK_FALSE(scene.robot.may_report());
-  // Fixes that do not agree.
+  // These fixes disagree.
   for (int i = 0; i < 20; ++i) {
     scene.run(20ms);
     scene.position_m.x() += 0.05;
@@ -38,7 +37,7 @@ TEST_CASE(
   CHECK_FALSE(robot_report.has_moved);
 }
 
-TEST_CASE("a driven robot follows a version that arrives in time to its end, and turns as commanded") {
+TEST_CASE("a driven robot follows a timely version to its end and turns as commanded") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
@@ -71,7 +70,7 @@ TEST_CASE("a driven robot follows a version that arrives in time to its end, and
   CHECK(wrapped_rad(scene.heading_rad - 2) == Approx(0).margin(0.1));
 }
 
-TEST_CASE("a driven robot that is moved makes an own stop where it is seen") {
+TEST_CASE("a driven robot that is displaced makes an own stop where vision sees it") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
@@ -85,7 +84,7 @@ TEST_CASE("a driven robot that is moved makes an own stop where it is seen") {
         robot_report.executing.inflation_m);
 }
 
-TEST_CASE("after a pause of its process a driven robot stays at rest until it has found its pose again") {
+TEST_CASE("a driven robot whose process was paused stays at rest until it has found its pose again") {
   Scene scene;
   scene.run(1500ms);
   REQUIRE(scene.robot.may_report());
@@ -100,8 +99,8 @@ TEST_CASE("after a pause of its process a driven robot stays at rest until it ha
 
 namespace {
 
-/// Sends a version that accelerates for a second and stops, and returns the largest error of the robot's own
-/// estimate while `step` runs each period.
+/// Sends a version that accelerates for a second and then stops. Calls `step` in each period. Returns the
+/// largest error of the robot's own estimate.
 double drive_and_measure(Scene& scene, const std::function<void()>& step) {
   const Version base = scene.robot_report().executing;
   const Time start = scene.now + 150ms;
@@ -117,15 +116,15 @@ double drive_and_measure(Scene& scene, const std::function<void()>& step) {
 
 }  // namespace
 
-TEST_CASE("with its base's odometry a driven robot knows where it is although the base obeys only partly") {
+TEST_CASE("with odometry a driven robot knows its position even if its base does not fully obey") {
   // The timestamps of reports lie between control periods.
   const auto [report_every, ago] = GENERATE(table<int, Duration>({{1, 0ms}, {1, 3ms}, {1, 7ms}, {2, 5ms}}));
   CAPTURE(report_every, ago.count());
   Scene scene;
-  scene.desired_heading_rad = 2;  // it turns as it drives
+  scene.desired_heading_rad = 2;  // the robot turns while it drives
   scene.run(1500ms);
   scene.desired_heading_rad = 0.4;
-  // By its commands alone it would end up 7 mm farther.
+  // Dead reckoning from the commands alone would be off by 7 mm at the end.
   scene.obeyed_part = 0.995;
   scene.sees = false;
   int periods = 0;
@@ -139,10 +138,10 @@ TEST_CASE("with its base's odometry a driven robot knows where it is although th
   CHECK(scene.robot.misdated_odometry() == 0);
 }
 
-TEST_CASE("fixes that are newer than the odometry are used once the odometry has arrived") {
+TEST_CASE("fixes newer than the odometry are used once the odometry has arrived") {
   Scene scene;
   scene.run(1500ms);
-  // The base is pushed, which its odometry does not show.
+  // The base is pushed, but its odometry does not show this.
   for (int i = 0; i < 10; ++i) {
     scene.step();
     scene.report_odometry();
@@ -158,7 +157,7 @@ TEST_CASE("fixes that are newer than the odometry are used once the odometry has
   CHECK((scene.robot_report().estimate.position_m - before_m - push_m).norm() < 0.001);
 }
 
-TEST_CASE("odometry with wrong timestamps is counted, and does not mislead a driven robot") {
+TEST_CASE("odometry with wrong timestamps is counted and does not mislead a driven robot") {
   const Duration date_error = GENERATE(-150ms, -100ms, -40ms, -10ms, 10ms, 40ms, 100ms, 150ms);
   CAPTURE(date_error.count());
   Scene scene;
@@ -175,7 +174,7 @@ TEST_CASE("odometry with wrong timestamps is counted, and does not mislead a dri
   CHECK_FALSE(scene.robot.side().has_pending());
 }
 
-TEST_CASE("if a base's clock is set back during the drive, the robot is misled only for a moment") {
+TEST_CASE("a base clock that is set back during the drive misleads the robot only briefly") {
   Scene scene;
   scene.run(1500ms);
   scene.sees = false;
@@ -202,7 +201,7 @@ TEST_CASE("a driven robot is less certain of its position while its odometry is 
   CHECK(error_after(100ms) > 3 * error_after(0ms));
 }
 
-TEST_CASE("a driven robot whose odometry is NaN stands still and is silent until it has found its pose") {
+TEST_CASE("a driven robot with NaN odometry stops and stays silent until it has found its pose") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Scene scene;
   scene.run(1500ms);

@@ -11,13 +11,13 @@ namespace sidestep::test {
 inline constexpr RobotId kDrivenRobot = 3;
 inline constexpr Time kSceneBegin = time_from_ns(1'700'000'000'000'000'000);
 
-/// A driven robot whose base does what it is commanded, after the latency, and its agent.
+/// A driven robot with its agent, and a base that executes commands after the latency.
 class DrivenScene {
  public:
   explicit DrivenScene(Duration latency = std::chrono::milliseconds(100))
       : commanded(latency), robot(kDrivenRobot, settings_of(latency), {}, kSceneBegin) {}
 
-  /// One control period.
+  /// Simulates one control period.
   void step() {
     now += DrivenRobot::kPeriod;
     const BodyVelocity command = robot.tick(now, memory);
@@ -49,14 +49,14 @@ class DrivenScene {
     command.desired_heading_rad = desired_heading_rad;
     return command;
   }
-  /// The base has just reported its odometry, in a frame of its own, with a timestamp that may be wrong.
+  /// The base reports its odometry, relative to its own frame, with a timestamp that may be wrong.
   void report_odometry(Duration date_error = {}, Duration ago = {}) {
     const double s = to_seconds(ago);
     const Vec2 place_m = rotated(position_m - s * velocity_mps, 1.1) + Vec2(7, 8);
     const double turned_rad = heading_rad - s * turn_radps + 1.1;
     robot.on_odometry({kDrivenRobot, now - ago + date_error, place_m, turned_rad}, now - ago);
   }
-  /// Without a version the command only fences.
+  /// Without a version, the command only fences.
   void send(const std::optional<Version>& version) {
     Command command = bare();
     command.version = version;
@@ -73,10 +73,10 @@ class DrivenScene {
   DrivenRobot robot;
   Vec2 position_m{1.5, -0.7};
   double heading_rad = 0.4;
-  Vec2 velocity_mps{0, 0};  ///< over the last period
+  Vec2 velocity_mps{0, 0};  ///< mean over the last period
   double turn_radps = 0;
-  double obeyed_part = 1;  ///< of the commanded speed
-  bool sees = true;        ///< vision sees the robot, and the agent forwards it
+  double obeyed_part = 1;  ///< fraction of the commanded velocity that the base executes
+  bool sees = true;        ///< vision sees the robot, and the agent forwards its observations
 
  private:
   static DriveSettings settings_of(Duration latency) {
@@ -86,7 +86,7 @@ class DrivenScene {
   }
 };
 
-/// A version of an agent that continues another one: it holds an acceleration, then stops.
+/// A version by `agent` that continues `base`: it holds an acceleration, then stops.
 inline Version continuation(const Version& base, Incarnation agent, VersionNumber number, Time start,
                             const Vec2& acceleration_mps2, Duration held) {
   const MotionLimits limits;
@@ -97,7 +97,7 @@ inline Version continuation(const Version& base, Incarnation agent, VersionNumbe
   return {kDrivenRobot, agent, number, base.number, trajectory, base.inflation_m};
 }
 
-/// The distance from the position that a version prescribes, minus the version's inflation.
+/// The distance from the position that the version prescribes, minus the version's inflation.
 inline double beyond_m(const Version& version, const Vec2& position_m, Time at) {
   return (position_m - version.trajectory.state_at(at).position_m).norm() - version.inflation_m;
 }

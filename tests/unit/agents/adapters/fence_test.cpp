@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// New agents fence a robot whose motors obey late, and have been sent the beginning of a pending version.
+// New agents fence a robot whose motors obey late and have already been sent the beginning of a pending
+// version.
 #include <algorithm>
 #include <vector>
 
@@ -16,7 +17,7 @@ using test::DrivenScene;
 
 constexpr double kTrackingBound_m = SafetyBudget{}.tracking_bound_m;
 
-/// Runs for a while, and returns the body's maximum deviation from the version that the facts state.
+/// Runs for `duration`. Returns the body's maximum deviation from the version that the facts state.
 double run_and_measure(DrivenScene& scene, Duration duration) {
   double largest_m = 0;
   for (const Time end = scene.now + duration; scene.now < end;) {
@@ -26,7 +27,7 @@ double run_and_measure(DrivenScene& scene, Duration duration) {
   return largest_m;
 }
 
-/// A robot at rest that holds a version which starts in 30 ms more than the latency.
+/// A robot at rest with a pending version that starts 30 ms after the latency.
 struct PendingScene : DrivenScene {
   explicit PendingScene(Duration latency) : DrivenScene(latency) {
     run(1500ms);
@@ -52,8 +53,8 @@ TEST_CASE("a new agent does not make a robot leave the version that it executes"
   scene.run(scene.start - before_start - scene.now);
   scene.agent = 101;
   scene.send(std::nullopt);
-  // The motors have already received its beginning, so it stays, and the new agent is acknowledged together
-  // with it.
+  // The motors have already received the beginning of the pending version, so the robot keeps it and
+  // acknowledges the new agent only when that version starts.
   CHECK(scene.robot_report().obeyed_incarnation == 100);
   CHECK_FALSE(scene.robot_report().command);
   CHECK(scene.robot.side().obeyed_incarnation() == 101);
@@ -70,7 +71,7 @@ TEST_CASE("a new agent does not make a robot leave the version that it executes"
 }
 
 TEST_CASE(
-    "a version that starts later than the lead is discarded, and the new agent is acknowledged at once") {
+    "a version that starts later than the lead is discarded and the new agent is acknowledged immediately") {
   const Duration latency = GENERATE(0ms, 50ms, 300ms);
   PendingScene scene(latency);
   scene.run(10ms);
@@ -85,7 +86,7 @@ TEST_CASE(
 TEST_CASE("in a chain of versions, those that start within the lead are kept") {
   PendingScene scene(200ms);
   scene.run(10ms);
-  // Further versions that the robot will not execute: on another base, and too late.
+  // The robot will not execute `third`, which starts too late, or `other`, which has a different base.
   Version second =
       continuation(scene.pending, 100, scene.pending.number + 1, scene.start + 50ms, Vec2(0, 3), 300ms);
   Version third = continuation(second, 100, second.number + 1, scene.start + 150ms, Vec2(0, -3), 300ms);
@@ -107,7 +108,7 @@ TEST_CASE("in a chain of versions, those that start within the lead are kept") {
   CHECK(beyond <= kTrackingBound_m);
 }
 
-TEST_CASE("agents that fence a robot in turn do not delay each other for longer than the lead") {
+TEST_CASE("agents that fence a robot in turn delay each other by no more than the lead") {
   PendingScene scene(300ms);
   scene.run(scene.start - 290ms - scene.now);
   const Time fenced = scene.now;
@@ -126,7 +127,7 @@ TEST_CASE("agents that fence a robot in turn do not delay each other for longer 
   CHECK(beyond <= kTrackingBound_m);
 }
 
-TEST_CASE("an agent of a new epoch fences a robot under the same rule") {
+TEST_CASE("an agent of a new epoch fences a robot by the same rule") {
   PendingScene scene(100ms);
   scene.run(scene.start - 50ms - scene.now);
   scene.agent = 101;
@@ -141,11 +142,11 @@ TEST_CASE("an agent of a new epoch fences a robot under the same rule") {
 
 namespace {
 
-/// The versions that others expect the robot to execute, by the rules of the ledger.
+/// The versions that other processes expect the robot to execute, by the rules of the ledger.
 class ExpectedVersions {
  public:
   void grant(const Version& version) { versions_.push_back(version); }
-  /// Returns whether the fact is one of the expected ones.
+  /// Returns false if the fact contradicts the expectation.
   bool apply(const RobotReport& robot_report) {
     const VersionNumber f = robot_report.executing.number;
     const auto is_f = [=](const Version& version) { return version.number == f; };
@@ -167,7 +168,7 @@ class ExpectedVersions {
 
 }  // namespace
 
-TEST_CASE("whichever agents restart, a robot executes what is expected, and its body is there") {
+TEST_CASE("whichever agents restart, the robot executes an expected version and its body follows it") {
   int restarts = 0, deferred = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     INFO("seed " << seed);
@@ -191,7 +192,7 @@ TEST_CASE("whichever agents restart, a robot executes what is expected, and its 
         last = robot_report.executing;
         next = scene.now;
       }
-      // A version that the acknowledgement did not state is not executed.
+      // The robot executes only what the acknowledgement stated, and versions of the acknowledged agent.
       REQUIRE((robot_report.executing.incarnation == acknowledged ||
                robot_report.executing.number == begun_with));
       if (is_waiting && acknowledged == scene.agent) is_waiting = false;
@@ -203,7 +204,7 @@ TEST_CASE("whichever agents restart, a robot executes what is expected, and its 
         is_waiting = scene.robot_report().obeyed_incarnation != scene.agent;
         deferred += is_waiting;
       }
-      // An agent that the robot no longer obeys may continue.
+      // An agent that the robot no longer obeys may keep running.
       const bool is_alive = acknowledged == scene.agent || is_twin;
       if (!is_alive || scene.now < next) continue;
       const Duration ahead = latency + 10ms + from_seconds(rng.uniform(0, 0.03));

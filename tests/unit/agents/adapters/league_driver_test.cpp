@@ -30,7 +30,7 @@ bool is_readable(int descriptor) {
 
 }  // namespace
 
-TEST_CASE("each team gets the local velocities of its robots in one datagram, and errors are counted") {
+TEST_CASE("each team receives its robots' local velocities in one datagram, and errors are counted") {
   const TestEndpoint test;
   const LeaguePorts ports{test.unicast(0), test.unicast(1)};
   league::UnicastSocket blue(ports.blue), yellow(ports.yellow);
@@ -68,7 +68,7 @@ TEST_CASE("each team gets the local velocities of its robots in one datagram, an
   REQUIRE(is_readable(driver.descriptor()));
   driver.receive();
   CHECK(driver.answers() == 1);
-  // From somewhere else, and malformed.
+  // An answer from an unknown sender, then a malformed one.
   league::UnicastSocket stranger(std::nullopt);
   REQUIRE(stranger.send(league::encode(league::TeamResponse{{{"X", "y"}}, {}}), *sender));
   REQUIRE(is_readable(driver.descriptor()));

@@ -7,7 +7,7 @@ namespace sidestep::measured_motion_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a base's velocity follows from its odometry, whatever the odometry's frame") {
+TEST_CASE("a base's velocity follows from its odometry in any frame") {
   const Time begin = time_from_ns(1'000'000'000'000);
   const double frame_rad = 2.1;
   MeasuredMotion measured;
@@ -27,7 +27,7 @@ TEST_CASE("a base's velocity follows from its odometry, whatever the odometry's 
   CHECK_FALSE(measured.mean(begin - 5ms, begin + 5ms));
 }
 
-TEST_CASE("a base that turns moves in the direction of its heading at the middle of the interval") {
+TEST_CASE("a turning base moves in the direction of its heading at the middle of the interval") {
   const Time begin = time_from_ns(1'000'000'000'000);
   const double turn_radps = GENERATE(-2.5, 2.5);
   MeasuredMotion measured;
@@ -45,7 +45,7 @@ TEST_CASE("a base that turns moves in the direction of its heading at the middle
   CHECK(velocity->turn_radps == Approx(turn_radps));
 }
 
-TEST_CASE("odometry reports that are late or follow a long gap give no velocity") {
+TEST_CASE("late odometry reports and reports after a long gap give no velocity") {
   const Time begin = time_from_ns(1'000'000'000'000);
   MeasuredMotion measured;
   measured.add({3, begin, {0, 0}, 0});

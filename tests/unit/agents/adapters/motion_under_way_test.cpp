@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A base's path under commands that are each held for a while.
+/// A base's path under commands that are each held for `period`.
 std::vector<PathPoint> path_of(const std::vector<Vec2>& velocities_mps, Duration period) {
   std::vector<PathPoint> path{{Duration{0}, {1, 2}}};
   for (const Vec2& velocity : velocities_mps)
@@ -69,11 +69,11 @@ double acceleration_mps2(const robot::MotionUnderWay<float>& motion) {
   return largest_mps2;
 }
 
-TEST_CASE("whenever commands change, receivers accept the motion's accelerations, and its error is bounded") {
+TEST_CASE("for any commands, receivers accept the fitted motion's accelerations and its error is bounded") {
   const auto seed = GENERATE(range(1u, 301u));
   CAPTURE(seed);
   Rng rng(seed);
-  // Commands change every few milliseconds, and the first and the last one may last for only a microsecond.
+  // Commands change every few milliseconds. The first and the last one may last only a microsecond.
   std::vector<PathPoint> path{{Duration{0}, {1, 2}}};
   const auto changes = 1 + rng.below(40);
   Vec2 velocity{rng.uniform(-2, 2), rng.uniform(-2, 2)};
@@ -91,7 +91,7 @@ TEST_CASE("whenever commands change, receivers accept the motion's accelerations
   CHECK(sampled_error_m(path, motion) <= motion.error_m + 1e-6);
 }
 
-TEST_CASE("no motion is under way if motors obey at once") {
+TEST_CASE("no motion is under way if motors obey immediately") {
   CHECK(fit_motion_under_way(path_of({}, 10ms), {0, 0}).part_count == 0);
   CHECK(fit_motion_under_way({}, {0, 0}).part_count == 0);
 }
@@ -109,7 +109,7 @@ TEST_CASE("a motion that accelerates, brakes and rests is fitted within a fracti
 }
 
 TEST_CASE(
-    "a fitted motion takes as long as the path, ends at its velocity, and stays within its stated error") {
+    "a fitted motion lasts as long as the path, has its final velocity, and stays within its stated error") {
   double worst_ratio = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     CAPTURE(seed);
@@ -133,11 +133,11 @@ TEST_CASE(
     REQUIRE(sampled_m <= motion.error_m);
     if (motion.error_m > 0.001) worst_ratio = std::max(worst_ratio, motion.error_m / sampled_m);
   }
-  // The bound is not much larger than the actual error.
+  // The bound is hardly larger than the actual error.
   CHECK(worst_ratio < 1.2);
 }
 
-TEST_CASE("a path with NaN is never fitted with a small error") {
+TEST_CASE("a path with a NaN never gets a small error bound") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   auto path = path_of({{1, 0}, {1, 0}, {1, 0}, {1, 0}}, 10ms);
   path[2].position_m.x() = nan;

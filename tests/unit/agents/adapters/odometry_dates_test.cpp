@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-TEST_CASE("timestamps are trusted for a limited time after a report has arrived on time") {
+TEST_CASE("after a report that arrived on time, timestamps are trusted for a limited time") {
   OdometryDates dates(4ms);
   CHECK_FALSE(dates.admit(kBegin, kBegin + 10ms));
   CHECK(dates.admit(kBegin + 20ms, kBegin + 24ms));
@@ -20,7 +20,7 @@ TEST_CASE("timestamps are trusted for a limited time after a report has arrived 
   CHECK_FALSE(dates.admit(kBegin + 520ms, kBegin + 530ms));
 }
 
-TEST_CASE("a report from the future is refused, and ends the trust until another report arrives on time") {
+TEST_CASE("a report from the future is refused and ends the trust until another report arrives on time") {
   OdometryDates dates(4ms);
   CHECK(dates.admit(kBegin, kBegin));
   CHECK(dates.admit(kBegin + 14ms, kBegin + 10ms));
@@ -38,7 +38,7 @@ TEST_CASE("a base whose clock is off by more than the error plus the delay is ne
                    jitter = from_seconds(rng.uniform(0, 0.005));
     const Duration behind = from_seconds(rng.uniform(0.001, 0.2));
     const bool is_ahead = rng.chance(0.5);
-    // With a clock that is ahead, the delay hides a part of the offset.
+    // If the clock is ahead, the delay hides part of the offset.
     const Duration offset = is_ahead ? max_error + least_delay + jitter + behind : -max_error - behind;
     OdometryDates dates(max_error);
     Time now = kBegin;

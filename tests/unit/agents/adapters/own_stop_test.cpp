@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The own stop of a robot whose motors obey late contains the motion that is under way.
+// If a robot's motors obey late, its own stop includes the motion that is under way.
 #include <algorithm>
 #include <cstdlib>
 
@@ -14,8 +14,8 @@ using test::beyond_m;
 using test::continuation;
 using test::DrivenScene;
 
-/// The body's maximum deviation from the robot's first own stop after `before`, minus its inflation, within a
-/// second.
+/// The robot's first own stop after version `before`, and the body's maximum deviation from it within a
+/// second, minus its inflation.
 struct Excursion {
   std::optional<Version> stop;
   double beyond_m = 0;
@@ -42,7 +42,7 @@ TEST_CASE("a push before a short version leaves the body within the robot's own 
   REQUIRE(scene.robot.may_report());
   const Version base = scene.robot_report().executing;
   const Time start = scene.now + latency + 30ms;
-  // It is over when the first of its motion is obeyed.
+  // The version ends when the motors begin to execute it.
   scene.send(continuation(base, scene.agent, base.number + 1, start, Vec2(3, 0), latency * 5 / 8 + 1ms));
   scene.run(start - 10ms - scene.now);
   REQUIRE(scene.robot_report().executing.number == base.number);
@@ -63,7 +63,7 @@ Duration random_latency(Rng& rng) {
   return std::min<Duration>(is_odd ? whole + part : whole, CommandedMotion::kMaxLatency);
 }
 
-/// Drives a robot at random and pushes it once. Nullopt if it made an own stop without a push.
+/// Drives a robot at random and pushes it once. nullopt if the robot made an own stop without a push.
 std::optional<Excursion> push_at_random(std::uint64_t seed) {
   Rng rng(seed);
   DrivenScene scene(random_latency(rng));
@@ -75,7 +75,7 @@ std::optional<Excursion> push_at_random(std::uint64_t seed) {
   Vec2 aim_mps2(0, 0);
   for (Time next = scene.now; scene.now < push_at; scene.step()) {
     if (scene.now < next) continue;
-    // Agents propose about this far ahead, and hold an acceleration for about this long.
+    // Agents propose about this far ahead and hold an acceleration for about this long.
     const Duration ahead = latency + 10ms + from_seconds(rng.uniform(0, 0.03));
     if (rng.chance(0.4)) {
       const double size_mps2 = rng.uniform(0, 5), angle_rad = rng.uniform(-3.14, 3.14);
@@ -118,9 +118,9 @@ void check_pushes(std::uint64_t first, std::uint64_t count) {
 
 }  // namespace
 
-TEST_CASE("whenever a robot is pushed, its body stays within its own stop") { check_pushes(1, 2000); }
+TEST_CASE("a pushed robot's body always stays within its own stop") { check_pushes(1, 2000); }
 
-TEST_CASE("whenever a robot is pushed, its body stays within its own stop, for a hundred thousand pushes",
+TEST_CASE("a pushed robot's body always stays within its own stop, for a hundred thousand pushes",
           "[.][slow]") {
   check_pushes(1'000'000, 100'000);
 }

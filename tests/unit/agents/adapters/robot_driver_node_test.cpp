@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-/// Bases that stay where they are.
+/// Bases that do not move.
 class IdleDriver : public Driver {
  public:
   void send(std::span<const BaseCommand> commands) override {
@@ -29,7 +29,7 @@ class IdleDriver : public Driver {
     report = std::move(callback);
   }
   int periods = 0;
-  double max_speed_mps = 0;  ///< maximum in the latest commands
+  double max_speed_mps = 0;  ///< largest speed among the latest commands
   std::function<void(const OdometryReport&)> report;
 };
 
@@ -73,7 +73,7 @@ struct Scene {
 
 }  // namespace
 
-TEST_CASE("driven robots report at least once per cycle, and at once when they obey a new agent") {
+TEST_CASE("driven robots report at least once per cycle, and immediately when they obey a new agent") {
   Scene scene;
   for (int i = 0; i < 60; ++i) {
     scene.command(0, 100, 1);
@@ -111,7 +111,7 @@ TEST_CASE("odometry with a wrong timestamp is counted for its robot") {
   CHECK(drops.total(DropReason::kMisdatedOdometry) == 2);
 }
 
-TEST_CASE("robots whose process must end drive their versions to the end and accept no others") {
+TEST_CASE("robots whose process must end finish their versions and accept no others") {
   Scene scene;
   for (int i = 0; i < 60; ++i) {
     scene.command(0, 100, 1);
@@ -141,7 +141,7 @@ TEST_CASE("robots whose process must end drive their versions to the end and acc
   REQUIRE(driving.driver.max_speed_mps > 0.1);
   CHECK_FALSE(driving.node->come_to_rest());
   driving.command(0, 100, 1, second);
-  // The base obeys after the latency.
+  // The base obeys after its latency.
   while (driving.network.now() < first.trajectory.end() + DriveSettings{}.latency) {
     CHECK_FALSE(driving.node->come_to_rest());
     driving.run(10ms);
@@ -151,13 +151,13 @@ TEST_CASE("robots whose process must end drive their versions to the end and acc
   CHECK(driving.driver.max_speed_mps < 0.01);
 }
 
-TEST_CASE("robots that restart remember whom they obey, and count what they cannot store") {
+TEST_CASE("restarted robots remember which agent they obey, and count what they cannot store") {
   Scene scene;
   for (int i = 0; i < 60; ++i) {
     scene.command(1, 100, 9);
     scene.run(20ms);
   }
-  scene.robot_bus.reset();  // first, so that it makes no more calls
+  scene.robot_bus.reset();  // destroyed first, so that the bus makes no more calls
   scene.node.reset();
   SimBus second_bus(scene.network);
   RobotDriverNode second(second_bus, scene.scenario, roster_of(scene.scenario), 56, DriveSettings{},

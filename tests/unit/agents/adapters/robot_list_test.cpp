@@ -5,7 +5,7 @@
 
 namespace sidestep::robot_list_test {
 
-TEST_CASE("robots are selected by numbers and ranges, and mistakes are reported") {
+TEST_CASE("robots are selected by numbers and ranges, and invalid selections are reported") {
   Scenario scenario;
   scenario.name = "twelve";
   for (RobotId id = 0; id < 12; ++id) {

@@ -23,7 +23,7 @@ TEST_CASE("a robot's file preserves what the robot stored") {
   CHECK(RobotMemory(robots, 4).state() == robot::DurableState{});
 }
 
-TEST_CASE("a broken memory is refused with its file and line, and is not overwritten") {
+TEST_CASE("an invalid memory file is refused with its line and is not overwritten") {
   const TemporaryFolder folder;
   const std::string path = folder.file("robot-3.memory");
   const auto broken = GENERATE(
@@ -39,7 +39,7 @@ TEST_CASE("a broken memory is refused with its file and line, and is not overwri
   CHECK(std::string(std::istreambuf_iterator<char>(file), {}) == broken.first);
 }
 
-TEST_CASE("only one process can hold a robot's memory") {
+TEST_CASE("only one process can open a robot's memory") {
   const TemporaryFolder folder;
   {
     const RobotMemory memory(folder.path(), 3);
@@ -50,7 +50,7 @@ TEST_CASE("only one process can hold a robot's memory") {
   CHECK_NOTHROW(RobotMemory(folder.path(), 3));
 }
 
-TEST_CASE("a robot whose folder is gone cannot store anything") {
+TEST_CASE("a robot whose folder was deleted cannot store anything") {
   const TemporaryFolder folder;
   RobotMemory memory(folder.file("robots"), 3);
   REQUIRE(memory.store({1, 2, 3, false}));

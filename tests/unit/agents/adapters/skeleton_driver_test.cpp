@@ -8,7 +8,7 @@ namespace sidestep::skeleton_driver_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("the template of a driver moves ideal bases and reports where they are") {
+TEST_CASE("the driver template moves ideal bases and reports their positions") {
   Time now = time_from_ns(1'000'000'000'000);
   SkeletonDriver driver({2, 5}, [&now] { return now; });
   MeasuredMotion measured;

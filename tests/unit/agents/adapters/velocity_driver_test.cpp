@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-/// A driver of robots 3 and 4, and the other end of robot 3's topics.
+/// A driver for robots 3 and 4, and the other end of robot 3's topics.
 struct Scene {
   Scene() {
     base_bus.observe_channel<ros::Twist>(ros::kTwist, "rt/robot3/cmd_vel",
@@ -41,7 +41,7 @@ struct Scene {
   std::vector<OdometryReport> reports;
 };
 
-TEST_CASE("velocities go out as twists, and odometry comes in with its time of measurement") {
+TEST_CASE("velocities are sent as twists, and odometry is received with its time of measurement") {
   Scene scene;
   const std::vector<BaseCommand> commands{{3, {{0.5, -0.25}, 1.5}}, {4, {}}};
   scene.driver.send(commands);
@@ -56,13 +56,13 @@ TEST_CASE("velocities go out as twists, and odometry comes in with its time of m
   CHECK(scene.reports[0].measured_at == measured);
   CHECK(scene.reports[0].position_m == Vec2(1, 2));
   CHECK(scene.reports[0].heading_rad == Approx(1.2));
-  // A base whose clock is wrong by less than a second. Whether it is trusted is decided elsewhere.
+  // The base's clock is wrong by less than a second. The driver does not decide whether to trust it.
   ros::Odometry misdated = scene.odometry();
   misdated.nanosec += 100'000'000;
   scene.report(misdated);
   REQUIRE(scene.reports.size() == 2);
   CHECK(scene.reports[1].measured_at > scene.network.now());
-  // A base with a different time, such as a simulator's.
+  // The base uses a different time, for example a simulator's.
   ros::Odometry old = scene.odometry();
   old.sec = 17;
   const Time sent = scene.network.now();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the node sends what: its cycles, registrations, measurements, proposals and reports of its orders.
+// When the node sends its commands, registrations, measurements, proposals and order reports.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -38,14 +38,14 @@ msg::OrderMemory memory_of(const RememberedOrder& order, bool is_announcement) {
   return memory;
 }
 
-/// An agent's node, and one process that is its robot at rest, vision and the coordinator, with a network
-/// that takes 0.1 ms. The coordinator grants nothing. By default it answers registrations but no proposal.
-/// Answers that do not echo the request's time measure no clock.
+/// An agent's node, and one process that acts as its robot at rest, as vision and as the coordinator. The
+/// network takes 0.1 ms. The coordinator grants nothing. By default it answers registrations but not
+/// proposals. Answers that do not echo the request's time do not measure the clock.
 struct Floor {
   Scenario scenario = one_robot();
   SimNetwork network{1, kBegin, scenario.network};
   SimBus agent_bus{network, {1, {}}}, other_bus{network, {2, {}}};
-  Duration robot_clock;  ///< its offset
+  Duration robot_clock;  ///< offset of the robot's clock
   bool names_time = true, denies = false, is_heard = true;
   std::vector<Time> commands, registrations, proposals, order_reports;
   std::optional<msg::Command> last_command;
@@ -78,7 +78,7 @@ struct Floor {
     });
     other_bus.subscribe(topics::kOrderStatus,
                         [this](const msg::OrderStatus&) { order_reports.push_back(network.now()); });
-    network.run_until(network.now() + 10ms);  // they find each other
+    network.run_until(network.now() + 10ms);  // the processes discover each other
     tell({{msg::OrderKind::ORDER_GO, kRobot, static_cast<ClientId>(Sender::kScenario), 1}}, false);
   }
   Time robot_now() const { return network.now() + robot_clock; }
@@ -142,7 +142,7 @@ struct Floor {
   Duration cycle() const { return scenario.cycle; }
 };
 
-/// The gaps between successive times.
+/// The intervals between successive times.
 std::vector<Duration> gaps(const std::vector<Time>& times) {
   std::vector<Duration> result;
   for (std::size_t i = 1; i < times.size(); ++i) result.push_back(times[i] - times[i - 1]);
@@ -179,13 +179,13 @@ TEST_CASE("an agent registers every three cycles until the coordinator's clock i
   CHECK_FALSE(floor.proposals.empty());
   floor.registrations.clear();
   floor.run(4s);
-  // A measurement is valid for two seconds, and is repeated after one.
+  // A measurement is valid for two seconds and is repeated after one.
   CHECK(floor.registrations.size() >= 3);
   CHECK(floor.registrations.size() <= 5);
 }
 
-TEST_CASE("a robot that may drive again is driven at once, unless the next cycle begins soon") {
-  // Phase of the cycle in which the coordinator is heard.
+TEST_CASE("when its robot may drive again, an agent proposes immediately unless the next cycle begins soon") {
+  // Phase of the cycle in which the coordinator's heartbeat arrives.
   const double phase = GENERATE(0.1, 0.4, 0.6, 0.7, 0.8, 0.9);
   CAPTURE(phase);
   Floor floor;
@@ -208,7 +208,7 @@ TEST_CASE("a robot that may drive again is driven at once, unless the next cycle
   CHECK(floor.proposals.size() == 1);
 }
 
-TEST_CASE("an agent confirms a hold of its robot that a coordinator announces, though it knows the hold") {
+TEST_CASE("an agent confirms each announced hold of its robot, even one that it already knows") {
   Floor floor;
   constexpr ClientId kClient = 1'000'001;
   const auto announce = [&](msg::OrderKind kind, RobotId robot) {
@@ -228,7 +228,7 @@ TEST_CASE("an agent confirms a hold of its robot that a coordinator announces, t
   CHECK(announce(msg::OrderKind::ORDER_CANCEL, kRobot + 1) == 0);
 }
 
-TEST_CASE("an agent reports its order once a second, and at once when it changes") {
+TEST_CASE("an agent reports its order once per second, and immediately when the order changes") {
   Floor floor;
   floor.run(1s);
   floor.order_reports.clear();

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 
-/// Feeds the changes of an agent's work, one call per cycle.
+/// Feeds an agent's activity to the logger, one call per cycle.
 struct Fixture {
   EventReporter reporter;
   AgentEventLogger changes{reporter, 3};
@@ -52,7 +52,7 @@ TEST_CASE("each step of an agent's startup is reported once") {
   for (const LogEvent& event : f.events.all()) CHECK(event.robot == 3);
 }
 
-TEST_CASE("an agent reports that its robot no longer obeys it, and that the robot obeys it after all") {
+TEST_CASE("an agent reports when its robot stops obeying it and when the robot obeys it again") {
   Fixture f;
   f.activity.is_superseded = true;
   f.run(1s);
@@ -62,7 +62,8 @@ TEST_CASE("an agent reports that its robot no longer obeys it, and that the robo
   CHECK(f.events.count("the robot obeys this agent after all") == 1);
 }
 
-TEST_CASE("every reason to wait is reported once it has lasted, and so is the end of waiting") {
+TEST_CASE(
+    "a reason to wait is reported only after it has lasted a while, and the end of waiting is reported too") {
   for (int i = 1; i <= static_cast<int>(WaitReason::kClockOutOfBound); ++i) {
     const auto reason = static_cast<WaitReason>(i);
     CAPTURE(to_text(reason));
@@ -107,7 +108,7 @@ TEST_CASE("a speed limit due to the clocks is reported with the offset, when it 
   CHECK(f.events.all().size() == 3);
 }
 
-TEST_CASE("arrivals, escapes and deadlock recovery are reported, the latter at most once per second") {
+TEST_CASE("arrivals, escapes and deadlock recovery are reported, the latter two at most once per second") {
   Fixture f;
   f.activity.goal_index = 1;
   f.run(1s);
@@ -124,7 +125,7 @@ TEST_CASE("arrivals, escapes and deadlock recovery are reported, the latter at m
   CHECK(f.events.count("to resolve the deadlock") == 4);
 }
 
-TEST_CASE("the robot's own stops, restarts and liftings are reported once each") {
+TEST_CASE("each own stop, restart and lifting of the robot is reported once") {
   Fixture f;
   RobotReport robot_report;
   robot_report.valid_at = kBegin;
@@ -150,7 +151,7 @@ TEST_CASE("the robot's own stops, restarts and liftings are reported once each")
   for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
   CHECK(f.events.count("has been put down") == 1);
   const std::size_t before = f.events.all().size();
-  robot_report.valid_at -= 1ms;  // overtaken on the network
+  robot_report.valid_at -= 1ms;  // a fact that was overtaken on the network
   robot_report.is_lifted = true;
   f.changes.on_robot_report(robot_report);
   CHECK(f.events.all().size() == before);

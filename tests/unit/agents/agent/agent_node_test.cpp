@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the node does with hostile messages: none reaches the agent, and each is counted once.
+// How the node treats hostile messages: none reaches the agent, and each is counted once.
 #include "agents/agent/agent_node.hpp"
 
 #include <limits>
@@ -20,7 +20,7 @@ constexpr RobotId kRobot = 3;
 constexpr Incarnation kSelf = 1000;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Time kBegin = time_from_ns(1'000'000'000'000);
-constexpr std::uint64_t kHuge = std::uint64_t{1} << 61;  ///< as a number, or a time in nanoseconds
+constexpr std::uint64_t kHuge = std::uint64_t{1} << 61;  ///< for a number, or for a time in nanoseconds
 constexpr auto kCoordinator = static_cast<std::uint32_t>(Sender::kCoordinator);
 
 Scenario one_robot() {
@@ -30,7 +30,7 @@ Scenario one_robot() {
       "one-robot.yaml");
 }
 
-/// A robot at rest that obeys the agent.
+/// The report of a robot at rest that obeys the agent.
 msg::Feedback valid_robot_report() {
   RobotReport robot_report;
   robot_report.robot = kRobot;
@@ -91,7 +91,7 @@ struct NodeFixture {
   Writer<msg::OrderMemory> memory_writer;
   msg::AgentStatus status;
   std::uint64_t commands = 0;
-  Epoch commanded_epoch = 0;  ///< of the last command
+  Epoch commanded_epoch = 0;  ///< epoch of the last command
   AgentNode node{agent_bus, scenario, kRobot, kSelf, std::make_shared<PlanningScratch>(scenario)};
 
   NodeFixture() {
@@ -108,15 +108,15 @@ struct NodeFixture {
       commanded_epoch = command.epoch();
     });
   }
-  /// Runs until the next status has arrived.
+  /// Runs until another status has arrived.
   void run() { network.run_until(network.now() + Duration{250'000'000}); }
-  /// The messages that the node and its bus have dropped.
+  /// The number of messages that the node and its bus have dropped.
   std::uint64_t dropped() const { return drops_of(node).total() + drops_of(agent_bus).total(); }
   /// Sends one message. Returns the increase in the number of dropped messages.
   template <typename Message>
   std::uint64_t send(const Topic<Message>& topic, Message message) {
     auto writer = other_bus.advertise(topic, kRobot);
-    run();  // the agent finds the writer
+    run();  // the agent discovers the writer
     const std::uint64_t before = dropped();
     writer.publish(message, other_bus.now());
     run();
@@ -160,7 +160,7 @@ TEST_CASE("invalid feedback is counted and changes nothing") {
   CHECK(send([](msg::Feedback& m) { m.executing().phase_count(99); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_incarnation(kHuge); }) == 1);
-  // Sent after other messages, it would be refused as a second process's message.
+  // A fixture of its own: after other messages, this one would be refused as a second process's message.
   CHECK(NodeFixture().send_spoilt(topics::kFeedback, valid_robot_report(),
                                   [](msg::Feedback& m) { m.header().incarnation(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.valid_at_ns(static_cast<std::int64_t>(kHuge)); }) == 1);
@@ -195,13 +195,13 @@ TEST_CASE("invalid verdicts are counted") {
   verdict.robot(kRobot + 1);
   CHECK(f.send(topics::kVerdict, verdict) == 1);
   verdict.robot(kRobot);
-  CHECK(f.send(topics::kVerdict, verdict) == 1);  // not from a coordinator
+  CHECK(f.send(topics::kVerdict, verdict) == 1);  // the sender is not a coordinator
   verdict.header().sender(kCoordinator);
   verdict.reasons()[4] = static_cast<msg::Reason>(99);
   CHECK(f.send(topics::kVerdict, verdict) == 1);
 }
 
-TEST_CASE("each invalid observation of a world is counted") {
+TEST_CASE("each invalid observation in a world state is counted") {
   NodeFixture f;
   const auto send = [&](auto spoil) { return f.send_spoilt(topics::kWorld, valid_world(), spoil); };
   CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_x_m(kNan); }) == 1);
@@ -223,7 +223,7 @@ TEST_CASE("each invalid list of obstacles is counted") {
   CHECK(send([](List& m) { m.header().sender(kRobot); }) == 1);
 }
 
-TEST_CASE("a world that is not from vision is not used, and counts as one invalid message") {
+TEST_CASE("a world state that is not from vision counts as one invalid message") {
   NodeFixture f;
   CHECK(f.send_spoilt(topics::kWorld, valid_world(), [](msg::WorldState& m) { m.header().sender(kRobot); }) ==
         1);
@@ -237,8 +237,7 @@ TEST_CASE("invalid ledger pages, and invalid versions on valid pages, are counte
   CHECK(send([](msg::LedgerPage& m) { m.versions()[0].vx_mps(kNan); }) == 1);
 }
 
-TEST_CASE(
-    "an agent repeats the orders that a coordinator announces, at once but at most ten times a second") {
+TEST_CASE("an agent repeats announced orders immediately, but at most ten times per second") {
   NodeFixture f;
   std::vector<std::pair<Time, OrderNumber>> repeated;
   f.other_bus.subscribe(topics::kAgentOrders, [&](const msg::OrderMemory& message) {
@@ -268,21 +267,22 @@ TEST_CASE(
   CHECK(repeated.back().second == number);
   CHECK(repeated.size() <= 22);
   CHECK(repeated.size() >= 15);
-  // If it is announced again, it is repeated again, because the coordinator has not heard it.
+  // The agent repeats the order again if it is announced again, because the coordinator missed the first
+  // repetition.
   const std::size_t before = repeated.size();
   announce(number);
   f.run();
   CHECK(repeated.size() == before + 1);
 }
 
-TEST_CASE("only an invalid placement of the agent's own robot is counted") {
+TEST_CASE("an invalid placement is counted only if it concerns the agent's own robot") {
   NodeFixture f;
   CHECK(f.send(topics::kDisturbance, placement(kRobot, kNan)) == 1);
   CHECK(f.send(topics::kDisturbance, placement(kRobot + 1, kNan)) == 0);
   msg::Disturbance push = placement(kRobot, kNan);
   push.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PUSH);
   CHECK(f.send(topics::kDisturbance, push) == 0);
-  // Only an operator may say where a robot was put down.
+  // Only an operator may report where a robot was put down.
   msg::Disturbance forged = placement(kRobot, 1);
   forged.header().sender(kRobot);
   CHECK(f.send(topics::kDisturbance, forged) == 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a robot with a laser drives where somebody may step out.
+// How a robot with a laser drives near places where a person may step out.
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -29,8 +29,8 @@ Scenario with_laser() {
   return scenario;
 }
 
-/// A robot at the origin, at rest or driving along x, with an unknown wall in front of it. What is behind it
-/// is hidden.
+/// A robot at the origin, at rest or driving along x, with an unknown wall in front of it. The space behind
+/// the wall is hidden.
 ///
 ///      |
 ///   o  |  wall_m away, in the direction `bearing_rad`
@@ -82,7 +82,7 @@ struct BeforeWall {
   }
 };
 
-TEST_CASE("a robot that is safe from hidden people at no speed creeps away from where they are nearest") {
+TEST_CASE("if no speed is safe from hidden people, the robot creeps away from where they are nearest") {
   for (double bearing_rad = -3; bearing_rad <= 3; bearing_rad += 0.5) {
     CAPTURE(bearing_rad);
     BeforeWall robot(0.17, bearing_rad);
@@ -92,8 +92,7 @@ TEST_CASE("a robot that is safe from hidden people at no speed creeps away from 
   }
 }
 
-TEST_CASE(
-    "a robot drives on for one more cycle only if it can still stop before a hidden person reaches it") {
+TEST_CASE("a robot drives on for another cycle only if it can still stop before a hidden person reaches it") {
   const double speed_mps = GENERATE(0.5, 1.0, 1.5);
   CAPTURE(speed_mps);
   const Scenario scenario = with_laser();
@@ -101,7 +100,7 @@ TEST_CASE(
   const double last_mps = speed_mps + limits.acceleration_mps2 * kCycle_s;
   const double driven_m = (speed_mps + last_mps) / 2 * kCycle_s,
                braking_s = last_mps / limits.deceleration_mps2;
-  // The scan is 10 ms and a cycle old when the robot begins to accelerate.
+  // When the robot begins to accelerate, the scan is one cycle and 10 ms old.
   const double person_m = scenario.max_opponent_speed_mps * (0.01 + 2 * kCycle_s + braking_s);
   const double needed_m = scenario.radius_m + scenario.margin_m + scenario.laser->range_error_m + driven_m +
                           last_mps * braking_s / 2 + person_m;

@@ -22,7 +22,7 @@ Scenario two_goals() {
       "two-goals.yaml");
 }
 
-/// The report of the robot at rest.
+/// The report of a robot at rest.
 RobotReport resting_at(const Vec2& position, double at, Epoch epoch = 7) {
   RobotReport robot_report;
   robot_report.robot = 3;
@@ -34,14 +34,14 @@ RobotReport resting_at(const Vec2& position, double at, Epoch epoch = 7) {
   return robot_report;
 }
 
-/// The coordinator remembers that the scenario has given the robot its goals.
+/// The coordinator remembers that the scenario gave the robot its goals.
 std::shared_ptr<OrderPage> scenario_orders() {
   const RememberedOrder order{{msg::OrderKind::ORDER_GO, 3, static_cast<ClientId>(Sender::kScenario), 1}};
   return std::make_shared<OrderPage>(
       OrderPage{static_cast<std::uint32_t>(Sender::kCoordinator), true, 0, 1, {order}});
 }
 
-/// The coordinator grants, and the agent has registered.
+/// Makes the coordinator grant, and registers the agent.
 void become_ready(Agent& agent, double now = 0.6, double watched_until = 0) {
   CoordinatorHeartbeat heartbeat;
   heartbeat.epoch = 7;
@@ -73,7 +73,7 @@ struct DrivenAgent {
     agent.on_robot_report(resting_at({0, 0}, 0.5));
     become_ready(agent);
   }
-  /// The world state only, which the coordinator receives too.
+  /// Delivers only a world state, which the coordinator receives too.
   void observe_self(double x, double observed_at, double now) {
     CoordinatorHeartbeat heartbeat;
     heartbeat.epoch = 7;
@@ -99,7 +99,7 @@ struct DrivenAgent {
   }
 };
 
-TEST_CASE("an agent plans towards its goal as long as vision observes its robot") {
+TEST_CASE("an agent plans towards its goal while vision observes its robot") {
   DrivenAgent d;
   CHECK_FALSE(d.plans(0.6));
   d.observe(0, 0.6, 0.61);
@@ -113,7 +113,7 @@ TEST_CASE("an agent plans towards its goal as long as vision observes its robot"
   CHECK(d.plans(0.95));
 }
 
-TEST_CASE("a moving obstacle's reach grows by the time that the robot may be late") {
+TEST_CASE("a moving obstacle's reach grows with the robot's possible lag") {
   const Duration max_lag = std::chrono::milliseconds(60);
   DrivenAgent d;
   d.observe_obstacle(2, 1, 0.6, 0.61);
@@ -128,7 +128,7 @@ TEST_CASE("a moving obstacle's reach grows by the time that the robot may be lat
   CHECK(late.moving[0].reach_m(at_s(1)) == Approx(reach_m + speed_mps * to_seconds(max_lag)));
 }
 
-TEST_CASE("an agent plans only as long as the coordinator hears vision") {
+TEST_CASE("an agent plans only while the coordinator hears vision") {
   DrivenAgent d;
   d.observe(0, 0.6, 0.61);
   CHECK(d.plans(0.62));
@@ -143,7 +143,7 @@ TEST_CASE("an agent plans only as long as the coordinator hears vision") {
   CHECK(d.plans(1.22));
 }
 
-TEST_CASE("a robot that vision has lost is not driven, although vision sees others") {
+TEST_CASE("a robot that vision has lost is not driven, even if vision sees others") {
   DrivenAgent d;
   d.observe(0, 0.6, 0.61);
   CHECK(d.plans(0.62));
@@ -157,7 +157,7 @@ TEST_CASE("a robot that vision has lost is not driven, although vision sees othe
   CHECK_FALSE(d.plans(0.95));
 }
 
-TEST_CASE("a robot that is poorly localised waits until it is observed") {
+TEST_CASE("a poorly localised robot waits until vision observes it") {
   const auto desired_mps2 = [](double position_error_rms_m) {
     DrivenAgent d;
     RobotReport robot_report = resting_at({0, 0}, 0.55);
@@ -171,7 +171,7 @@ TEST_CASE("a robot that is poorly localised waits until it is observed") {
   CHECK(desired_mps2(0.002) == 0);
 }
 
-TEST_CASE("an agent plans only as long as it receives lists of obstacles") {
+TEST_CASE("an agent plans only while it receives obstacle lists") {
   DrivenAgent d;
   d.observe_self(0, 0.6, 0.61);
   CHECK_FALSE(d.plans(0.62));
@@ -180,14 +180,14 @@ TEST_CASE("an agent plans only as long as it receives lists of obstacles") {
   d.observe_self(0, 0.85, 0.86);
   CHECK(d.plans(0.89));
   CHECK_FALSE(d.plans(0.95));
-  // An incomplete list is usable with the world state of the same time.
+  // An incomplete list is usable together with the world state of the same time.
   d.agent.on_obstacles(empty_list(0.92, 1), at_s(0.93));
   CHECK_FALSE(d.plans(0.95));
   d.observe_self(0, 0.92, 0.94);
   CHECK(d.plans(0.95));
 }
 
-TEST_CASE("a robot does not drive to a place that an unlisted obstacle could reach") {
+TEST_CASE("a robot does not drive where an unlisted obstacle could reach it") {
   const auto drives = [](double complete_within_m) {
     DrivenAgent d;
     d.observe_self(0, 0.6, 0.61);
@@ -199,11 +199,11 @@ TEST_CASE("a robot does not drive to a place that an unlisted obstacle could rea
   };
   CHECK(drives(kCompleteEverywhere_m));
   CHECK(drives(2));
-  CHECK_FALSE(drives(0.1));  // as large as the robot plus its margin
+  CHECK_FALSE(drives(0.1));  // about the robot's radius plus its margin
   CHECK_FALSE(drives(0));
 }
 
-TEST_CASE("a robot with inflation waits until it is at rest and vision agrees with its own estimate") {
+TEST_CASE("an inflated robot waits until it is at rest and vision agrees with its own estimate") {
   DrivenAgent d;
   RobotReport displaced = resting_at({0, 0}, 1);
   displaced.executing.number = 50;
@@ -211,8 +211,8 @@ TEST_CASE("a robot with inflation waits until it is at rest and vision agrees wi
   displaced.executing.trajectory = Trajectory::resting(at_s(0.9), {0, 0});
   displaced.is_off_reference = true;
   d.agent.on_robot_report(displaced);
-  // If it drove on, the inflation would remain, and it might never fit where it has to go.
-  d.observe(0, 0.85, 1.01);  // from a time before it rested
+  // If the robot drove on, the inflation would remain, and the robot might never fit through narrow places.
+  d.observe(0, 0.85, 1.01);  // captured before the robot rested
   CHECK_FALSE(d.plans(1.02));
   d.observe(0.04, 1.02, 1.03);  // the robot has not received this observation yet
   CHECK_FALSE(d.plans(1.04));
@@ -238,7 +238,7 @@ TEST_CASE("each own stop of the robot counts once as a loss of its reference") {
   CHECK(losses_after(53, true) == 2);
 }
 
-TEST_CASE("an observation from the future is dropped and counted, and later valid ones are still used") {
+TEST_CASE("an observation from the future is dropped and counted, and later valid ones are used") {
   DrivenAgent d;
   d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
   d.observe_self(0, 1e6, 0.61);
@@ -270,7 +270,7 @@ TEST_CASE("an incomplete list is not used if the observation of the same time wa
   CHECK(d.plans(0.92));
 }
 
-TEST_CASE("before the robot's clock is known, an observation is forwarded but not used") {
+TEST_CASE("until the robot's clock is known, observations are forwarded but not used") {
   DrivenAgent d;
   d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
   d.observe_self(0, 0.5, 0.61);
@@ -285,15 +285,14 @@ TEST_CASE("before the robot's clock is known, an observation is forwarded but no
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 1);
 }
 
-TEST_CASE(
-    "the region that the laser did not see has the scan's time, and includes the error of the scan's pose") {
+TEST_CASE("the hidden space is dated by the scan and allows for the error of the scan's pose") {
   Scenario scenario = two_goals();
   scenario.laser.emplace();
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
   agent.on_robot_report(resting_at({0, 0}, 0.5));
   become_ready(agent, 0.6, 0.6);
   agent.on_world_state(observation(0, 0.6), at_s(0.61));
-  // There are unknown objects all around.
+  // Unknown objects surround the robot.
   const std::vector<float> ranges_m(static_cast<std::size_t>(scenario.laser->settings.beams), 1.5F);
   agent.on_scan({{0, 0}, 0, at_s(0.55), ranges_m}, at_s(0.61));
   const auto plan = agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);
@@ -303,14 +302,14 @@ TEST_CASE(
   CHECK(hidden.observed_from_m == Vec2(0, 0));
   CHECK(hidden.speed_mps == scenario.max_opponent_speed_mps);
   CHECK(hidden.heading_error_rad == 0.02);
-  // In addition to the range error, the frontier may be rotated about the robot, and people have approached
-  // since the scan.
+  // In addition to the range error, the frontier may be rotated about the robot, and people may have
+  // approached since the scan.
   const double frontier_m = 1.5 - scenario.laser->range_error_m;
   CHECK(hidden.distance_m({0.5, 0}, at_s(0.75)) ==
         Approx(frontier_m - 0.5 - 0.2 * scenario.max_opponent_speed_mps - 0.5 * 0.02).margin(0.01));
 }
 
-TEST_CASE("an observation is forwarded to the robot once") {
+TEST_CASE("each observation is forwarded to the robot once") {
   DrivenAgent d;
   d.observe(0.001, 0.6, 0.61);
   const auto first = d.agent.command(at_s(1)), second = d.agent.command(at_s(1));
@@ -319,7 +318,7 @@ TEST_CASE("an observation is forwarded to the robot once") {
   CHECK(first.fix->captured_at == at_s(0.6));
   CHECK_FALSE(first.version);
   CHECK_FALSE(second.fix);
-  // Vision repeats its last observation of a robot that it does not see.
+  // Vision repeats the last observation of a robot that it does not see.
   d.observe(0.001, 0.6, 0.62);
   CHECK_FALSE(d.agent.command(at_s(1)).fix);
 }

@@ -19,7 +19,7 @@ RememberedOrder of_kind(msg::OrderKind kind, ClientId client, OrderNumber number
   return {{kind, 3, client, number}};
 }
 
-/// The complete memory of a coordinator.
+/// A coordinator's complete memory.
 OrderPage memory(std::vector<RememberedOrder> orders) {
   return {kCoordinator, true, 0, 1, std::move(orders)};
 }
@@ -31,7 +31,7 @@ struct Robot {
   double goal_x() const { return assignment.goal() ? assignment.goal()->position_m.x() : 0; }
 };
 
-TEST_CASE("a robot knows its orders once it has heard the complete memory of a coordinator") {
+TEST_CASE("a robot knows its orders once it has received a coordinator's complete memory") {
   Robot r;
   CHECK_FALSE(r.assignment.is_known());
   r.hear(change(scenario_order()));
@@ -57,7 +57,7 @@ TEST_CASE("a robot knows its orders once it has heard the complete memory of a c
   CHECK_FALSE(other.assignment.is_known());
 }
 
-TEST_CASE("a robot visits its goals in order, and stays at the last one") {
+TEST_CASE("a robot visits its goals in order and stays at the last one") {
   Robot r;
   r.hear(memory({scenario_order()}));
   CHECK(r.goal_x() == 1);
@@ -68,13 +68,13 @@ TEST_CASE("a robot visits its goals in order, and stays at the last one") {
   CHECK(r.goal_x() == 2);
   CHECK(r.assignment.report().progress.state == msg::OrderState::ORDER_ARRIVED);
   const auto revision = r.assignment.revision();
-  r.hear(memory({scenario_order()}));  // the coordinator has not heard of it yet
+  r.hear(memory({scenario_order()}));  // the coordinator has not heard of the arrival yet
   CHECK(r.assignment.revision() == revision);
   REQUIRE(r.assignment.take_missing().size() == 1);
   CHECK(r.assignment.take_missing().empty());
 }
 
-TEST_CASE("an order of a higher rank goes first, and the interrupted one continues afterwards") {
+TEST_CASE("an order of higher rank takes precedence, and the interrupted order continues afterwards") {
   Robot r;
   r.hear(memory({go(kClient, 10, {{5, 0}, {6, 0}})}));
   r.assignment.on_arrival();
@@ -89,11 +89,11 @@ TEST_CASE("an order of a higher rank goes first, and the interrupted one continu
   CHECK(r.goal_x() == 8);
   r.assignment.on_arrival();
   CHECK(r.goal_x() == 8);
-  r.hear(change(go(kClient, 10, {{5, 0}})));  // late
+  r.hear(change(go(kClient, 10, {{5, 0}})));  // arrives late
   CHECK(r.goal_x() == 8);
 }
 
-TEST_CASE("a cancelled robot has no goal, until it is given another one") {
+TEST_CASE("a cancelled robot has no goal until it is given a new one") {
   Robot r;
   r.hear(memory({go(kClient, 10, {{5, 0}})}));
   r.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kClient, 11)));
@@ -102,10 +102,10 @@ TEST_CASE("a cancelled robot has no goal, until it is given another one") {
   r.hear(change(go(kClient, 12, {{6, 0}})));
   CHECK(r.goal_x() == 6);
   r.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kOperator, 13)));
-  CHECK(r.goal_x() == 6);  // each rank cancels its own orders
+  CHECK(r.goal_x() == 6);  // an operator's cancel does not affect a client's order
 }
 
-TEST_CASE("a new agent continues where the previous one was, and leaves finished orders alone") {
+TEST_CASE("a new agent continues where the previous one was, and does not repeat finished orders") {
   Robot first;
   first.hear(memory({go(kClient, 10, {{5, 0}, {6, 0}, {7, 0}})}));
   first.assignment.on_arrival();
@@ -116,15 +116,15 @@ TEST_CASE("a new agent continues where the previous one was, and leaves finished
   second.assignment.on_arrival();
   Robot third;
   third.hear(memory(second.assignment.all()));
-  CHECK(third.goal_x() == 7);  // it stays there, or returns
+  CHECK(third.goal_x() == 7);  // the robot stays at the goal, or returns to it
   CHECK(third.assignment.report().progress.state == msg::OrderState::ORDER_ARRIVED);
   third.hear(change(go(kOperator, 11, {{8, 0}})));
   third.assignment.on_arrival();
   third.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kOperator, 12)));
-  CHECK_FALSE(third.assignment.goal());  // the finished order has been left
+  CHECK_FALSE(third.assignment.goal());  // the finished order is over
 }
 
-TEST_CASE("an agent remembers the orders of all robots, even those that a coordinator's memory lacks") {
+TEST_CASE("an agent remembers the orders of all robots, even if a coordinator's memory lacks them") {
   const RememberedOrder other{{msg::OrderKind::ORDER_CANCEL, 4, kClient, 20}};
   const RememberedOrder another{{msg::OrderKind::ORDER_CANCEL, 5, kClient, 21}};
   Robot r;
@@ -137,7 +137,7 @@ TEST_CASE("an agent remembers the orders of all robots, even those that a coordi
   r.hear(memory({scenario_order(), another}));
   CHECK(r.assignment.all().size() == 3);
   const auto missing = r.assignment.take_missing();
-  REQUIRE(missing.size() == 2);  // the progress of this robot, and the order of another
+  REQUIRE(missing.size() == 2);  // this robot's progress, and another robot's order
   CHECK(missing[1].order.robot == 4);
 }
 
@@ -157,19 +157,19 @@ TEST_CASE("an agent knows whether a coordinator has announced every order that i
   r.hear(told_by(kActive, 1, memory({hold_of(8, 5)})));
   CHECK_FALSE(r.assignment.remembers_nothing());
   CHECK(r.assignment.is_told_by(kActive, 1));
-  CHECK_FALSE(r.assignment.is_told_by(kActive, 2));  // it has forgotten all
+  CHECK_FALSE(r.assignment.is_told_by(kActive, 2));  // a restarted coordinator has forgotten all orders
   CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
-  // This coordinator was partitioned in the meantime. Its memory claims to be complete, too.
+  // The standby was partitioned in the meantime. It claims that its memory is complete.
   r.hear(told_by(kStandby, 1, memory({})));
   CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
   REQUIRE(r.assignment.take_missing().size() == 1);
   r.hear(told_by(kStandby, 1, memory({})));
   CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
-  CHECK(r.assignment.take_missing().size() == 1);  // announced again
+  CHECK(r.assignment.take_missing().size() == 1);  // the orders are announced again
   r.hear(told_by(kStandby, 1, memory({hold_of(8, 5)})));
   CHECK(r.assignment.is_told_by(kStandby, 1));
   CHECK(r.assignment.take_missing().empty());
-  // A new order of one coordinator is not known to have reached the other.
+  // If one coordinator announces a new order, the other may not have received it.
   r.hear(told_by(kActive, 1, change(hold_of(9, 6))));
   CHECK(r.assignment.is_told_by(kActive, 1));
   CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
@@ -206,7 +206,7 @@ TEST_CASE("an agent forgets no order, however many have changed since the last c
   CHECK(r.assignment.take_missing().size() == 701);
 }
 
-TEST_CASE("of two agents in a passage, the one with the older order passes first, whichever robot has it") {
+TEST_CASE("of two robots in a passage, the one with the older order goes first") {
   constexpr Duration kPeriod = std::chrono::seconds(30);
   for (const RobotId older : {RobotId{3}, RobotId{8}}) {
     CAPTURE(older);
@@ -216,7 +216,7 @@ TEST_CASE("of two agents in a passage, the one with the older order passes first
     drive_8.order.robot = 8;
     for (Assignment* assignment : {&of_3, &of_8})
       assignment->on_page(std::make_shared<OrderPage>(memory({drive_3, drive_8})));
-    for (int period = 1; period < 4; ++period) {  // in every fourth period the order is random
+    for (int period = 1; period < 4; ++period) {  // in every fourth period the precedence is random
       const Time t = Time(period * kPeriod + kPeriod / 2);
       CHECK(of_3.yields_to({8, of_3.other(8).number}, t, kPeriod) == (older == 8));
       CHECK(of_8.yields_to({3, of_8.other(3).number}, t, kPeriod) == (older == 3));
@@ -224,14 +224,14 @@ TEST_CASE("of two agents in a passage, the one with the older order passes first
   }
 }
 
-TEST_CASE("an agent remembers nothing of robots that are not on the roster") {
+TEST_CASE("an agent remembers no orders of robots that are not on the roster") {
   Assignment assignment(3, {}, {4, 3});
   assignment.on_page(
       std::make_shared<OrderPage>(memory({hold_of(4, 5), hold_of(9, 6), hold_of(kAllRobots, 7)})));
   CHECK(assignment.all().size() == 2);
 }
 
-TEST_CASE("a robot is held as the orders say") {
+TEST_CASE("a hold order holds a robot until a resume order lifts the hold") {
   Robot r;
   r.hear(memory({scenario_order(), of_kind(msg::OrderKind::ORDER_HOLD, kClient, 5)}));
   CHECK(r.assignment.is_held());
@@ -239,7 +239,7 @@ TEST_CASE("a robot is held as the orders say") {
   CHECK_FALSE(r.assignment.is_held());
 }
 
-TEST_CASE("zones are remembered until they are removed, and other orders do not count as changes of zones") {
+TEST_CASE("zones are remembered until they are removed, and other orders do not count as zone changes") {
   Robot r;
   RememberedOrder zone{{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient, 5}};
   zone.order.zone.corners_m = {{1, 1}};
@@ -253,7 +253,7 @@ TEST_CASE("zones are remembered until they are removed, and other orders do not 
   CHECK(r.assignment.zone_revision() > revision);
 }
 
-TEST_CASE("an agent knows whether another robot is held, and where it still has to go") {
+TEST_CASE("an agent knows whether another robot is held and where it still has to go") {
   Robot r;
   const auto of_other = [](RememberedOrder order) {
     order.order.robot = 8;

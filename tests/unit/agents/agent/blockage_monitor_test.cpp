@@ -11,7 +11,7 @@ constexpr Time kStart = Time{} + 5s;
 
 Blockage by_robot(std::uint32_t robot) { return {msg::BlockReason::BLOCK_ROBOT, robot, {1, 0}, {0, 0}}; }
 
-TEST_CASE("a blockage is reported once it has lasted long enough, with its latest cause") {
+TEST_CASE("a blockage is reported with its latest cause once it has lasted long enough") {
   BlockageMonitor monitor(300ms);
   CHECK_FALSE(monitor.is_blocked());
   monitor.on_blocked(by_robot(3), kStart);
@@ -22,7 +22,7 @@ TEST_CASE("a blockage is reported once it has lasted long enough, with its lates
   CHECK(monitor.lasting(kStart + 300ms)->blocker == 4);
 }
 
-TEST_CASE("a blockage ends when the goal can be reached, and the next one must last long enough again") {
+TEST_CASE("a blockage ends when the goal becomes reachable, and the next one must last long enough again") {
   BlockageMonitor monitor(300ms);
   monitor.on_blocked(by_robot(3), kStart);
   monitor.clear();
@@ -33,7 +33,7 @@ TEST_CASE("a blockage ends when the goal can be reached, and the next one must l
   CHECK(monitor.lasting(kStart + 1300ms));
 }
 
-TEST_CASE("after the clock was set back, a blockage must last long enough again") {
+TEST_CASE("after the clock is set back, a blockage must last long enough again") {
   BlockageMonitor monitor(300ms);
   monitor.on_blocked(by_robot(3), kStart);
   monitor.restart();

@@ -15,8 +15,7 @@ constexpr double kCycle_s = 1.0 / 60;
 Time at_s(double seconds) { return time_from_ns(1'000'000'000'000'000) + from_seconds(seconds); }
 
 /// An agent with a robot and a coordinator whose clocks are ahead of the agent's by `robot_s` and
-/// `coordinator_s`. The network's delays are uniform over `min_delay_s` to that plus
-/// `spread_s`.
+/// `coordinator_s`. Network delays are uniform from `min_delay_s` to `min_delay_s + spread_s`.
 struct ClockFixture {
   double robot_s = 0, coordinator_s = 0, min_delay_s = 0.0002, spread_s = 0.0002;
   Rng rng{1};
@@ -86,7 +85,8 @@ TEST_CASE("motion requires recent measurements of both clocks") {
 }
 
 TEST_CASE(
-    "a robot whose clock is within the bound of the coordinator's may move, for any clock of the agent") {
+    "a robot whose clock agrees with the coordinator's within the bound may move, whatever the agent's "
+    "clock") {
   const double own_s = GENERATE(0.0, 0.1, -3600.0, 5.0);
   const double offset_s = GENERATE(0.0, 0.0004, -0.0004);
   CAPTURE(own_s, offset_s);
@@ -99,13 +99,15 @@ TEST_CASE(
   REQUIRE(known);
   CHECK(known->low <= from_seconds(offset_s));
   CHECK(known->high >= from_seconds(offset_s));
-  // The agent's estimate of its robot's clock.
+  // The agent also estimates its robot's clock.
   CHECK(to_seconds(f.clocks.robot_offset()) == Approx(f.robot_s).margin(0.0006));
   CHECK(f.clocks.max_robot_offset(at_s(1)) >= from_seconds(f.robot_s) - Duration{1000});
   if (own_s == 0 && offset_s == 0) CHECK(f.clocks.robot_offset() == Duration{0});
 }
 
-TEST_CASE("an offset beyond the bound by more than the fastest round trips is detected, in both directions") {
+TEST_CASE(
+    "an offset in either direction is detected if it exceeds the bound by more than the fastest round "
+    "trips") {
   const double offset_s = GENERATE(0.0011, -0.0011, 0.02, -0.02, 3600.0);
   CAPTURE(offset_s);
   ClockFixture f;
@@ -124,16 +126,16 @@ TEST_CASE("an offset beyond the bound by more than the fastest round trips is de
   CHECK(f.clocks.allows_motion(at_s(1 + 10 * kCycle_s)));
 }
 
-TEST_CASE("the larger the offset that the measurements permit, the lower the speed") {
+TEST_CASE("the larger the offset that the measurements permit, the lower the maximum speed") {
   ClockFixture quick;
   CHECK(quick.clocks.max_speed_mps(at_s(0)) == 0);
   quick.measure_robot(0);
   CHECK(quick.clocks.max_speed_mps(at_s(0.01)) == 0);
   quick.measure_both(0, 60);
   CHECK(quick.clocks.max_speed_mps(at_s(1)) > 2);
-  CHECK(quick.clocks.max_speed_mps(at_s(4)) == 0);  // not measured for too long
+  CHECK(quick.clocks.max_speed_mps(at_s(4)) == 0);  // the last measurement is too old
 
-  // The default margin leaves 2 mm per robot for clocks.
+  // Of the default margin, 2 mm per robot are reserved for clocks.
   ClockFixture slow;
   slow.min_delay_s = 0.01;
   slow.spread_s = 0;
@@ -142,7 +144,7 @@ TEST_CASE("the larger the offset that the measurements permit, the lower the spe
   slow.robot_s = 0.004;
   slow.measure_both(1, 60);
   CHECK_FALSE(slow.clocks.is_beyond_bound(at_s(2)));
-  // The offset may have been anywhere in the interval before, so both remain possible.
+  // Before the change, the offset may have been anywhere in the interval, so both offsets remain possible.
   CHECK(slow.clocks.max_speed_mps(at_s(2)) <= 0.002 / 0.019);
 
   for (const double offset_s : {0.0004, -0.0004}) {
@@ -155,11 +157,11 @@ TEST_CASE("the larger the offset that the measurements permit, the lower the spe
   }
 }
 
-TEST_CASE("the larger the offset that the measurements permit, the later the robot may be") {
+TEST_CASE("the larger the offset that the measurements permit, the larger the robot's possible lag") {
   ClockFixture f;
   f.measure_both(0, 60);
   CHECK(f.clocks.max_lag(at_s(1)) < Duration{500'000});
-  CHECK(f.clocks.max_lag(at_s(4)) == ClockMonitor::kMaxMeasurementAge);  // not measured for too long
+  CHECK(f.clocks.max_lag(at_s(4)) == ClockMonitor::kMaxMeasurementAge);  // the last measurement is too old
 
   const double offset_s = GENERATE(0.0, -0.06, 0.06);
   CAPTURE(offset_s);
@@ -169,11 +171,11 @@ TEST_CASE("the larger the offset that the measurements permit, the later the rob
   slow.spread_s = 0;
   slow.measure_both(0, 60);
   REQUIRE(slow.clocks.allows_motion(at_s(1.2)));
-  // The offset lies within 0.1 s of the true one; a robot whose clock is behind is late.
+  // The measured offset is within 0.1 s of the true one. A robot whose clock is behind lags.
   CHECK(to_seconds(slow.clocks.max_lag(at_s(1.2)) + kBound) == Approx(0.1 - offset_s).epsilon(0.02));
 }
 
-TEST_CASE("a clock jump while the robot drives is detected within two cycles") {
+TEST_CASE("a clock jump during motion is detected within two cycles") {
   ClockFixture f;
   f.measure_both(0, 60);
   REQUIRE(f.clocks.allows_motion(at_s(1)));
@@ -182,7 +184,7 @@ TEST_CASE("a clock jump while the robot drives is detected within two cycles") {
   CHECK(f.clocks.is_beyond_bound(at_s(1 + 2 * kCycle_s)));
 }
 
-TEST_CASE("a coordinator that begins another epoch is still known by the clock that was measured") {
+TEST_CASE("the measured clock of a coordinator remains known when the coordinator begins another epoch") {
   ClockFixture f;
   f.measure_both(0, 10);
   const auto measured = f.clocks.robot_coordinator_offset(at_s(0.2));
@@ -234,7 +236,7 @@ TEST_CASE("clock measurements start over with a new epoch and with a restarted r
   CHECK(f.clocks.is_beyond_bound(at_s(0.27)));
 }
 
-TEST_CASE("the clock that a robot had before a restart does not narrow the interval of its present clock") {
+TEST_CASE("measurements from before a robot's restart do not narrow the interval of its present clock") {
   ClockFixture f;
   f.spread_s = 0;
   f.measure_both(0, 10);
@@ -248,7 +250,7 @@ TEST_CASE("the clock that a robot had before a restart does not narrow the inter
   CHECK(f.clocks.max_robot_offset(at_s(0.21)) >= from_seconds(f.robot_s));
 }
 
-TEST_CASE("echoes of other senders' messages and impossible stamps are ignored") {
+TEST_CASE("echoes of other senders' messages and impossible timestamps are ignored") {
   ClockFixture f;
   f.measure_robot(0);
   Verdict foreign = f.verdict(0.01);
@@ -289,13 +291,13 @@ TEST_CASE("echoes of other senders' messages and impossible stamps are ignored")
   CHECK(after->high == before->high);
 }
 
-TEST_CASE("an agent whose own clock is set measures the other clocks again") {
+TEST_CASE("an agent measures the other clocks again after its own clock has been set") {
   const double jump_s = GENERATE(-3500.0, -5.0, -0.05, 0.05, 5.0, 3500.0);
   CAPTURE(jump_s);
   ClockFixture f;
   f.measure_both(0, 60);
   REQUIRE(f.clocks.allows_motion(at_s(1.01)));
-  // Both other clocks are behind or ahead of the agent's from now on.
+  // From now on, both other clocks are behind or ahead of the agent's.
   f.robot_s = f.coordinator_s = -jump_s;
   const double now = 1 + jump_s;
   if (jump_s < 0) CHECK_FALSE(f.clocks.allows_motion(at_s(now)));

@@ -26,14 +26,15 @@ struct Fixture {
   SeenRegion seen(Duration max_lag = Duration{0}) const { return monitor.seen(at_s(10), max_lag); }
 };
 
-TEST_CASE("before the first list nothing is known") {
+TEST_CASE("nothing counts as seen before the first list") {
   Fixture f;
   f.monitor.on_world_state(world(10, {1, 2}));
   CHECK(f.monitor.complete_at() == Time{});
   CHECK(f.seen().radius_m == 0);
 }
 
-TEST_CASE("a complete list is usable alone, an incomplete one only with the world state of the same time") {
+TEST_CASE(
+    "a complete list is usable alone, but an incomplete one only with the world state of the same time") {
   Fixture f;
   f.monitor.on_list(list(10, kCompleteEverywhere_m));
   CHECK(f.monitor.complete_at() == at_s(10));
@@ -46,10 +47,10 @@ TEST_CASE("a complete list is usable alone, an incomplete one only with the worl
   CHECK(f.seen().radius_m == 2);
   CHECK(f.seen().observed_at == at_s(10.1) - kSlack);
   CHECK(f.seen().speed_mps == 1.5);
-  // A robot that may be late sees less.
+  // If the robot may lag, its seen region is smaller.
   CHECK(f.seen(from_seconds(0.06)).radius_at_m(at_s(11)) ==
         Approx(f.seen().radius_at_m(at_s(11)) - 1.5 * 0.06));
-  // The world state first.
+  // Now the world state arrives first.
   f.monitor.on_world_state(world(10.2, {1, 3}));
   f.monitor.on_list(list(10.2, 1));
   CHECK(f.monitor.complete_at() == at_s(10.2));
@@ -72,7 +73,7 @@ TEST_CASE(
   CHECK(f.monitor.complete_at() == at_s(10));
 }
 
-TEST_CASE("late and repeated lists and worlds do not replace newer ones") {
+TEST_CASE("late and repeated lists and world states do not replace newer ones") {
   Fixture f;
   f.monitor.on_world_state(world(10, {1, 2}));
   f.monitor.on_world_state(world(9.9, {0, 0}));
@@ -82,7 +83,7 @@ TEST_CASE("late and repeated lists and worlds do not replace newer ones") {
   f.monitor.on_list(list(9.95, kCompleteEverywhere_m));
   CHECK(f.monitor.complete_at() == at_s(10));
   CHECK(f.seen().radius_m == 2);
-  // A list that has waited for its world state is superseded.
+  // A list that is still waiting for its world state is superseded.
   f.monitor.on_list(list(10.1, 1));
   f.monitor.on_list(list(10.2, kCompleteEverywhere_m));
   f.monitor.on_world_state(world(10.1, {1, 2}));
@@ -90,7 +91,7 @@ TEST_CASE("late and repeated lists and worlds do not replace newer ones") {
   CHECK(f.seen().is_everywhere());
 }
 
-TEST_CASE("the latest of many world states are remembered") {
+TEST_CASE("the latest world states are remembered for lists that arrive later") {
   Fixture f;
   for (int k = 0; k < 100; ++k) f.monitor.on_world_state(world(10 + 0.01 * k, {0.1 * k, 0}));
   f.monitor.on_list(list(10.9, 1));
@@ -100,13 +101,13 @@ TEST_CASE("the latest of many world states are remembered") {
 }
 
 TEST_CASE(
-    "forgotten obstacles limit what is seen, together with the lists, until they would have been dropped") {
+    "together with the lists, forgotten obstacles limit the seen region until they would have been dropped") {
   Fixture f;
   f.monitor.on_list(list(10, kCompleteEverywhere_m));
   f.monitor.on_forgotten({{0, 0}, 3, at_s(10), 1.5}, at_s(11));
   CHECK(f.monitor.seen(at_s(10.5)).radius_m == 3);
   f.monitor.on_forgotten({{1, 0}, 2.5, at_s(10.2), 1.5}, at_s(11.2));
-  // Of the first region, 3 m - 0.2 s * 1.5 m/s - 1 m remain around the new centre.
+  // Of the first region, a radius of 3 m - 0.2 s * 1.5 m/s - 1 m remains around the new centre.
   CHECK(f.monitor.seen(at_s(10.5)).centre_m == Vec2(1, 0));
   CHECK(f.monitor.seen(at_s(10.5)).radius_m == Approx(1.7));
   f.monitor.on_world_state(world(10.4, {1, 0.5}));

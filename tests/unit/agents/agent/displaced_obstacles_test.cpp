@@ -35,7 +35,7 @@ struct Fixture {
   }
 };
 
-TEST_CASE("displaced robots are moving obstacles, but the robot itself is not") {
+TEST_CASE("displaced robots are moving obstacles, except the robot itself") {
   Fixture f;
   msg::RobotNotice missing;
   missing.robot(8);
@@ -55,7 +55,7 @@ TEST_CASE("displaced robots are moving obstacles, but the robot itself is not") 
   CHECK(f.obstacles.recent(kNow, kNoLag).empty());
 }
 
-TEST_CASE("a displaced robot that vision has lost for a second is dropped") {
+TEST_CASE("a displaced robot is dropped after vision has lost it for a second") {
   Fixture f;
   f.receive({displaced(5, 2, 0)});
   CHECK(f.obstacles.recent(kNow + std::chrono::milliseconds(990), kNoLag).size() == 1);

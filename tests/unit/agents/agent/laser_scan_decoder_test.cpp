@@ -27,7 +27,7 @@ msg::LaserScan valid_scan() {
   return scan;
 }
 
-TEST_CASE("a scan is decoded unchanged, with beams that hit nothing, are too near or are lost") {
+TEST_CASE("a scan is decoded unchanged, including beams that hit nothing, are too near or are lost") {
   LaserScanDecoder decoder(kRobot, kLaser);
   const msg::LaserScan message = valid_scan();
   const auto scan = decoder.decode(message, kNow);
@@ -42,7 +42,7 @@ TEST_CASE("a scan is decoded unchanged, with beams that hit nothing, are too nea
   CHECK(std::isnan(scan->ranges_m[4]));
 }
 
-TEST_CASE("scans of another robot, another laser or another time, or without a valid pose, are refused") {
+TEST_CASE("scans from another robot or laser, at an invalid time, or without a valid pose are refused") {
   LaserScanDecoder decoder(kRobot, kLaser);
   const auto accepts = [&](auto spoil) {
     msg::LaserScan scan = valid_scan();
@@ -67,7 +67,7 @@ TEST_CASE("scans of another robot, another laser or another time, or without a v
   CHECK_FALSE(accepts([](Scan& s) { s.captured_at_ns(std::numeric_limits<std::int64_t>::min()); }));
 }
 
-TEST_CASE("random bytes are not a scan, or give one that is refused or within bounds") {
+TEST_CASE("a scan with random bytes is unreadable, refused or within bounds") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);

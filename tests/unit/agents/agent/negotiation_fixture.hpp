@@ -42,7 +42,7 @@ inline CoordinatorHeartbeat heartbeat(Epoch epoch, const std::vector<RobotId>& m
   return state;
 }
 
-/// The coordinator's answer to a proposal; it grants nothing.
+/// The coordinator's answer to a proposal. It grants nothing.
 inline Verdict verdict_on(const Proposal& proposal, Epoch epoch = kEpoch) {
   Verdict verdict;
   verdict.robot = kRobot;

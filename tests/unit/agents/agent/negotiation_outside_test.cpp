@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots that are pushed, lifted or put down elsewhere, or that another agent has driven.
+// Robots that are pushed, lifted, put down elsewhere, or were driven by another agent.
 #include "agents/agent/negotiation.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/agents/agent/negotiation_fixture.hpp"
@@ -8,11 +8,10 @@ namespace sidestep::negotiation_outside_test {
 
 using namespace negotiation_fixture;
 
-/// Whether a registration says that the robot is absent.
+/// Whether the registration declares the robot absent.
 bool is_empty(const Registration& registration) { return registration.versions->versions().empty(); }
 
-TEST_CASE(
-    "the stop of a robot off its reference is the base of later versions, whose numbers exceed the stop's") {
+TEST_CASE("a robot's own stop is the base of later versions, and their numbers exceed the own stop's") {
   NegotiationFixture f;
   f.become_ready();
   const auto pending = f.grant(f.propose(1.0, 0.9), 0.95);
@@ -74,11 +73,11 @@ TEST_CASE("a lifted robot holds no version, registers as absent, and proposes a 
   REQUIRE(rest);
   CHECK(rest->base == 0);
   CHECK(f.n.is_absent());
-  CHECK_FALSE(is_empty(f.n.registration()));  // the robot may take the rest version
+  CHECK_FALSE(is_empty(f.n.registration()));  // the robot may execute the rest version
   CHECK(f.n.has_upcoming_version(at_s(1.26)));
   f.n.on_robot_report(lifted(1.31, *rest));
   CHECK_FALSE(f.n.is_absent());
-  // A late fact says that it executes nothing. Then it is lifted again.
+  // A late fact from before the robot executed the rest version. Then the robot is lifted again.
   f.n.on_robot_report(lifted(1.28, none));
   CHECK_FALSE(f.n.is_absent());
   CHECK(f.n.held().base_at(at_s(2)).number == rest->number);

@@ -10,7 +10,8 @@ namespace sidestep::negotiation_test {
 
 using namespace negotiation_fixture;
 
-TEST_CASE("an agent proposes only after its robot has acknowledged it and the coordinator knows it") {
+TEST_CASE(
+    "an agent proposes only after its robot has acknowledged it and the coordinator has registered it") {
   NegotiationFixture f;
   CHECK_FALSE(f.n.is_fenced());
   f.n.on_robot_report(make_report(f.initial, 0.1, kSelf - 1));
@@ -31,7 +32,7 @@ TEST_CASE("an agent proposes only after its robot has acknowledged it and the co
 
 TEST_CASE(
     "an agent repeats its registration until it is received, even if an earlier agent of its robot is "
-    "known") {
+    "registered") {
   NegotiationFixture f;
   f.n.on_robot_report(make_report(f.initial, 0.5));
   f.n.on_coordinator_state(heartbeat(kEpoch), at_s(0.9));
@@ -67,7 +68,7 @@ TEST_CASE("a late verdict leaves the robot braking") {
   CHECK(f.n.counts().missed == 1);
 }
 
-TEST_CASE("a verdict is obeyed once, and only the first of several grants for one start counts") {
+TEST_CASE("each verdict is obeyed once, and only the first of several grants for the same start counts") {
   NegotiationFixture f;
   f.become_ready();
   const auto first = f.propose(1.0, 0.9), again = f.propose(1.0, 0.93);
@@ -90,7 +91,7 @@ TEST_CASE("a denied version is neither forwarded nor registered") {
   CHECK(f.n.registration().versions->versions().size() == 1);
 }
 
-TEST_CASE("an unanswered proposal is repeated while there is time, a limited number of times") {
+TEST_CASE("an unanswered proposal is repeated a limited number of times while there is time") {
   NegotiationFixture f;
   f.become_ready();
   (void)f.propose(2.0, 1.0);
@@ -110,7 +111,7 @@ TEST_CASE("nothing is proposed to a coordinator that has fallen silent") {
   CHECK(f.n.may_propose(at_s(1.7)));
 }
 
-TEST_CASE("nothing is proposed two cycles after the last fact, and again after the next one") {
+TEST_CASE("an agent stops proposing two cycles after its robot's last fact, and resumes with the next fact") {
   NegotiationFixture f;
   f.become_ready();
   REQUIRE(f.n.lead() == 1);
@@ -136,19 +137,19 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
   };
   f.n.on_robot_report(report_of(1, own_stop(5000, 3600), 3600));
   REQUIRE(f.n.held().executing().number == 5000);
-  // Its clock has been set back.
+  // The robot's clock has been set back.
   f.n.on_robot_report(report_of(2, own_stop(9000, 10), 10));
   CHECK(f.n.held().executing().number == 9000);
-  SECTION("a late fact of the earlier one changes nothing") {
+  SECTION("a late fact of the earlier incarnation changes nothing") {
     f.n.on_robot_report(report_of(1, own_stop(5000, 3600), 3601));
     CHECK(f.n.held().executing().number == 9000);
     f.n.on_robot_report(report_of(2, own_stop(7000, 10), 9));
     CHECK(f.n.held().executing().number == 9000);
-    // Robots never return to an earlier incarnation, so the previous fact was false.
+    // A robot never returns to an earlier incarnation, so the previous fact was false.
     f.n.on_robot_report(report_of(2, own_stop(7000, 10), 11));
     CHECK(f.n.held().executing().number == 7000);
   }
-  SECTION("a false fact of a later one does not exclude true ones for good") {
+  SECTION("a false fact of a later incarnation does not exclude true facts for good") {
     f.n.on_robot_report(report_of(99, own_stop(20'000, 10), 3000));
     REQUIRE(f.n.held().executing().number == 20'000);
     int reports = 0;
@@ -156,7 +157,7 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
       f.n.on_robot_report(report_of(2, own_stop(9000, 10), 11 + 0.01 * reports));
     CHECK(reports == 60);
   }
-  SECTION("lifting") {
+  SECTION("a lifting takes effect") {
     RobotReport lifted = report_of(3, f.initial, 11);
     lifted.is_off_reference = false;
     lifted.is_lifted = true;
@@ -165,7 +166,7 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
   }
 }
 
-TEST_CASE("a silent agent continues although its robot's clock was set back meanwhile") {
+TEST_CASE("a superseded agent continues even if its robot's clock was set back meanwhile") {
   NegotiationFixture f;
   f.become_ready();
   f.n.on_robot_report(make_report(f.initial, 3600, f.n.incarnation() + 5));
@@ -178,7 +179,7 @@ TEST_CASE("a silent agent continues although its robot's clock was set back mean
   CHECK_FALSE(f.n.is_superseded());
 }
 
-TEST_CASE("a silent agent asks its robot when the robot has fallen silent, and only then") {
+TEST_CASE("a superseded agent queries its robot only when the robot has fallen silent") {
   NegotiationFixture f;
   f.become_ready();
   for (int cycle = 0; cycle < 40; ++cycle) f.n.close_cycle(at_s(1));
@@ -189,7 +190,7 @@ TEST_CASE("a silent agent asks its robot when the robot has fallen silent, and o
     REQUIRE(f.n.is_superseded());
     CHECK_FALSE(f.n.must_ask_robot());
   }
-  int cycles = 1;  // since the last fact
+  int cycles = 1;  // cycles since the last fact
   for (; !f.n.must_ask_robot() && cycles < 100; ++cycles) f.n.close_cycle(at_s(3));
   CHECK(cycles == 30);  // half a second
   CHECK(f.n.is_superseded());
@@ -199,7 +200,7 @@ TEST_CASE("a silent agent asks its robot when the robot has fallen silent, and o
   CHECK_FALSE(f.n.must_ask_robot());
 }
 
-TEST_CASE("an agent continues although a version starts much later because of a wrong clock") {
+TEST_CASE("an agent continues although a wrong clock made a version start much later") {
   NegotiationFixture f;
   f.become_ready();
   const auto granted = f.grant(f.propose(3600, 0.96), 0.97);
@@ -209,32 +210,32 @@ TEST_CASE("an agent continues although a version starts much later because of a 
   REQUIRE(next);
   CHECK(f.n.has_upcoming_version(at_s(1.0)));
   CHECK(next->base == f.initial.number);
-  // It may still be executing either of them.
+  // The robot may still be executing any of the three.
   CHECK(f.n.registration().versions->versions().size() == 3);
   f.n.on_robot_report(make_report(*next, 1.2));
   CHECK(f.n.registration().versions->versions().size() == 1);
 }
 
-TEST_CASE("an agent asks for another coordinator if it hears none, or gets no answer") {
+TEST_CASE("an agent asks for another coordinator if it hears none or is not served") {
   NegotiationFixture f;
   CHECK_FALSE(f.n.is_unserved(at_s(0.5)));
-  SECTION("none has ever been heard") {
+  SECTION("no coordinator was ever heard") {
     f.n.on_robot_report(make_report(f.initial, 0.5, kSelf, 0));
     CHECK_FALSE(f.n.is_unserved(at_s(2.4)));
     CHECK(f.n.is_unserved(at_s(2.5)));
   }
-  SECTION("heartbeats") {
+  SECTION("heartbeats stop") {
     f.become_ready();
     CHECK_FALSE(f.n.is_unserved(at_s(1.3)));
     CHECK(f.n.is_unserved(at_s(1.4)));
     f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.4));
     CHECK_FALSE(f.n.is_unserved(at_s(1.5)));
-    // The clock was ahead.
+    // The last heartbeat came while the clock was ahead.
     f.n.on_coordinator_state(heartbeat(kEpoch), at_s(100));
     CHECK(f.n.is_unserved(at_s(2)));
     CHECK(f.n.wait_reason(at_s(2)) == WaitReason::kNoCoordinator);
   }
-  SECTION("answers") {
+  SECTION("answers stop") {
     f.become_ready();
     const Proposal first = f.propose(1.1, 1.0);
     (void)f.propose(1.2, 1.1);
@@ -251,7 +252,7 @@ TEST_CASE("an agent asks for another coordinator if it hears none, or gets no an
     (void)f.n.on_verdict(registered, at_s(1.9));
     CHECK_FALSE(f.n.is_unserved(at_s(1.9)));
   }
-  SECTION("a coordinator that does not hear the robot") {
+  SECTION("the coordinator does not hear the robot") {
     f.become_ready();
     const auto reason = GENERATE(msg::Reason::REASON_LEDGER_FULL, msg::Reason::REASON_BASE_UNKNOWN);
     for (int i = 0; i < 8; ++i) {
@@ -269,14 +270,14 @@ TEST_CASE("an agent asks for another coordinator if it hears none, or gets no an
     (void)f.n.on_verdict(conflict, at_s(1.45));
     CHECK_FALSE(f.n.is_unserved(at_s(1.45)));
   }
-  SECTION("but not if the robot does not acknowledge the epoch") {
+  SECTION("the robot does not acknowledge the epoch, which is not the coordinator's fault") {
     f.become_ready();
     f.n.on_coordinator_state(heartbeat(kEpoch + 8), at_s(1));
     CHECK_FALSE(f.n.is_unserved(at_s(9)));
   }
 }
 
-TEST_CASE("a new agent learns from its robot which epoch it has obeyed, and ignores lower ones") {
+TEST_CASE("a new agent learns the obeyed epoch from its robot and ignores lower ones") {
   NegotiationFixture f;
   f.n.on_robot_report(make_report(f.initial, 0.5, kSelf, kEpoch));
   f.n.on_coordinator_state(heartbeat(kEpoch - 10), at_s(0.6));
@@ -306,8 +307,8 @@ TEST_CASE("a coordinator with a slow clock learns the highest epoch, unless a la
 }
 
 TEST_CASE(
-    "an agent whose clock is behind raises its incarnation above an earlier agent's, and yields only once it "
-    "was obeyed") {
+    "an agent with a slow clock raises its incarnation above its predecessor's, and is superseded only after "
+    "it was obeyed") {
   NegotiationFixture f;
   f.n.on_robot_report(make_report(f.initial, 0.5, 5000));
   CHECK_FALSE(f.n.is_superseded());
@@ -319,7 +320,7 @@ TEST_CASE(
   CHECK(f.n.is_superseded());
 }
 
-TEST_CASE("a silent agent continues if a later fact, but not an earlier one, acknowledges it") {
+TEST_CASE("a superseded agent continues if a later fact, but not an earlier one, acknowledges it") {
   NegotiationFixture f;
   f.become_ready();
   const Incarnation self = f.n.incarnation();
@@ -334,7 +335,7 @@ TEST_CASE("a silent agent continues if a later fact, but not an earlier one, ack
   CHECK(f.n.may_propose(at_s(0.82)));
 }
 
-TEST_CASE("a verdict that grants an unknown version is not forwarded") {
+TEST_CASE("a grant of an unknown version is not forwarded") {
   NegotiationFixture f;
   f.become_ready();
   Verdict verdict = verdict_on(f.propose(1.0, 0.9));
@@ -344,8 +345,8 @@ TEST_CASE("a verdict that grants an unknown version is not forwarded") {
 }
 
 TEST_CASE(
-    "a higher epoch cancels outstanding proposals, lower ones are ignored, and every version that may be "
-    "executed is registered") {
+    "a higher epoch cancels proposals, a lower epoch is ignored, and every version that may be executed is "
+    "registered") {
   NegotiationFixture f;
   f.become_ready();
   const auto forwarded = f.grant(f.propose(1.0, 0.9), 0.95);
@@ -399,7 +400,7 @@ TEST_CASE("late facts change nothing") {
   CHECK(f.n.counts().lost == 0);
 }
 
-TEST_CASE("a fact older than the one that ended the fencing does not exclude a version granted since") {
+TEST_CASE("a fact from before the fencing was acknowledged does not exclude a version granted since") {
   NegotiationFixture f;
   RobotReport lifted = make_report(f.initial, 0.5);
   lifted.is_lifted = true;
@@ -422,7 +423,7 @@ TEST_CASE("a fact older than the one that ended the fencing does not exclude a v
   CHECK(registration.versions->versions()[0].number == granted->number);
 }
 
-TEST_CASE("an agent numbers a rest version above the robot's last version, even if that was never reported") {
+TEST_CASE("an agent numbers a rest version above the robot's last version, even an unreported one") {
   NegotiationFixture f;
   f.become_ready();
   const VersionNumber unreported_stop = f.propose(1, 0.96).candidates[0]->number + (VersionNumber{1} << 20);
@@ -445,14 +446,14 @@ TEST_CASE("an agent recovers from a false fact about a version that its robot do
   forged.number += 1000;
   f.n.on_robot_report(make_report(forged, 1.02));
   CHECK(f.n.held().executing().number == forged.number);
-  f.n.on_robot_report(make_report(*granted, 1.0));  // late
+  f.n.on_robot_report(make_report(*granted, 1.0));  // arrives late
   CHECK(f.n.held().executing().number == forged.number);
   f.n.on_robot_report(make_report(*granted, 1.03));
   CHECK(f.n.held().executing().number == granted->number);
   CHECK(f.n.is_contradicted());
 }
 
-TEST_CASE("an agent falls silent when a later agent has fenced it") {
+TEST_CASE("an agent falls silent when a later agent has fenced its robot") {
   NegotiationFixture f;
   f.become_ready();
   const auto proposal = f.propose(1.0, 0.9);
@@ -463,7 +464,7 @@ TEST_CASE("an agent falls silent when a later agent has fenced it") {
   CHECK_FALSE(f.grant(proposal, 0.95));
 }
 
-TEST_CASE("version numbers increase over incarnations and candidates") {
+TEST_CASE("version numbers increase across incarnations and candidates") {
   NegotiationFixture f;
   f.become_ready();
   VersionNumber last = 0;
@@ -473,7 +474,7 @@ TEST_CASE("version numbers increase over incarnations and candidates") {
     last = number;
   }
   CHECK(last < kSelf + 100);
-  // The robot executes a version with a higher number: the host's clock was set back.
+  // The robot executes a version with a higher number, because the host's clock was set back.
   Negotiation other(kRobot, kSelf, from_seconds(1.0 / 60));
   Version ahead = f.initial;
   ahead.number = 5000;
@@ -482,7 +483,7 @@ TEST_CASE("version numbers increase over incarnations and candidates") {
   CHECK(other.propose({&rest, 1}, 5000, at_s(0.9)).candidates[0]->number > 5000);
 }
 
-TEST_CASE("a verdict on an open or late proposal gives its round trip, an unexpected verdict does not") {
+TEST_CASE("a verdict on an open or late proposal yields its round trip, but an unexpected verdict does not") {
   NegotiationFixture f;
   f.become_ready();
   Verdict verdict = verdict_on(f.propose(1.0, 0.9));

@@ -49,13 +49,13 @@ std::vector<VersionNumber> versions_within(Neighbours& neighbours, const Vec2& c
   return numbers;
 }
 
-TEST_CASE("exactly the versions within the horizon of the latest pages are known") {
+TEST_CASE("exactly the versions that the latest pages list within the horizon are known") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
   constexpr double kHorizon_m = 2.5;
   Neighbours neighbours(0);
-  // Reference: for each page, the versions of its latest message that were within the horizon at that time.
+  // Reference: of each page's latest message, the versions that were within the horizon on arrival.
   std::map<std::uint32_t, std::vector<VersionNumber>> expected;
   std::uint64_t number = 0;
   Vec2 centre(0, 0);
@@ -100,7 +100,7 @@ TEST_CASE("older pages and pages of older epochs change nothing") {
   CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{11});
 }
 
-TEST_CASE("a page with an invalid rectangle is still used") {
+TEST_CASE("a page with an invalid bounding rectangle is still used") {
   Neighbours neighbours(0);
   neighbours.set_horizon({0, 0}, 2);
   const Version a = resting_version(1, 10, {1, 0});
@@ -119,19 +119,19 @@ TEST_CASE("malformed versions within the horizon are counted, and the others are
   auto page = page_of(0, 1, versions);
   page.versions()[0].phase_count(99);
   page.versions()[1].vx_mps(std::nan(""));
-  page.versions()[3].phase_count(99);  // its own version
+  page.versions()[3].phase_count(99);  // the agent's own robot is skipped
   receive(neighbours, page);
   CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{12});
   CHECK(neighbours.invalid() == 2);
 }
 
-TEST_CASE("the nearest robots whose versions have all come to rest are found as stationary") {
+TEST_CASE("the nearest robots whose versions have all ended count as stationary") {
   Neighbours neighbours(0);
   neighbours.set_horizon({0, 0}, 5);
   std::vector<Version> versions;
   for (RobotId robot = 1; robot <= 5; ++robot)
     versions.push_back(resting_version(robot, robot, {0.5 * (6.0 - robot), 0}));
-  // Robot 5 has a version that moves later.
+  // Robot 5 has another version, which moves later.
   Version leaving = resting_version(5, 50, {0.5, 0});
   leaving.trajectory.append(std::chrono::seconds(9), {0, 0});
   versions.push_back(leaving);

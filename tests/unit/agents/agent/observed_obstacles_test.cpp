@@ -16,7 +16,7 @@ constexpr double kSpeed_mps = 1.5;
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
-/// A list, and the memory of its obstacles.
+/// A list and its obstacles.
 struct List {
   std::vector<ObservedObstacle> obstacles;
   ObstacleObservations observations;
@@ -57,13 +57,13 @@ TEST_CASE("an observation is kept with its uncertainty until a newer one of the 
   CHECK(first.speed_mps == kSpeed_mps);
   CHECK(first.observed_at == at_s(10) - kSlack);
   f.receive(5, 1.2, 10.1, 10.12);
-  // A late message.
+  // A message that arrives late.
   f.receive(5, 1.1, 10.05, 10.13);
   REQUIRE(f.obstacles.recent(at_s(10.13), kNoLag).size() == 1);
   CHECK(f.obstacles.recent(at_s(10.13), kNoLag)[0].position_m == Vec2(1.2, 0));
 }
 
-TEST_CASE("an obstacle that is no longer observed is kept for a second, and its reach grows") {
+TEST_CASE("an unobserved obstacle is kept for a second, and its reach grows") {
   Fixture f;
   f.receive(5, 1, 10, 10.02);
   f.receive(List(10.5), 10.5);
@@ -134,7 +134,7 @@ TEST_CASE("a list from the future is counted and dropped as a whole") {
   }
 }
 
-TEST_CASE("a list may be ahead by as much as vision's clock and the clock bound") {
+TEST_CASE("a list may be ahead by the clock bound plus the tolerance for vision's clock") {
   const Duration max_difference{150'000'000};
   ObservedObstacles obstacles(kSpeed_mps, max_difference);
   obstacles.on_list(List(10.26), {0, 0}, at_s(10));
@@ -143,7 +143,7 @@ TEST_CASE("a list may be ahead by as much as vision's clock and the clock bound"
   CHECK(obstacles.complete_at() == at_s(10.24));
 }
 
-TEST_CASE("old observations are dropped, and not counted as invalid") {
+TEST_CASE("old observations are dropped but not counted as invalid") {
   for (const Time observed_at : {at_s(9), Time::min()}) {
     Fixture f;
     f.receive(List(10).add(7, {1, 0}, observed_at), 10.02);
@@ -153,7 +153,7 @@ TEST_CASE("old observations are dropped, and not counted as invalid") {
   }
 }
 
-TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all nearer ones are known") {
+TEST_CASE("beyond the capacity, the farthest obstacles are forgotten and all nearer ones are known") {
   const std::uint64_t seed = GENERATE(range(1u, 11u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -179,17 +179,17 @@ TEST_CASE("beyond the capacity, the farthest obstacles are forgotten, and all ne
       REQUIRE(distance - obstacle.reach_m(now + from_seconds(later_s)) >=
               seen.radius_at_m(now + from_seconds(later_s)) - 1e-9);
   }
-  // They would have been dropped by now.
+  // By now, the forgotten obstacles would have been dropped anyway.
   CHECK(f.obstacles.seen(now + from_seconds(1.2), kNoLag).is_everywhere());
 }
 
 TEST_CASE(
-    "observations accepted when the robot's clock was ahead are forgotten, and lists are used again a second "
+    "observations accepted while the clock was ahead are forgotten, and lists are used again a second "
     "later") {
   Fixture f;
   f.receive(5, 1, 3600, 3600.02);
   REQUIRE(f.obstacles.complete_at() == at_s(3600));
-  // From now on the clocks are correct.
+  // From now on, the clocks are correct.
   f.receive(List(10).add(6, 2, 10), 10.02);
   CHECK(f.obstacles.complete_at() == Time{});
   REQUIRE(f.obstacles.recent(at_s(10.02), kNoLag).size() == 1);
@@ -198,7 +198,7 @@ TEST_CASE(
   CHECK(f.obstacles.complete_at() == Time{});
   f.receive(List(11.03).add(6, 2, 11.03), 11.05);
   CHECK(f.obstacles.complete_at() == at_s(11.03));
-  // Again, before lists are used.
+  // The clock is ahead again before lists are used.
   f.receive(5, 1, 3600, 3600.02);
   f.receive(List(12).add(6, 2, 12), 12.02);
   f.receive(5, 1, 3600, 3600.02);

@@ -37,7 +37,7 @@ msg::ObstacleList valid_list() {
   return list;
 }
 
-TEST_CASE("a list of obstacles is decoded unchanged") {
+TEST_CASE("an obstacle list is decoded unchanged") {
   ObstacleListDecoder decoder;
   const auto list = decoder.decode(valid_list());
   REQUIRE(list);
@@ -58,7 +58,7 @@ TEST_CASE("a list of obstacles is decoded unchanged") {
   CHECK(decoder.decode(empty)->obstacles.empty());
 }
 
-TEST_CASE("a list with an impossible number is refused as a whole, because it would not be complete") {
+TEST_CASE("a list with an impossible number is refused as a whole, because the rest would not be complete") {
   ObstacleListDecoder decoder;
   const auto is_refused = [&](auto spoil) {
     msg::ObstacleList list = valid_list();
@@ -105,7 +105,7 @@ TEST_CASE("a list with random bytes is refused or within bounds") {
         bytes[rng.below(bytes.size())] = static_cast<std::uint8_t>(rng.bits());
         continue;
       }
-      // Numbers of eight bytes are aligned.
+      // Eight-byte numbers are aligned.
       const double bad[] = {kNan, kInfinity, -kInfinity, 1e300, -1.0, 1e9};
       const auto word = std::bit_cast<std::uint64_t>(bad[rng.below(6)]);
       const std::uint64_t begin = 8 * rng.below(bytes.size() / 8);

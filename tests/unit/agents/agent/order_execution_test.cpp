@@ -18,7 +18,7 @@ Scenario two_goals() {
       "two-goals.yaml");
 }
 
-/// The coordinator remembers that the scenario has given the robot its goals.
+/// The coordinator remembers that the scenario gave the robot its goals.
 std::shared_ptr<OrderPage> scenario_orders() {
   const RememberedOrder order{{msg::OrderKind::ORDER_GO, 3, static_cast<ClientId>(Sender::kScenario), 1}};
   return std::make_shared<OrderPage>(OrderPage{kCoordinator, true, 0, 1, {order}});
@@ -33,7 +33,7 @@ struct OrderedRobot {
   }
 };
 
-TEST_CASE("the first page of orders changes the goal, and its repetition does not") {
+TEST_CASE("the first page of orders changes the goal, and repeating the page does not") {
   OrderedRobot robot;
   CHECK(robot.orders.desired_heading_rad() == 0.5);
   CHECK_FALSE(robot.rests_at({1, 0}));
@@ -44,7 +44,9 @@ TEST_CASE("the first page of orders changes the goal, and its repetition does no
   CHECK_FALSE(robot.orders.choose());
 }
 
-TEST_CASE("a robot goes on to its next goal when it rests within the tolerance, and arrives at the last") {
+TEST_CASE(
+    "a robot that rests within the tolerance of a goal continues to the next one, or has arrived at the "
+    "last") {
   OrderedRobot robot;
   (void)robot.orders.on_page(scenario_orders());
   const double tolerance_m = robot.scenario.goal_tolerance_m;

@@ -14,14 +14,14 @@ RobotReport at(const Vec2& position) {
   return robot_report;
 }
 
-TEST_CASE("a robot that reports nothing is at its start, and may not drive") {
+TEST_CASE("a robot that has not reported yet is at its start and may not drive") {
   const OwnReports own({{1, 2}, {0, 0}}, kDriftBound_m);
   CHECK(own.estimate().position_m == Vec2(1, 2));
   CHECK(own.dead_reckoning_m({1, 2}) == 0);
   CHECK_FALSE(own.has_moved());
 }
 
-TEST_CASE("the planned motion counts towards the distance that a robot may drive without being observed") {
+TEST_CASE("planned motion reduces the distance that a robot may drive unobserved") {
   OwnReports own({}, kDriftBound_m);
   own.on_robot_report(at({1, 0}));
   const double whole_m = own.dead_reckoning_m({1, 0});
@@ -30,7 +30,7 @@ TEST_CASE("the planned motion counts towards the distance that a robot may drive
   CHECK(own.dead_reckoning_m({1 + 2 * whole_m, 0}) == 0);
 }
 
-TEST_CASE("an estimate agrees with an observation that is no farther away than the drift bound") {
+TEST_CASE("an estimate agrees with an observation within the drift bound") {
   OwnReports own({}, kDriftBound_m);
   own.on_robot_report(at({1, 0}));
   CHECK(own.agrees_with({1.0029, 0}));

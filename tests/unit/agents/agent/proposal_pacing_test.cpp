@@ -14,7 +14,7 @@ TEST_CASE("on a fast network the lead is one cycle, and single slow answers do n
   CHECK(pacing.lead() == 1);
 }
 
-TEST_CASE("one in eight of the last sixteen answers may be slow, more increase the lead") {
+TEST_CASE("two slow answers among the last sixteen are tolerated, but more increase the lead") {
   for (int slow = 0; slow <= 16; ++slow) {
     CAPTURE(slow);
     ProposalPacing pacing(kCycle);
@@ -36,7 +36,7 @@ TEST_CASE("on a slow network the lead covers the answer and the command") {
   CHECK(pacing.lead() == 1);
 }
 
-TEST_CASE("the lead includes that of the robot, whatever the coordinator's round trips") {
+TEST_CASE("the lead includes the robot's lead, whatever the coordinator's round trips") {
   ProposalPacing pacing(kCycle);
   pacing.set_robot_lead(Duration{100'000'000});
   CHECK(pacing.lead() == 6);
@@ -49,7 +49,7 @@ TEST_CASE("the lead includes that of the robot, whatever the coordinator's round
   CHECK(pacing.lead() == 1);
 }
 
-TEST_CASE("repeated late versions increase the lead, a single one does not") {
+TEST_CASE("repeated late versions increase the lead, but a single one does not") {
   ProposalPacing pacing(kCycle);
   pacing.on_version_late();
   pacing.on_version_taken();

@@ -35,7 +35,7 @@ TEST_CASE("a page's header is decoded unchanged") {
   CHECK(page->bounds_m().max_m == Vec2(3, 4));
 }
 
-TEST_CASE("a page with an index or an epoch out of range, or not from a coordinator, is refused") {
+TEST_CASE("a page that is not from a coordinator, or whose index or epoch is out of range, is refused") {
   msg::LedgerPage message = page_with(10);
   for (const std::uint32_t index : {kMaxRobots, std::numeric_limits<std::uint32_t>::max()}) {
     message.page_index(index);
@@ -56,7 +56,7 @@ TEST_CASE("a page with an index or an epoch out of range, or not from a coordina
   }
 }
 
-TEST_CASE("readers of one message share the view that the first of them decodes") {
+TEST_CASE("all readers of a message share the page that the first one decodes") {
   const msg::LedgerPage message = page_with(10);
   MessageAttachment attachment;
   std::shared_ptr<DecodedLedgerPage> first, second;
@@ -67,7 +67,7 @@ TEST_CASE("readers of one message share the view that the first of them decodes"
   CHECK(first->versions[0].number == 10);
 }
 
-TEST_CASE("a view that others still read is not overwritten, and an unshared one is reused") {
+TEST_CASE("a decoded page is overwritten only if no other reader uses it") {
   const msg::LedgerPage older = page_with(10), newer = page_with(11);
   std::shared_ptr<DecodedLedgerPage> decoded;
   ReceivedPage::decode(older, kNow)->update(decoded);

@@ -32,7 +32,7 @@ FloorRules rules_with(const std::vector<Shape>& obstacles) {
   return rules;
 }
 
-TEST_CASE("a world with moved obstacles equals a new one, and reports correctly what covers a goal") {
+TEST_CASE("a world updated with moved obstacles equals a new one, and blockages name the nearest obstacle") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -68,7 +68,7 @@ TEST_CASE("a world with moved obstacles equals a new one, and reports correctly 
   }
 }
 
-TEST_CASE("obstacles of equal size keep their place in the world when they move") {
+TEST_CASE("obstacles of equal size keep their ids when they move") {
   RouteObstacles obstacles(rules_with(kFixed), ZoneMap{});
   obstacles.set_temporary(std::vector<TemporaryObstacle>{{{{0, 0}, 0.1}}, {{{1, 0}, 0.1}}});
   const std::vector<ObstacleId> before = obstacles.world().obstacles();
@@ -76,7 +76,8 @@ TEST_CASE("obstacles of equal size keep their place in the world when they move"
   CHECK(obstacles.world().obstacles() == before);
 }
 
-TEST_CASE("a map's blocked cells are fixed obstacles of routes, robots and people are temporary ones") {
+TEST_CASE(
+    "routes treat a map's blocked cells as permanent obstacles and robots and people as temporary ones") {
   MapGrid grid;
   grid.columns = grid.rows = 60, grid.resolution_m = 0.1, grid.origin_m = {-3, -3};
   BitGrid blocked(grid.columns, grid.rows);

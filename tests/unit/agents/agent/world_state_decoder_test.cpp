@@ -24,7 +24,7 @@ msg::TrackedRobot tracked_robot(RobotId robot, double x) {
   return tracked;
 }
 
-/// The robot among others.
+/// The world state contains the robot and others.
 msg::WorldState valid_world() {
   msg::WorldState world;
   world.header().sender(20000);
@@ -34,7 +34,7 @@ msg::WorldState valid_world() {
   return world;
 }
 
-TEST_CASE("a world's time and the robot's own observation are decoded unchanged") {
+TEST_CASE("a world state's time and the robot's own observation are decoded unchanged") {
   WorldStateDecoder decoder(kRobot);
   const WorldObservations world = decoder.decode(valid_world());
   CHECK(world.vision == 9);
@@ -68,7 +68,7 @@ TEST_CASE("the robot is found at any index of the world state, and only if it is
   CHECK(decoder.invalid() == 0);
 }
 
-TEST_CASE("an impossible observation of the robot is left out and counted") {
+TEST_CASE("an impossible observation of the robot is omitted and counted") {
   using Robot = msg::TrackedRobot;
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     for (const auto spoil :
@@ -78,7 +78,7 @@ TEST_CASE("an impossible observation of the robot is left out and counted") {
       CAPTURE(bad);
       WorldStateDecoder decoder(kRobot);
       msg::WorldState world = valid_world();
-      spoil(world.robots()[0], bad);  // another robot's is not used
+      spoil(world.robots()[0], bad);  // another robot's observation, which is not used
       CHECK(decoder.decode(world).self);
       CHECK(decoder.invalid() == 0);
       spoil(world.robots()[1], bad);

@@ -42,13 +42,13 @@ Trajectory difficult_trajectory(Rng& rng) {
     const Vec2 acceleration = rng.chance(0.05) ? random_vector(rng, 1000) : random_vector(rng, 5);
     trajectory.append(duration, rng.chance(0.2) ? Vec2(0, 0) : acceleration);
   }
-  // Without the stop, the trajectory ends at rest instantly, at any speed.
+  // Without its stop, the trajectory comes to rest instantly from any speed.
   if (!rng.chance(0.1)) append_stop(trajectory, 5);
   return trajectory;
 }
 
-/// Compares one trajectory with many as the safety search does: by lanes, and by is_clear() where lanes are
-/// undecided.
+/// Compares one trajectory with many as the safety search does: by lanes, and by is_clear() where the lanes
+/// are undecided.
 class BatchedClearance {
  public:
   explicit BatchedClearance(const batch::Kernels& kernels) : clearance_(kernels) {}
@@ -132,8 +132,8 @@ void check_random_pairs(BatchedClearance& batch, Generator generate, std::uint64
     }
     batch.restart(rng.chance(0.9) ? one.start() : kBegin);
     for (std::size_t i = 0; i < count; ++i) batch.add(others[i], separations[i]);
-    // The second trajectory may begin at the same time as the first one. The third one is the first one
-    // again, whose sampling is reused or repeated.
+    // The second trajectory may start at the same time as the first one. The third one equals the first one,
+    // so that its sampling is either reused or repeated.
     for (const Trajectory& tested : {one, generate(rng), one}) {
       const auto clear = batch.compare(tested);
       REQUIRE(clear.size() == count);
@@ -146,7 +146,7 @@ void check_random_pairs(BatchedClearance& batch, Generator generate, std::uint64
   }
 }
 
-TEST_CASE("lanes decide as the exact clearance does, over millions of pairs and on every instruction set") {
+TEST_CASE("lanes agree with the exact clearance over millions of pairs, on every instruction set") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   for (const batch::Kernels& kernels : batch::available_kernels()) {
     CAPTURE(kernels.name, seed);
@@ -194,7 +194,7 @@ TEST_CASE("resetting a batch removes everything that was added") {
   CHECK(batch.compare(one).empty());
 }
 
-TEST_CASE("all lanes are clear only if each of them is, and none needs an exact comparison") {
+TEST_CASE("all lanes are clear only if each of them is clear without an exact comparison") {
   batch::BatchClearance clearance(batch::best_kernels());
   const Trajectory one = Trajectory::resting(kBegin, {0, 0}), other = Trajectory::resting(kBegin, {1, 0});
   const auto compare = [&] {

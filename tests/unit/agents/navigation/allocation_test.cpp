@@ -9,7 +9,7 @@
 
 namespace sidestep::local_allocation_test {
 
-/// Number of allocations in a hundred runs of the work, after as many warm-up runs.
+/// Number of allocations in a hundred runs of `work`, after as many warm-up runs.
 template <typename Work>
 std::size_t allocations_once_warm(Work work) {
   for (int i = 0; i < 100; ++i) work();

@@ -8,7 +8,7 @@
 
 namespace sidestep::dead_reckoning_test {
 
-TEST_CASE("after the maximum dead reckoning distance one robot in two thousand exceeds the bound") {
+TEST_CASE("after the maximum dead reckoning distance, one robot in two thousand exceeds the bound") {
   const double bound_m = 0.003;
   const LocalisationUncertainty known{0.0006, 0.002};
   const double path_m = max_dead_reckoning_m(known, bound_m);
@@ -25,7 +25,7 @@ TEST_CASE("after the maximum dead reckoning distance one robot in two thousand e
   CHECK(beyond < kRobots / 1500);
 }
 
-TEST_CASE("accurate odometry allows long distances, and a poorly localised robot has to wait") {
+TEST_CASE("accurate odometry permits long distances, and a poorly localised robot must wait") {
   CHECK(max_dead_reckoning_m({0, 0.005}, 0.003) == Approx(0.15));
   CHECK(max_dead_reckoning_m({0.0002, 0}, 0.003) > 100);
   CHECK(max_dead_reckoning_m({0.001, 0.001}, 0.003) == 0);

@@ -7,7 +7,7 @@ namespace sidestep::deadlock_recovery_test {
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
-TEST_CASE("a blocked robot turns farther and farther right, and back once it is free") {
+TEST_CASE("a blocked robot turns farther and farther right, and turns back once it is free") {
   DeadlockRecovery recovery;
   double t = 1;
   double last = 0;
@@ -30,13 +30,13 @@ TEST_CASE("a blocked robot turns farther and farther right, and back once it is 
   CHECK(recovery.angle_rad() == 0);
 }
 
-TEST_CASE("a robot that moves, though not as desired, does not start recovery") {
+TEST_CASE("a robot that moves, even if not as desired, does not start recovery") {
   DeadlockRecovery recovery;
   for (int i = 0; i < 100; ++i) recovery.update(false, 1.0, at_s(1 + 0.0166 * i));
   CHECK(recovery.angle_rad() == 0);
 }
 
-TEST_CASE("a robot that escapes a deadlock holds its angle for the release delay") {
+TEST_CASE("a robot that escapes a deadlock keeps its angle for the release delay") {
   DeadlockRecovery recovery;
   double t = 1;
   recovery.update(false, 0, at_s(t));

@@ -41,7 +41,7 @@ TEST_CASE("a query finds the nearest obstacle point that is not masked") {
 }
 
 TEST_CASE("a distance field leads away from the nearest obstacle") {
-  // The distance to a disc of radius 1 around the origin.
+  // The distance from a disc of radius 1 at the origin.
   const DistanceFunction field([](const Vec2& at) { return at.norm() - 1; });
   const FreeDistance found = field({3, 4}, 0);
   CHECK(found.distance_m == Approx(4));

@@ -8,7 +8,8 @@ namespace sidestep::give_way_search_test {
 constexpr double kRadius_m = 0.09, kRequired_m = 0.104, kSeparation_m = 0.194;
 const GiveWayFloor kFloor{{10, 4}, kRadius_m, kRequired_m, kSeparation_m};
 
-/// A corridor along the x axis that is 0.3 m wide, with a bay of random place, width and depth on one side.
+/// A corridor along the x axis that is 0.3 m wide, with a bay of random position, width and depth on one
+/// side.
 struct Corridor {
   double bay_x_m, half_width_m, depth_m;
   ObstacleWorld world;
@@ -51,7 +52,7 @@ TEST_CASE("the place to give way is the nearest one, as a brute-force search con
     REQUIRE(search.way().size() >= 2);
     const Vec2 place = search.way().back();
     CHECK_FALSE(corridor.world.touches(place, kRequired_m));
-    // The grid, and one place of those in a cell of the robot's size.
+    // Tolerates the resolution of the grid, and one place within a robot-sized cell.
     CHECK(place.norm() >= corridor.nearest_m() - 0.01);
     CHECK(place.norm() <= corridor.nearest_m() + 3 * kRadius_m);
     for (std::size_t i = 1; i < search.way().size(); ++i)
@@ -83,7 +84,7 @@ TEST_CASE("a robot on its way to a bay is in the way until the other robot has p
   CHECK_FALSE(search.is_in_the_way());
   search.begin({{0, 0}, {{{0.5, 0}, {-4, 0}}}, {}, {}, 1}, open);
   finish(search, rng);
-  CHECK_FALSE(search.is_in_the_way());  // there is a way around it
+  CHECK_FALSE(search.is_in_the_way());  // the other robot can go around
 }
 
 }  // namespace sidestep::give_way_search_test

@@ -28,7 +28,7 @@ struct Robot {
   Rng rng{1};
   double decided_s = 0;
 
-  /// Decides ten times a second up to this time.
+  /// Decides ten times per second until this time.
   std::optional<Vec2> decide(double seconds, const Vec2& position_m, const std::vector<OtherRobot>& others,
                              const ObstacleWorld& fixed) {
     for (; decided_s < seconds + 1e-6; decided_s += 0.1) decide_once(decided_s, position_m, others, fixed);
@@ -43,12 +43,12 @@ struct Robot {
   }
 };
 
-TEST_CASE("a robot that is stuck in a corridor backs out into the nearest bay, until the other has passed") {
+TEST_CASE("a robot that is stuck in a corridor backs into the nearest bay until the other robot has passed") {
   const double bay_x_m = GENERATE(-3.0, -1.5, -0.6, 1.4);
   CAPTURE(bay_x_m);
   const ObstacleWorld fixed = corridor(bay_x_m);
   Robot robot;
-  // A bay behind the other robot cannot be reached.
+  // A bay behind the other robot is unreachable.
   const bool is_reachable = bay_x_m < 0;
   const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
   CHECK_FALSE(robot.decide(0, {0, 0}, facing, fixed));
@@ -60,32 +60,32 @@ TEST_CASE("a robot that is stuck in a corridor backs out into the nearest bay, u
   CHECK(std::abs(place->x() - bay_x_m) < 0.2);
   CHECK(place->y() >= kSeparation_m);
   CHECK_FALSE(fixed.touches(*place, kRequired_m));
-  // It stays as long as the other robot is under way, and continues once it has passed.
+  // The robot stays while the other robot is on its way, and continues once it has passed.
   CHECK(robot.decide(7, *place, {coming_from(bay_x_m + 0.5, -4.9)}, fixed) == place);
   CHECK_FALSE(robot.decide(8, *place, {coming_from(bay_x_m - 0.5, -4.9)}, fixed));
 }
 
-TEST_CASE("a robot does not give way unless it is stuck and blocks a robot with the right of way") {
+TEST_CASE("a robot gives way only if it is stuck and blocks a robot with the right of way") {
   const ObstacleWorld fixed = corridor(-1);
-  SECTION("it makes progress") {
+  SECTION("the robot makes progress") {
     Robot robot;
     for (int i = 0; i < 50; ++i)
       CHECK_FALSE(robot.decide(0.1 * i, {-4 + 0.02 * i, 0}, {coming_from(0.2, -4.9)}, fixed));
   }
-  SECTION("the other one has to give way") {
+  SECTION("the other robot must give way") {
     Robot robot;
     OtherRobot other = coming_from(0.2, -4.9);
     other.has_right_of_way = false;
     for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {other}, fixed));
   }
-  SECTION("the other one drives away, or stays") {
+  SECTION("the other robot drives away or stays at rest") {
     Robot robot;
     for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {coming_from(0.2, 4)}, fixed));
     for (int i = 50; i < 99; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {coming_from(0.2, 0.2)}, fixed));
   }
 }
 
-TEST_CASE("a robot that gives way although nobody passes continues after a while") {
+TEST_CASE("a robot that gives way continues after a while if no robot passes") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
@@ -96,7 +96,7 @@ TEST_CASE("a robot that gives way although nobody passes continues after a while
   CHECK_FALSE(robot.decide(23, *place, facing, fixed));
 }
 
-TEST_CASE("a robot that gets another goal stops giving way") {
+TEST_CASE("a robot that gets a new goal stops giving way") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
@@ -106,8 +106,8 @@ TEST_CASE("a robot that gets another goal stops giving way") {
   CHECK_FALSE(robot.give_way.place_m());
 }
 
-TEST_CASE("a robot does not take a place that another robot covers") {
-  // The bay is occupied, and a third robot closes the way back.
+TEST_CASE("a robot does not choose a place that another robot occupies") {
+  // Another robot occupies the bay, and a third one blocks the way back.
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   OtherRobot in_bay{1, true, {-1, 0.3}}, behind{2, true, {-1.6, 0}};
@@ -115,7 +115,7 @@ TEST_CASE("a robot does not take a place that another robot covers") {
   for (int i = 0; i < 80; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, others, fixed));
 }
 
-TEST_CASE("robots that block each other move back and forth, which does not count as progress") {
+TEST_CASE("robots that block each other and move back and forth do not count as making progress") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   const std::vector<OtherRobot> facing{coming_from(0.5, -4.9)};
@@ -125,7 +125,7 @@ TEST_CASE("robots that block each other move back and forth, which does not coun
   CHECK(place);
 }
 
-TEST_CASE("a robot gives way until the other has passed, even while the other is far away") {
+TEST_CASE("a robot gives way until the other robot has passed, even while that one is far away") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
@@ -136,12 +136,12 @@ TEST_CASE("a robot gives way until the other has passed, even while the other is
   OtherRobot far{7, false};
   far.has_right_of_way = GENERATE(false, true);
   CHECK(robot.decide(5, *place, {far}, fixed) == place);
-  // Without it, the robot's order is over, or it is held.
+  // Without a goal, the other robot's order is over or it is held.
   CHECK_FALSE(robot.decide(6, *place, {}, fixed));
 }
 
-TEST_CASE("robots that only together block a door give way") {
-  // A wall with a door as wide as two robots, in which two robots are side by side.
+TEST_CASE("robots give way if they block a door only together") {
+  // A wall with a door as wide as two robots. Two robots stand in it side by side.
   const ObstacleWorld fixed({Box{{-0.05, -2}, {0.05, -0.24}}, Box{{-0.05, 0.24}, {0.05, 2}}});
   const OtherRobot beside{1, true, {0, -0.125}};
   Robot robot;
@@ -154,8 +154,8 @@ TEST_CASE("robots that only together block a door give way") {
     CHECK_FALSE(alone.decide(0.1 * i, {0, 0.125}, {coming_from(0.4, -4.9)}, fixed));
 }
 
-TEST_CASE("a robot chooses another place if its place is taken, or if it comes no nearer to it") {
-  // A bay above the corridor, and another one below it.
+TEST_CASE("a robot chooses another place if its place is taken or it makes no progress towards it") {
+  // One bay is above the corridor, another one below it.
   const ObstacleWorld fixed({Box{{-5, -2}, {-2.2, -0.15}}, Box{{-1.8, -2}, {5, -0.15}},
                              Box{{-2.2, -2}, {-1.8, -0.5}}, Box{{-5, 0.15}, {-1.2, 2}},
                              Box{{-0.8, 0.15}, {5, 2}}, Box{{-1.2, 0.5}, {-0.8, 2}}});
@@ -174,7 +174,7 @@ TEST_CASE("a robot chooses another place if its place is taken, or if it comes n
   CHECK(place->y() < 0);
 }
 
-TEST_CASE("a robot keeps giving way when the right of way changes, until the other has passed") {
+TEST_CASE("a robot keeps giving way until the other robot has passed, even if the right of way changes") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
@@ -187,7 +187,7 @@ TEST_CASE("a robot keeps giving way when the right of way changes, until the oth
   CHECK_FALSE(robot.decide(6, *place, {other}, fixed));
 }
 
-TEST_CASE("a search ends when the robot makes progress or gets another goal") {
+TEST_CASE("a search ends when the robot makes progress or gets a new goal") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   CHECK_FALSE(robot.give_way.track_progress(at(0), 5));
@@ -205,7 +205,7 @@ TEST_CASE("a search ends when the robot makes progress or gets another goal") {
   CHECK_FALSE(robot.give_way.is_searching());
 }
 
-TEST_CASE("a robot does not give way to one that drives around it, nor immediately after a pause") {
+TEST_CASE("a robot does not give way to a robot that drives around it, or immediately after a pause") {
   const ObstacleWorld open;
   Robot robot;
   const OtherRobot other = coming_from(1, -4.9);

@@ -29,7 +29,7 @@ TEST_CASE("on an open floor, the window heads for the end of the path") {
   CHECK(choice.velocity_mps->normalized().dot(Vec2(2, 1).normalized()) > 0.95);
 }
 
-TEST_CASE("a window that ignores the path heads for the path's end, beyond a waypoint") {
+TEST_CASE("a window that ignores the path heads for the path's end instead of a waypoint") {
   LocalDriver local = driver({.uses_window = true, .ignores_path = true});
   const ObstacleWorld world;
   const std::vector<Vec2> path{{0, 2}, {2, 0}};
@@ -47,8 +47,9 @@ TEST_CASE("no velocity is chosen near the goal, too near to an obstacle, or with
   CHECK_FALSE(band.choose({{{-2, -1}, {0, 0}}, far, &world, {}, kCycle_s}).velocity_mps);
 }
 
-TEST_CASE("every velocity of the window lets the robot stop before all discs and bodies") {
-  // The window sees the first obstacle on each ray; discs as wide as the robot cannot hide between rays.
+TEST_CASE("every velocity of the window lets the robot stop before it reaches any disc or body") {
+  // The window sees only the first obstacle on each ray, but discs as wide as the robot cannot hide between
+  // rays.
   int chosen = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
@@ -82,7 +83,7 @@ TEST_CASE("every velocity of the window lets the robot stop before all discs and
   CHECK(chosen >= 10);
 }
 
-TEST_CASE("a field turns robots that meet to the right, and pushes away from a wall") {
+TEST_CASE("a field turns robots that meet to the right and pushes them away from walls") {
   LocalDriver local = driver({.uses_field = true});
   const std::vector<Vec2> path{{3, 0}};
   const ObstacleWorld open;
@@ -113,7 +114,7 @@ TEST_CASE("a band leads around a body on the path, and its target can be reached
   LocalDriver local = driver({.uses_band = true});
   const ObstacleWorld world;
   const std::vector<Vec2> path{{2, 0}};
-  // The body approaches the path from a side, more slowly than the band moves.
+  // The body approaches the path from the side, more slowly than the band moves.
   const double side = rng.uniform(0, 1) < 0.5 ? -1 : 1, x = rng.uniform(-1, 1);
   Circle body{{x, 0.5 * side}, 0.15};
   LocalChoice choice;
@@ -132,7 +133,7 @@ TEST_CASE("a band leads around a body on the path, and its target can be reached
         body.radius_m + kSeparation_m - kTolerance_m - 1e-6);
 }
 
-TEST_CASE("a path to another goal replaces the band, and if a gap is too narrow the path is followed") {
+TEST_CASE("a path to another goal replaces the band, and the path is followed if a gap is too narrow") {
   LocalDriver local = driver({.uses_band = true});
   const ObstacleWorld open;
   const std::vector<Vec2> first{{2, 0}}, second{{0, 1}, {-2, 2}};

@@ -10,7 +10,7 @@
 
 namespace sidestep::motion_control_test {
 
-TEST_CASE("a robot comes to rest at its goal, whatever its control cycle and the strength of its motors") {
+TEST_CASE("a robot comes to rest at its goal for any control cycle and motor strength") {
   Rng rng(1);
   for (int i = 0; i < 2000; ++i) {
     MotionLimits limits;
@@ -21,7 +21,8 @@ TEST_CASE("a robot comes to rest at its goal, whatever its control cycle and the
     const Duration max_hold = cycle * (1 + static_cast<int>(rng.uniform(0, 3)));
     const Vec2 goal_m(rng.uniform(-2, 2), rng.uniform(-2, 2));
     State state;
-    // More than the distance takes at the speed limit, plus the same again for accelerating and braking.
+    // More than twice the time that the distance takes at the speed limit, to allow for accelerating and
+    // braking.
     const double limit_s = 20 + 2 * goal_m.norm() / limits.speed_mps;
     double elapsed_s = 0;
     for (; elapsed_s < limit_s; elapsed_s += to_seconds(cycle)) {
@@ -41,8 +42,7 @@ TEST_CASE("a robot comes to rest at its goal, whatever its control cycle and the
 }
 
 TEST_CASE(
-    "a robot that brakes much harder than it accelerates hardly overshoots its goal, however long its "
-    "cycle") {
+    "a robot that brakes much harder than it accelerates hardly overshoots its goal for any control cycle") {
   Rng rng(3);
   for (int i = 0; i < 1000; ++i) {
     MotionLimits limits;
@@ -62,14 +62,12 @@ TEST_CASE(
       farthest_m = std::max(farthest_m, state.position_m.norm());
     }
     CAPTURE(i, limits.speed_mps, limits.acceleration_mps2, limits.deceleration_mps2, to_seconds(cycle));
-    // It brakes over a whole cycle, even where less would do.
+    // The robot brakes for a whole cycle, even where less would do.
     CHECK(farthest_m - goal_m.norm() < 0.5 * limits.speed_mps * to_seconds(cycle));
   }
 }
 
-TEST_CASE(
-    "a stop after each hold never overshoots the goal, and halves the distance to a goal nearer than a "
-    "hold") {
+TEST_CASE("stopping after each hold never overshoots, and halves the distance to a goal nearer than a hold") {
   Rng rng(2);
   for (int i = 0; i < 1000; ++i) {
     MotionLimits limits;

@@ -35,7 +35,7 @@ Course random_course(Rng& rng) {
   return course;
 }
 
-/// Scalar reference: the same prediction, written for one robot.
+/// Scalar reference: the same prediction for one robot.
 std::vector<Vec2> reference_prediction(const Course& course) {
   const Intent& intent = course.intent;
   const double leg = (intent.goal_m - intent.waypoint_m).norm();
@@ -64,7 +64,7 @@ std::vector<Vec2> reference_prediction(const Course& course) {
   return positions;
 }
 
-TEST_CASE("every instruction set predicts what the scalar reference predicts") {
+TEST_CASE("every instruction set agrees with the scalar reference") {
   const std::uint64_t seed = 7;
   CAPTURE(seed);
   Rng rng(seed);

@@ -27,7 +27,7 @@ double distance_from_path(const Vec2& p) {
   return nearest;
 }
 
-TEST_CASE("a path is planned again only when target or robot has left the plan") {
+TEST_CASE("a path is replanned only when the target or the robot has left the plan") {
   PathFollower none(kSettings);
   CHECK(none.replan_reason({0, 0}, {5, 5}) == ReplanReason::kNoPath);
   CHECK(none.carrot({3, 4}) == Vec2(3, 4));
@@ -59,12 +59,12 @@ TEST_CASE("a path is planned again only when target or robot has left the plan")
   CHECK(target_left > 20);
 }
 
-TEST_CASE("the carrot only moves forward along the path, and stops at its end") {
+TEST_CASE("the carrot only moves forward along the path and stops at its end") {
   PathFollower follower = path_follower_test::follower();
   CHECK((follower.carrot({10, 3}) - Vec2(30, 0)).norm() < 1e-9);
   CHECK((follower.carrot({90, -2}) - Vec2(100, 10)).norm() < 1e-9);
   CHECK((follower.carrot({97, 30}) - Vec2(100, 50)).norm() < 1e-9);
-  // The first piece has been driven, so a robot that is pushed back to it is off the plan.
+  // The first segment has been driven, so a robot that is pushed back to it is off the plan.
   CHECK(follower.replan_reason({50, 0}, kPath.back()) == ReplanReason::kRobotLeftPlan);
   CHECK(follower.carrot({100, 55}) == Vec2(100, 60));
 }

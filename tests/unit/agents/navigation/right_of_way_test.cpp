@@ -42,7 +42,7 @@ TEST_CASE("right of way: robots in passages agree on one order in each period") 
     std::vector<PassageContender> contenders;
     for (RobotId robot = 0; robot < 8; ++robot) contenders.push_back({robot, rng.below(3)});
     const Time t = in_period(static_cast<int>(rng.below(1000)));
-    std::vector<int> ahead;  // number of robots that precede each one
+    std::vector<int> ahead;  // number of robots that precede each robot
     for (const PassageContender& self : contenders) {
       int count = 0;
       for (const PassageContender& other : contenders)
@@ -54,7 +54,7 @@ TEST_CASE("right of way: robots in passages agree on one order in each period") 
   }
 }
 
-TEST_CASE("right of way: among robots with equal orders in a passage, each soon goes first") {
+TEST_CASE("right of way: among robots with equally old orders in a passage, each soon goes first") {
   std::vector<int> first(6, 0);
   for (int period = 0; period < 600; ++period)
     for (RobotId robot = 0; robot < 6; ++robot) {

@@ -44,8 +44,8 @@ struct PlannerInWorld : World, RoutePlanner {
 
 std::vector<Shape> shapes_of(const std::vector<Circle>& circles) { return {circles.begin(), circles.end()}; }
 
-/// Independent slow reference: Dijkstra on an 8-connected grid of 2 cm, whose paths are at most 8.3 % longer
-/// than the shortest.
+/// Independent slow reference: Dijkstra on an 8-connected grid of 2 cm. Its paths are at most 8.3 % longer
+/// than the shortest ones.
 double grid_length(const std::vector<Circle>& obstacles, const Vec2& start, const Vec2& goal,
                    double inflation) {
   const int n = 200;
@@ -90,7 +90,7 @@ TEST_CASE("without obstacles the route is straight") {
   CHECK(route->length_m == Approx(2 * std::sqrt(2.0)));
 }
 
-TEST_CASE("a route avoids obstacles with its margin and is no longer than on a fine grid") {
+TEST_CASE("a route keeps its margin from obstacles and is no longer than on a fine grid") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u, 6u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -123,7 +123,7 @@ TEST_CASE("a route avoids obstacles with its margin and is no longer than on a f
   CHECK(travelled == Approx(promised));
 }
 
-/// The smallest distance from the goal of a position on a grid of 2 cm that the start is connected to.
+/// The smallest distance from the goal among the positions on a grid of 2 cm that are connected to the start.
 double nearest_on_grid(const std::vector<Shape>& obstacles, const Vec2& start, const Vec2& goal,
                        double clearance) {
   const auto is_free = [&](const Vec2& p) {
@@ -151,11 +151,11 @@ double nearest_on_grid(const std::vector<Shape>& obstacles, const Vec2& start, c
   return nearest;
 }
 
-TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to it as the robot can get") {
+TEST_CASE("the route to an enclosed or covered goal ends as near to the goal as the robot can get") {
   int enclosed = 0, covered = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Rng rng(seed);
-    // A ring, with or without a gap, around a goal that may be covered, among other obstacles.
+    // A ring of obstacles, with or without a gap, around a goal that may be covered, among other obstacles.
     std::vector<Shape> obstacles;
     const double ring_y = rng.uniform(-0.8, 0.8), ring_x = rng.uniform(-0.8, 0.8);
     const Vec2 middle(ring_x, ring_y), start(-1.8, -1.8);
@@ -178,7 +178,7 @@ TEST_CASE("the route to a goal that obstacles enclose or cover ends as near to i
     CHECK((route->end_m - middle).norm() <= reference + 0.03);
     if (route->reaches_goal) continue;
     ++(planner.obstacle_on_goal() ? covered : enclosed);
-    // The whole route is free, and is kept.
+    // The whole route is free and is kept.
     Vec2 here = start;
     for (int leg = 0; leg < 50 && (here - route->end_m).norm() > 1e-9; ++leg) {
       const auto next = planner.route_from(here, random());
@@ -226,8 +226,8 @@ TEST_CASE("every planner leads through a passage that is hardly wider than the r
   }
 }
 
-/// Drives a route to its end, and returns its length and the smallest distance from obstacles where the route
-/// need not be near them.
+/// Drives a route to its end. Returns its length, and the smallest distance from obstacles where the route
+/// does not have to be near them.
 std::pair<double, double> length_and_clearance(const NamedPlanner& named, const std::vector<Shape>& obstacles,
                                                const Vec2& start, const Vec2& goal) {
   const ObstacleWorld world(obstacles);
@@ -248,13 +248,13 @@ std::pair<double, double> length_and_clearance(const NamedPlanner& named, const 
   return {here == goal ? length : std::numeric_limits<double>::infinity(), clearance};
 }
 
-TEST_CASE("with clearance as a cost, robots drive through the middle of gaps on slightly longer routes") {
+TEST_CASE("with a clearance cost, robots drive through the middle of gaps on slightly longer routes") {
   const NamedPlanner plain = make_driving_planner("estar"), clear = make_driving_planner("estar-clearance");
   int scenes = 0, clearer = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    // Two walls, each with a gap of 0.5 to 0.8 m.
+    // Two walls, each with a gap that is 0.5 to 0.8 m wide.
     std::vector<Shape> walls;
     for (const double x : {-0.5, 0.5}) {
       const double middle = rng.uniform(-1.2, 1.2), half = rng.uniform(0.25, 0.4);
@@ -281,7 +281,7 @@ TEST_CASE("a robot too near an obstacle may leave it but not drive through it") 
   CHECK((route->waypoint_m - near).dot(near) >= 0);
 }
 
-TEST_CASE("a robot keeps one of two equally long routes while it drifts sideways") {
+TEST_CASE("a robot that drifts sideways keeps one of two equally long routes") {
   const Circle middle{{0, 0}, 0.3};
   PlannerInWorld planner(shortest(), {middle}, kField, kRadius_m, kMargin_m, 0, {1.5, 0});
   Vec2 here(-1.5, 1e-3);
@@ -338,7 +338,7 @@ TEST_CASE("routes keep the extra clearance where it is available, and do without
 }
 
 TEST_CASE("a robot that starts in overlapping obstacles leaves them towards the nearest free position") {
-  // On the line between both centres, every way out of one circle first leads deeper into the other.
+  // On the line between the centres, every way out of one circle first leads deeper into the other.
   PlannerInWorld planner(shortest(),
                          {Circle{{-0.25, 0}, 0.4}, Circle{{0.25, 0}, 0.4}, Circle{{0, -0.2}, 0.3}}, kField,
                          kRadius_m, kMargin_m, 0, {0, 0});
@@ -380,8 +380,8 @@ TEST_CASE("with every planner, a robot that follows its route gets around obstac
   }
 }
 
-/// Follows a route in small steps to its end. Returns the smallest distance from obstacles on the way, and
-/// that on the part of the way farther than `tight_m` from the goal.
+/// Follows a route in small steps to its end. Returns the smallest distance from obstacles along the way, and
+/// the smallest distance while the robot is farther than `tight_m` from the goal.
 std::pair<double, double> drive(PlannerInWorld& planner, Vec2 at, const Vec2& goal, double tight_m) {
   double nearest_m = 1e9, nearest_before_m = 1e9;
   for (int step = 0; step < 2000 && (at - goal).norm() > 1e-6; ++step) {
@@ -419,7 +419,7 @@ TEST_CASE("routes keep the largest extra clearance that fits through a gap") {
 //   | *      the goal is in a corner: only the last leg comes near
 //   |        the walls
 //        o
-TEST_CASE("a goal near obstacles is reached from the nearest place with the full clearance") {
+TEST_CASE("a goal near obstacles is reached from the nearest place with full clearance") {
   const std::vector<double> extra_m{0.4, 0.03};
   const Vec2 goal(-1.2, 1.3);
   PlannerInWorld planner(shortest(), {Box{{-1.5, -0.5}, {-1.4, 1.6}}, Box{{-1.5, 1.5}, {1.5, 1.6}}}, kField,
@@ -429,7 +429,7 @@ TEST_CASE("a goal near obstacles is reached from the nearest place with the full
   CHECK(before_m >= kRadius_m + kMargin_m + 0.4 - 1e-6);
 }
 
-/// A corridor of 60 m, in which walls with gaps on alternating sides make the route long.
+/// A corridor that is 60 m long. Walls with gaps on alternating sides make the route long.
 std::vector<Shape> slalom() {
   std::vector<Shape> walls;
   for (int i = 0; i < 80; ++i) {
@@ -439,7 +439,7 @@ std::vector<Shape> slalom() {
   return walls;
 }
 
-TEST_CASE("a search for a long route continues in the next cycles, and finds the shortest route") {
+TEST_CASE("a search for a long route continues over several cycles and finds the shortest route") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   const Field field{80, 80};
@@ -472,7 +472,7 @@ TEST_CASE("a search for a long route continues in the next cycles, and finds the
   CHECK(route->length_m == Approx(shortest().plan(domain, start, unlimited, random()).length).margin(0.01));
 }
 
-TEST_CASE("a route leads around nearby changes and back to the part that is far away") {
+TEST_CASE("a route leads around nearby changes and rejoins the unchanged part far away") {
   const Vec2 start(-29.5, 0), goal(29.5, 0);
   PlannerInWorld planner(shortest(), slalom(), {60, 4}, kRadius_m, kMargin_m, 0.02, goal);
   std::optional<Route> route;
@@ -481,7 +481,7 @@ TEST_CASE("a route leads around nearby changes and back to the part that is far 
   const std::vector<Vec2> before(planner.remaining_waypoints_m().begin(),
                                  planner.remaining_waypoints_m().end());
   const double effort = planner.effort();
-  // On the first leg, slightly to its side.
+  // On the first leg, slightly off its line.
   planner.world.add(Circle{(start + before.front()) / 2 + Vec2(0, 0.02), 0.1});
   planner.begin(goal);
   const std::optional<Route> around = planner.route_from(start, random());
@@ -493,7 +493,7 @@ TEST_CASE("a route leads around nearby changes and back to the part that is far 
   const std::span<const Vec2> after = planner.remaining_waypoints_m();
   CHECK(after.front() != before.front());
   CHECK(std::equal(before.end() - 40, before.end(), after.end() - 40));
-  // If the far part is blocked, the whole route is planned again.
+  // If the far part is blocked, the whole route is replanned.
   planner.world.add(Box{{10, -2}, {10.05, 2}});
   planner.begin(goal);
   std::optional<Route> blocked;

@@ -40,8 +40,8 @@ void advance(State& state, const Intent& intent) {
   state.velocity_mps += change;
 }
 
-/// Runs a cycle: the robots choose one after the other, then all move as they chose. Each has its own
-/// Steering unless one is shared.
+/// Runs a cycle: the robots choose one after another, then all move as chosen. Each has its own Steering
+/// unless one is shared.
 void drive(std::vector<Mover>& movers, Steering* shared = nullptr) {
   for (Mover& mover : movers) {
     Steering& steering = shared ? *shared : mover.steering;
@@ -79,7 +79,7 @@ TEST_CASE("a lone robot heads straight for its waypoint") {
   }
 }
 
-TEST_CASE("two robots that meet head on both turn right and pass") {
+TEST_CASE("two robots that meet head-on both turn right and pass") {
   std::vector<Mover> movers;
   movers.emplace_back(Vec2(-1.5, 0), Vec2(1.5, 0), Field{});
   movers.emplace_back(Vec2(1.5, 0), Vec2(-1.5, 0), Field{});
@@ -117,11 +117,11 @@ TEST_CASE("two groups that swap sides all arrive") {
   }
   CHECK(all_arrived());
   CHECK(cycles < 240);
-  // Steering does not guarantee separation: small violations are tolerated.
+  // Steering does not guarantee separation, so small violations are tolerated.
   CHECK(nearest > kMinSeparation_m - 0.05);
 }
 
-TEST_CASE("robots that share one Steering choose the same as robots with one each") {
+TEST_CASE("robots that share one Steering choose the same as robots with their own") {
   std::vector<Mover> apart;
   for (int i = 0; i < 12; ++i) {
     const Vec2 start = rotated(Vec2(1.5, 0), i * 0.5236);
@@ -143,7 +143,7 @@ TEST_CASE("robots that share one Steering choose the same as robots with one eac
   CHECK(changes > 0);
 }
 
-TEST_CASE("a stationary obstacle is passed without leaving the field") {
+TEST_CASE("a robot passes a stationary obstacle without leaving the field") {
   const std::uint64_t seed = 6;
   CAPTURE(seed);
   Rng rng(seed);
@@ -180,7 +180,7 @@ TEST_CASE("a robot keeps its chosen detour") {
   }
   CHECK(mover.state.position_m.x() >= 1.4);
   CHECK(turned_m < -0.1);
-  // The changes are to the detour, to the direct path again, and to a few better detours.
+  // The changes: to the detour, back to the direct path, and to a few better detours.
   CHECK(mover.last.changes >= 2);
   CHECK(mover.last.changes < 12);
 }

@@ -9,7 +9,7 @@ namespace sidestep::trapezoidal_profile_test {
 
 const MotionLimits kLimits;
 
-TEST_CASE("a trapezoidal profile ends at its distance, at rest, within its limits") {
+TEST_CASE("a trapezoidal profile covers its distance and ends at rest within its limits") {
   Rng rng(2);
   for (int i = 0; i < 20'000; ++i) {
     const double distance = rng.uniform(-3, 3), velocity = rng.uniform(-2.5, 2.5);

@@ -15,7 +15,7 @@ Order zone(std::vector<Vec2> corners, double radius, std::optional<double> limit
   return order;
 }
 
-/// Independent slow reference: the convex hull consists of the triangles of all triples of corners.
+/// Independent slow reference: the convex hull is the union of the triangles of all triples of corners.
 double distance_from_hull(const Vec2& p, const std::vector<Vec2>& corners) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Vec2& a : corners) {
@@ -30,7 +30,7 @@ double distance_from_hull(const Vec2& p, const std::vector<Vec2>& corners) {
   return nearest;
 }
 
-TEST_CASE("a zone is the convex hull of its corners, grown by its radius") {
+TEST_CASE("a zone is the convex hull of its corners, expanded by its radius") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Rng rng(seed);
     std::vector<Vec2> corners(1 + rng.below(6));
@@ -64,7 +64,7 @@ TEST_CASE("robots keep out of zones without a speed limit") {
   CHECK_FALSE(ZoneMap().is_kept_out({0, 0}, 1));
 }
 
-TEST_CASE("a robot that brakes as late as a speed zone allows enters it no faster than that") {
+TEST_CASE("a robot that brakes as late as a speed zone allows enters it within the zone's limit") {
   const MotionLimits limits;
   const std::vector<Order> orders{zone({{0, -1}, {0, 1}, {2, 1}, {2, -1}}, 0, 0.5)};
   const ZoneMap zones(orders);

@@ -22,7 +22,7 @@ TEST_CASE("warm perception does not allocate") {
   std::vector<Circle> discs(people.size());
   double sum = 0;
   std::size_t allocations = 0;
-  // Random scans make every working memory as large as it gets; the drive follows.
+  // Random scans make every buffer as large as it gets. Then the robot drives.
   std::vector<float> ranges(360);
   for (int i = 0; i < 600; ++i) {
     robot.step(scene, rng, 0.1);

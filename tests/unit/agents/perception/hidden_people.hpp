@@ -6,7 +6,7 @@
 
 namespace sidestep::test {
 
-/// Which discs a laser does not see, by looking at every beam. Knows only the true ranges.
+/// Decides by checking every beam which discs a laser does not see. Knows only the true ranges.
 class HiddenPeople {
  public:
   /// Ranges without error; NaN for dropouts.
@@ -28,7 +28,8 @@ class HiddenPeople {
     return true;
   }
 
-  /// Moves a hidden person towards a point until it is hardly hidden. `is_possible(person)`: where it can be.
+  /// Moves a hidden person towards a point until it is barely hidden. `is_possible(person)`: whether the
+  /// person can be there.
   template <typename IsPossible>
   Circle approached(Circle person, const Vec2& to, const IsPossible& is_possible) const {
     Vec2 hidden = person.centre_m, seen = to;
@@ -54,7 +55,7 @@ inline LaserSettings random_laser(Rng& rng) {
   return laser;
 }
 
-/// The errors that ranges get after the true ones were noted.
+/// Adds random errors to true ranges.
 inline std::vector<float> with_errors(std::span<const float> ranges_m, double largest_m, Rng& rng) {
   std::vector<float> result(ranges_m.begin(), ranges_m.end());
   for (float& range_m : result)

@@ -51,7 +51,7 @@ TEST_CASE("beams point where the scanner's beams point") {
   }
 }
 
-TEST_CASE("bad scans are refused") {
+TEST_CASE("invalid scans are refused") {
   const double nan = std::nan("");
   CHECK_THROWS_AS(LaserBeams({0, 1, 0, 1}), std::invalid_argument);
   CHECK_THROWS_AS(LaserBeams({3, 1, 0, 1}, -1), std::invalid_argument);

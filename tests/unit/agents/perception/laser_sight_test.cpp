@@ -7,7 +7,8 @@
 
 namespace sidestep::laser_sight_test {
 
-/// The distance of the nearest frontier from a person who leans against a wall in front of the robot.
+/// The distance from the front of a person, who leans against a wall facing the robot, to the nearest
+/// frontier.
 double nearest_frontier_m(double person_radius_m, double range_error_m, double pose_error_m) {
   FloorRules rules;
   rules.obstacles = {Box{{1, -3}, {1.2, 3}}};
@@ -28,7 +29,7 @@ double nearest_frontier_m(double person_radius_m, double range_error_m, double p
   return nearest_m;
 }
 
-TEST_CASE("a person who leans against a wall is not mistaken for it, however small and inaccurately seen") {
+TEST_CASE("a person leaning against a wall is not mistaken for it, however small and inaccurately seen") {
   for (const double radius_m : {0.03, 0.05, 0.15})
     for (const double range_error_m : {0.0, 0.01})
       for (const double pose_error_m : {0.02, 0.07, 0.12}) {
@@ -37,7 +38,7 @@ TEST_CASE("a person who leans against a wall is not mistaken for it, however sma
       }
 }
 
-/// A laser among discs of which the rules know nothing.
+/// A laser among discs that are not in the floor rules.
 struct Watched {
   FloorRules rules;
   LaserSpec laser;
@@ -67,14 +68,13 @@ TEST_CASE("a scan that is not newer than the last one changes nothing") {
   }
 }
 
-TEST_CASE(
-    "unknown objects that stay stationary for a while are reported as squares, the nearest ones first") {
+TEST_CASE("unknown objects that stay stationary for a while are reported as squares, nearest first") {
   Watched watched;
   watched.settings.max_unknown = 3;
-  const Vec2 at_m(10, -7);  // away from the origin, so that distances from there are irrelevant
+  const Vec2 at_m(10, -7);  // far from the origin, because distances from there must not matter
   watched.rules.obstacles = {Circle{at_m + Vec2(0, 1.5), 0.3}};
   LaserSight sight(watched.laser, watched.rules, watched.settings);
-  // The second one is nearer to the origin, and the last one out of range.
+  // The second disc is nearer to the origin than the first, and the last one is out of range.
   const std::vector<Circle> standing{
       {at_m + Vec2(1, 0), 0.1}, {at_m + Vec2(-2, 0), 0.1}, {at_m + Vec2(0, -3), 0.1}};
   Time at = kBegin;

@@ -12,7 +12,7 @@ constexpr test::ScanNoise kNoise{0.015, 0.05, 0.03};
 
 Time at_s(double seconds) { return time_from_ns(1'000'000'000) + from_seconds(seconds); }
 
-/// A robot with a laser, among walls and people.
+/// A robot with a laser that drives among walls and people.
 class Drive {
  public:
   Drive(std::uint64_t seed, int people, bool has_map) : rng_(seed), scene_(seed, kLaser), has_map_(has_map) {
@@ -39,7 +39,7 @@ class Drive {
     REQUIRE(tracks_.update(beams_, grid_, has_map_ ? PriorMap{&scene_.map()} : PriorMap{}));
     REQUIRE(grid_.update(beams_));
   }
-  /// The beams that end at a person.
+  /// Number of beams that end at a person.
   int beams_on(const test::Walker& person) const {
     return static_cast<int>(std::ranges::count_if(beams_.all(), [&](const Beam& beam) {
       return beam.end == BeamEnd::kHit &&
@@ -89,7 +89,7 @@ TEST_CASE("walls do not appear to move while the robot drives and turns") {
   }
   CHECK(driven_m > 100);
   CHECK(turned_rad > 100);
-  // Without a map, newly seen parts of walls are tracked, but recognised as stationary.
+  // Without a map, newly seen parts of walls are tracked but recognised as stationary.
   if (!has_map) CHECK(tracks > 1000);
   WARN("map " << has_map << ": " << tracks << " tracks of walls, " << moving << " moving");
 }
@@ -101,7 +101,7 @@ TEST_CASE("people who walk among walls are tracked") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     INFO("seed " << seed << ", map " << has_map);
     Drive drive(seed, 5, has_map);
-    std::vector<double> seen_s(drive.people().size(), 0);  // how long each person has been seen and walking
+    std::vector<double> seen_s(drive.people().size(), 0);  // how long each person has been seen walking
     for (int scan = 0; scan < 400; ++scan) {
       drive.step();
       const auto tracks = drive.tracks().tracks();
@@ -165,7 +165,7 @@ struct Hall {
     CHECK(grid.update(beams));
     now_s += kScan_s;
   }
-  /// The track at a place.
+  /// The track near a point.
   const LaserTrack& at(const Vec2& p) const {
     const auto found = std::ranges::find_if(
         tracks.tracks(), [&](const LaserTrack& track) { return (track.position_m - p).norm() < 0.3; });
@@ -174,7 +174,7 @@ struct Hall {
   }
 };
 
-TEST_CASE("a person who stops keeps the track and does not become a wall") {
+TEST_CASE("a person who stops keeps the same track and does not become a wall") {
   Hall hall;
   Vec2 at(3, -1.5);
   for (int i = 0; i < 45; ++i, at.y() += kScan_s) hall.scan({at, 0.25});
@@ -198,7 +198,7 @@ TEST_CASE("a person who stops keeps the track and does not become a wall") {
   CHECK(hall.at(at).is_moving);
 }
 
-TEST_CASE("something that has not moved since it was first seen counts as stationary") {
+TEST_CASE("an object that has not moved since it was first seen counts as stationary") {
   Hall hall;
   for (int i = 0; i < 60; ++i) hall.scan({{2, 1}, 0.25});
   CHECK(hall.tracks.tracks().empty());

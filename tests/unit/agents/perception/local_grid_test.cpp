@@ -15,7 +15,7 @@ constexpr LaserSettings kLaser{90, 2 * kPi, 0.05, 5};
 
 Time at_s(double seconds) { return time_from_ns(1'000'000'000) + from_seconds(seconds); }
 
-/// The same evidence, stored for cells of the whole world, with finely sampled rays.
+/// Slow reference: stores the same evidence for cells of the whole world, with finely sampled rays.
 class SlowGrid {
  public:
   explicit SlowGrid(int side_cells) : side_cells_(side_cells) {}
@@ -30,7 +30,7 @@ class SlowGrid {
     for (auto& [cell, odds] : odds_)
       odds *= std::exp(-to_seconds(beams.captured_at() - updated_at_) / LocalGrid::kDecay_s);
     updated_at_ = beams.captured_at();
-    // Forget what leaves the window.
+    // Forgets cells that leave the window.
     const Key robot = key(beams.at_m());
     const int half = side_cells_ / 2;
     const auto is_inside = [&](const Key& cell) {
@@ -63,12 +63,12 @@ class SlowGrid {
   std::map<Key, double> odds_;
 };
 
-TEST_CASE("the grid equals a slow grid of the whole world while the robot drives") {
+TEST_CASE("while the robot drives, the grid equals a slow grid of the whole world") {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
     test::Scene scene(seed, kLaser);
-    LocalGrid grid({.side_cells = 128});  // smaller than the laser's reach
+    LocalGrid grid({.side_cells = 128});  // smaller than the laser's range
     SlowGrid slow(128);
     LaserBeams beams(kLaser);
     test::Walker robot(scene, rng, 0.2, 2);
@@ -86,7 +86,7 @@ TEST_CASE("the grid equals a slow grid of the whole world while the robot drives
       for (int row = centre.row - 80; row < centre.row + 80; ++row) {
         for (int column = centre.column - 80; column < centre.column + 80; ++column, ++all) {
           const Cell cell{column, row};
-          // Sampling misses cells of which a ray cuts only a corner.
+          // Sampling misses cells where a ray only cuts a corner.
           different += std::abs(grid.log_odds(cell) - slow.log_odds(cell)) > 0.002;
           occupied += grid.state(cell) == CellState::kOccupied;
           free += grid.state(cell) == CellState::kFree;
@@ -99,7 +99,7 @@ TEST_CASE("the grid equals a slow grid of the whole world while the robot drives
   }
 }
 
-/// A scanner at the origin, whose beams all have the same range.
+/// A scanner at the origin. In each scan, all beams have the same range.
 struct Fixture {
   LaserBeams beams{kLaser};
   LocalGrid grid;
@@ -123,7 +123,7 @@ TEST_CASE("hits mark cells, rays clear cells, and dropouts change nothing") {
   CHECK(f.state(1, 0.001) == CellState::kFree);
   CHECK(f.state(2.2, 0.001) == CellState::kUnknown);
   CHECK(f.state(40, 0.001) == CellState::kUnknown);
-  // Dropouts, and hits that are too near, change nothing.
+  // Dropouts and hits that are too near change nothing.
   Fixture same = f;
   f.scan(test::kNoRange);
   f.scan(-kInfinite);
@@ -133,14 +133,14 @@ TEST_CASE("hits mark cells, rays clear cells, and dropouts change nothing") {
   for (double x = -3; x <= 3; x += 0.05)
     CHECK(f.grid.log_odds(f.grid.cell_at({x, 0.001})) ==
           Approx(same.grid.log_odds(f.grid.cell_at({x, 0.001}))).margin(1e-5));
-  // The maximum range clears everything up to there.
+  // A beam with maximum range clears all cells up to that range.
   for (int i = 0; i < 20; ++i) f.scan(kInfinite);
   CHECK(f.state(2.02, 0.001) == CellState::kFree);
   CHECK(f.state(4.97, 0.001) == CellState::kFree);
   CHECK(f.state(5.1, 0.001) == CellState::kUnknown);
 }
 
-TEST_CASE("known robots leave no hits but are seen through to their edge") {
+TEST_CASE("known robots leave no hits, and rays clear cells up to their edges") {
   Fixture f;
   const std::vector<Circle> robots{{{1.7, 0}, 0.2}};
   for (int i = 0; i < 5; ++i) f.scan(1.52F, {0, 0}, robots);
@@ -166,7 +166,7 @@ TEST_CASE("evidence saturates and decays") {
   CHECK(f.grid.state(crossed) == CellState::kUnknown);
 }
 
-TEST_CASE("the time for which a cell has been occupied restarts after the cell was free") {
+TEST_CASE("a cell's occupied time starts over after the cell has been free") {
   Fixture f;
   for (int i = 0; i <= 20; ++i) f.scan(2.02F);
   const Cell hit = f.grid.cell_at({2.02, 0.001});
@@ -181,7 +181,7 @@ TEST_CASE("the time for which a cell has been occupied restarts after the cell w
   CHECK(to_seconds(f.grid.occupied_for(hit)) > 0.5);
 }
 
-TEST_CASE("the window moves by whole cells and forgets what leaves it") {
+TEST_CASE("the window moves by whole cells and forgets cells that leave it") {
   Fixture f;
   for (int i = 0; i < 5; ++i) f.scan(2.02F);
   const Cell hit = f.grid.cell_at({2.02, 0.001});
@@ -199,7 +199,7 @@ TEST_CASE("the window moves by whole cells and forgets what leaves it") {
   CHECK(f.grid.state_at({-998.97, 777.72}) == CellState::kOccupied);
 }
 
-TEST_CASE("the occupied cells of a box agree with a check of each cell") {
+TEST_CASE("the query for occupied cells in a box agrees with a check of each cell") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -231,7 +231,7 @@ TEST_CASE("the occupied cells of a box agree with a check of each cell") {
   }
 }
 
-TEST_CASE("old scans change nothing and bad settings are refused") {
+TEST_CASE("old scans change nothing and invalid settings are refused") {
   Fixture f;
   f.scan(2.02F);
   const std::vector<float> ranges(90, 1.02F);

@@ -6,7 +6,7 @@
 
 namespace sidestep::prior_map_test {
 
-TEST_CASE("the nearest known point is as near as the nearest stationary object, and belongs to it") {
+TEST_CASE("the nearest known point lies on the nearest stationary object, at that object's distance") {
   int found = 0, none = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);

@@ -8,7 +8,7 @@ namespace sidestep::scan_clusters_test {
 
 constexpr LaserSettings kLaser{720, 2 * std::numbers::pi, 0.05, 8};
 
-/// A scan of discs from the origin. All hits are selected, or those for which `select(end)` holds.
+/// A scan of discs from the origin. Selects the hits for which `select(end)` holds.
 struct View {
   LaserBeams beams{kLaser};
   ScanClusters clusters{0.15};
@@ -30,7 +30,7 @@ struct View {
 
 const auto kAll = [](const Vec2&) { return true; };
 
-TEST_CASE("each disc is one cluster, with its radius and the mean of its hits, wherever the scan starts") {
+TEST_CASE("each disc is one cluster with its radius and mean hit, wherever the scan starts") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -57,7 +57,7 @@ TEST_CASE("each disc is one cluster, with its radius and the mean of its hits, w
 }
 
 TEST_CASE("hits that are far apart or not selected separate clusters") {
-  // Two discs in a line, the farther one half hidden.
+  // Two discs, the nearer one hiding half of the farther one.
   const std::vector<Circle> discs{{{2, 0}, 0.2}, {{4, 0.4}, 0.25}};
   const View both(discs, 1, 0, kAll);
   REQUIRE(both.clusters.all().size() == 2);
@@ -72,7 +72,7 @@ TEST_CASE("hits that are far apart or not selected separate clusters") {
   CHECK(View({}, 1, 0, kAll).clusters.all().empty());
 }
 
-TEST_CASE("a scan that is a single cluster is found") {
+TEST_CASE("a cluster that spans the whole scan is found") {
   LaserBeams beams(kLaser);
   const std::vector<float> ranges(720, 1.5F);
   beams.read({{0, 0}, 0, Time{}, ranges}, {});

@@ -12,11 +12,11 @@ inline constexpr float kNoRange = std::numeric_limits<float>::quiet_NaN();
 /// Errors of a laser.
 struct ScanNoise {
   double deviation_m = 0;
-  double largest_m = 1e9;  ///< larger errors are cut off
-  double dropouts = 0;     ///< share of the beams
+  double largest_m = 1e9;  ///< errors are clamped to this
+  double dropouts = 0;     ///< fraction of the beams
 };
 
-/// A floor plan of 12 m x 12 m, with a scanner in it.
+/// A floor plan of 12 m x 12 m with a scanner.
 class Scene {
  public:
   explicit Scene(std::uint64_t seed, const LaserSettings& laser = {})
@@ -38,7 +38,7 @@ class Scene {
       if (is_free({x, y}, {x, y}, radius_m)) return {x, y};
     }
   }
-  /// The scan lives until the next one.
+  /// The scan's ranges stay valid until the next scan.
   LaserScan scan(const Vec2& at, double heading_rad, Time captured_at, std::span<const Circle> discs,
                  const ScanNoise& noise, Rng& rng) {
     scanner_.scan({&map_, &field_, nullptr, discs}, at, heading_rad, ranges_m_);
@@ -58,7 +58,7 @@ class Scene {
   std::vector<float> ranges_m_;
 };
 
-/// A disc that walks straight from one random free position to the next, and may turn only so fast.
+/// A disc that walks straight from one random free position to the next, with a limited turn rate.
 class Walker {
  public:
   Walker(const Scene& scene, Rng& rng, double radius_m, double speed_mps)

@@ -11,7 +11,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 const auto kNothing = [](const Vec2&, double) { return std::optional<Vec2>(); };
 
-/// The known part of a scene, with occasional omissions.
+/// Looks up known points of the scene, with occasional omissions.
 auto known_in(const test::Scene& scene, Rng& rng, double unknown = 0) {
   return [&scene, &rng, unknown](const Vec2& p, double within_m) {
     return rng.chance(unknown) ? std::nullopt : PriorMap{&scene.map()}.nearest_m(p, within_m);
@@ -56,7 +56,7 @@ TEST_CASE("no point of a hidden person counts as seen free") {
   CHECK(near > 3000);
 }
 
-TEST_CASE("most of what is in view counts as seen free") {
+TEST_CASE("most of the space in view counts as seen free") {
   int in_view = 0, free = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Rng rng(seed);
@@ -103,7 +103,7 @@ struct View {
       return stand ? floor.nearest_m(p, within_m) : std::nullopt;
     });
   }
-  /// The distance at which a frontier crosses the line from the origin in this direction.
+  /// The distance from the origin to the nearest frontier in this direction.
   double frontier_m(double angle_rad) const {
     double nearest = 1e9;
     const Segment line{{0, 0}, rotated({100, 0}, angle_rad)};
@@ -125,7 +125,7 @@ TEST_CASE("a gap is closed if it is too narrow and both of its sides are station
                               Segment{{3, middle_m + gap_m / 2}, {3, 3}}, Segment{{-3, -3}, {3, -3}},
                               Segment{{-3, 3}, {3, 3}}, Segment{{-3, -3}, {-3, 3}}};
   };
-  // Beams look through the gap: too narrow for a person, or wide enough.
+  // Beams pass through both gaps: 0.6 m is wide enough for a person, 0.3 m is too narrow.
   const View open(laser, room(0.6), settings), fence(laser, room(0.3), settings);
   CHECK(open.frontier_m(0.01) < 8);
   CHECK(open.visibility.was_seen_free({4, 0.01}));
@@ -143,7 +143,7 @@ TEST_CASE("a gap is closed if it is too narrow and both of its sides are station
   CHECK(loose.visibility.closed_gaps().empty());
   CHECK(loose.frontier_m(0.3) < 3.2);
   CHECK(loose.visibility.was_seen_free({2.9, 0}));
-  // Both sides must be known; here only one is.
+  // A gap is closed only if both sides are known; here, only one side is known.
   const ObstacleWorld half({Segment{{3, -3}, {3, 0}}});
   Visibility lone(settings);
   lone.update(fence.beams, [&](const Vec2& p, double within_m) {
@@ -158,19 +158,19 @@ TEST_CASE("a gap is closed if it is too narrow and both of its sides are station
   CHECK_FALSE(is_open_at(0.1));  // still too near to the end of the known half
   CHECK(is_open_at(0.4));
   CHECK(is_open_at(0.5));
-  // Dropouts leave gaps of a few beams, too narrow for a person.
+  // Dropouts leave gaps of a few beams, which are too narrow for a person.
   const View gaps(laser, room(0.005), settings, {}, true, 0.3);
   CHECK(gaps.visibility.frontiers().empty());
   CHECK(gaps.visibility.was_seen_free({2.9, 0.05}));
-  // Coarse beams: 0.4 m apart in the middle of the wall is closed, 0.6 m is not.
+  // With coarse beams, gaps of 0.4 m in the middle of the wall are closed, gaps of 0.6 m are not.
   const View coarse({48, 2 * kPi, 0.05, 8}, room(0.005), settings);
   CHECK(coarse.frontier_m(0.05) > 1e3);
   const View coarser({30, 2 * kPi, 0.05, 8}, room(0.005), settings);
   CHECK(coarser.frontier_m(0.05) < 3);
 }
 
-//   wall |  |  wall        somebody stands in the doorway: his sides are
-//        | O|              as near to the edges as the walls
+//   wall |  |  wall        a person O stands in the doorway
+//        | O|              and almost touches its walls
 //        o  robot
 TEST_CASE("the surface of a person in a passable doorway is a frontier, however near the walls are") {
   const LaserSettings laser{720, 2 * kPi, 0.05, 8};
@@ -186,7 +186,7 @@ TEST_CASE("the surface of a person in a passable doorway is a frontier, however 
       });
       CHECK(is_open);
     }
-    // Nobody passes a narrower doorway, so what is seen in it is irrelevant.
+    // No person fits through a narrower doorway, so what is seen in it does not matter.
     const double half_m = radius_m - 0.01;
     const View view(laser, {Box{{-3, 1}, {-half_m, 1.3}}, Box{{half_m, 1}, {3, 1.3}}}, {radius_m, 0.005});
     CHECK(std::ranges::none_of(view.visibility.frontiers(), [&](const Frontier& frontier) {
@@ -195,7 +195,7 @@ TEST_CASE("the surface of a person in a passable doorway is a frontier, however 
   }
 }
 
-TEST_CASE("a thin post hides nobody") {
+TEST_CASE("no person can hide behind a thin post") {
   const LaserSettings laser{1440, 2 * kPi, 0.05, 8};
   const auto room = [](double radius_m) {
     return std::vector<Shape>{Segment{{3, -3}, {3, 3}}, Segment{{-3, -3}, {3, -3}}, Segment{{-3, 3}, {3, 3}},
@@ -208,14 +208,14 @@ TEST_CASE("a thin post hides nobody") {
   CHECK_FALSE(thick.visibility.was_seen_free({2, 0.2}));
 }
 
-TEST_CASE("people may stand behind known robots, as near as their size permits") {
+TEST_CASE("people may stand behind known robots, as near to them as the people's size permits") {
   const LaserSettings laser{720, 2 * kPi, 0.05, 8};
   const std::vector<Shape> walls{Segment{{3, -3}, {3, 3}}, Segment{{-3, -3}, {3, -3}},
                                  Segment{{-3, 3}, {3, 3}}, Segment{{-3, -3}, {-3, 3}}};
   const std::vector<Circle> robots{{{2, 0}, 0.3}};
   const View view(laser, walls, {0.2, 0.01}, robots);
-  // A disc of 0.2 m fits into the shadow of a disc of 0.3 m, but not into that of one of 0.1 m in front of
-  // the wall.
+  // A disc with a radius of 0.2 m can hide behind a robot with a radius of 0.3 m, but not between the wall
+  // and a robot with a radius of 0.1 m.
   CHECK(view.frontier_m(0.01) == Approx(1.69).margin(0.02));
   const std::vector<Circle> small{{{2, 0}, 0.1}};
   const View beside(laser, walls, {0.2, 0.01}, small);
@@ -225,18 +225,18 @@ TEST_CASE("people may stand behind known robots, as near as their size permits")
   CHECK(view.visibility.was_seen_free({1.5, 0}));
 }
 
-TEST_CASE("unseen sectors and empty scans are frontiers") {
-  // An opening of 90 degrees behind the robot.
+TEST_CASE("unseen sectors and empty scans count as frontiers") {
+  // The laser does not see a sector of 90 degrees behind the robot.
   const View view({271, 1.5 * kPi, 0.05, 8}, {}, {0.2, 0});
   CHECK(view.frontier_m(kPi - 0.001) == Approx(0.2 / std::sin(kPi / 4) - 0.2).margin(0.01));
   CHECK(view.frontier_m(0.001) == Approx(8).margin(0.01));
   CHECK(view.visibility.was_seen_free({-0.05, 0}));
   CHECK_FALSE(view.visibility.was_seen_free({-0.3, 0}));
-  // Half a turn or less: a person may stand directly behind the scanner.
+  // With a field of view of half a turn or less, a person may stand directly behind the scanner.
   const View half({181, kPi, 0.05, 8}, {}, {0.2, 0});
   CHECK_FALSE(half.visibility.was_seen_free({-0.001, 0}));
   CHECK(half.visibility.was_seen_free({0.1, 0}));
-  // Nothing is known.
+  // If all beams are dropouts, no space is seen free.
   const LaserSettings laser{90, 2 * kPi, 0.05, 8};
   LaserBeams beams(laser);
   const std::vector<float> dropouts(90, test::kNoRange);
@@ -250,7 +250,7 @@ TEST_CASE("unseen sectors and empty scans are frontiers") {
   CHECK_FALSE(blind.is_before_frontiers({1, 1}));
 }
 
-TEST_CASE("the border is closed around the scanner") {
+TEST_CASE("the border encloses the scanner without gaps") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -264,7 +264,7 @@ TEST_CASE("the border is closed around the scanner") {
     std::vector<Segment> border;
     for (const Frontier& frontier : visibility.frontiers()) border.push_back(frontier.segment);
     for (const Frontier& gap : visibility.closed_gaps()) border.push_back(gap.segment);
-    // A point that was seen free is separated from every point that was not.
+    // The border separates every point seen free from every point not seen free.
     for (int i = 0; i < 100; ++i) {
       const double x = rng.uniform(-6, 6), y = rng.uniform(-6, 6), x2 = rng.uniform(-6, 6),
                    y2 = rng.uniform(-6, 6);
@@ -273,13 +273,13 @@ TEST_CASE("the border is closed around the scanner") {
       double nearest_m = 1e9;
       for (std::size_t k = 0; k < border.size(); ++k)
         nearest_m = std::min(nearest_m, std::sqrt(squared_distance(line, border[k])));
-      // Within bulges, points are not seen free although they are inside.
+      // Points inside bulges do not count as seen free although they lie within the border.
       CHECK(nearest_m < 0.2);
     }
   }
 }
 
-TEST_CASE("bad settings of visibility are refused") {
+TEST_CASE("visibility refuses invalid settings") {
   CHECK_THROWS_AS(Visibility({0, 0}), std::invalid_argument);
   CHECK_THROWS_AS(Visibility({0.2, -1}), std::invalid_argument);
   CHECK_THROWS_AS(Visibility({std::nan(""), 0}), std::invalid_argument);

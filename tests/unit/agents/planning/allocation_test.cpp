@@ -12,7 +12,7 @@
 
 namespace sidestep::allocation_test {
 
-/// Number of allocations for queries that the planner has planned before, with the same random samples.
+/// Number of allocations for queries that the planner has planned before with the same random samples.
 template <typename Planner>
 std::size_t allocations_once_warm(Planner plan, const std::string& name) {
   const PlanWorld world = make_world(name, 10, 1);

@@ -39,7 +39,7 @@ TEST_CASE("paths become shorter with the budget and approach the shortest") {
   CHECK(over[1] < 1.06);
 }
 
-TEST_CASE("an improved path is reported as such and a straight path is not planned again") {
+TEST_CASE("an improved path is reported as improved, and a straight path is not replanned") {
   const PlanWorld world = make_world("u", 1, 1);
   const ObstacleWorld obstacles(world.obstacles), nothing;
   const Vec2 start = world.queries[0].start_m, goal = world.queries[0].goal_m;

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// A point in the cube [-1, 1]³ among balls: a domain unrelated to the floor, which does not expose
+/// A point in the cube [-1, 1]³ among balls: a domain that is unrelated to the floor and does not expose
 /// coordinates to planners.
 class BallDomain {
  public:

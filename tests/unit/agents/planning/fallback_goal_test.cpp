@@ -10,7 +10,8 @@
 
 namespace sidestep::fallback_goal_test {
 
-/// Whether a path that starts in obstacles comes no nearer to any of them, and touches none once it is out.
+/// Whether a path that starts in obstacles never penetrates any of them more deeply, and touches none once it
+/// is out.
 bool leaves_and_stays_out(const PlanWorld& world, const std::vector<Vec2>& path) {
   std::vector<double> min_distance;
   for (const Shape& shape : world.obstacles)
@@ -40,7 +41,7 @@ Vec2 blocked_position(const PlanWorld& world, Rng& rng) {
   }
 }
 
-/// The distance to the nearest free position, by a fine grid around the position.
+/// The distance to the nearest free position, found on a fine grid around the position.
 double distance_to_free(const PlanWorld& world, const Vec2& position) {
   double nearest = 10;
   for (double x = -1; x <= 1; x += 0.01) {
@@ -97,13 +98,13 @@ void approach_obstacles(std::uint64_t seed) {
       const double left = (plan.states.back() - requested).norm();
       if (left <= distance_to_free(world, requested) * 1.02 + 0.02) ++near;
     }
-    // The remaining goals are nearest to a free position in an unreachable pocket.
+    // For the remaining goals, the nearest free position is in an unreachable pocket.
     CAPTURE(name, seed);
     CHECK(near >= 14);
   }
 }
 
-TEST_CASE("a start in an obstacle is left without deeper penetration") {
+TEST_CASE("a path that starts in an obstacle leaves it without penetrating deeper") {
   const auto seed = GENERATE(1u, 2u, 3u);
   leave_obstacles<LazyVisibility>(seed, 16);
   leave_obstacles<BidirectionalErrt<DiscDomain>>(seed, 14);
@@ -111,7 +112,7 @@ TEST_CASE("a start in an obstacle is left without deeper penetration") {
   leave_obstacles<NavigationPlanner>(seed, 14);
 }
 
-TEST_CASE("a goal in an obstacle is approached as closely as possible") {
+TEST_CASE("a path to a goal in an obstacle ends as near to the goal as possible") {
   const auto seed = GENERATE(1u, 2u, 3u);
   approach_obstacles<LazyVisibility>(seed);
   approach_obstacles<BidirectionalErrt<DiscDomain>>(seed);
@@ -119,9 +120,9 @@ TEST_CASE("a goal in an obstacle is approached as closely as possible") {
 }
 
 TEST_CASE("a goal in an obstacle is replaced by the nearest reachable free position") {
-  // A box with a pocket inside, which contains the free position nearest to the goal.
+  // A box with a pocket. The free position nearest to the goal is inside the pocket.
   //  +-----+
-  //  |g   .|   g: the requested goal, in the left wall, nearer to the inside
+  //  |g   .|   g: the requested goal, in the left wall but nearer to the inside
   //  +-----+
   PlanWorld world;
   world.obstacles = {Box{{-1.5, -1}, {-0.9, 1}}, Box{{0.9, -1}, {1, 1}}, Box{{-1.5, 0.9}, {1, 1}},
@@ -142,7 +143,7 @@ TEST_CASE("a goal in an obstacle is replaced by the nearest reachable free posit
   }
 }
 
-TEST_CASE("a start that cannot be left is reported as blocked") {
+TEST_CASE("a start without a way out is reported as blocked") {
   PlanWorld world;
   world.obstacles = {Box{{-1, -1}, {1, 1}},      Box{{-1.2, -1}, {0.9, 1}}, Segment{{-5, 0}, {5, 0.1}},
                      Segment{{0, -5}, {0.1, 5}}, Segment{{-5, -5}, {5, 5}}, Segment{{-5, 5}, {5, -5}}};

@@ -35,7 +35,7 @@ class Planning {
   Rng rng_{1};
 };
 
-/// The number of queries that are answered by the straight line alone.
+/// The number of queries that are solved by the straight line alone.
 int count_straight(const std::string& planner, const PlanWorld& world) {
   Planning planning(planner, world);
   int straight = 0;
@@ -43,7 +43,7 @@ int count_straight(const std::string& planner, const PlanWorld& world) {
   return straight;
 }
 
-TEST_CASE("every planner plans by its name and draws what it explored") {
+TEST_CASE("each planner can be created by name, solves queries and draws what it explored") {
   const PlanWorld world = make_world("u", 3, 1);
   const std::string name = GENERATE(from_range(planner_names()));
   CAPTURE(name);
@@ -79,7 +79,7 @@ TEST_CASE("an unknown planner name is refused") {
   CHECK_THROWS_WITH(make_planner("dijkstra"), ContainsSubstring("dijkstra") && ContainsSubstring("bi-errt"));
 }
 
-TEST_CASE("planners that keep a graph of one world, or use all the time, cannot drive robots") {
+TEST_CASE("planners that keep a graph of one world or use the whole time budget cannot drive robots") {
   for (const std::string_view name : kDrivingPlanners)
     CHECK(make_driving_planner(std::string(name)).kind == PlannerKind::kForAnyWorld);
   CHECK(make_driving_planner("errt").name == "errt");
@@ -88,7 +88,9 @@ TEST_CASE("planners that keep a graph of one world, or use all the time, cannot 
   CHECK_THROWS_AS(make_driving_planner("dijkstra"), std::invalid_argument);
 }
 
-TEST_CASE("planners named after OMPL's sample uniformly, remember nothing and do not try the straight line") {
+TEST_CASE(
+    "planners named after OMPL planners sample uniformly, remember nothing and do not try the straight "
+    "line") {
   const std::string name = GENERATE(as<std::string>(), "rrt", "rrt-connect");
   CAPTURE(name);
   const PlanWorld empty = make_world("empty", 20, 1), u = make_world("u", 5, 1);
@@ -100,7 +102,7 @@ TEST_CASE("planners named after OMPL's sample uniformly, remember nothing and do
   CHECK(planning.draw().cache.empty());
 }
 
-TEST_CASE("each addition to a namesake has its own row") {
+TEST_CASE("each variant of rrt and rrt-connect adds exactly one feature") {
   const std::string name = GENERATE(as<std::string>(), "rrt", "rrt-connect");
   CAPTURE(name);
   const PlanWorld empty = make_world("empty", 20, 1), u = make_world("u", 5, 1);

@@ -40,7 +40,7 @@ TEST_CASE("the counter counts an allocation") {
   CHECK(allocation_count() > before);
 }
 
-TEST_CASE("a search allocates nothing once warm, with any neighbours") {
+TEST_CASE("a warm search does not allocate for any neighbours") {
   Rng rng(1);
   FloorRules rules;
   rules.obstacles = {Circle{{0.5, 0.5}, 0.1}};
@@ -59,7 +59,7 @@ TEST_CASE("a search allocates nothing once warm, with any neighbours") {
   CHECK(found > 0);
 }
 
-TEST_CASE("batched comparisons allocate nothing once warm") {
+TEST_CASE("warm batched comparisons do not allocate") {
   Rng rng(2);
   batch::BatchClearance clearance(batch::best_kernels());
   std::vector<TrajectoryBounds> others;
@@ -79,7 +79,7 @@ TEST_CASE("batched comparisons allocate nothing once warm") {
   CHECK(clear > 0);
 }
 
-TEST_CASE("neighbours are stored without allocations once warm") {
+TEST_CASE("storing neighbours does not allocate once warm") {
   Rng rng(3);
   Neighbours neighbours(0);
   TrajectoryIndex index;
@@ -113,7 +113,7 @@ TEST_CASE("neighbours are stored without allocations once warm") {
   CHECK(collected > 0);
 }
 
-TEST_CASE("an agent's messages are decoded and encoded without allocations") {
+TEST_CASE("decoding and encoding an agent's messages does not allocate") {
   Rng rng(4);
   RobotReport robot_report;
   robot_report.executing = random_version(0, rng);
@@ -140,8 +140,7 @@ TEST_CASE("an agent's messages are decoded and encoded without allocations") {
   CHECK(decoded == 7 * 600);
 }
 
-TEST_CASE(
-    "lists of obstacles are decoded and stored, and searches avoid the obstacles, without allocations") {
+TEST_CASE("decoding, storing and avoiding listed obstacles does not allocate") {
   Rng rng(5);
   std::vector<msg::ObstacleList> lists(40);
   for (std::size_t k = 0; k < lists.size(); ++k) {
@@ -149,7 +148,7 @@ TEST_CASE(
     lists[k].complete_within_m(1);
     for (std::uint32_t i = 0; i < msg::MAX_OBSTACLES; ++i) {
       msg::TrackedObstacle& obstacle = lists[k].obstacles().emplace_back();
-      obstacle.obstacle(static_cast<std::uint32_t>(rng.below(2000)));  // more than can be stored
+      obstacle.obstacle(static_cast<std::uint32_t>(rng.below(2000)));  // more tracks than can be stored
       obstacle.x_m(rng.uniform(-3, 3));
       obstacle.y_m(rng.uniform(-3, 3));
     }

@@ -15,8 +15,8 @@ constexpr Duration kHold{33'333'334};
 constexpr double kSpan_s = 0.6;
 
 TEST_CASE(
-    "candidates are excluded or certainly clear only if the exact clearance says so, on every instruction "
-    "set") {
+    "on every instruction set, candidates count as excluded or certainly clear only if the exact clearance "
+    "agrees") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const MotionLimits limits;
   for (const batch::Kernels& kernels : batch::available_kernels()) {

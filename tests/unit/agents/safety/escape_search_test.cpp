@@ -51,7 +51,7 @@ TEST_CASE("a base without conflicts has no escape candidates") {
   CHECK(search_escape(query_on(base, {3, 0}), base, index_of({&other, 1}), test_rules()).count == 0);
 }
 
-TEST_CASE("escape candidates lead away from the conflict, the desired one first if it does so too") {
+TEST_CASE("escape candidates lead away from the conflict, starting with the desired one if it does so") {
   const Version base = braking(1, {0, 0}, {0, 0}), other = braking(2, {0.15, 0}, {0, 0});
   const auto towards = search_escape(query_on(base, {3, 0}), base, index_of({&other, 1}), test_rules());
   REQUIRE(towards.count == SearchResult::kMaxCandidates);
@@ -71,7 +71,7 @@ TEST_CASE("robots that were pushed too near to an obstacle or off the field find
   }
 }
 
-TEST_CASE("no escape candidate is moving when an opponent can touch the robot") {
+TEST_CASE("every escape candidate rests before an opponent can touch the robot") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -104,7 +104,7 @@ TEST_CASE("no escape candidate is moving when an opponent can touch the robot") 
 }
 
 TEST_CASE(
-    "no escape candidate is moving when an unknown obstacle beyond the seen region can touch the robot") {
+    "every escape candidate rests before an unknown obstacle beyond the seen region can touch the robot") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -134,7 +134,8 @@ TEST_CASE(
   CHECK(excluded > 500);
 }
 
-TEST_CASE("no escape candidate comes nearer to another robot than the base or the minimum separation") {
+TEST_CASE(
+    "escape candidates come no nearer to other robots than the base does, or than the minimum separation") {
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Rng rng(seed);
@@ -163,7 +164,7 @@ TEST_CASE("no escape candidate comes nearer to another robot than the base or th
         const double min_distance =
             std::min(full_separation, sampled_distance_m(base.trajectory, other.trajectory));
         CAPTURE(i, k, other.robot);
-        // The closest approach of the base may lie between two samples.
+        // The base's closest approach may lie between two samples.
         REQUIRE(sampled_distance_m(result.candidates[k], other.trajectory) >= min_distance - 0.003);
       }
       REQUIRE(check_limits(result.candidates[k], rules.limits) == Validity::kValid);

@@ -49,7 +49,7 @@ struct Crowd {
     return result;
   }
 
-  /// Scans walls and people in view; only walls stand.
+  /// Scans walls and people in view. Only walls are known to be stationary.
   void look() {
     for (int i = static_cast<int>(rng.below(3)); i > 0; --i) {
       const double person_m = settings.person_radius_m * rng.uniform(1, 2);
@@ -84,7 +84,7 @@ struct Crowd {
     }
   }
 
-  /// A motion that begins near the place of the scan, soon after it, holds an acceleration and then stops.
+  /// A motion that begins near the place of the scan, soon after it. It holds an acceleration and then stops.
   Trajectory random_motion() {
     const Vec2 along = rotated({1, 0}, rng.uniform(-kPi, kPi));
     const double speed_mps = rng.chance(0.2) ? 0 : rng.uniform(0, 2.5);
@@ -98,8 +98,8 @@ struct Crowd {
 
   enum class Touch { kNone, kWall, kPerson };
 
-  /// Whether a person can walk straight to the robot and touch it while it moves, or whether the robot
-  /// reaches a wall first.
+  /// Whether a person can walk straight to the robot and touch it while it moves, or the robot reaches a wall
+  /// first.
   Touch first_touch(const Trajectory& motion) const {
     constexpr Duration kStep{10'000'000};
     for (Time t = motion.start(); t < motion.end(); t += kStep) {
@@ -117,7 +117,7 @@ struct Crowd {
   }
 };
 
-TEST_CASE("no hidden person can touch a robot that moves as the check allows") {
+TEST_CASE("no hidden person can touch a robot that moves as the check permits") {
   using enum Crowd::Touch;
   int allowed = 0, refused = 0, touched = 0, walls = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
@@ -141,11 +141,11 @@ TEST_CASE("no hidden person can touch a robot that moves as the check allows") {
                << " would have been touched, " << walls << " would have reached a wall");
   CHECK(allowed > 150);
   CHECK(refused > 100);
-  // The check does not refuse much more than necessary.
+  // The check refuses few motions needlessly.
   CHECK(touched + walls > refused / 4);
 }
 
-/// The smallest clearance over many instants, by the formula in Visibility.
+/// Slow reference: the smallest clearance over many instants, by the formula in Visibility.
 double slow_room_m(const Trajectory& motion, const HiddenSpace& hidden) {
   double room_m = 1e9;
   constexpr int kSteps = 2000;
@@ -163,7 +163,7 @@ double slow_room_m(const Trajectory& motion, const HiddenSpace& hidden) {
   return room_m;
 }
 
-TEST_CASE("the check agrees with the distances at many instants") {
+TEST_CASE("the check agrees with distances sampled at many instants") {
   int allowed = 0, refused = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Crowd crowd(seed);
@@ -184,7 +184,7 @@ TEST_CASE("the check agrees with the distances at many instants") {
 
 //  frontier      robot
 //     |            o ->  away, slowly
-TEST_CASE("a robot beside a frontier may creep away from it, but not towards it, and not faster") {
+TEST_CASE("a robot beside a frontier may creep away from it but not towards it, and not faster") {
   const std::vector<Frontier> frontiers{{{{0, -1}, {0, 1}}, 0}};
   HiddenSpace hidden{frontiers, {}, kCapture, 1.2};
   hidden.creep_mps = 0.03;
@@ -203,8 +203,8 @@ TEST_CASE("a robot beside a frontier may creep away from it, but not towards it,
   CHECK(is_passively_safe_from_hidden(motion(2), {}, 0.09));
 }
 
-//   ----+ O +----   a corridor, and somebody in a doorway that is
-//   ...  r ->  ...   hardly wider than he is, or much wider
+//   ----+ O +----   a corridor, and a person O in a doorway that is
+//   ...  r ->  ...   hardly wider than the person, or much wider
 //   -------------
 struct Doorway {
   Rng rng;
@@ -249,7 +249,7 @@ struct Doorway {
     });
   }
 
-  /// Takes a scan whose ranges and pose are wrong.
+  /// Takes a scan with wrong ranges and a wrong pose.
   void look(LaserSight& sight) {
     const ObstacleWorld world(rules.obstacles);
     std::vector<float> ranges(static_cast<std::size_t>(laser.settings.beams));
@@ -288,7 +288,7 @@ struct Doorway {
   }
 };
 
-TEST_CASE("no person in a doorway can touch a robot that moves as the check allows") {
+TEST_CASE("no person in a doorway can touch a robot that moves as the check permits") {
   using enum Crowd::Touch;
   int allowed = 0, refused = 0, touched = 0;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
@@ -321,7 +321,7 @@ TEST_CASE("no person in a doorway can touch a robot that moves as the check allo
   CHECK(touched > 300);
 }
 
-TEST_CASE("the search finds no candidate that a hidden person could touch in motion") {
+TEST_CASE("the search finds no candidate that a hidden person could touch during motion") {
   int found = 0, limited = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);

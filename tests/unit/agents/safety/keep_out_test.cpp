@@ -21,7 +21,7 @@ double least_distance(const Trajectory& trajectory, const Shape& zone) {
   return least;
 }
 
-TEST_CASE("a robot outside a zone does not enter it, and one inside comes to rest no deeper in it") {
+TEST_CASE("a robot outside a zone does not enter it, and a robot inside comes to rest no deeper in it") {
   const std::vector<Shape> zones{Circle{{0, 0}, 0.5}, ConvexPolygon{{{1, -1}, {2, -1}, {2, 1}, {1, 1}}},
                                  Circle{{0.3, 0.6}, 0.4}};
   int entered = 0, deeper = 0, allowed = 0;
@@ -46,7 +46,7 @@ TEST_CASE("a robot outside a zone does not enter it, and one inside comes to res
       if (from > kRadius_m) {
         const double least = least_distance(trajectory, zone);
         if (std::abs(least - kRadius_m) < 0.001)
-          is_good = allows;  // within the accuracy of the path
+          is_good = allows;  // within the path's accuracy, either result is accepted
         else if (least < kRadius_m)
           is_good = false;
         entered += least < kRadius_m;
@@ -62,7 +62,7 @@ TEST_CASE("a robot outside a zone does not enter it, and one inside comes to res
   CHECK(allowed > 100);
 }
 
-TEST_CASE("a robot in zones that overlap may drive towards its way out") {
+TEST_CASE("a robot in overlapping zones may drive towards its way out") {
   const std::vector<Shape> zones{Circle{{-0.3, 0}, 0.4}, Circle{{0.3, 0}, 0.4}};
   const Trajectory up = candidate({{0, 0}, {0, 0}}, {0, 3}), left = candidate({{0, 0}, {0, 0}}, {-3, 0});
   const Vec2 start(0, 0), outside(0, 0.5);

@@ -11,13 +11,13 @@ namespace sidestep::moving_obstacle_test {
 
 const Time kBegin = time_from_ns(1'000'000'000);
 
-/// Slow reference: smallest distance of the robot's centre from the obstacle's reach until the robot rests,
-/// by dense sampling that is refined around the minimum.
+/// Slow reference: the smallest distance of the robot's centre from the obstacle's reach until the robot
+/// rests, by dense sampling that is refined around the minimum.
 double sampled_separation_m(const Trajectory& trajectory, const MovingObstacle& obstacle) {
   const double seconds = to_seconds(trajectory.end() - trajectory.start());
   const auto at = [&](double s) {
     const Time t = trajectory.start() + from_seconds(s);
-    // At the end, use the rest position.
+    // At the end, uses the rest position.
     const Vec2 position =
         t >= trajectory.end() ? trajectory.rest_position_m() : trajectory.state_at(t).position_m;
     return (position - obstacle.position_m).norm() - obstacle.reach_m(t);
@@ -42,7 +42,7 @@ MovingObstacle random_obstacle(Rng& rng) {
           rng.chance(0.1) ? 0 : rng.uniform(0, 2)};
 }
 
-TEST_CASE("the passive safety check agrees with dense sampling, in both directions") {
+TEST_CASE("the passive safety check agrees with dense sampling in both directions") {
   const std::uint64_t seed = GENERATE(range(1u, 25u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -52,14 +52,14 @@ TEST_CASE("the passive safety check agrees with dense sampling, in both directio
     if (trajectory.end() == trajectory.start()) continue;  // at rest from the start
     const MovingObstacle obstacle = random_obstacle(rng);
     const double true_separation = sampled_separation_m(trajectory, obstacle);
-    // Close to the true separation.
+    // The separation is close to the true one.
     const double sign = rng.chance(0.5) ? 1 : -1, error = sign * std::pow(10, rng.uniform(-8, -1));
     const double separation = true_separation + error;
     if (separation < 0) continue;
     const bool is_safe = is_passively_safe(trajectory, obstacle, separation);
     CAPTURE(i, true_separation, error, obstacle.speed_mps);
     if (is_safe) REQUIRE(separation <= true_separation);
-    // Before the observation the reach shrinks, and its linear interpolation overestimates it.
+    // Before the observation, the reach shrinks, and its linear interpolation overestimates it.
     if (!is_safe && obstacle.observed_at <= trajectory.start()) REQUIRE(separation >= true_separation - 2e-6);
     ++(is_safe ? safe : unsafe);
   }
@@ -77,7 +77,7 @@ TEST_CASE("a robot is safe from an approaching obstacle only if it stops before 
   nearer.position_m.x() -= 2e-5;
   CHECK(is_passively_safe(braking, just_far, separation));
   CHECK_FALSE(is_passively_safe(braking, nearer, separation));
-  // Observed 10 ms earlier, it may be 2 cm farther.
+  // If the obstacle was observed 10 ms earlier, it may have moved 2 cm farther.
   MovingObstacle older = just_far;
   older.observed_at -= from_seconds(0.01);
   CHECK_FALSE(is_passively_safe(braking, older, separation));
@@ -85,7 +85,7 @@ TEST_CASE("a robot is safe from an approaching obstacle only if it stops before 
   CHECK(is_passively_safe(braking, older, separation));
 }
 
-TEST_CASE("a robot at rest is passively safe from any obstacle, a robot that starts to move is not") {
+TEST_CASE("a robot at rest is passively safe from any obstacle, but a robot that starts to move is not") {
   CHECK(is_passively_safe(Trajectory::resting(kBegin, {0, 0}), {{0.01, 0}, 0.1, kBegin, 2}, 0.1));
   Trajectory empty(kBegin, {{0, 0}, {0, 0}});
   empty.append(Duration{0}, {3, 0});
@@ -97,7 +97,7 @@ TEST_CASE("a robot at rest is passively safe from any obstacle, a robot that sta
 }
 
 TEST_CASE("a short violation between two samples is detected") {
-  // Passes a small obstacle at rest at 2 m/s, and is 1 mm too near for 14 ms of the 1.9 s.
+  // The robot passes a small obstacle at rest at 2 m/s. It is 1 mm too near for 14 ms of the 1.9 s.
   Trajectory passing(kBegin, {{-1.5, 0.1}, {2, 0}});
   passing.append(from_seconds(1.5), {0, 0});
   append_stop(passing, 5);
@@ -105,7 +105,7 @@ TEST_CASE("a short violation between two samples is detected") {
   CHECK(is_passively_safe(passing, {{0, 0}, 0.001, kBegin, 0}, 0.099 - 1e-6));
 }
 
-TEST_CASE("an obstacle that is observed after the trajectory starts may have been elsewhere at the start") {
+TEST_CASE("an obstacle observed after the trajectory starts may have been elsewhere at the start") {
   Trajectory braking(kBegin, {{0, 0}, {1, 0}});
   append_stop(braking, 5);
   const MovingObstacle obstacle{{-0.3, 0}, 0.05, kBegin + from_seconds(0.2), 1};

@@ -22,7 +22,7 @@ Version moving_robot(RobotId id, Vec2 position, Vec2 velocity) {
   return {id, 1, id + 100u, 0, trajectory};
 }
 
-/// Slow reference: tests one candidate after another against one version after another.
+/// Slow reference: compares candidates one by one with versions one by one.
 SearchResult reference_search(const FloorRules& rules, const SearchQuery& query,
                               std::span<const Version> others, Rng& rng) {
   const Vec2& velocity = query.at_start.velocity_mps;
@@ -87,7 +87,7 @@ TEST_CASE("without neighbours, the desired acceleration is the first candidate")
 }
 
 TEST_CASE(
-    "every candidate is clear of all robots and within the limits, and the nearest to the desired one is "
+    "candidates are clear of all robots and within the limits, and the nearest to the desired one comes "
     "first") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
@@ -175,7 +175,7 @@ TEST_CASE("near each border of the field, the search finds the same candidates a
   std::array<int, 4> refused{};
   for (int i = 0; i < 4000; ++i) {
     CAPTURE(i);
-    // So far from a border, towards which it drives, that it can just stop.
+    // The robot drives towards a border and can just stop before it.
     const std::size_t border = scenes.below(4);
     const Vec2 outwards = rotated({1, 0}, std::numbers::pi / 2 * static_cast<double>(border));
     const double half_m = (border % 2 == 0 ? rules.field.length_m : rules.field.width_m) / 2 - rules.radius_m;
@@ -229,7 +229,7 @@ TEST_CASE("among the blocked cells of a map, the search finds the same candidate
   CHECK(restricted > 100);
 }
 
-TEST_CASE("preferred accelerations that are safe are the first candidates after the desired one") {
+TEST_CASE("preferred accelerations that are safe come directly after the desired one") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
   Rng rng(seed);
@@ -291,7 +291,7 @@ TEST_CASE("every candidate is at rest before any moving obstacle could reach it"
     refused += result.count < without;
     for (std::size_t i = 0; i < result.count; ++i) {
       const Trajectory& candidate = result.candidates[i];
-      // Checked by dense sampling.
+      // Checks by dense sampling.
       for (const MovingObstacle& obstacle : moving) {
         for (Time t = candidate.start(); t < candidate.end(); t += Duration{500'000}) {
           const double distance = (candidate.state_at(t).position_m - obstacle.position_m).norm();
@@ -326,7 +326,7 @@ TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen
     refused += result.count < without;
     for (std::size_t i = 0; i < result.count; ++i) {
       const Trajectory& candidate = result.candidates[i];
-      // Checked by dense sampling.
+      // Checks by dense sampling.
       for (Time t = candidate.start(); t < candidate.end(); t += Duration{500'000}) {
         const double distance = (candidate.state_at(t).position_m - query.seen.centre_m).norm();
         REQUIRE(distance + rules.radius_m + rules.margin_m < query.seen.radius_at_m(t));
@@ -339,8 +339,7 @@ TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen
 }
 
 TEST_CASE(
-    "with hundreds of moving obstacles every candidate is passively safe from all, and no safe one is "
-    "refused") {
+    "among hundreds of moving obstacles, every candidate is passively safe and no safe one is refused") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -366,7 +365,7 @@ TEST_CASE(
       return is_passively_safe_from_all(candidate, moving, rules.radius_m + rules.margin_m);
     };
     REQUIRE(std::all_of(result.candidates.begin(), result.candidates.begin() + result.count, is_safe));
-    // If no candidate must be refused, the search finds the same ones.
+    // If no candidate must be refused, the search finds the same candidates.
     const bool is_restricted =
         !std::all_of(all.candidates.begin(), all.candidates.begin() + all.count, is_safe);
     if (!is_restricted) REQUIRE(result.count == all.count);

@@ -31,8 +31,7 @@ SeenRegion random_region(Rng& rng) {
   return {centre, radius_m, kBegin + from_seconds(observed_s), rng.chance(0.2) ? 0 : rng.uniform(0, 2)};
 }
 
-TEST_CASE(
-    "the check never passes if a sampled instant is too near to the edge, and mostly passes if none is") {
+TEST_CASE("the check never passes if a sampled instant is too near to the edge, and rarely fails otherwise") {
   const std::uint64_t seed = GENERATE(range(1u, 25u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -68,12 +67,12 @@ TEST_CASE("an unknown obstacle just beyond the edge must not reach the robot bef
   CHECK_FALSE(is_passively_safe_from_unseen(braking, seen, separation));
   seen.radius_m += 0.02;
   CHECK(is_passively_safe_from_unseen(braking, seen, separation));
-  // The position at which the robot was seen does not matter, only that the region is around it.
+  // The distance to the region's edge matters, not where in the region the robot was seen.
   seen.centre_m.x() -= 0.01;
   CHECK_FALSE(is_passively_safe_from_unseen(braking, seen, separation));
 }
 
-TEST_CASE("a robot at rest needs no region, and neither does a moving robot if all obstacles are known") {
+TEST_CASE("a robot at rest needs no seen region, and a moving robot needs none if all obstacles are known") {
   const SeenRegion nothing{{0, 0}, 0, kBegin, 2};
   CHECK(is_passively_safe_from_unseen(Trajectory::resting(kBegin, {0, 0}), nothing, 0.1));
   Trajectory leaving(kBegin, {{0, 0}, {0, 0}});

@@ -8,7 +8,7 @@
 
 namespace sidestep::trajectory_index_test {
 
-TEST_CASE("an index finds exactly the versions whose discs touch a circle, at any number and density") {
+TEST_CASE("an index finds exactly the versions whose discs touch a circle, for any number and density") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);

@@ -13,7 +13,7 @@ constexpr double kSeparation_m = 0.19;
 
 Trajectory resting(double x, double y) { return Trajectory::resting(kNow, {x, y}); }
 
-/// A robot that drives from a place with a velocity for some time, then brakes.
+/// A robot that drives from a position at a velocity for some time, then brakes.
 Trajectory driving(const Vec2& from, const Vec2& velocity, double seconds) {
   Trajectory trajectory(kNow, {from, velocity});
   trajectory.append(from_seconds(seconds), {0, 0});
@@ -21,7 +21,7 @@ Trajectory driving(const Vec2& from, const Vec2& velocity, double seconds) {
   return trajectory;
 }
 
-/// The body at x = 0 moves to the right; its path widens by a tenth of the distance:
+/// The body at x = 0 moves to the right. Its path widens by a tenth of the distance:
 //
 //            _______---
 //   (o)->  --------------
@@ -48,13 +48,13 @@ TEST_CASE("the path of a body widens ahead of it and ends behind it") {
   CHECK(body.required_distance_m({3, 1}) == Approx(0.52));
 }
 
-TEST_CASE("a body in an unknown direction of motion is avoided on all sides") {
+TEST_CASE("a body whose direction of motion is unknown is avoided on all sides") {
   const UncontrolledBody body = moving({0, 0});
   CHECK(body.distance_from_path_m({-0.3, 0.4}) == Approx(0.5));
   CHECK(body.required_distance_m({3, 1}) == Approx(0.4));
 }
 
-TEST_CASE("a robot may not come to rest in a body's path, unless its stop ends nearer to the middle") {
+TEST_CASE("a robot may not come to rest in a body's path unless its stop would end nearer to the middle") {
   const Trajectory beside = resting(0, 5), within = resting(2, 0.1);
   CHECK(may_rest(2, 0.45, moving(), beside));
   CHECK_FALSE(may_rest(2, 0.35, moving(), beside));
@@ -63,7 +63,7 @@ TEST_CASE("a robot may not come to rest in a body's path, unless its stop ends n
   CHECK(may_rest(2, 0.1, moving(), within));
   CHECK(may_rest(2, 0.2, moving(), within));
   CHECK_FALSE(may_rest(2, 0.09, moving(), within));
-  // Nor may it come nearer to the body, except by as much as it moves out of the path.
+  // Within the path, a robot may come nearer to the body only by as much as it moves out of the path.
   CHECK_FALSE(may_rest(1.9, 0.1, moving(), within));
   CHECK_FALSE(may_rest(1.8, 0.2, moving(), within));
   CHECK(may_rest(1.9, 0.21, moving(), within));
@@ -72,7 +72,7 @@ TEST_CASE("a robot may not come to rest in a body's path, unless its stop ends n
 }
 
 TEST_CASE("a robot may pass before the body if it would be hit where it stops") {
-  // It crosses the path at 1.2 m, from below.
+  // The robot crosses the path from below at x = 1.2 m.
   const UncontrolledBody body = moving({2, 0});
   const Trajectory stop = driving({1.2, -0.25}, {0, 1.6}, 0), across = driving({1.2, -0.25}, {0, 1.6}, 0.3);
   REQUIRE(std::abs(stop.rest_position_m().y()) < 0.1);
@@ -81,19 +81,19 @@ TEST_CASE("a robot may pass before the body if it would be hit where it stops") 
   CHECK(spare_distance_m(across, kNow, body) >= 0);
   CHECK_FALSE(is_passively_safe(across, body.reach, kSeparation_m - 0.09));
   CHECK(may_follow(across, stop, body));
-  // This also works by driving on later.
+  // This also holds if only a later version takes the robot across.
   const Trajectory shorter = driving({1.2, -0.25}, {0, 1.6}, 0.05);
   CHECK(spare_distance_m(shorter, kNow, body) < 0);
   CHECK(may_follow(shorter, stop, body));
-  // Not if it could stop short of the path.
+  // The robot may not pass if it can stop short of the path.
   const Trajectory short_stop = driving({1.2, -0.6}, {0, 1.6}, 0),
                    passing = driving({1.2, -0.6}, {0, 1.6}, 0.52);
   REQUIRE(spare_distance_m(short_stop, kNow, body) >= 0);
   CHECK_FALSE(may_follow(passing, short_stop, body));
 }
 
-TEST_CASE("a robot that cannot avoid a body completely drives where it stays farther from it") {
-  // The body touches it wherever it drives, but not equally hard everywhere.
+TEST_CASE("a robot that cannot avoid a body completely may drive where the contact is less deep") {
+  // The body hits the robot wherever it drives, but not equally deeply.
   const UncontrolledBody body = moving({2, 0});
   const Trajectory stop = driving({0.6, -0.2}, {0, 1.6}, 0);
   const double stop_m = spare_distance_m(stop, kNow, body);

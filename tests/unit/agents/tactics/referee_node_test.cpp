@@ -49,7 +49,7 @@ struct System {
     world.ball().y_m(ball_m.y());
     world_writer.publish(world, other_bus.now());
   }
-  /// Time passes, with a command and a world state every 10 ms.
+  /// Lets time pass, with a command and a world state every 10 ms.
   void play(RefereeCommand command, Duration duration) {
     for (Duration t{0}; t < duration; t += 10ms) {
       say(command);
@@ -77,7 +77,7 @@ TEST_CASE("nothing is ordered before the referee is heard") {
   CHECK(system.has_logged("no packet of the referee for 2 s: nothing is ordered"));
 }
 
-TEST_CASE("HALT is ordered at once, and ends with the next command") {
+TEST_CASE("HALT is ordered immediately and ends with the next command") {
   System system;
   system.play(RefereeCommand::kForceStart, 1s);
   CHECK_FALSE(system.book.is_held(0));
@@ -96,7 +96,7 @@ TEST_CASE("HALT is ordered at once, and ends with the next command") {
   CHECK(system.log == std::vector<std::string>{"FORCE_START", "HALT", "STOP", "FORCE_START"});
 }
 
-TEST_CASE("a referee program that is restarted ends the orders that it gave before") {
+TEST_CASE("a restarted referee program ends the orders that it gave before") {
   System system;
   Order hold{msg::OrderKind::ORDER_HOLD, kAllRobots, static_cast<ClientId>(Sender::kReferee), 1000};
   system.book.merge({hold});
@@ -125,7 +125,7 @@ TEST_CASE("the zone around the ball follows it, and stays where the ball was los
   CHECK(system.ball_zone_m() == Vec2(2, 0.5));
 }
 
-TEST_CASE("a ball that moves all the time causes twenty orders a second at most") {
+TEST_CASE("a ball that never stops causes at most twenty orders per second") {
   System system;
   system.play(RefereeCommand::kStop, 100ms);
   system.orders.clear();
@@ -160,7 +160,7 @@ TEST_CASE("without packets the last command stays in force, and the log says so"
   CHECK(std::ranges::count(system.log, "no packet of the referee for 2 s: STOP stays in force") == 1);
 }
 
-TEST_CASE("worlds that are not from vision or not plausible do not move the ball") {
+TEST_CASE("world states that are implausible or not from vision do not move the ball") {
   System system;
   system.play(RefereeCommand::kStop, 200ms);
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -174,7 +174,7 @@ TEST_CASE("worlds that are not from vision or not plausible do not move the ball
   CHECK(system.ball_zone_m() == Vec2(1, 1));
 }
 
-TEST_CASE("invalid packets and those of a second referee are ignored and logged") {
+TEST_CASE("invalid packets and packets of a second referee are ignored and logged") {
   System system;
   system.play(RefereeCommand::kForceStart, 200ms);
   system.say(RefereeCommand::kHalt, kOther);

@@ -14,7 +14,7 @@ league::RefereePacket packet(RefereeCommand command, std::optional<Vec2> positio
   return {Duration{0}, command, 0, {}, position_m};
 }
 
-/// The distance of a point from a zone, negative inside.
+/// The distance of a point from a zone; negative inside.
 double distance_m(const Zone& zone, const Vec2& p) {
   if (zone.corners_m.size() < 3)
     return std::sqrt(squared_distance(p, Segment{zone.corners_m.front(), zone.corners_m.back()})) -
@@ -36,7 +36,8 @@ TEST_CASE("every command either stops play and limits the speed, or does neither
   }
 }
 
-TEST_CASE("after STOP robots are slow everywhere and their edges stay half a metre from the ball's") {
+TEST_CASE(
+    "after STOP robots drive slowly everywhere and keep half a metre between their edges and the ball's") {
   const RefereeRules rules(kDivisionA, {});
   const RefereeDemands demands = rules.demands(packet(RefereeCommand::kStop), BallState{{1, 2}});
   const Zone& floor = demands.zones.at(kFloorZone);
@@ -70,7 +71,7 @@ TEST_CASE("robots leave the line along which the ball rolls") {
   CHECK((end_m({8, 0}) - Vec2(3, 2)).norm() < 1e-9);
 }
 
-TEST_CASE("ball placement closes the area between the ball and its new place to the other team") {
+TEST_CASE("ball placement closes the area between the ball and its target to the other team") {
   const auto demands = [](RefereeCommand command, std::optional<Team> team,
                           std::optional<BallState> ball = BallState{{1, 2}}) {
     RefereeSettings settings;
@@ -89,7 +90,7 @@ TEST_CASE("ball placement closes the area between the ball and its new place to 
   CHECK(place.corners_m[0] == Vec2(-1, 2));
 }
 
-TEST_CASE("a team keeps off the ball before the other team's kicks, but not before its own kicks") {
+TEST_CASE("a team keeps away from the ball before the other team's kicks but not before its own") {
   RefereeSettings settings;
   settings.team = Team::kBlue;
   const RefereeRules rules(kDivisionA, settings);
@@ -110,7 +111,7 @@ TEST_CASE("there is no zone around a ball that was never seen") {
   CHECK(demands.zones.contains(kFloorZone));
 }
 
-TEST_CASE("defence areas are closed if requested, with an extra distance while the ball is not in play") {
+TEST_CASE("defence areas are closed on request, with extra distance while the ball is out of play") {
   RefereeSettings settings;
   settings.closes_defence_areas = true;
   const RefereeRules rules(kDivisionA, settings);

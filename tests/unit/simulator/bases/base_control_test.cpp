@@ -26,7 +26,7 @@ struct Base {
 
 }  // namespace
 
-TEST_CASE("a base first moves after its latency, and brakes when no more commands arrive") {
+TEST_CASE("a base starts to move after its latency and brakes when commands stop") {
   BaseSettings settings;
   settings.latency = 80ms;
   Base base(settings);
@@ -37,7 +37,7 @@ TEST_CASE("a base first moves after its latency, and brakes when no more command
   CHECK(base.body.velocity_mps().x() > 0.01);
   base.run(500ms, forward);
   CHECK(base.body.velocity_mps().x() == Approx(1).margin(0.01));
-  // The last command acts 80 ms later, and for 100 ms.
+  // The last command takes effect after 80 ms and lasts for 100 ms.
   base.run(160ms, std::nullopt);
   CHECK(base.body.velocity_mps().x() == Approx(1).margin(0.01));
   base.run(400ms, std::nullopt);
@@ -56,7 +56,7 @@ TEST_CASE("a base obeys velocities in its own frame or the world's, within its a
   CHECK(base.body.velocity_mps().x() == Approx(2).margin(0.05));
   const double from_x = base.body.position_m().x();
   base.run(1s, BaseVelocity{});
-  // From 2 m/s at 5.9 m/s^2: 0.34 m, and a little more until the motors brake.
+  // Braking from 2 m/s at 5.9 m/s^2 takes 0.34 m, and a little more until the motors brake.
   CHECK(base.body.position_m().x() - from_x > 0.34);
   CHECK(base.body.position_m().x() - from_x < 0.42);
   CHECK(base.max_speed_mps < 2.1);

@@ -31,7 +31,7 @@ void drive(BaseWorld& world, std::size_t robot, const BaseVelocity& velocity, Du
 
 }  // namespace
 
-TEST_CASE("teams are filled up with opponents that the scenario does not know") {
+TEST_CASE("teams are completed with opponents that are not in the scenario") {
   BaseWorld world(two_blue(), 6, {}, kBegin);
   CHECK(world.floor().robots.size() == 12);
   REQUIRE(world.find(Team::kBlue, 1) == 1);
@@ -64,7 +64,7 @@ TEST_CASE(
   CHECK(truth.crashes_while_moving() == 1);
   CHECK(truth.recent_moving_crashes()[0] == 1);
   CHECK(truth.max_robot_crash_speed_mps() > 0.5);
-  // Two robots.
+  // Two robots touch.
   world.remove(opponent);
   world.place(0, {-0.5, 0}, 0);
   world.place(1, {0.5, 0}, 0);
@@ -75,7 +75,7 @@ TEST_CASE(
   CHECK(truth.min_clearance_m() < 0.001);
 }
 
-TEST_CASE("a robot kicks the ball that is at its front, and no other") {
+TEST_CASE("a robot can kick only a ball that is at its front") {
   BaseWorld world(two_blue(), 0, {}, kBegin);
   CHECK_FALSE(world.kick(0, 4));
   world.set_ball({{-1 + 0.09 + 0.025, 0}, {0, 0}});

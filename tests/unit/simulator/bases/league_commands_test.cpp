@@ -27,7 +27,7 @@ league::TeamCommands command(std::uint32_t number, league::RobotMove::Kind kind)
 
 }  // namespace
 
-TEST_CASE("only local velocities are accepted, unless global ones are asked for") {
+TEST_CASE("only local velocities are accepted, unless global ones are allowed") {
   using Kind = league::RobotMove::Kind;
   BaseWorld world(one_robot(), 0, {}, kBegin);
   LeagueCommands strict(world, false), generous(world, true);
@@ -43,7 +43,7 @@ TEST_CASE("only local velocities are accepted, unless global ones are asked for"
         "there is no blue robot 5");
 }
 
-TEST_CASE("feedback says whether the ball is at the dribbler, and a kick moves it") {
+TEST_CASE("feedback says whether the dribbler has the ball, and a kick moves the ball") {
   BaseWorld world(one_robot(), 0, {}, kBegin);
   LeagueCommands commands(world, false);
   league::RobotCommand kick;
@@ -57,7 +57,7 @@ TEST_CASE("feedback says whether the ball is at the dribbler, and a kick moves i
   CHECK(world.ball()->state().velocity_mps.x() > 2.5);
 }
 
-TEST_CASE("a teleport moves the robot of the named team, and commands for unassigned numbers move none") {
+TEST_CASE("a teleport moves the robot of the named team, and commands for unassigned numbers move no robot") {
   Scenario scenario = one_robot();
   scenario.robots.emplace_back();
   scenario.robots.back().id = 20;

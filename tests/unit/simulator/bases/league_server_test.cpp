@@ -17,7 +17,7 @@ constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 
 }  // namespace
 
-TEST_CASE("the league's protocol is served at its three ports, and malformed datagrams get no answer") {
+TEST_CASE("the league's protocol is served on its three ports, and malformed datagrams get no answer") {
   Scenario scenario;
   scenario.robots.emplace_back();
   SimNetwork network(1, kBegin, {});

@@ -22,7 +22,7 @@ Scenario one_robot() {
 
 }  // namespace
 
-TEST_CASE("cameras see a floor of bases after their delay, and ground truth shows the actual state") {
+TEST_CASE("cameras see the bases after their delay, and ground truth shows the actual state") {
   SimNetwork network(1, kBegin, {});
   SimBus bus(network), observer(network);
   std::vector<std::pair<Time, msg::DetectionFrame>> frames;
@@ -46,7 +46,7 @@ TEST_CASE("cameras see a floor of bases after their delay, and ground truth show
   CHECK(truths.back().robots()[0].x_m() > 0.5);
 }
 
-TEST_CASE("a slow simulation moves slowly, and timestamps its frames by the clock") {
+TEST_CASE("a slow simulation moves slowly but timestamps its frames by the clock") {
   SimNetwork network(1, kBegin, {});
   SimBus bus(network), observer(network);
   std::vector<Duration> delays;
@@ -58,7 +58,7 @@ TEST_CASE("a slow simulation moves slowly, and timestamps its frames by the cloc
     node.world_now().command(0, {{1, 0}, 0}, node.simulated_now());
     network.run_until(network.now() + 10ms);
   }
-  // In a second of simulated time, less the latency and the acceleration.
+  // The distance in a second of simulated time, less the latency and the acceleration.
   CHECK(node.world_now().bodies()[0].position_m().x() == Approx(0.77).margin(0.06));
   CHECK(delays.size() == Approx(58).margin(4));
   for (const Duration delay : delays) CHECK(to_seconds(delay) == Approx(0.073).margin(0.006));

@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 
-TEST_CASE("a base obeys twists and reports its motion, with drift, in a frame whose origin is its start") {
+TEST_CASE("a base obeys twists and reports its motion with drift, in a frame whose origin is its start") {
   Scenario scenario;
   scenario.robots.emplace_back();
   scenario.robots.front().start_m = {1, 1};

@@ -52,7 +52,7 @@ std::vector<std::uint8_t> rendered(const Scenario& scenario, const CameraModel& 
   return {image.view().pixels, image.view().pixels + image.view().bytes()};
 }
 
-TEST_CASE("a scenario's floor contains its objects, without absent robots") {
+TEST_CASE("a scenario's floor contains all its objects except absent robots") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   const FloorScene floor = floor_scene(scenario);
   REQUIRE(floor.robots.size() == 2);
@@ -112,7 +112,7 @@ TEST_CASE("an image shows the objects in its camera's view") {
       for (std::size_t i = 0; i < other.size(); ++i) sum += std::abs(pixels[i] - other[i]);
       return sum / static_cast<double>(other.size());
     };
-    // The difference is only noise and the texture of the field surface.
+    // The images differ only by noise and the texture of the field surface.
     CHECK(difference(rendered(scenario, cameras[camera])) < 4);
     CHECK(difference(rendered(scenario, cameras[camera])) <
           0.8 * difference(rendered(scenario, cameras[1 - camera])));

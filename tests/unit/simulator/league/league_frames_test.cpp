@@ -42,7 +42,7 @@ Vec2 projected(const league::CameraCalibration& camera, const Vec3& point_m) {
   return camera.principal_point_px + camera.focal_length_px * Vec2(seen.x() / seen.z(), seen.y() / seen.z());
 }
 
-TEST_CASE("frames are converted to packets with both teams and all data that a receiver needs") {
+TEST_CASE("frames are converted to packets with both teams and all data that receivers need") {
   const Scenario scenario = two_teams();
   const Cameras cameras(scenario, kNow, 1);
   LeagueFrames frames(scenario, cameras.views());
@@ -77,7 +77,7 @@ TEST_CASE("frames are converted to packets with both teams and all data that a r
   CHECK(frames.detection(frame, kNow).detection->frame_number == 2);
 }
 
-TEST_CASE("pixels agree with the cameras of the geometry") {
+TEST_CASE("pixel positions agree with the cameras of the geometry") {
   const Scenario scenario = two_teams();
   const Cameras cameras(scenario, kNow, 1);
   LeagueFrames frames(scenario, cameras.views());
@@ -135,7 +135,7 @@ TEST_CASE("the geometry contains the scenario's field with its markings") {
   }
 }
 
-TEST_CASE("images show the lines of the geometry") {
+TEST_CASE("rendered field lines coincide with the lines of the geometry") {
   for (const Field& field : {Field{12, 9}, Field{9, 6}, Field{4.5, 3.5}, Field{14, 4}}) {
     CAPTURE(field.length_m, field.width_m);
     const league::FieldSize size = league_field(field);

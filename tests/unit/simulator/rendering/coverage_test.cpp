@@ -19,8 +19,7 @@ Points random_points(Rng& rng) {
   return points;
 }
 
-/// Whether any point of a ray is well inside the cross-section, and whether any is inside it or near its
-/// edge.
+/// Whether any point of a ray is well inside the cross-section, and whether any is inside or near its edge.
 std::pair<bool, bool> reference_hits(double x, double y, double dx, double dy, const CrossSection& section) {
   bool is_inside = false, is_near = false;
   for (int i = 0; i <= 1000; ++i) {
@@ -56,7 +55,7 @@ TEST_CASE("all instruction sets give the same counts") {
   }
 }
 
-TEST_CASE("counts match a check of each sample") {
+TEST_CASE("counts agree with a check of each sample") {
   const std::uint64_t seed = 82;
   CAPTURE(seed);
   Rng rng(seed);
@@ -86,7 +85,7 @@ TEST_CASE("counts match a check of each sample") {
   }
 }
 
-TEST_CASE("a pixel's samples are evenly spread about its centre") {
+TEST_CASE("a pixel's samples are evenly spread around its centre") {
   for (const SampleAxis* axis : {&kSamplePattern.x, &kSamplePattern.y, &kSamplePattern.time}) {
     double sum = 0;
     std::vector<int> in_place(kSamples, 0);

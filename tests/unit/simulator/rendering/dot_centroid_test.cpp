@@ -23,8 +23,8 @@ Vec2 centroid_of_difference(const cv::Mat3b& a, const cv::Mat3b& b, int channel)
   return {x_sum / sum, y_sum / sum};
 }
 
-/// The centroid of a disc's image: its points projected individually, weighted by the local scale of the
-/// image.
+/// The centroid of a disc's image: the disc's points are projected individually and weighted by the local
+/// scale of the image.
 Vec2 centroid_of_disc(const CameraModel& camera, const Vec2& centre_m, double height_m, double radius_m) {
   Vec2 sum(0, 0);
   double weights = 0;
@@ -62,7 +62,7 @@ void check(const ErrorStatistics& errors, double max_error_px) {
   CHECK(errors.max_error < max_error_px);
 }
 
-/// The second pattern lacks the front left dot.
+/// The second pattern lacks its front left dot.
 MarkerLayout layout_with_missing_dot() {
   MarkerLayout layout = butterfly();
   layout.patterns[1].colours = layout.patterns[0].colours;
@@ -102,7 +102,7 @@ TEST_CASE("a rendered dot lies where a tilted camera projects it") {
   Rng rng(seed);
   OverheadCamera overhead_camera = quarter_field();
   overhead_camera.lateral_offset_m = Vec2(-1.5, 1);
-  // On the far side a dot has a radius of 1.5 pixels, so that rounding to whole levels has a larger effect.
+  // At the far side, a dot's radius is 1.5 pixels, so rounding to whole levels has a larger effect.
   check(dot_errors(overhead_camera, 200, rng), 0.035);
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("a rendered ball lies where its viewing rays hit it") {
   for (int i = 0; i < 200; ++i) {
     const double z_m = rng.uniform(0.0215, 0.5), y_m = rng.uniform(-2, 2), x_m = rng.uniform(-2.8, 2.8);
     const SceneBall ball{Vec3(x_m, y_m, z_m)};
-    // Lines below the ball would distort the weights, so balls near lines are excluded.
+    // Lines below the ball would distort the weights, so balls near lines are skipped.
     const bool is_on_line = std::abs(ball.position_m.x()) < 0.4 || std::abs(ball.position_m.y()) < 0.4 ||
                             std::abs(ball.position_m.head<2>().norm() - 0.5) < 0.3;
     const auto middle = camera.pixel_of(ball.position_m);

@@ -8,7 +8,7 @@
 
 namespace sidestep::floor_test {
 
-TEST_CASE("lines are where the league's rules place them") {
+TEST_CASE("lines lie where the league's rules place them") {
   const FieldLines a(Field{12, 9}), b(Field{9, 6});
   for (const Vec2& p : {Vec2(6, 1), Vec2(-6, -4.5), Vec2(3, 4.5), Vec2(0, 3), Vec2(2, 0), Vec2(0.5, 0),
                         Vec2(0, -0.5), Vec2(4.2, 1), Vec2(-5, 1.8), Vec2(4.2, -1.8)})
@@ -17,7 +17,7 @@ TEST_CASE("lines are where the league's rules place them") {
     CHECK(b.distance_m(p) == Approx(-0.005));
   CHECK(a.distance_m(Vec2(6.1, 1)) == Approx(0.095));
   CHECK(a.distance_m(Vec2(3, 1)) == Approx(0.995));
-  // The halfway line ends where the field does.
+  // The halfway line ends at the edge of the field.
   CHECK(a.distance_m(Vec2(0, 4.6)) == Approx(0.095));
 }
 
@@ -42,7 +42,7 @@ TEST_CASE("a white line in the image runs where the camera projects it") {
   int rows = 0;
   double sum = 0;
   for (int y = 20; y < 560; ++y) {
-    // Along the halfway line, x = 0, without the crossings with the centre circle and the centre line.
+    // Follows the halfway line, x = 0, except where the centre circle and the centre line cross it.
     const Vec2 place = *camera.point_at(Vec2(389.5, y), 0);
     if (std::abs(place.y()) < 0.1 || std::abs(std::abs(place.y()) - 0.5) < 0.1) continue;
     const double expected = camera.pixel_of(Vec3(0, place.y(), 0))->x();

@@ -45,7 +45,7 @@ FrameRenderer renderer_with(const RenderSpec& spec, std::uint64_t seed = 1) {
   return FrameRenderer(overhead_camera_model(quarter_field()), kField, butterfly(), spec, Rng(seed));
 }
 
-TEST_CASE("the same seed gives the same frames and another seed others") {
+TEST_CASE("the same seed gives the same frames, and another seed gives different ones") {
   Rng rng(71);
   const RandomScene objects = random_scene(rng);
   for (const PixelFormat format : {PixelFormat::kRgb, PixelFormat::kYuv422}) {
@@ -95,7 +95,7 @@ TEST_CASE("the lens blurs the whole image") {
   }
 }
 
-TEST_CASE("a frame in YUV shows the same as one in RGB") {
+TEST_CASE("a YUV frame shows the same as an RGB frame") {
   const std::uint64_t seed = 74;
   CAPTURE(seed);
   Rng rng(seed);
@@ -122,7 +122,7 @@ TEST_CASE("a frame in YUV shows the same as one in RGB") {
 
 TEST_CASE("nearer objects hide farther ones") {
   FrameRenderer renderer = renderer_with(plain_spec());
-  // The camera is above the origin: a robot at x = 2 hides 80 mm of the floor behind it.
+  // The camera is above the origin, so a robot at x = 2 hides 80 mm of the floor behind it.
   const SceneRobot robot{Team::kBlue, 3, Vec2(2, 0), 3};
   const Image alone = renderer.render(Scene{{&robot, 1}});
   const Image hidden = renderer.render(Scene{{&robot, 1}, {}, SceneBall{Vec3(2.112, 0, 0.0215)}});
@@ -161,7 +161,7 @@ TEST_CASE("light and white balance affect all colours") {
   CHECK(std::abs(pixel_colour(tinting, Scene{})[0] - 1.1 * surface[0]) < 1);
 }
 
-TEST_CASE("robots show their team and id, without their hidden dots") {
+TEST_CASE("robots show their team and id, except for hidden dots") {
   FrameRenderer renderer = renderer_with(plain_spec());
   const auto colour_at = [&](const SceneRobot& robot, const Vec2& in_robot) {
     Image frame = renderer.render(Scene{{&robot, 1}});
@@ -200,7 +200,8 @@ TEST_CASE("an odd width is refused for YUV") {
 TEST_CASE("robots outside the camera's view are omitted") {
   RenderSpec spec = plain_spec();
   OverheadCamera overhead_camera = quarter_field();
-  overhead_camera.lateral_offset_m = Vec2(-6, 0);  // strongly tilted: half of the world is behind it
+  overhead_camera.lateral_offset_m =
+      Vec2(-6, 0);  // strongly tilted, so that half of the world is behind the camera
   FrameRenderer renderer(overhead_camera_model(overhead_camera), kField, butterfly(), spec, Rng(1));
   const Image empty = renderer.render(Scene{});
   for (const Vec2& place : {Vec2(-60, 0), Vec2(1000, 0), Vec2(0, 1e6), Vec2(-1e9, 1e9)}) {

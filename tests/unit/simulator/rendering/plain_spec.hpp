@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Uniform light, no blur and no noise: for tests of geometry.
+/// Uniform light, no blur and no noise, for tests of geometry.
 inline RenderSpec plain_spec() {
   RenderSpec spec;
   spec.format = PixelFormat::kRgb;
@@ -18,7 +18,7 @@ inline RenderSpec plain_spec() {
   return spec;
 }
 
-/// A quarter of a division A field in 780 x 580 pixels, from 4 m above.
+/// A quarter of a division A field in 780 x 580 pixels, seen from 4 m above.
 inline OverheadCamera quarter_field() { return {}; }
 
 inline cv::Mat3b rgb_of(Image& image) {

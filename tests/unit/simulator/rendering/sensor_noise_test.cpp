@@ -12,7 +12,7 @@ struct Moments {
   double mean, sd;
 };
 
-/// The moments of every step-th byte, beginning at `first`.
+/// The moments of every `step`-th byte, beginning at `first`.
 Moments moments(const std::vector<std::uint8_t>& bytes, std::size_t first, std::size_t step) {
   double sum = 0, squares = 0, count = 0;
   for (std::size_t i = first; i < bytes.size(); i += step, ++count) {
@@ -39,7 +39,7 @@ TEST_CASE("noise has the given deviation in red, green and blue") {
   }
 }
 
-TEST_CASE("noise in YUV is the converted noise of red, green and blue") {
+TEST_CASE("YUV noise equals the converted RGB noise") {
   Rng rng(62);
   const SensorNoise noise(PixelFormat::kYuv422, 3, 780, rng);
   const std::vector<std::uint8_t> clean(780 * 2 * 300, 100);
@@ -63,7 +63,7 @@ TEST_CASE("noise is clamped at black and white") {
   for (std::size_t i = 0; i < clean.size(); ++i) clean[i] = i % 2 == 0 ? 2 : 253;
   noise.add(clean.data(), 100, rng, out.data());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    // It never wraps around.
+    // Values never wrap around.
     if (i % 2 == 0) REQUIRE(out[i] < 200);
     if (i % 2 == 1) REQUIRE(out[i] > 55);
   }
@@ -83,12 +83,12 @@ TEST_CASE("the noise of different frames and rows is uncorrelated") {
     between_frames += (a[i] - 128.0) * (b[i] - 128.0);
     between_rows += (a[i] - 128.0) * (a[i + bytes] - 128.0);
   }
-  // 700,000 products of variance 81: a standard deviation of 0.011 for their mean.
+  // The mean of 700,000 products with a variance of 81 has a standard deviation of 0.011.
   CHECK(std::abs(between_frames / double(a.size())) < 0.05);
   CHECK(std::abs(between_rows / double(a.size())) < 0.05);
 }
 
-TEST_CASE("without noise a frame is unchanged") {
+TEST_CASE("a frame without noise is unchanged") {
   Rng rng(65);
   const SensorNoise noise(PixelFormat::kYuv422, 0, 10, rng);
   std::vector<std::uint8_t> clean(10 * 2 * 5), out(clean.size());

@@ -56,7 +56,7 @@ StaticScene random_scene(Rng& rng) {
   return scene;
 }
 
-/// The slow reference: whether a point lies in any obstacle, by the definitions of the shapes alone.
+/// Slow reference: whether a point lies in any obstacle, by the definitions of the shapes alone.
 bool is_in_obstacle(const StaticScene& scene, const Vec2& p) {
   for (const Shape& shape : scene.shapes) {
     if (const auto* box = std::get_if<Box>(&shape)) {
@@ -87,8 +87,8 @@ bool is_in_obstacle(const StaticScene& scene, const Vec2& p) {
   return scene.map->cells().blocked().get(static_cast<int>(column), static_cast<int>(row));
 }
 
-/// The brightness of the obstacle in a viewing ray relative to its top's, 0 if the ray meets none: the ray is
-/// followed down in steps.
+/// The brightness of the obstacle on a viewing ray relative to that of the obstacle's top; 0 if the ray meets
+/// none. Follows the ray down in steps.
 double reference_brightness(const StaticScene& scene, const CameraModel& camera, const Vec2& pixel) {
   constexpr int kSteps = 60;
   for (int step = 0; step <= kSteps; ++step) {
@@ -98,7 +98,7 @@ double reference_brightness(const StaticScene& scene, const CameraModel& camera,
   return 0;
 }
 
-TEST_CASE("a pixel of static obstacles shows what many rays through it meet") {
+TEST_CASE("a pixel of static obstacles shows what many rays through it hit") {
   const CameraModel camera = small_camera();
   const Field field{12, 9};
   int mixed = 0, covered = 0;
@@ -120,7 +120,7 @@ TEST_CASE("a pixel of static obstacles shows what many rays through it meet") {
         share += (brightness > 0 ? 1.0 : 0.0) / (kGrid * kGrid);
       }
       CAPTURE(seed, x, y, share, light);
-      // 144 rays against 128 samples, and steps of 2.5 mm: a few hundredths of a pixel.
+      // 144 rays against 128 samples, with steps of 2.5 mm, differ by a few hundredths of a pixel.
       REQUIRE(std::abs(cover.samples(y, x) / 128.0 - share) < 0.06);
       for (int channel = 0; channel < 3; ++channel) {
         const double colour = channel == 0 ? scene.colour.r : channel == 1 ? scene.colour.g : scene.colour.b;
@@ -145,13 +145,13 @@ TEST_CASE("the outside of a map and all its blocked cells are drawn over the who
     for (int x = 0; x < kWidth_px; ++x) REQUIRE(cover.samples(y, x) == 128);
 }
 
-TEST_CASE("without static obstacles nothing changes") {
+TEST_CASE("without static obstacles, nothing changes") {
   Canvas canvas(kHeight_px, kWidth_px, cv::Vec3b(1, 2, 3));
   CHECK(draw_static({}, small_camera(), Field{12, 9}, plain_spec(), canvas).samples.empty());
   CHECK(canvas(5, 5) == cv::Vec3b(1, 2, 3));
 }
 
-TEST_CASE("a wall hides what stands behind it, and a robot in front hides the wall") {
+TEST_CASE("a wall hides objects behind it, and a robot in front hides the wall") {
   // Seen from the side; the camera is far to the left above the floor:   robot | wall | cylinder
   const CameraModel camera = overhead_camera_model(quarter_field());
   const Field field{12, 9};

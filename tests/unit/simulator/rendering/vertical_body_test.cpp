@@ -23,7 +23,7 @@ bool is_in_cross_section(const VerticalBody& body, const Vec2& p) {
   return p.norm() <= body.radius_m && p.x() <= body.front_m;
 }
 
-/// The light at a point of the image, by following its viewing ray from the top down in small steps.
+/// The light at a point of the image, found by following its viewing ray from the top down in small steps.
 Light reference_light(const VerticalBody& body, const CameraModel& camera, const Vec2& pixel) {
   const auto in_frame = [&](double height_m) {
     return rotated(*camera.point_at(pixel, height_m) - body.position_m, -body.heading_rad);
@@ -78,7 +78,7 @@ OverheadCamera random_camera(Rng& rng) {
   return overhead_camera;
 }
 
-TEST_CASE("a drawn body matches individually traced viewing rays") {
+TEST_CASE("a drawn body agrees with individually traced viewing rays") {
   const std::uint64_t seed = 51;
   CAPTURE(seed);
   Rng rng(seed);
@@ -101,7 +101,7 @@ TEST_CASE("a drawn body matches individually traced viewing rays") {
         const Light expected = reference_pixel(body, camera, x, y);
         const double error = (expected - light_of(canvas(y, x))).cwiseAbs().maxCoeff();
         CAPTURE(x, y, canvas(y, x), expected.transpose());
-        // At an edge of 220 levels, by 128 samples in draw() and 144 in the reference.
+        // The difference at an edge of 220 levels, with 128 samples in draw() and 144 in the reference.
         REQUIRE(error <= 16);
         if (error == 0) continue;
         squares += error * error;
@@ -113,7 +113,7 @@ TEST_CASE("a drawn body matches individually traced viewing rays") {
   CHECK(std::sqrt(squares / edges) < 3);
 }
 
-TEST_CASE("draw changes only pixels in the returned rectangle, which is within the image") {
+TEST_CASE("draw changes only pixels in the returned rectangle, which lies within the image") {
   const std::uint64_t seed = 52;
   CAPTURE(seed);
   Rng rng(seed);

@@ -19,7 +19,7 @@ TEST_CASE("a ball rolls v^2 / 2a and then rests") {
   CHECK(ball.state().velocity_mps.norm() == 0);
 }
 
-TEST_CASE("a ball bounces off every wall with less speed and never leaves the field") {
+TEST_CASE("a ball bounces off every wall with reduced speed and never leaves the field") {
   const Vec2 direction = GENERATE(Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1), Vec2(0.6, 0.8));
   const Field field{2, 1};
   Ball ball({{0, 0}, 3 * direction});
@@ -57,7 +57,7 @@ TEST_CASE("a robot pushes a ball ahead of it") {
   CHECK(ball.state().velocity_mps.x() >= robots[0].velocity_mps().x() - 0.01);
 }
 
-TEST_CASE("a ball exactly below a robot's centre is moved out on one side") {
+TEST_CASE("a ball exactly below a robot's centre is moved out to one side") {
   const std::vector<Body> robots(1, Body({0, 0}, 0, {}));
   Ball ball({{0, 0}, {0, 0}});
   roll(ball, 1, {9, 6}, {}, robots);
@@ -68,7 +68,7 @@ TEST_CASE("a ball bounces off blocked cells of a map") {
   MapGrid grid;
   grid.columns = grid.rows = 60, grid.resolution_m = 0.1, grid.origin_m = {-3, -3};
   BitGrid blocked(grid.columns, grid.rows);
-  for (int row = 20; row < 40; ++row) blocked.set(40, row);  // x from 1 m to 1.1 m
+  for (int row = 20; row < 40; ++row) blocked.set(40, row);  // from x = 1 m to x = 1.1 m
   const FloorMap map(OccupancyMap(grid, blocked));
   Ball ball({{0, 0}, {2, 0}});
   double farthest_m = 0;

@@ -43,7 +43,7 @@ TEST_CASE("a body follows the command with a first-order lag") {
   CHECK((body.velocity_mps() - reference.velocity_mps).norm() < 1e-5);
 }
 
-TEST_CASE("a body accelerates no harder and goes no faster than its limits") {
+TEST_CASE("a body obeys its acceleration and speed limits") {
   Rng rng(4);
   const BodySettings settings;
   Body body({0, 0}, 0, settings);
@@ -66,10 +66,10 @@ TEST_CASE("a command that is not finite counts as zero") {
   CHECK(body.heading_rad() == 0);
 }
 
-// The wheels' measurements.
+// Reads the odometry of the wheels.
 struct Wheels {
   explicit Wheels(const Body& of) : body(of), last(of.rolled_position_m()) {}
-  /// The mean since the last call.
+  /// The mean velocity since the last call.
   Vec2 velocity() {
     const Vec2 moved = body.rolled_position_m() - last;
     last = body.rolled_position_m();
@@ -102,7 +102,7 @@ TEST_CASE("a pushed body slides until friction has stopped it, and its wheels do
   CHECK((rolled - Vec2(body.position_m().x(), 0)).norm() < 1e-9);
 }
 
-TEST_CASE("without grip a body keeps its velocity regardless of its wheels") {
+TEST_CASE("without grip, a body keeps its velocity regardless of its wheels") {
   Body body({0, 0}, 0, {});
   for (int i = 0; i < 300; ++i) body.step({{i < 200 ? 3.0 : 0.0, 0}, 0});
   const Vec2 start = body.position_m(), velocity = body.velocity_mps();
@@ -123,7 +123,7 @@ TEST_CASE("without grip a body keeps its velocity regardless of its wheels") {
   CHECK((seen - body.velocity_mps()).norm() < 1e-9);
 }
 
-TEST_CASE("with reduced grip a body gains that share of the acceleration") {
+TEST_CASE("with reduced grip, a body gains that fraction of the acceleration") {
   const double grip = GENERATE(0.2, 0.7);
   CAPTURE(grip);
   const BodySettings settings;
@@ -135,8 +135,8 @@ TEST_CASE("with reduced grip a body gains that share of the acceleration") {
     body.step({{2, 0}, 0});
     seen = wheels.velocity();
   }
-  // The wheels accelerate as usual; the body gains its share of that, and of the friction with wheels that
-  // spin faster.
+  // The wheels accelerate as usual. The body gains its fraction of this acceleration, and of the friction
+  // with wheels that spin faster.
   const double spun = 2 * (0.2 - settings.lag_s);
   const double max = grip * (2 + settings.friction_mps2) * 0.2;
   CHECK(seen.x() == Approx(spun).margin(0.01));
@@ -144,7 +144,7 @@ TEST_CASE("with reduced grip a body gains that share of the acceleration") {
   CHECK(body.velocity_mps().x() >= grip * spun - 0.01);
 }
 
-TEST_CASE("a blocked wheel stops motion in one direction, and the wheels measure it") {
+TEST_CASE("a blocked wheel stops motion in one direction, and the wheels measure the stop") {
   const double heading = 0.7, blocked = GENERATE(0.0, 1.2);
   CAPTURE(blocked);
   Body body({0, 0}, heading, {});
@@ -167,7 +167,7 @@ TEST_CASE("a blocked wheel stops motion in one direction, and the wheels measure
   CHECK(body.velocity_mps().dot(along) > 0);
 }
 
-TEST_CASE("a body off the floor does not move, and comes back at rest") {
+TEST_CASE("a body off the floor does not move, and returns at rest") {
   Body body({0, 0}, 0, {});
   for (int i = 0; i < 300; ++i) body.step({{3, 0}, 0});
   body.lift();

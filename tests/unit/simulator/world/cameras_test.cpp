@@ -31,7 +31,7 @@ std::vector<Body> bodies_of(const Scenario& scenario) {
   return bodies;
 }
 
-TEST_CASE("every camera captures a frame every period, each in turn") {
+TEST_CASE("the cameras take turns, and each captures one frame per period") {
   Scenario scenario = scene();
   scenario.vision.columns = 2;
   scenario.vision.rows = 2;
@@ -140,7 +140,7 @@ TEST_CASE("ghost obstacles appear at the scenario's rate, within the camera's vi
   CHECK(ghosts / 10'000.0 == Approx(0.2).epsilon(0.1));
 }
 
-TEST_CASE("cameras show robots with their sight errors") {
+TEST_CASE("cameras show robots with their vision faults") {
   Scenario scenario = scene();
   scenario.vision.position_noise_m = 0;
   scenario.vision.overlap_m = 100;  // every camera sees everything

@@ -13,7 +13,7 @@ namespace sidestep::contacts_test {
 
 constexpr double kRadius_m = 0.09;
 
-// Checks every pair in every step.
+// Slow reference: checks every pair in every step.
 struct BruteForce {
   std::vector<Shape> obstacles;
   std::shared_ptr<const FloorMap> map;
@@ -53,7 +53,7 @@ struct BruteForce {
   }
 };
 
-/// A map that is centred at the origin, with single blocked cells outside a square.
+/// A map centred at the origin, with single blocked cells outside a square.
 std::shared_ptr<const FloorMap> posts_around(double side_m) {
   constexpr double kCell_m = 0.25;
   MapGrid grid;
@@ -67,7 +67,7 @@ std::shared_ptr<const FloorMap> posts_around(double side_m) {
   return std::make_shared<const FloorMap>(OccupancyMap(grid, std::move(blocked)));
 }
 
-TEST_CASE("contacts, penetration and clearance match a check of every pair in every step") {
+TEST_CASE("contacts, penetration and clearance agree with a check of every pair in every step") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
   Rng rng(seed);
@@ -179,7 +179,7 @@ TEST_CASE("blocked cells and the border of a map stop a robot") {
   CHECK(bodies[0].position_m().x() == Approx(edge_m - direction * kRadius_m).margin(1e-3));
 }
 
-TEST_CASE("the smallest clearance is retained although the robots separate again") {
+TEST_CASE("the smallest clearance is retained after the robots separate again") {
   std::vector<Body> bodies{Body({-0.5, 0}, 0, {}), Body({0, 0.4}, 0, {})};
   Contacts contacts({}, nullptr, kRadius_m, BodySettings{}.speed_mps);
   for (int step = 0; step < 2000; ++step) {

@@ -80,7 +80,4 @@ TEST_CASE("an invalid disturbance is refused") {
   CHECK(is_valid(disturbance(0, msg::DisturbanceKind::DISTURBANCE_FORGET_POSE)));
 }
 
-// Any disturbance at any time: the firmware keeps its rules, facts stay true, numbers are never reused, and
-// in the end every robot is within the error that it reports.
-
 }  // namespace sidestep::disturbance_codec_test

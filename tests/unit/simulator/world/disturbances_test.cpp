@@ -86,7 +86,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
   REQUIRE(world.disturb(0, place(0, {3, -2}, 1.5), now));
   run(50);
   CHECK_FALSE(truth_has(world, 0));
-  SECTION("at the requested place") {
+  SECTION("a rest version at the requested place") {
     world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.001, -2}), now);
     run(9);
     CHECK(world.robot_report(0, now).executing.number == 0);
@@ -98,7 +98,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     CHECK(truth_has(world, 0));
     CHECK((world.bodies()[0].position_m() - Vec2(3.001, -2)).norm() < 1e-6);
     CHECK(world.bodies()[0].heading_rad() == Approx(1.5));
-    // It drives on from there.
+    // The robot drives on from there.
     Trajectory dash(now + milliseconds(10), {{3.001, -2}, {0, 0}});
     dash.append(milliseconds(200), Vec2(-3, 0));
     append_stop(dash, 5);
@@ -108,13 +108,13 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     CHECK(world.firmware(0).executing().number == 11);
     CHECK(world.firmware(0).own_stops() == 0);
   }
-  SECTION("not at another place") {
+  SECTION("a rest version at another place") {
     world.on_command(0, rest_version(0, 10, now + milliseconds(10), {3.01, -2}), now);
     run(100);
     CHECK_FALSE(truth_has(world, 0));
     CHECK(world.robot_report(0, now).is_lifted);
     CHECK(world.robot_report(0, now).executing.number == 10);
-    // Only lifting the robot again voids the first rest version and permits another.
+    // Only another lifting voids the first rest version and permits a new one.
     world.on_command(0, rest_version(0, 11, now + milliseconds(10), {3, -2}), now);
     run(100);
     CHECK_FALSE(truth_has(world, 0));
@@ -124,7 +124,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
     run(100);
     CHECK(truth_has(world, 0));
   }
-  SECTION("not with a version that moves") {
+  SECTION("a version that moves") {
     Trajectory dash(now + milliseconds(10), {{3, -2}, {1, 0}});
     append_stop(dash, 5);
     world.on_command(0, test::command_with({0, 1, 10, 0, dash}), now);
@@ -135,7 +135,7 @@ TEST_CASE("a lifted robot is put down at the requested place once it executes a 
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a lifted robot names its last version, which may be a stop that it has not reported") {
+TEST_CASE("a lifted robot reports its last version, which may be an unreported own stop") {
   World world(separated_robots(1), kBegin, 1);
   Time now = kBegin + milliseconds(10);
   world.advance(now);
@@ -158,7 +158,7 @@ TEST_CASE("a lifted robot names its last version, which may be a stop that it ha
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a version from before the robot was lifted is never executed afterwards") {
+TEST_CASE("a version from before a lifting is never executed afterwards") {
   const Scenario scenario = separated_robots(1);
   World world(scenario, kBegin, 1);
   const Vec2 mark = scenario.robots[0].start_m;
@@ -205,12 +205,13 @@ TEST_CASE("a rebooted robot rests or brakes off reference, and obeys the same ag
   world.advance(now + milliseconds(1000));
   CHECK(world.bodies()[0].velocity_mps().norm() < 0.02);
   CHECK(world.reference_error_m(0) < 0.003);
-  // In motion it may lose the new reference once more, until its motor model has converged.
+  // In motion, the robot may lose its new reference once more, until its motor model has converged.
   CHECK(world.firmware(0).own_stops() <= (moves ? 2 : 1));
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a robot that forgets its pose brakes, reports nothing, and stops itself where a fix shows it") {
+TEST_CASE(
+    "a robot that forgets its pose brakes silently, then makes its own stop where a fix shows it at rest") {
   const Scenario scenario = separated_robots(1);
   World world(scenario, kBegin, 1);
   Trajectory dash(kBegin + milliseconds(10), {scenario.robots[0].start_m, {0, 0}});
@@ -237,17 +238,17 @@ TEST_CASE("a robot that forgets its pose brakes, reports nothing, and stops itse
   CHECK_FALSE(world.may_report(0));
   world.advance(now += milliseconds(500));
   CHECK(world.bodies()[0].velocity_mps().norm() < 0.02);
-  CHECK((world.bodies()[0].position_m() - before_m).norm() < 0.2);  // 1.2 m/s, at 5 m/s^2: 0.14 m
+  CHECK((world.bodies()[0].position_m() - before_m).norm() < 0.2);  // from 1.2 m/s at 5 m/s^2: 0.14 m
   send_fix(milliseconds(600));
   CHECK_FALSE(world.may_report(0));
   msg::GroundTruth truth;
   world.fill(truth);
   CHECK(truth.robots()[0].disturbance_end_ns() == to_ns(now));
-  // Nor does a version while it knows no place.
+  // A version does not help either while the robot does not know its position.
   world.on_command(0, rest_version(0, 11, now + milliseconds(5), dash.rest_position_m()), now);
   world.advance(now += milliseconds(50));
   send_fix(milliseconds(20));
-  CHECK_FALSE(world.may_report(0));  // its version is still the one from before
+  CHECK_FALSE(world.may_report(0));  // the robot still executes its version from before
   world.advance(now += milliseconds(2));
   REQUIRE(world.may_report(0));
   const RobotReport robot_report = world.robot_report(0, now);
@@ -268,13 +269,13 @@ TEST_CASE("a robot without a pose that is lifted or switched off and on behaves 
   world.advance(now);
   const auto disturb = [&](msg::DisturbanceKind kind) { return world.disturb(0, disturbance(0, kind), now); };
   REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
-  SECTION("it knows that it is lifted") {
+  SECTION("the robot knows that it is lifted") {
     REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_LIFT));
     REQUIRE(world.may_report(0));
     CHECK(world.robot_report(0, now).is_lifted);
     CHECK_FALSE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
   }
-  SECTION("switching it on does not restore the pose") {
+  SECTION("switching the robot on does not restore its pose") {
     REQUIRE(disturb(msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF));
     CHECK_FALSE(disturb(msg::DisturbanceKind::DISTURBANCE_FORGET_POSE));
     world.advance(now += milliseconds(100));
@@ -286,8 +287,7 @@ TEST_CASE("a robot without a pose that is lifted or switched off and on behaves 
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE(
-    "a robot's facts are by its own clock, which stands still if it is set back by less than the bound") {
+TEST_CASE("a robot's facts use its own clock, which pauses if it is set back by less than the bound") {
   Scenario scenario = separated_robots(1);
   scenario.robots[0].clock_offset = milliseconds(7);
   World world(scenario, kBegin, 1);
@@ -319,7 +319,7 @@ TEST_CASE(
   CHECK(world.firmware(0).own_stops() == 0);
   const Incarnation incarnation = world.robot_report(0, now).robot_incarnation;
 
-  // What it has reported by a clock that is set back farther is void.
+  // If the clock is set back farther, all facts reported by it are void.
   clock.clock_offset = milliseconds(-30);
   REQUIRE(world.disturb(0, clock, now));
   world.advance(now += milliseconds(20));
@@ -355,7 +355,7 @@ TEST_CASE("ground truth reports when a robot's disturbance ends") {
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
   REQUIRE(world.disturb(0, disturbance(0, msg::DisturbanceKind::DISTURBANCE_PUSH), now));
   CHECK(disturbance_end_ns() == to_ns(now + milliseconds(500)));
-  slip.duration = milliseconds(200);  // replaces the first
+  slip.duration = milliseconds(200);  // replaces the first slip
   REQUIRE(world.disturb(0, slip, now));
   const Time end = now + milliseconds(200);
   CHECK(disturbance_end_ns() == to_ns(end));
@@ -373,7 +373,7 @@ TEST_CASE("ground truth reports when a robot's disturbance ends") {
   }
 }
 
-TEST_CASE("ground truth reports a jump of a clock beyond the bound while the robot drives or is about to") {
+TEST_CASE("ground truth reports a clock jump beyond the bound while the robot drives or is about to drive") {
   Scenario scenario = separated_robots(1);
   World world(scenario, kBegin, 1);
   Time now = kBegin + milliseconds(30);
@@ -408,7 +408,7 @@ TEST_CASE("ground truth reports a jump of a clock beyond the bound while the rob
   CHECK(disturbance_end_ns() == last_ns);
 }
 
-TEST_CASE("a robot whose clock drifts uses observations and follows its reference") {
+TEST_CASE("a robot with a drifting clock uses observations and follows its reference") {
   Scenario scenario = separated_robots(1);
   scenario.robots[0].clock_drift_ppm = GENERATE(-90.0, 90.0);
   CAPTURE(scenario.robots[0].clock_drift_ppm);
@@ -425,7 +425,7 @@ TEST_CASE("a robot whose clock drifts uses observations and follows its referenc
   CHECK(world.robot_report(0, now).uncertainty.position_error_rms_m < 0.6 * before_m);
 }
 
-TEST_CASE("under any disturbance the firmware keeps its rules and ends where it reports to be") {
+TEST_CASE("under any disturbances the firmware keeps its rules and ends where it reports to be") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
   Scenario scenario = separated_robots(4);

@@ -32,7 +32,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a firmware that keeps the rules has no violations") {
+TEST_CASE("a firmware that keeps the rules causes no violations") {
   Scene scene;
   scene.arrive(version(5, 0, 20), 10);
   scene.monitor.switched(version(5, 0, 20));
@@ -43,28 +43,28 @@ TEST_CASE("a firmware that keeps the rules has no violations") {
   CHECK(scene.monitor.violations() == 0);
 }
 
-TEST_CASE("a switch from another version than the base is counted") {
+TEST_CASE("a switch from a version other than the base is a violation") {
   Scene scene;
   scene.arrive(version(5, 4, 20), 10);
   scene.monitor.switched(version(5, 4, 20));
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a switch to a version that arrived after its start is counted") {
+TEST_CASE("a switch to a version that arrived after its start is a violation") {
   Scene scene;
   scene.arrive(version(5, 0, 20), 20);
   scene.monitor.switched(version(5, 0, 20));
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a switch to a version that never arrived is counted") {
+TEST_CASE("a switch to a version that never arrived is a violation") {
   Scene scene;
   scene.arrive(version(5, 0, 21), 10);
   scene.monitor.switched(version(5, 0, 20));
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a switch back to an older number is counted") {
+TEST_CASE("a switch back to an older number is a violation") {
   Scene scene;
   scene.arrive(version(5, 0, 20), 10);
   scene.monitor.switched(version(5, 0, 20));
@@ -73,7 +73,7 @@ TEST_CASE("a switch back to an older number is counted") {
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a switch to an incarnation older than an acknowledged one is counted") {
+TEST_CASE("a switch to an incarnation older than an acknowledged one is a violation") {
   Scene scene;
   scene.arrive(version(5, 0, 20), 10);
   scene.report(version(0, 0, 0, 0), 11, 2);
@@ -81,7 +81,7 @@ TEST_CASE("a switch to an incarnation older than an acknowledged one is counted"
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a switch that makes an earlier fact untrue is counted") {
+TEST_CASE("a switch that makes an earlier fact untrue is a violation") {
   Scene scene;
   scene.arrive(version(5, 0, 20), 10);
   scene.report(version(0, 0, 0, 0), 20);
@@ -89,13 +89,13 @@ TEST_CASE("a switch that makes an earlier fact untrue is counted") {
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a report of a version that is not executed is counted") {
+TEST_CASE("a report of a version that is not executed is a violation") {
   Scene scene;
   scene.report(version(5, 0, 20), 30);
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a jump of the reference is counted") {
+TEST_CASE("a jump of the reference is a violation") {
   const Vec2 jump = GENERATE(Vec2(0.0011, 0), Vec2(0, -0.2));
   Scene scene;
   Version v = version(5, 0, 20);
@@ -105,7 +105,7 @@ TEST_CASE("a jump of the reference is counted") {
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a jump of the reference's velocity is counted") {
+TEST_CASE("a jump of the reference's velocity is a violation") {
   Scene scene;
   Version v = version(5, 0, 20);
   Trajectory moving(v.trajectory.start(), {{0, 0}, {0.06, 0}});
@@ -116,7 +116,7 @@ TEST_CASE("a jump of the reference's velocity is counted") {
   CHECK(scene.monitor.violations() == 1);
 }
 
-// The firmware's own stop after 20 ms, off_m away from the rest version that it executes.
+// The firmware's own stop after 20 ms, `off_m` away from the rest version that the robot executes.
 Version own_stop(double off_m, double speed_mps) {
   Version v = version(1 << 20, 0, 20, 0);
   v.trajectory = Trajectory(v.trajectory.start(), {{off_m, 0}, {0, speed_mps}});
@@ -127,7 +127,7 @@ Version own_stop(double off_m, double speed_mps) {
 
 TEST_CASE("an own stop that follows the rules is not a violation") {
   Scene scene;
-  // A slow one takes few nanoseconds.
+  // A slow own stop takes only a few nanoseconds.
   const double speed = GENERATE(0.0, 1e-9, 4e-9, 1e-8, 3e-7, 1e-5, 1.0);
   const Version stop = own_stop(0.01, speed);
   scene.monitor.started_own_stop(stop);
@@ -144,39 +144,41 @@ TEST_CASE("an own stop that follows the rules is not a violation") {
   CHECK(scene.monitor.violations() == 0);
 }
 
-TEST_CASE("an own stop that breaks a rule is counted") {
+TEST_CASE("an own stop that breaks a rule is a violation") {
   Scene scene;
   Version stop = own_stop(0.01, 1);
-  SECTION("while on its reference") { stop = own_stop(0.001, 1); }
-  SECTION("numbered below a received version") { scene.arrive(version(1 << 21, 7, 50), 10); }
-  SECTION("numbered below a received incarnation") { scene.arrive(version(5, 7, 50, 1 << 21), 10); }
-  SECTION("on another base") { stop.base = 3; }
-  SECTION("of an incarnation that no agent has") { stop.incarnation = 9; }
-  SECTION("that makes a fact untrue") { scene.report(version(0, 0, 0, 0), 20, 0); }
-  SECTION("that does not brake") {
+  SECTION("an own stop on the reference") { stop = own_stop(0.001, 1); }
+  SECTION("an own stop numbered below a received version") { scene.arrive(version(1 << 21, 7, 50), 10); }
+  SECTION("an own stop numbered below a received incarnation") {
+    scene.arrive(version(5, 7, 50, 1 << 21), 10);
+  }
+  SECTION("an own stop on another base") { stop.base = 3; }
+  SECTION("an own stop of an incarnation that no agent has") { stop.incarnation = 9; }
+  SECTION("an own stop that makes a fact untrue") { scene.report(version(0, 0, 0, 0), 20, 0); }
+  SECTION("an own stop that does not brake") {
     stop.trajectory = Trajectory(stop.trajectory.start(), {{0.01, 0}, {0, 1}});
   }
-  SECTION("that brakes too little") {
+  SECTION("an own stop that brakes too little") {
     stop.trajectory = Trajectory(stop.trajectory.start(), {{0.01, 0}, {0, 1}});
     append_stop(stop.trajectory, 4);
   }
-  SECTION("that turns") {
+  SECTION("an own stop that turns") {
     stop.trajectory = Trajectory(stop.trajectory.start(), {{0.01, 0}, {0, 1}});
     stop.trajectory.append(milliseconds(200), Vec2(0.1, -5));
   }
-  SECTION("with an inflation beyond the limit") { stop.inflation_m = 2; }
-  SECTION("while lifted") { scene.monitor.lifted(); }
+  SECTION("an own stop with an inflation beyond the limit") { stop.inflation_m = 2; }
+  SECTION("an own stop while lifted") { scene.monitor.lifted(); }
   scene.monitor.started_own_stop(stop);
   CHECK(scene.monitor.violations() >= 1);
 }
 
-TEST_CASE("a report of a false state is counted") {
+TEST_CASE("a report of a false state is a violation") {
   Scene scene;
   RobotReport robot_report;
   robot_report.executing = version(0, 0, 0, 0);
   robot_report.valid_at = kBegin + milliseconds(21);
-  SECTION("off reference") { robot_report.is_off_reference = true; }
-  SECTION("lifted") { robot_report.is_lifted = true; }
+  SECTION("off reference while on reference") { robot_report.is_off_reference = true; }
+  SECTION("lifted while on the floor") { robot_report.is_lifted = true; }
   SECTION("on the floor while lifted") { scene.monitor.lifted(); }
   SECTION("a command received in the future") {
     robot_report.command = {kBegin, robot_report.valid_at + Duration{1}};
@@ -185,7 +187,7 @@ TEST_CASE("a report of a false state is counted") {
   CHECK(scene.monitor.violations() == 1);
 }
 
-TEST_CASE("a lifted robot executes one rest version, at any place, and nothing else") {
+TEST_CASE("a lifted robot executes one rest version at any place and nothing else") {
   Scene scene;
   scene.arrive(version(5, 0, 20), 10);
   scene.monitor.switched(version(5, 0, 20));

@@ -52,7 +52,7 @@ TEST_CASE("a robot without commands executes version 0 at rest at its start posi
   CHECK(robot_report.heading_rad == 0.5);
 }
 
-TEST_CASE("a version based on the executed one is switched to at its start time, not earlier") {
+TEST_CASE("a robot switches to a version on its current base at the start time and not earlier") {
   auto robot = firmware();
   robot.on_command(command_with(version(101, 0, 20)), at(5));
   CHECK(robot.robot_report(at(19)).executing.number == 0);
@@ -87,7 +87,7 @@ TEST_CASE("a version on another base is refused") {
   CHECK(robot.counts().refused_base == 1);
 }
 
-TEST_CASE("the base of a version may arrive after it") {
+TEST_CASE("the base of a version may arrive after the version") {
   auto robot = firmware();
   robot.on_command(command_with(version(102, 101, 40)), at(5));
   robot.on_command(command_with(version(101, 0, 20)), at(6));
@@ -113,7 +113,7 @@ TEST_CASE("a version older than the executed one is never executed") {
   CHECK(robot.counts().refused_base == 1);
 }
 
-TEST_CASE("a repeated version is switched to once and never refused") {
+TEST_CASE("a robot switches once to a repeated version and never refuses it") {
   auto robot = firmware();
   for (int ms = 5; ms < 30; ++ms) robot.on_command(command_with(version(101, 0, 20)), at(ms));
   CHECK(robot.counts().activated == 1);
@@ -121,7 +121,7 @@ TEST_CASE("a repeated version is switched to once and never refused") {
   CHECK(robot.counts().refused_base == 0);
 }
 
-TEST_CASE("a chain of versions that are due at the same time is executed in order of start") {
+TEST_CASE("versions in a chain that are due at the same time are executed in order of start") {
   auto robot = firmware();
   robot.on_command(command_with(version(103, 102, 30)), at(1));
   robot.on_command(command_with(version(101, 0, 10)), at(2));
@@ -169,8 +169,7 @@ TEST_CASE("a new incarnation cannot forward an older one's version") {
 }
 
 TEST_CASE(
-    "a version under an older epoch is refused from any agent, and the robot reports the epoch that it "
-    "obeys") {
+    "a version under an older epoch is refused from any agent, and the robot reports its obeyed epoch") {
   auto robot = firmware();
   auto later = bare_command(kRobot, kFirst);
   later.epoch = 9;
@@ -185,7 +184,7 @@ TEST_CASE(
   const auto robot_report = robot.robot_report(at(30));
   CHECK(robot_report.executing.number == 0);
   CHECK(robot_report.obeyed_epoch == 9);
-  // The successor's incarnation is obeyed, but not its version.
+  // The robot obeys the successor's incarnation but refuses its version.
   CHECK(robot_report.obeyed_incarnation == kSecond);
   CHECK(robot.counts().refused_fenced == 2);
 }
@@ -207,8 +206,7 @@ TEST_CASE("a new incarnation continues from the executed version") {
   CHECK(robot.robot_report(at(40)).executing.number == 201);
 }
 
-TEST_CASE(
-    "a robot always reports whether it has ever executed a granted version, and own stops do not count") {
+TEST_CASE("a robot always reports whether it has ever executed a granted version, not counting own stops") {
   auto robot = firmware();
   robot.reboot();
   (void)robot.tick(at(5), {});
@@ -225,26 +223,26 @@ TEST_CASE(
 }
 
 TEST_CASE("a due switch is made before a fact is reported") {
-  SECTION("by a report") {
+  SECTION("a report makes the switch") {
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20)), at(5));
     const auto robot_report = robot.robot_report(at(20));
     CHECK(robot_report.executing.number == 101);
     CHECK(robot_report.activated == 1);
   }
-  SECTION("by a command") {
+  SECTION("a command makes the switch") {
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20)), at(5));
     robot.on_command(bare_command(kRobot, kSecond), at(20));
     CHECK(robot.executing().number == 101);
   }
-  SECTION("by a malformed command") {
+  SECTION("a malformed command makes the switch") {
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20)), at(5));
     robot.on_malformed_command(at(20));
     CHECK(robot.executing().number == 101);
   }
-  SECTION("by the control loop") {
+  SECTION("the control loop makes the switch") {
     auto robot = firmware();
     robot.on_command(command_with(version(101, 0, 20)), at(5));
     for (int ms = 1; ms <= 20; ++ms) robot.tick(at(ms), {});
@@ -305,7 +303,7 @@ TEST_CASE("hostile commands change nothing and are counted") {
   }
 }
 
-TEST_CASE("a robot whose odometry is NaN brakes, and is silent until a fix shows it at rest") {
+TEST_CASE("a robot with NaN odometry brakes and stays silent until a fix shows it at rest") {
   const double bad = std::numeric_limits<double>::quiet_NaN();
   auto robot = firmware();
   for (int ms = 1; ms < 10; ++ms) (void)robot.tick(at(ms), {});
@@ -321,7 +319,7 @@ TEST_CASE("a robot whose odometry is NaN brakes, and is silent until a fix shows
   seen.fix = PoseFix{at(25), Vec2(3, 4), 0.5};
   for (int ms = 20; ms < 200; ++ms) (void)robot.tick(at(ms), {});
   robot.on_command(seen, at(200));
-  CHECK_FALSE(robot.may_report());  // it may have moved then
+  CHECK_FALSE(robot.may_report());  // the robot may have been moving at the time of the fix
   seen.fix->captured_at = at(190);
   robot.on_command(seen, at(201));
   (void)robot.tick(at(202), {});
@@ -330,7 +328,7 @@ TEST_CASE("a robot whose odometry is NaN brakes, and is silent until a fix shows
   CHECK((robot.position_m() - Vec2(3, 4)).norm() < 1e-6);
 }
 
-TEST_CASE("versions that start far ahead do not displace an earlier one") {
+TEST_CASE("versions that start far ahead do not displace earlier ones") {
   auto robot = firmware();
   for (VersionNumber n = 0; n < 50; ++n) robot.on_command(command_with(version(200 + n, 0, 100'000)), at(1));
   robot.on_command(command_with(version(101, 0, 20)), at(2));
@@ -357,8 +355,8 @@ TEST_CASE("a robot turns to the commanded heading and holds it") {
   CHECK(std::abs(wrapped_rad(body.heading_rad() + 2.5)) < 0.01);
 }
 
-// Random commands: late, duplicated, out of order, of several incarnations. All versions rest at the start
-// position, so that any may follow any other and only the rules decide.
+// Sends random commands: late, duplicated, out of order, and from several incarnations. All versions rest at
+// the start position, so that any may follow any other and only the rules decide.
 TEST_CASE("the monitor finds no broken rule under any commands") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 40));
   CAPTURE(seed);

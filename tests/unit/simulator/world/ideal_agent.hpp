@@ -12,9 +12,9 @@
 
 namespace sidestep::test {
 
-/// Acts as vision and as an agent without communication delay for one robot of a World: forwards noisy,
-/// delayed fixes and continues the executed version with random ones, or lets the robot rest. Grants a rest
-/// version at place_m if the robot is lifted.
+/// Acts as vision and as an agent without communication delay for one robot of a World. Forwards noisy,
+/// delayed fixes. Continues the executed version with random ones, or lets the robot rest. Grants a rest
+/// version at `place_m` if the robot is lifted.
 class IdealAgent {
  public:
   IdealAgent(const Scenario& scenario, World& world, std::size_t robot, std::uint64_t seed)
@@ -28,7 +28,7 @@ class IdealAgent {
   bool drives = true;
   Vec2 place_m{0, 0};
 
-  /// Call at every step.
+  /// Must be called in every step.
   void act(Time now) {
     if (now < due_) return;
     due_ += scenario_.cycle;

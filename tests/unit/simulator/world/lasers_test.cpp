@@ -31,7 +31,7 @@ Scenario scene(std::uint64_t seed) {
   return scenario;
 }
 
-/// Slow reference: the distance along a ray to the nearest thing, in steps of a millimetre.
+/// Slow reference: the distance along a ray to the nearest object, in steps of a millimetre.
 double slow_range_m(const Scenario& scenario, const World& world, std::size_t robot, double angle_rad) {
   const Body& body = world.bodies()[robot];
   const Vec2 direction(std::cos(angle_rad), std::sin(angle_rad));
@@ -48,7 +48,7 @@ double slow_range_m(const Scenario& scenario, const World& world, std::size_t ro
   return std::numeric_limits<double>::infinity();
 }
 
-TEST_CASE("scans show obstacles, people and other robots, with bounded errors, in turn") {
+TEST_CASE("robots scan in turn and see obstacles, people and other robots with bounded errors") {
   int hits = 0, misses = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
@@ -86,7 +86,7 @@ TEST_CASE("scans show obstacles, people and other robots, with bounded errors, i
   CHECK(misses > 50);
 }
 
-TEST_CASE("a robot off the floor does not scan, and its scan is not delayed for others") {
+TEST_CASE("a robot off the floor does not scan and does not delay the scans of others") {
   const Scenario scenario = scene(1);
   World world(scenario, kBegin, 1);
   Lasers lasers(scenario, kBegin, 1);

@@ -41,7 +41,7 @@ struct Floor {
     for (std::size_t i = 0; i < world.robot_count(); ++i) sum += own_stops(i);
     return sum;
   }
-  // The time to the robot's next own stop; one second if there is none.
+  // The time to the robot's next own stop, or one second if there is none.
   Duration until_own_stop(std::size_t robot) {
     const std::uint64_t before = own_stops(robot);
     const Time since = now;
@@ -70,7 +70,7 @@ TEST_CASE("an undisturbed robot never makes an own stop") {
   }
 }
 
-TEST_CASE("a robot that is seen rarely and late returns to its reference without an own stop") {
+TEST_CASE("a robot seen rarely and late returns to its reference without an own stop") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
   CAPTURE(seed);
   Scenario scenario = separated_robots(20);
@@ -94,7 +94,7 @@ TEST_CASE("a pushed robot makes an own stop when the second frame after the push
   push.push_mps = change;
   REQUIRE(floor.world.disturb(0, push, floor.now));
   const Duration delay = floor.until_own_stop(0);
-  // It slides for 50 ms. Frames are captured every 17 ms and arrive 10 ms later.
+  // The robot slides for 50 ms. Frames are captured every 17 ms and arrive 10 ms later.
   INFO("own stop after " << to_seconds(delay) * 1e3 << " ms");
   CHECK(delay < milliseconds(75));
   const Version stop = floor.world.firmware(0).executing();
@@ -106,10 +106,10 @@ TEST_CASE("a pushed robot makes an own stop when the second frame after the push
         floor.scenario.tracking_bound_m + stop.inflation_m);
 }
 
-TEST_CASE("two noisy frames reveal to a robot that it was displaced by a centimetre") {
+TEST_CASE("two noisy frames reveal that a robot was displaced by a centimetre") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
   CAPTURE(seed);
-  // The robot is at rest; then the fixes shift by a centimetre without any odometry.
+  // The robot is at rest. Then the fixes shift by a centimetre without any odometry.
   PoseEstimator still({0, 0}, 0, kBegin, {0.01, 0.005, 0.0015});
   Rng rng(seed);
   Time now = kBegin;
@@ -129,7 +129,7 @@ TEST_CASE("two noisy frames reveal to a robot that it was displaced by a centime
   CHECK(still.position_error_rms_m() > 0.001);
 }
 
-TEST_CASE("a robot that slips makes an own stop, and once at rest is within the error that it reports") {
+TEST_CASE("a slipping robot makes an own stop, and once at rest it is within the error that it reports") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
   CAPTURE(seed);
   Floor floor(seed % 2 == 0 ? noisy(separated_robots(6)) : separated_robots(6), seed);
@@ -141,7 +141,7 @@ TEST_CASE("a robot that slips makes an own stop, and once at rest is within the 
     REQUIRE(floor.world.disturb(i, slip, floor.now));
   }
   floor.run_for(milliseconds(400));
-  CHECK(floor.own_stops() >= 4);  // the robots that accelerated enough to leave their references
+  CHECK(floor.own_stops() >= 4);  // robots that accelerated enough to leave their references
   for (IdealAgent& agent : floor.agents) agent.drives = false;
   floor.run_for(milliseconds(1500));
   for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
@@ -165,7 +165,7 @@ TEST_CASE("a robot that learns that it is far from its reference stops where it 
     command.fix = {now, position_m};
     world.on_command(0, command, now);
   };
-  // Wrong fixes make it believe that it was displaced: it stops at the estimated position, with a large
+  // Wrong fixes suggest that the robot was displaced. It stops at the estimated position, with a large
   // inflation.
   for (int i = 0; i < 10; ++i) send_fix(mark);
   for (int i = 0; i < 3; ++i) send_fix(mark + Vec2(0.15, 0));
@@ -188,8 +188,8 @@ TEST_CASE("a robot that learns that it is far from its reference stops where it 
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a robot farther from its reference than the bound makes an own stop at once") {
-  // It drives 2 m unseen; then an observation shows how far it has drifted.
+TEST_CASE("a robot farther from its reference than the bound makes an own stop immediately") {
+  // The robot drives 2 m unobserved. Then an observation shows how far it has drifted.
   const double drift_m = 0.001 * GENERATE(range(1, 13)) * (GENERATE(false, true) ? -1 : 1);
   CAPTURE(drift_m);
   Floor floor(separated_robots(1), 1);
@@ -211,7 +211,7 @@ TEST_CASE("a robot farther from its reference than the bound makes an own stop a
     const RobotReport robot_report = world.robot_report(0, floor.now);
     CHECK(robot_report.tracking_error_m <= bound_m + robot_report.executing.inflation_m);
   }
-  // In between, the uncertainty of its estimate decides.
+  // For drifts in between, the uncertainty of the estimate decides.
   if (std::abs(drift_m) < 0.7 * bound_m) CHECK(world.firmware(0).own_stops() == 0);
   if (std::abs(drift_m) > bound_m) CHECK(world.firmware(0).own_stops() == 1);
   CHECK(world.firmware_violations() == 0);
@@ -236,7 +236,7 @@ TEST_CASE("a robot detects a blocked wheel from its odometry alone") {
   CHECK(floor.world.firmware_violations() == 0);
 }
 
-TEST_CASE("a version that continues the robot's own stop brings it back on reference") {
+TEST_CASE("a version that continues the robot's own stop brings the robot back on reference") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(seed);
   Floor floor(separated_robots(1), seed);
@@ -251,7 +251,7 @@ TEST_CASE("a version that continues the robot's own stop brings it back on refer
   CHECK(floor.world.firmware_violations() == 0);
 }
 
-TEST_CASE("the number of a robot's own stop is above all received numbers, pending or refused") {
+TEST_CASE("a robot's own stop is numbered above all received versions, pending or refused") {
   Floor floor(separated_robots(1), 1);
   floor.agents[0].drives = false;
   const Vec2 mark = floor.scenario.robots[0].start_m;

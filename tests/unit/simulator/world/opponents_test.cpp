@@ -23,7 +23,7 @@ Vec2 random_position(Rng& rng) {
   return {x, y};
 }
 
-// The position after a distance on a closed or reversed route, by folding the distance.
+// The position after a distance along a closed or reversed route, found by folding the distance.
 Vec2 along(const std::vector<Vec2>& path_m, bool is_loop, double distance_m) {
   double length = 0;
   for (std::size_t i = 1; i < path_m.size(); ++i) length += (path_m[i] - path_m[i - 1]).norm();
@@ -54,7 +54,7 @@ TEST_CASE("an opponent follows its route at its speed, back and forth or in a lo
   }
 }
 
-TEST_CASE("an opponent with a single waypoint, or with coincident ones, stays at rest") {
+TEST_CASE("an opponent with a single waypoint or coincident ones stays at rest") {
   const auto path_m = GENERATE(std::vector<Vec2>{{1, 2}}, std::vector<Vec2>{{1, 2}, {1, 2}},
                                std::vector<Vec2>{{1, 2}, {1, 2}, {1, 2}});
   Opponents opponents(std::vector{OpponentSpec{0.1, 1, path_m}}, 0.09, 2.5);
@@ -62,8 +62,8 @@ TEST_CASE("an opponent with a single waypoint, or with coincident ones, stays at
   CHECK((opponents.discs()[0].centre_m - Vec2(1, 2)).norm() < 1e-9);
 }
 
-// One opponent drives along y = 0 from -1 to 1 and back, past or through a robot at rest halfway, at
-// lateral_offset_m.
+// One opponent drives along y = 0 from -1 to 1 and back. Halfway it passes or hits a robot at rest, at
+// `lateral_offset_m`.
 Scenario crash_scene(double lateral_offset_m) {
   Scenario scenario = test::separated_robots(2);
   scenario.robots[0].start_m = Vec2(0, lateral_offset_m);
@@ -73,8 +73,7 @@ Scenario crash_scene(double lateral_offset_m) {
 }
 
 TEST_CASE(
-    "an opponent that drives into a robot at rest counts as one crash at its own speed, and not as a "
-    "contact") {
+    "an opponent that hits a robot at rest counts as one crash at its own speed, and not as a contact") {
   World world(crash_scene(0), kBegin, 1);
   world.advance(kBegin + milliseconds(1900));
   msg::GroundTruth truth;
@@ -89,15 +88,16 @@ TEST_CASE(
   CHECK(world.opponents().totals().crashes == 2);
 }
 
-TEST_CASE("the speed of a crash is measured along the line of centres") {
-  // Discs of 0.11 and 0.09 m whose centres pass at 0.12 m touch when they are 0.16 m apart along the route.
+TEST_CASE("crash speed is measured along the line of centres") {
+  // Two discs with radii of 0.11 and 0.09 m and a lateral offset of 0.12 m touch when they are 0.16 m apart
+  // along the route.
   World world(crash_scene(0.12), kBegin, 1);
   world.advance(kBegin + milliseconds(1900));
   CHECK(world.opponents().totals().crashes == 1);
   CHECK(world.opponents().totals().max_crash_speed_mps == Approx(0.8).epsilon(0.02));
 }
 
-TEST_CASE("a robot that drives into an opponent counts as moving, and its speed is reported") {
+TEST_CASE("a robot that hits an opponent counts as moving, and its speed is reported") {
   World world(crash_scene(0), kBegin, 1);
   Trajectory dash(kBegin + milliseconds(100), {{0, 0}, {0, 0}});
   dash.append(milliseconds(500), Vec2(-3, 0));
@@ -107,7 +107,7 @@ TEST_CASE("a robot that drives into an opponent counts as moving, and its speed 
   const CrashTotals& totals = world.opponents().totals();
   CHECK(totals.crashes == 1);
   CHECK(totals.crashes_while_moving == 1);
-  // They meet after covering 0.8 m together: 1 m/s t + 1.5 (t - 0.1)² = 0.8.
+  // Robot and opponent meet after covering 0.8 m together: 1 m/s t + 1.5 (t - 0.1)² = 0.8.
   const double t = (-(1 - 0.3) + std::sqrt(0.7 * 0.7 + 4 * 1.5 * (0.8 - 0.015))) / 3;
   const double robot = 3 * (t - 0.1);
   CHECK(totals.max_robot_crash_speed_mps == Approx(robot).epsilon(0.1));
@@ -123,7 +123,7 @@ TEST_CASE("an opponent does not crash into a lifted robot") {
   CHECK(world.opponents().totals().crashes == 0);
 }
 
-TEST_CASE("crashes match a check of every pair in every step") {
+TEST_CASE("crashes agree with a check of every pair in every step") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
   CAPTURE(seed);
   Rng rng(seed);

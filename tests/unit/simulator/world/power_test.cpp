@@ -12,7 +12,7 @@ using test::separated_robots;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-TEST_CASE("ground truth reports when the carrying of a robot without power ends") {
+TEST_CASE("ground truth reports the time until which a robot without power is carried") {
   World world(separated_robots(1), kBegin, 1);
   Time now = kBegin;
   const auto disturbance_end_ns = [&] {
@@ -34,7 +34,7 @@ TEST_CASE("ground truth reports when the carrying of a robot without power ends"
   CHECK(disturbance_end_ns() == to_ns(now));
 }
 
-TEST_CASE("a robot that was without power does not execute versions that it received before") {
+TEST_CASE("after a power loss, a robot does not execute versions that it received before") {
   World world(separated_robots(1), kBegin, 1);
   Time now = kBegin + milliseconds(30);
   world.advance(now);

@@ -11,8 +11,8 @@
 
 namespace sidestep::test {
 
-/// Acts as agent, coordinator and vision for one robot of a World: sends a random version every cycle between
-/// 0.3 and 15 ms before its start, loses some, and forwards noisy fixes.
+/// Acts as agent, coordinator and vision for one robot of a World. In every cycle, sends a random version 0.3
+/// to 15 ms before its start. Loses some versions, and forwards noisy fixes.
 class RandomDrive {
  public:
   RandomDrive(const Scenario& scenario, World& world, std::size_t robot, std::uint64_t seed)
@@ -27,7 +27,7 @@ class RandomDrive {
     plan_next();
   }
 
-  /// When act() is due next.
+  /// When the next call of act() is due.
   Time due() const { return std::min(send_at_, frame_due_); }
 
   void act(Time now) {
@@ -76,8 +76,8 @@ class RandomDrive {
 
   Version next_version() {
     const State state = held_.trajectory.state_at(start_);
-    // The desired acceleration changes rarely, so that the robot reaches its maximum speed, and points home
-    // if it is far away.
+    // The desired acceleration changes rarely, so that the robot reaches its maximum speed. It points home if
+    // the robot is far away.
     if (rng_.chance(0.3)) {
       const double angle_rad = rng_.uniform(-3.14159, 3.14159);
       desired_acceleration_ = rotated(Vec2(rng_.chance(0.8) ? 20 : rng_.uniform(0, 5), 0), angle_rad);
@@ -108,7 +108,7 @@ class RandomDrive {
   std::deque<PoseFix> seen_;
 };
 
-/// Robots far enough apart to drive without ever meeting.
+/// Robots that are far enough apart to drive without ever meeting.
 inline Scenario separated_robots(int count) {
   Scenario scenario;
   scenario.name = "separated";

@@ -18,7 +18,7 @@ using test::separated_robots;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-// A bus whose clock the test sets.
+// A bus whose clock is set by the test.
 class ManualBus : public Bus {
  public:
   Time now() const override { return now_; }
@@ -62,7 +62,7 @@ class ManualBus : public Bus {
   std::function<void(const void*)> on_command_;
 };
 
-TEST_CASE("a simulator catches up after a long pause, and continues") {
+TEST_CASE("a simulator catches up after a long pause and continues") {
   const Scenario scenario = separated_robots(1);
   ManualBus bus;
   SimulatorNode node(bus, scenario, 1, 1);
@@ -87,7 +87,7 @@ TEST_CASE("a simulator catches up after a long pause, and continues") {
   CHECK(node.world().firmware_violations() == 0);
 }
 
-TEST_CASE("robots whose host's clock is set back stop by themselves, in a new incarnation") {
+TEST_CASE("robots whose host's clock is set back make own stops in a new incarnation") {
   const Scenario scenario = separated_robots(1);
   ManualBus bus;
   SimulatorNode node(bus, scenario, 1, 1);
@@ -96,7 +96,7 @@ TEST_CASE("robots whose host's clock is set back stop by themselves, in a new in
   const msg::Feedback before = bus.robot_reports.back();
   bus.set(kBegin + milliseconds(400));
   const Vec2 mark = scenario.robots[0].start_m;
-  // On a base that the robot leaves because of the jump.
+  // This version's base is one that the robot leaves because of the jump.
   bus.deliver_command(
       test::command_with({0, 1, 1, 0, Trajectory::resting(kBegin + milliseconds(450), mark)}));
   bus.set(kBegin + milliseconds(600));

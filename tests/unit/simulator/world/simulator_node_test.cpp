@@ -60,7 +60,7 @@ struct Scene {
   std::vector<msg::GroundTruth> truths;
 };
 
-TEST_CASE("every robot reports about once per cycle when idle, and not all at the same time") {
+TEST_CASE("every idle robot reports about once per cycle, and not all robots at the same time") {
   Scene scene(separated_robots(10));
   scene.run(std::chrono::seconds(2));
   std::map<std::int64_t, int> burst;
@@ -132,7 +132,7 @@ TEST_CASE("a fence is acknowledged immediately") {
   CHECK(scene.robot_reports[0].back().valid_at_ns() == to_ns(sent + std::chrono::microseconds(100)));
 }
 
-TEST_CASE("a command's lateness is decided by the robot's clock at its arrival") {
+TEST_CASE("a robot decides by its own clock on arrival whether a command is late") {
   Scenario scenario = separated_robots(1);
   scenario.network.delay_min = scenario.network.delay_max = milliseconds(10);
   Scene scene(scenario);
@@ -172,7 +172,7 @@ TEST_CASE("the radio loses commands at the scenario's rate") {
   scenario.command_loss = 0.3;
   Scene scene(scenario);
   for (int i = 0; i < 5000; ++i) {
-    scene.send(0, test::bare_command(0, 0));  // malformed, so that the firmware counts it
+    scene.send(0, test::bare_command(0, 0));  // malformed, so that the firmware counts the command
     scene.run(milliseconds(1));
   }
   const auto received = static_cast<double>(scene.node.world().firmware(0).counts().refused_malformed);
@@ -202,7 +202,8 @@ TEST_CASE("the same seed gives the same messages") {
   CHECK(sum(1) != sum(2));
 }
 
-// An agent that drives randomly over a bad network; each version continues the one last reported as executed.
+// An agent that drives randomly over a bad network. Each version continues the one that the robot last
+// reported as executed.
 struct RandomAgent {
   void act(Scene& scene, std::size_t robot, Rng& rng) {
     const auto& robot_reports = scene.robot_reports[scene.scenario.robots[robot].id];
@@ -223,7 +224,7 @@ struct RandomAgent {
   VersionNumber newest = 0;
 };
 
-TEST_CASE("over a bad network no rule is broken and bodies follow their versions") {
+TEST_CASE("over a bad network, no rule is broken and bodies follow their versions") {
   const std::uint64_t seed = GENERATE(1, 2, 3, 4);
   CAPTURE(seed);
   Scenario scenario = separated_robots(5);
@@ -291,7 +292,7 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
   send(0, msg::DisturbanceKind::DISTURBANCE_SLIP);
   send(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
   send(0, static_cast<msg::DisturbanceKind>(99));
-  send(0, msg::DisturbanceKind::DISTURBANCE_PLACE);  // it is on the floor
+  send(0, msg::DisturbanceKind::DISTURBANCE_PLACE);  // the robot is on the floor
   CHECK(drops_of(scene.node).total(DropReason::kRefusedDisturbance) == 5);
   CHECK_FALSE(scene.robot_reports[0].back().is_lifted());
   send(0, msg::DisturbanceKind::DISTURBANCE_LIFT);
@@ -312,7 +313,7 @@ TEST_CASE("a disturbance is reported immediately, and an invalid one changes not
   CHECK(scene.node.world().firmware_violations() == 0);
 }
 
-TEST_CASE("a version's start is timed by the robot's clock") {
+TEST_CASE("the robot's clock determines when a version starts") {
   Scenario scenario = separated_robots(1);
   scenario.network.delay_min = scenario.network.delay_max = std::chrono::microseconds(100);
   scenario.robots[0].clock_offset = GENERATE(milliseconds(-3), milliseconds(3));
@@ -330,7 +331,7 @@ TEST_CASE("a version's start is timed by the robot's clock") {
   CHECK(first->header().stamp_ns() == to_ns(start - scenario.robots[0].clock_offset));
 }
 
-TEST_CASE("disturbances, own stops with their reason, and contacts are reported") {
+TEST_CASE("disturbances, contacts, and own stops with their reasons are reported") {
   Scenario scenario = separated_robots(2);
   scenario.robots[0].start_m = Vec2(0, 0);
   scenario.robots[1].start_m = Vec2(0.25, 0);

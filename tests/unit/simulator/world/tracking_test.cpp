@@ -14,7 +14,7 @@ struct ErrorQuantiles {
   double median_mm, p99_mm, max_mm, top_speed_mps;
 };
 
-// Quantiles of the bodies' distances from their references, over all steps.
+// Quantiles of the bodies' distances from their references over all steps.
 ErrorQuantiles measure_tracking(const Scenario& scenario, double seconds, std::uint64_t seed) {
   const Time begin = time_from_ns(1'700'000'000'000'000'000);
   World world(scenario, begin, seed);
@@ -46,15 +46,15 @@ ErrorQuantiles measure_tracking(const Scenario& scenario, double seconds, std::u
   return {quantile(0.5), quantile(0.99), quantile(1), top_speed};
 }
 
-// 20 robots for 15 s each: five minutes of random versions, with acceleration steps of up to 8 m/s² every
-// cycle, some of them lost.
+// 20 robots drive for 15 s each: five minutes of random versions with acceleration steps of up to 8 m/s²
+// every cycle. Some versions are lost.
 TEST_CASE("bodies stay within 5 mm of their references, and mostly within 3 mm") {
   const std::uint64_t seed = GENERATE(1, 2);
   Scenario scenario = separated_robots(20);
   scenario.command_loss = 0.05;
-  scenario.tracking_bound_m = 0.02;  // Prevents stops off reference: the test measures tracking alone.
+  scenario.tracking_bound_m = 0.02;  // prevents own stops, so that the test measures tracking alone
   SECTION("with the default noise") {}
-  SECTION("with noisy, late vision") {
+  SECTION("with noisy and late vision") {
     scenario.vision.position_noise_m = 0.0015;
     scenario.vision.delay = std::chrono::milliseconds(35);
     scenario.vision.miss_probability = 0.02;

@@ -33,7 +33,7 @@ msg::GroundTruth truth_after_driving(std::uint64_t seed) {
   return truth;
 }
 
-TEST_CASE("the same seed gives the same world, another seed another") {
+TEST_CASE("the same seed gives the same world, and another seed gives a different one") {
   const auto first = truth_after_driving(1), again = truth_after_driving(1), other = truth_after_driving(2);
   REQUIRE(first.robots().size() == 4);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -90,7 +90,7 @@ TEST_CASE("a jump in the executed reference counts as a firmware violation") {
   CHECK(world.firmware_violations() == 1);
 }
 
-TEST_CASE("a robot with pending feedback is listed once, until it is cleared") {
+TEST_CASE("a robot with pending feedback is listed once until its entry is cleared") {
   const Scenario scenario = separated_robots(3);
   World world(scenario, kBegin, 1);
   world.on_command(1, test::bare_command(1, 5), kBegin);

@@ -41,7 +41,7 @@ void save_start(const std::string& scenario_file, std::size_t camera, const std:
   write_png(bgr_of(rendered_start(scenario, camera_grid(scenario)[camera], spec, 1).view()), path);
 }
 
-/// Robots found in frames of a scenario's cameras by the thresholds of a file.
+/// The robots found in frames of the scenario's cameras with the thresholds of a file.
 std::size_t found(const std::string& scenario_file, const std::string& colours_file) {
   const Scenario scenario = load_scenario(scenario_file);
   const ColourThresholds colours = load_colours(colours_file);
@@ -75,7 +75,7 @@ TEST_CASE("pictures of several cameras give one file") {
   CHECK(found(kCrossing, folder / "c.yaml") == load_scenario(kCrossing).robots.size());
 }
 
-TEST_CASE("cameras are read from a file if given") {
+TEST_CASE("cameras are read from a file if one is given") {
   const Folder folder;
   save_start(kFloorFile, 0, folder / "frame.png");
   CameraParameters camera = camera_grid(load_scenario(kFloorFile))[0].parameters();

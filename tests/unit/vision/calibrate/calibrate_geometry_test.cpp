@@ -135,7 +135,8 @@ TEST_CASE("the command writes a file of cameras that reads back exactly") {
   }
 }
 
-TEST_CASE("points that do not determine the camera are refused with file and line and nothing is written") {
+TEST_CASE(
+    "points that do not determine the camera are refused with file name and line and nothing is written") {
   const Folder folder;
   Rng rng(35);
   const OverheadCamera overhead = tilted_camera();

@@ -38,12 +38,12 @@ TEST_CASE("colours learned from one frame find robots and obstacles in different
     detector.detect(rendered_start(scenario, camera, spec, seed).view(), {}, {}, frame);
     CHECK(found_at_start(scenario, frame) == scenario.robots.size());
     if (drift == 0) CHECK(frame.ball_count() == 1);
-    // The obstacle and the opponent, whose colours were not learned.
+    // The obstacle's and the opponent's colours were not learned.
     CHECK(frame.obstacle_count() == 2);
   }
 }
 
-TEST_CASE("learning warns of missing colours and of misplaced labels") {
+TEST_CASE("learning warns of missing colours and misplaced labels") {
   const Scenario scenario = load_scenario(kFloorFile);
   const CameraModel camera = camera_grid(scenario)[0];
   RenderSpec spec;
@@ -56,11 +56,11 @@ TEST_CASE("learning warns of missing colours and of misplaced labels") {
     for (const std::string& warning : learn_colours(labelled, expected).warnings) all += warning + "\n";
     return all;
   };
-  SECTION("a colour that is missing") {
+  SECTION("a colour is missing") {
     std::erase_if(labels.discs, [](const LabelledDisc& disc) { return disc.colour == Colour::kYellow; });
     CHECK_THAT(warnings(), ContainsSubstring("the images show nothing yellow"));
   }
-  SECTION("swapped labels") {
+  SECTION("labels are swapped") {
     for (LabelledDisc& disc : labels.discs) {
       const bool is_pink = disc.colour == Colour::kPink, is_green = disc.colour == Colour::kGreen;
       if ((is_pink || is_green) && disc.centre_px.x() < 390)
@@ -69,7 +69,7 @@ TEST_CASE("learning warns of missing colours and of misplaced labels") {
     CHECK_THAT(warnings(), ContainsSubstring("green and pink overlap"));
     CHECK_THAT(warnings(), ContainsSubstring("of the pixels labelled pink"));
   }
-  SECTION("all labels displaced by 20 pixels") {
+  SECTION("all labels are displaced by 20 pixels") {
     for (LabelledDisc& disc : labels.discs) disc.centre_px.x() += 20;
     CHECK_THAT(warnings(), ContainsSubstring("check that everything is at its start position"));
   }

@@ -13,7 +13,7 @@ namespace sidestep::test {
 /// A small floor with six robots, a ball, an obstacle and an opponent, under one camera.
 inline const std::string kFloorFile = SIDESTEP_SOURCE_DIR "/simulator/rendering/pictures/floor.yaml";
 
-/// A camera's view of a scenario at the start.
+/// A camera's view of the scenario at the start.
 inline Image rendered_start(const Scenario& scenario, const CameraModel& camera, const RenderSpec& spec,
                             std::uint64_t seed) {
   FrameRenderer renderer(camera, scenario.field, butterfly(), spec, Rng(seed));

@@ -9,7 +9,7 @@
 
 namespace sidestep::camera_calibration_test {
 
-/// Random points at the given heights in turn, with noisy pixels.
+/// Random points at each of the given heights in turn, with noisy pixels.
 std::vector<CalibrationPoint> noisy_points(const CameraModel& camera, const Box& view_m, int count,
                                            const std::vector<double>& heights_m, double noise_px, Rng& rng) {
   std::vector<CalibrationPoint> points;
@@ -21,7 +21,7 @@ std::vector<CalibrationPoint> noisy_points(const CameraModel& camera, const Box&
   return points;
 }
 
-/// Initial parameters of a user who knows only the image size.
+/// Initial parameters for a user who knows only the image size.
 CameraParameters initial_of(const CameraModel& camera) {
   CameraParameters initial;
   initial.width_px = camera.parameters().width_px;
@@ -42,7 +42,7 @@ TEST_CASE("a camera is recovered from points without noise") {
     const auto points = noisy_points(camera, overhead_camera.view_m, 30, {0, 0.15, 0.5}, 0, rng);
     const CalibrationResult found = calibrate_camera(points, initial_of(camera));
     CAPTURE(found.error, found.rms_px, found.robot_top_sd_px, overhead_camera.distortion);
-    // In a narrow view from high up, focal length and height are barely separable.
+    // In a narrow view from high up, focal length and height can hardly be told apart.
     if (!found.error.empty() && found.robot_top_sd_px > 0.5) continue;
     REQUIRE(found.error.empty());
     const CameraParameters& truth = camera.parameters();
@@ -74,7 +74,7 @@ TEST_CASE("noisy points give an accurate camera on the floor and at the height o
     const CalibrationResult found = calibrate_camera(points, initial_of(camera), settings);
     CAPTURE(found.error);
     REQUIRE(found.error.empty());
-    // Noise of 0.2 pixels on each of two axes.
+    // The noise is 0.2 pixels on each of two axes.
     CHECK(found.rms_px > 0.2);
     CHECK(found.rms_px < 0.36);
     CHECK(found.max_px > found.rms_px);
@@ -100,7 +100,7 @@ TEST_CASE("parameters that are not estimated keep their values") {
   CAPTURE(seed);
   Rng rng(seed);
   OverheadCamera overhead_camera;
-  const CameraModel camera = overhead_camera_model(overhead_camera);  // vertical view
+  const CameraModel camera = overhead_camera_model(overhead_camera);  // a vertical view
   const auto points = noisy_points(camera, overhead_camera.view_m, 40, {0}, 0.1, rng);
   CameraParameters initial = camera.parameters();
   initial.rotation = Eigen::Quaterniond::Identity();
@@ -132,8 +132,8 @@ TEST_CASE("points that do not determine the camera are refused with the reason")
   CHECK(error(noisy_points(camera, overhead_camera.view_m, 4, {0, 0.3}, 0, rng)).find("got 4") !=
         std::string::npos);
 
-  // Points on the floor only, in a vertical view: a lower camera with a shorter focal length gives the same
-  // image.
+  // With points on the floor only, in a vertical view, a lower camera with a shorter focal length gives the
+  // same image.
   CHECK(error(noisy_points(camera, overhead_camera.view_m, 60, {0}, 0.1, rng))
             .find("do not determine the camera") != std::string::npos);
 

@@ -45,7 +45,7 @@ bool are_equal(const CameraParameters& a, const CameraParameters& b) {
          a.rotation.coeffs() == b.rotation.coeffs() && a.translation_m == b.translation_m;
 }
 
-TEST_CASE("a file of cameras is read") {
+TEST_CASE("a camera file is read") {
   const auto cameras = parse_cameras(kOne, "cameras.yaml");
   REQUIRE(cameras.size() == 1);
   CHECK(cameras[0].id == 3);
@@ -75,7 +75,7 @@ TEST_CASE("cameras are restored from a file to the last bit") {
   }
 }
 
-TEST_CASE("invalid files of cameras are refused with file and line") {
+TEST_CASE("invalid camera files are refused with file name and line") {
   check_refused("id: 3", "id: -1", 2, "expected 0 to 1023");
   check_refused("[780, 580]", "[780]", 3, "expected a list of 2 numbers");
   check_refused("[780, 580]", "[780.5, 580]", 3, "whole number");

@@ -62,7 +62,7 @@ TEST_CASE("known parameters are taken from the file and the principal point is e
   CHECK(camera.settings.estimates_principal_point);
 }
 
-TEST_CASE("invalid files of calibration points are refused with file and line") {
+TEST_CASE("invalid files of calibration points are refused with file name and line") {
   check_refused("id: 3", "id: 1024", 2, "expected 0 to 1023");
   check_refused("[780, 580]", "[780]", 3, "expected a list of 2 numbers");
   check_refused("    image_px: [780, 580]\n", "", 2, "\"image_px\" is missing");

@@ -35,7 +35,7 @@ TEST_CASE("a file may have boxes for unnamed colours") {
   CHECK(colours_text(read) == text);
 }
 
-TEST_CASE("invalid files of thresholds are refused with file and line") {
+TEST_CASE("invalid threshold files are refused with file name and line") {
   const auto [what, with, line, expected] = GENERATE(table<std::string, std::string, int, std::string>({
       {"rgb", "bgr", 1, "expected yuv422 or rgb, got \"bgr\""},
       {"format: rgb\n", "", 1, "format"},
@@ -58,7 +58,7 @@ TEST_CASE("invalid files of thresholds are refused with file and line") {
   }
 }
 
-TEST_CASE("files without boxes and with too many boxes are refused") {
+TEST_CASE("threshold files with no boxes or too many boxes are refused") {
   CHECK_THROWS_AS(parse_colours("format: rgb\nboxes: []\n", "f"), ConfigError);
   std::string many = "format: rgb\nboxes:\n";
   for (int i = 0; i < 33; ++i) many += "  - {colour: pink, low: [0, 1, 2], high: [3, 4, 5]}\n";

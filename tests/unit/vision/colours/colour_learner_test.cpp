@@ -11,7 +11,7 @@ struct Sample {
   Yuv yuv;
 };
 
-/// Discs of radius 10 px on a floor, with uniform noise of up to `noise` in every number.
+/// Discs with a radius of 10 px on a floor, with uniform noise of up to `noise` in every number.
 struct Painting {
   Image image{PixelFormat::kYuv422, 400, 60};
   std::vector<LabelledDisc> discs;
@@ -89,7 +89,7 @@ TEST_CASE("the border between two colours is midway between their observed range
   CHECK(box_of(boxes, Colour::kYellow)->high.v == 180);
 }
 
-TEST_CASE("pixels far from the background are of another colour and the observed background is not") {
+TEST_CASE("pixels far from the background have another colour, and the observed background does not") {
   const std::uint64_t seed = GENERATE(range(1, 41));
   CAPTURE(seed);
   Rng rng(seed);
@@ -120,7 +120,7 @@ TEST_CASE("pixels far from the background are of another colour and the observed
       CHECK(is_other({bright, floor.u, static_cast<std::uint8_t>(floor.v + far)}));
     }
   }
-  // White in light with a tenth more red or blue.
+  // White in light with a tenth more red or blue is not another colour.
   CHECK_FALSE(is_other({233, 111, 140}));
   CHECK_FALSE(is_other({225, 142, 114}));
 }

@@ -18,7 +18,7 @@ DetectorSettings settings_for(RenderedField& floor, const std::vector<PlacedRobo
   return settings;
 }
 
-/// Detects robots that jump to new poses every tenth frame and move a little in between.
+/// Detects robots that jump to new poses every tenth frame and move slightly in between.
 Score score_of_frames(RenderedField& floor, std::size_t robots_per_team, int frames, int hidden) {
   std::vector<PlacedRobot> robots = floor.scattered_robots(robots_per_team);
   Detector detector(floor.camera, settings_for(floor, robots));
@@ -60,22 +60,22 @@ TEST_CASE("all sixteen patterns of both teams are distinguished in frames") {
   CHECK(score.wrong == 0);
 }
 
-TEST_CASE("robots with one dot covered are found and never confused") {
+TEST_CASE("robots with one covered dot are found and never confused with each other") {
   RenderedField floor(4);
   const Score score = score_of_frames(floor, 11, 40, 1);
   CHECK(score.share() > 0.99);
   CHECK(score.wrong == 0);
 }
 
-TEST_CASE("a team is identified by a centre whose colour is just outside that team's thresholds") {
-  // All yellow centres are a little too orange for their thresholds, as in tinted light. No robot is
+TEST_CASE("a team is identified even if a centre's colour is just outside that team's thresholds") {
+  // All yellow centres are slightly too orange for their thresholds, as in tinted light. No robot is
   // expected, so the centre alone determines the team.
   const bool is_covered = GENERATE(false, true);
   CAPTURE(is_covered);
   RenderedField floor(5);
   std::vector<PlacedRobot> robots = floor.scattered_robots(16);
   DetectorSettings settings = settings_for(floor, robots);
-  // Blue robots are in the roster, but not on the floor.
+  // Blue robots are on the roster but not on the floor.
   std::erase_if(robots, [](const PlacedRobot& robot) { return robot.entry.team == Team::kBlue; });
   for (ColourBox& box : settings.boxes) {
     if (box.colour == static_cast<std::uint32_t>(Colour::kYellow))
@@ -84,14 +84,14 @@ TEST_CASE("a team is identified by a centre whose colour is just outside that te
   Detector detector(floor.camera, settings);
   msg::DetectionFrame frame;
   Score score;
-  // Covering one dot of each robot includes the centre dot of some.
+  // Covering one dot of each robot covers the centre dot of some.
   detector.detect(floor.frame(robots, {}, is_covered ? 1 : 0).view(), kBegin, {}, frame);
   score.add(robots, frame);
   CHECK(score.wrong == 0);
   if (!is_covered) CHECK(score.share() == 1);
 }
 
-TEST_CASE("robots are found where light falls to 60 % and its colour is off by a tenth") {
+TEST_CASE("robots are found where the light falls to 60 % and its colour is off by a tenth") {
   const double drift = GENERATE(0.1, -0.1);
   CAPTURE(drift);
   RenderSpec spec;
@@ -117,7 +117,7 @@ TEST_CASE("robots are found where light falls to 60 % and its colour is off by a
   CHECK(score.wrong == 0);
 }
 
-TEST_CASE("a ball is found, and dots are not balls") {
+TEST_CASE("a ball is found, and dots are not mistaken for balls") {
   RenderedField floor(7);
   const std::vector<PlacedRobot> robots = floor.scattered_robots(11);
   Detector detector(floor.camera, settings_for(floor, robots));
@@ -141,7 +141,7 @@ TEST_CASE("an object in a colour that no robot wears is an obstacle of the right
   DetectorSettings settings = settings_for(floor, robots);
   const Rgb red = named(Colour::kRed).rgb;
   const std::vector<SceneCylinder> cylinders{{{{0.5, -0.7}, 0.2}, 0.002, red}};
-  // Its colour is learned from its known position.
+  // The obstacle's colour is learned from its known position.
   ColourLearner learner;
   const std::array discs{*projected_disc(floor.camera, Colour::kRed, {0.5, -0.7, 0}, 0.2)};
   learner.add(floor.frame({}, {}, 0, cylinders).view(), discs);

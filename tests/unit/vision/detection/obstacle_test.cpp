@@ -49,7 +49,7 @@ struct ObstacleFixture {
           {{frame.obstacles()[i].x_m(), frame.obstacles()[i].y_m()}, frame.obstacles()[i].radius_m()});
     return found;
   }
-  /// A random position at which a disc of this radius is in view and touches no robot.
+  /// A random position where a disc of this radius is in view and touches no robot.
   Vec2 position_for(double radius_m, const std::vector<PlacedRobot>& robots) {
     const Vec2 limit(2.95 - radius_m, 2.15 - radius_m);
     while (true) {
@@ -97,7 +97,7 @@ TEST_CASE("obstacles of unnamed colours are found with their positions and radii
   }
 }
 
-TEST_CASE("obstacles are located in bad light too") {
+TEST_CASE("obstacles are located even in bad light") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   const double drift = GENERATE(0.1, -0.1);
   ObstacleFixture fixture(12, format, 0.6, drift);
@@ -118,7 +118,7 @@ TEST_CASE("obstacles are located in bad light too") {
   }
 }
 
-TEST_CASE("robots and a ball are not obstacles") {
+TEST_CASE("robots and a ball are not mistaken for obstacles") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   ObstacleFixture fixture(13, format);
   int false_positives = 0;
@@ -133,7 +133,7 @@ TEST_CASE("robots and a ball are not obstacles") {
   CHECK(found_count > 5490);
 }
 
-TEST_CASE("robots and lines are not obstacles in bad light") {
+TEST_CASE("robots and lines are not mistaken for obstacles in bad light") {
   const double drift = GENERATE(0.1, -0.1);
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   CAPTURE(drift, format);
@@ -146,7 +146,7 @@ TEST_CASE("robots and lines are not obstacles in bad light") {
   CHECK(false_positives == 0);
 }
 
-TEST_CASE("a robot next to an obstacle and the obstacle are both found") {
+TEST_CASE("a robot and an obstacle next to each other are both found") {
   ObstacleFixture fixture(15);
   for (int i = 0; i < 20; ++i) {
     CAPTURE(i);
@@ -160,7 +160,8 @@ TEST_CASE("a robot next to an obstacle and the obstacle are both found") {
     CHECK(fixture.frame.robots().size() == 1);
     const auto found = fixture.obstacles();
     REQUIRE(found.size() == 1);
-    // Where the robot hides its foot, the obstacle appears displaced outward in proportion to its height.
+    // Where the robot hides the obstacle's foot, the obstacle appears displaced outward in proportion to its
+    // height.
     CHECK((found[0].centre_m - cylinders[0].circle.centre_m).norm() < 0.12);
     CHECK(found[0].radius_m > 0.09);
     CHECK(found[0].radius_m < 0.13);
@@ -244,7 +245,7 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
   for (int i = 0; i < 60; ++i) {
     Circle known{{rng.uniform(-1.5, 1.5), rng.uniform(-1, 1)}, 0.12};
     if (i == 0) known.centre_m = below_camera_m;
-    // An obstacle behind must not touch the known one in the image, because a narrower one is then hidden.
+    // An obstacle behind the known one must not touch it in the image, because a narrower one is then hidden.
     const bool is_behind = i % 2 == 0;
     const double distance_m = known.radius_m + 0.1 + (is_behind ? 0.15 : 0) + rng.uniform(0, 0.2);
     const Vec2 outward =
@@ -268,7 +269,7 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
   }
 }
 
-TEST_CASE("a finder reports if an image has more blobs than it handles") {
+TEST_CASE("a finder reports if an image has more blobs than it can handle") {
   ObstacleFixture fixture(21);
   const Image image = fixture.floor.frame({});
   const ColourClasses classes(default_colours(PixelFormat::kYuv422).boxes);
@@ -284,7 +285,7 @@ TEST_CASE("a finder reports if an image has more blobs than it handles") {
   }
 }
 
-TEST_CASE("several obstacles are separated and the largest comes first") {
+TEST_CASE("several obstacles are separated, and the largest comes first") {
   ObstacleFixture fixture(16);
   const std::array cylinders{SceneCylinder{{{1, 1}, 0.1}, 0.15, named(Colour::kCyan).rgb},
                              SceneCylinder{{{1.5, 1}, 0.15}, 0.15, named(Colour::kRed).rgb},

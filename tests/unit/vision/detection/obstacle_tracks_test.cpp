@@ -40,7 +40,7 @@ struct TwoCameraFixture {
     scenario.vision.images = ImageSpec{};
     return scenario;
   }
-  /// The tracked obstacles after frame i, which shows one obstacle.
+  /// The tracked obstacles after frame i, in which one obstacle is visible.
   std::vector<msg::TrackedObstacle> obstacles_after(int i, const Circle& obstacle) {
     const std::array cylinders{SceneCylinder{obstacle}};
     const Time at = kBegin + i * kFrameInterval;
@@ -74,7 +74,7 @@ TEST_CASE("an obstacle in the view of two cameras is one stationary track") {
   }
 }
 
-TEST_CASE("an obstacle that crosses from one camera to the other keeps its track") {
+TEST_CASE("an obstacle that crosses from one camera's view to the other's keeps its track") {
   TwoCameraFixture fixture;
   std::uint32_t number = 0;
   for (int i = 0; i < 240; ++i) {

@@ -36,7 +36,7 @@ class RenderedField {
     }
   }
 
-  /// Renders a frame, with `hidden` randomly chosen dots of each robot covered.
+  /// Renders a frame with `hidden` randomly chosen dots of each robot covered.
   Image frame(const std::vector<PlacedRobot>& robots, const std::optional<Vec2>& ball_m = {}, int hidden = 0,
               std::span<const SceneCylinder> cylinders = {}) {
     std::vector<SceneRobot> scene_robots;

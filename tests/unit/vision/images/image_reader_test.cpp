@@ -78,7 +78,7 @@ TEST_CASE("the robots in each camera's image are found at their positions") {
   CHECK(frame.obstacle_count() == 0);
 }
 
-TEST_CASE("unknown obstacles are reported and the scenario's are not") {
+TEST_CASE("unknown obstacles are reported, and the scenario's obstacles are not") {
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   const Circle unknown{{-2.2, 1.2}, 0.15};
   scenario.obstacles = {Circle{{-1, -1}, 0.2}, unknown, Circle{{-0.6, 1.2}, 0.1}};
@@ -129,7 +129,8 @@ TEST_CASE("an invalid image is rejected and changes nothing") {
 }
 
 TEST_CASE("the tracker's noise settings match the errors of detections in images") {
-  // Wide and narrow fields, so that the image's longer side is parallel to either of the field's.
+  // Wide and narrow fields, so that the image's longer side is parallel to the field's longer or shorter
+  // side.
   const Field field = GENERATE(Field{6, 4.5}, Field{3, 4.5}, Field{9, 3});
   CAPTURE(field.length_m, field.width_m);
   Scenario scenario = parse_scenario(kFloor, "floor.yaml");
@@ -184,7 +185,7 @@ TEST_CASE("images of random pixels are processed") {
   CHECK(frame.obstacle_count() <= msg::MAX_OBSTACLES);
 }
 
-TEST_CASE("an outdated or inconsistent world does not affect detection") {
+TEST_CASE("an outdated or inconsistent world state does not affect detection") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   ImageReader reader = image_reader(scenario, {});
   msg::WorldState world;
@@ -199,7 +200,7 @@ TEST_CASE("an outdated or inconsistent world does not affect detection") {
   CHECK(robots_in(frame) == std::vector<RobotId>{3, 7});
 }
 
-TEST_CASE("cameras and colours that do not fit the scenario are refused with their file") {
+TEST_CASE("cameras and colours that do not fit the scenario are refused with the file name") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   const std::string file = "image-reader-test.yaml";
   const auto refusal = [&](const ImageOptions& options) -> std::string {

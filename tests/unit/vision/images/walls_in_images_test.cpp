@@ -45,7 +45,8 @@ double clearance_m(const Scenario& scenario, const Vec2& p) {
   return nearest_m;
 }
 
-/// A random position that is `extra_m` or up to 3 cm more from the nearest wall, and far from others.
+/// A random position whose distance from the nearest wall is `extra_m` to 3 cm more, and which is far from
+/// `others`.
 Vec2 place_beside_walls(const Scenario& scenario, double extra_m, const std::vector<Vec2>& others, Rng& rng) {
   while (true) {
     const double x = rng.uniform(-2.7, 2.7), y = rng.uniform(-1.9, 1.9);
@@ -75,7 +76,7 @@ msg::DetectionFrame detected(const Scenario& scenario, const StaticScene& static
   return frame;
 }
 
-TEST_CASE("robots and people close to walls and map cells are found, and nothing else", "[slow]") {
+TEST_CASE("robots and people close to walls and map cells are found, and no other objects", "[slow]") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Scenario scenario = floor_with_walls(seed);
@@ -110,7 +111,8 @@ TEST_CASE("robots and people close to walls and map cells are found, and nothing
     for (const OpponentSpec& person : scenario.opponents) {
       const auto& list = frame.obstacles();
       REQUIRE(std::any_of(list.begin(), list.begin() + frame.obstacle_count(), [&](const auto& found) {
-        // The wall in front of a person may hide the foot: then the circle lies farther from the camera.
+        // A wall in front of a person may hide the person's foot. The circle then lies farther from the
+        // camera.
         return std::hypot(found.x_m() - person.path_m[0].x(), found.y_m() - person.path_m[0].y()) < 0.1 &&
                std::abs(found.radius_m() - person.radius_m) < 0.05;
       }));
@@ -127,7 +129,7 @@ TEST_CASE("walls and map cells of any colour are not reported as obstacles") {
     const msg::DetectionFrame frame = detected(scenario, statics, seed);
     REQUIRE(frame.robots().size() == 1);
     REQUIRE(frame.obstacle_count() == 0);
-    // They are visible: a reader that does not know them reports them.
+    // The walls are visible: a reader that does not know them reports them.
     statics.map.reset();
     scenario.map.reset();
     scenario.obstacles.clear();

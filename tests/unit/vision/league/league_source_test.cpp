@@ -49,7 +49,7 @@ std::vector<std::byte> datagram(const league::DetectionFrame& detection) {
   return encode(league::VisionPacket{detection, std::nullopt, std::nullopt});
 }
 
-/// Synchronises with the sender's clock: it shows `captured` five milliseconds before kNow.
+/// Synchronises with the sender's clock, which shows `captured` five milliseconds before kNow.
 void synchronise(LeagueSource& source, Duration captured, const league::Endpoint& from = kSender) {
   for (int ms = 200; ms >= 90; ms -= 10) {
     const auto number = static_cast<std::uint32_t>(100'000 + ms);
@@ -60,7 +60,7 @@ void synchronise(LeagueSource& source, Duration captured, const league::Endpoint
 
 constexpr Duration kCaptured = std::chrono::seconds(10);
 
-TEST_CASE("robots of both teams are identified and unknown robots become obstacles") {
+TEST_CASE("robots of both teams are identified, and unknown robots become obstacles") {
   LeagueSource source(two_teams());
   synchronise(source, kCaptured);
   league::DetectionFrame detection = detection_at(kCaptured, 1);
@@ -128,7 +128,7 @@ TEST_CASE("if there are too many balls, those with the highest confidence are ke
   CHECK(source.counts().dropped == 2);
 }
 
-TEST_CASE("a duplicate frame is dropped and each sender's clock is estimated separately") {
+TEST_CASE("a duplicate frame is dropped, and each sender's clock is estimated separately") {
   LeagueSource source(two_teams());
   synchronise(source, kCaptured);
   synchronise(source, std::chrono::milliseconds(1'009'999), kOther);
@@ -139,11 +139,11 @@ TEST_CASE("a duplicate frame is dropped and each sender's clock is estimated sep
   CHECK(is_accepted(detection_at(kCaptured, 1), kSender, kNow));
   CHECK_FALSE(is_accepted(detection_at(kCaptured, 1), kSender, kNow + milliseconds(1)));
   CHECK(source.counts().duplicates == 1);
-  // Another sender, whose clock is a thousand seconds ahead.
+  // The other sender's clock is a thousand seconds ahead.
   CHECK(is_accepted(detection_at(std::chrono::seconds(1010), 1), kOther, kNow + milliseconds(1)));
   CHECK(is_accepted(detection_at(std::chrono::milliseconds(10'017), 2), kSender, kNow + milliseconds(17)));
   CHECK(source.counts().unsynchronised == unsynchronised);
-  // A jump of a thousand seconds by the same sender is not accepted at once.
+  // A jump of a thousand seconds by the same sender is not accepted immediately.
   CHECK_FALSE(is_accepted(detection_at(std::chrono::seconds(1011), 3), kSender, kNow + milliseconds(18)));
   CHECK(source.counts().unsynchronised == unsynchronised + 1);
   CHECK(source.clock_jumps() == 0);

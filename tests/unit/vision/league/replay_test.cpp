@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 const Time kReceived = time_from_ns(1'500'000'000'000'000'000);
 const Time kNow = time_from_ns(1'700'000'000'000'000'000);
 
-/// A log with a packet at each of these times after kReceived; its single byte is its index.
+/// A log with a packet at each of these times after kReceived. Each packet is one byte, its index.
 class Log {
  public:
   explicit Log(const std::vector<int>& at_ms) {
@@ -39,7 +39,7 @@ struct Sent {
   bool operator==(const Sent&) const = default;
 };
 
-/// All packets sent, with calls of advance() at the requested times.
+/// All packets sent by calling advance() at the requested times.
 std::vector<Sent> replayed(league::LogReader& reader, double speed) {
   Replay replay(reader, speed);
   std::vector<Sent> sent;
@@ -94,7 +94,7 @@ TEST_CASE("many simultaneous packets are sent in several batches") {
   CHECK(batches >= 3);
 }
 
-TEST_CASE("an empty log ends at once") {
+TEST_CASE("the replay of an empty log ends immediately") {
   const Log log({});
   league::LogReader reader = log.reader();
   CHECK(replayed(reader, 1).empty());

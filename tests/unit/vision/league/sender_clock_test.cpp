@@ -31,7 +31,7 @@ class Scene {
   SenderClock& clock() { return clock_; }
 
   /// Sends the next frame, captured now, with an additional delay. Returns the error of its capture time;
-  /// nothing if it has none.
+  /// nullopt if there is no capture time.
   std::optional<Duration> frame(Duration additional_delay = Duration{0}) {
     const Time captured = now_, sent = captured + kProcessing;
     now_ += kFrame;
@@ -44,7 +44,7 @@ class Scene {
   void settle() {
     for (const Time end = now_ + SenderClock::kSettlingTime; now_ <= end;) (void)frame();
   }
-  /// Sends frames for a duration; each capture time must be within the bound.
+  /// Sends frames for a duration. Each capture time must be within the bound.
   void run(Duration duration, Duration bound) {
     for (const Time end = now_ + duration; now_ < end;) {
       const auto error = frame();
@@ -52,7 +52,7 @@ class Scene {
       REQUIRE(std::chrono::abs(*error) <= bound);
     }
   }
-  /// Sends frames until one has a capture time. Returns the number of frames before it, at most `max_count`.
+  /// Sends frames until one gets a capture time. Returns the number of frames before it, at most `max_count`.
   int frames_until_synchronised(int max_count) {
     for (int i = 0; i < max_count; ++i) {
       if (frame()) return i;
@@ -68,7 +68,7 @@ class Scene {
   SenderClock clock_;
 };
 
-/// Simulated time from 0, the correct time, and a clock that is days off.
+/// Simulated time from 0, the correct time, and a clock that is off by days.
 const Duration kZeros[] = {Duration{0}, kBegin.time_since_epoch(),
                            kBegin.time_since_epoch() - std::chrono::hours(50)};
 
@@ -106,7 +106,7 @@ TEST_CASE("a process that was suspended never mistakes old frames for new ones")
   Scene scene({Duration{0}}, 13);
   scene.settle();
   scene.run(seconds(3), milliseconds(4));
-  // Frames that arrived during the suspension are received all at once.
+  // All frames that arrived during the suspension are received at the same time.
   const Time resumed = scene.now() + milliseconds(pause_ms);
   while (scene.now() + kProcessing + kMinDelay < resumed) {
     const auto error = scene.frame(resumed - (scene.now() + kProcessing + kMinDelay));
@@ -120,7 +120,7 @@ TEST_CASE("old frames of a new sender are not mistaken for new ones") {
   const int pause_ms = GENERATE(50, 300, 2'000);
   CAPTURE(pause_ms);
   Scene scene({Duration{0}}, 18);
-  // Frames received at once when the process resumes, then frames on time.
+  // First, frames that are received together when the process resumes, then frames on time.
   const Time resumed = scene.now() + milliseconds(pause_ms);
   while (scene.now() + kProcessing + kMinDelay < resumed) {
     REQUIRE_FALSE(scene.frame(resumed - (scene.now() + kProcessing + kMinDelay)));
@@ -196,7 +196,7 @@ TEST_CASE("single frames with absurd timestamps change nothing") {
   }
 }
 
-TEST_CASE("a sending time from another clock is ignored") {
+TEST_CASE("a send time from another clock is ignored") {
   const Duration sent = GENERATE(Duration{0}, kBegin.time_since_epoch(), Duration{milliseconds(4'400)});
   CAPTURE(sent.count());
   SenderClock clock;

@@ -29,7 +29,7 @@ msg::TrackedRobot tracked(RobotId id, double x_m, std::int64_t observed_at_ns) {
   return robot;
 }
 
-TEST_CASE("a world is converted to a tracked packet with teams and numbers") {
+TEST_CASE("a world state is converted to a tracked packet with teams and numbers") {
   TrackedOutput output(two_robots(), 77);
   constexpr std::int64_t kNow = 1'700'000'000'000'000'000;
   msg::WorldState world;
@@ -38,7 +38,7 @@ TEST_CASE("a world is converted to a tracked packet with teams and numbers") {
   world.ball().is_visible(true);
   world.ball().x_m(0.5);
   world.ball().vx_mps(3);
-  // Encoded and decoded, as for a receiver.
+  // Encodes and decodes the packet, as for a receiver.
   const auto packet = league::decode_tracked(encode(output.packet_of(world))).packet;
   REQUIRE(packet);
   CHECK(packet->source_name == "Sidestep");
@@ -62,7 +62,7 @@ TEST_CASE("a world is converted to a tracked packet with teams and numbers") {
   CHECK(output.packet_of(world).frame->frame_number == 2);
 }
 
-TEST_CASE("a sender has a different UUID for each incarnation") {
+TEST_CASE("a sender has a different UUID in each incarnation") {
   msg::WorldState world;
   TrackedOutput first(two_robots(), 77), second(two_robots(), 78);
   const std::string name = first.packet_of(world).uuid;

@@ -38,7 +38,7 @@ std::vector<PlacedRobot> moved(std::vector<PlacedRobot> robots, Rng& rng) {
   return robots;
 }
 
-TEST_CASE("robots with all dots visible are identified at once") {
+TEST_CASE("robots with all dots visible are identified immediately") {
   Rng rng(1);
   const std::vector<PlacedRobot> robots = scattered(butterfly(), 16, 0.2, rng);
   PatternFinder finder(butterfly());
@@ -49,7 +49,7 @@ TEST_CASE("robots with all dots visible are identified at once") {
   CHECK(tally(found, robots).wrong == 0);
 }
 
-TEST_CASE("robots with one dot hidden are identified where they are expected") {
+TEST_CASE("robots with one hidden dot are identified where they are expected") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   CAPTURE(seed);
   Rng rng(seed);
@@ -68,7 +68,7 @@ TEST_CASE("robots with one dot hidden are identified where they are expected") {
   }
 }
 
-TEST_CASE("robots never observed with all dots are identified by the history of matches") {
+TEST_CASE("robots never observed with all dots are identified from the history of matches") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   CAPTURE(seed);
   Rng rng(seed);
@@ -111,7 +111,7 @@ TEST_CASE("robots that pass each other closely keep their identities with one do
   CAPTURE(seed);
   Rng rng(seed);
   const auto& patterns = butterfly().patterns;
-  // 0 and 10 differ in one dot.
+  // Patterns 0 and 10 differ in one dot.
   std::vector<PlacedRobot> robots{{{0, Team::kBlue, patterns[0]}, {{-0.5, 0.095}, 0.3}},
                                   {{10, Team::kBlue, patterns[10]}, {{0.5, -0.095}, -0.4}}};
   PatternFinder finder(butterfly());
@@ -131,7 +131,7 @@ TEST_CASE("robots that pass each other closely keep their identities with one do
   CHECK(wrong == 0);
 }
 
-TEST_CASE("robots that are not in the roster are not identified") {
+TEST_CASE("robots that are not on the roster are not identified") {
   Rng rng(3);
   const std::vector<PlacedRobot> robots = scattered(butterfly(), 4, 0.3, rng);
   PatternFinder finder(butterfly());

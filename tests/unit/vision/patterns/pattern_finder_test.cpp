@@ -37,7 +37,7 @@ TEST_CASE("every pattern of both teams is found with its position, heading and c
   }
 }
 
-TEST_CASE("a robot with one dot hidden is found, and its pattern still matches") {
+TEST_CASE("a robot with one hidden dot is found, and its pattern still matches") {
   const std::uint64_t seed = GENERATE(range(1, 21));
   CAPTURE(seed);
   Rng rng(seed);
@@ -63,7 +63,7 @@ TEST_CASE("dots that belong to no robot are ignored") {
   const std::vector<PlacedRobot> robots = scattered(butterfly(), 11, 0.2, rng);
   auto regions = regions_of(butterfly(), robots, {0.001, 0.1, 0}, rng);
   const std::size_t own = regions.size();
-  // One dot near each robot, away from the robot's own dots.
+  // One stray dot near each robot, away from the robot's own dots.
   for (const PlacedRobot& robot : robots) {
     Vec2 position_m;
     bool is_free = false;
@@ -98,7 +98,7 @@ TEST_CASE("scattered dots form no robot") {
   CHECK(finder.find(regions).empty());
 }
 
-TEST_CASE("regions that are too small or too large are not dots") {
+TEST_CASE("regions that are too small or too large do not count as dots") {
   Rng rng(4);
   const std::vector<PlacedRobot> robots = scattered(butterfly(), 1, 0.3, rng);
   const double factor = GENERATE(0.2, 4.0);
@@ -126,7 +126,7 @@ TEST_CASE("pose errors are as large as predicted for the layout") {
     lateral2 += error.y() * error.y();
     heading2 += std::pow(wrapped_rad(pattern->pose.heading_rad - robots[0].pose.heading_rad), 2);
   }
-  // The relative standard deviation of these estimates is 1.1 %.
+  // These estimates have a relative standard deviation of 1.1 %.
   CHECK(std::sqrt(longitudinal2 / kRounds) == Approx(predicted.longitudinal_m).epsilon(0.05));
   CHECK(std::sqrt(lateral2 / kRounds) == Approx(predicted.lateral_m).epsilon(0.05));
   CHECK(std::sqrt(heading2 / kRounds) == Approx(predicted.heading_rad).epsilon(0.05));

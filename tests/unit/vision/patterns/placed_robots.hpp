@@ -20,7 +20,7 @@ struct PlacedRobot {
 struct Noise {
   double sd_m = 0;     ///< standard deviation of each dot's position, per axis
   double area_sd = 0;  ///< relative standard deviation of areas
-  int hidden = 0;      ///< randomly chosen dots of each robot that are not visible, the centre included
+  int hidden = 0;      ///< number of randomly chosen dots of each robot that are hidden, possibly the centre
 };
 
 inline double disc_m2(double radius_m) { return std::numbers::pi * radius_m * radius_m; }

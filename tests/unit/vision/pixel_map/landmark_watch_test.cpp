@@ -19,7 +19,7 @@ CameraModel camera_over_field() {
   return overhead_camera_model(overhead);
 }
 
-/// The camera, turned about an axis through it.
+/// The camera, turned about an axis through its centre.
 CameraModel turned(const CameraModel& camera, const Vec3& axis, double angle_rad) {
   const Eigen::AngleAxisd turn(angle_rad, axis.normalized());
   CameraParameters parameters = camera.parameters();
@@ -28,7 +28,7 @@ CameraModel turned(const CameraModel& camera, const Vec3& axis, double angle_rad
   return CameraModel(parameters);
 }
 
-/// The largest displacement of a point of the floor in the image, among the corners and edges.
+/// The largest displacement in the image among the floor's centre, corners and edge midpoints.
 double displacement_px(const CameraModel& a, const CameraModel& b) {
   double largest = 0;
   for (const double x : {-2.0, 0.0, 2.0})
@@ -54,7 +54,7 @@ Image random_view(const CameraModel& camera, Rng& rng) {
   return renderer.render({robots, cylinders});
 }
 
-TEST_CASE("a camera that has not moved counts as known, whatever is on the floor and whatever the light") {
+TEST_CASE("a camera that has not moved counts as known, with any objects on the floor and in any light") {
   LandmarkWatch watch(camera_over_field(), kField);
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Rng rng(seed);
@@ -64,7 +64,7 @@ TEST_CASE("a camera that has not moved counts as known, whatever is on the floor
   }
 }
 
-TEST_CASE("a camera that was turned by four pixels or more is noticed in the first image") {
+TEST_CASE("an image displacement of four pixels or more is noticed in the first image") {
   const CameraModel camera = camera_over_field();
   int bumps = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
@@ -81,7 +81,7 @@ TEST_CASE("a camera that was turned by four pixels or more is noticed in the fir
   CHECK(bumps > 25);
 }
 
-TEST_CASE("a lost camera is known again only after several good images in a row") {
+TEST_CASE("a lost camera is known again only after several consecutive good images") {
   const CameraModel camera = camera_over_field(), moved = turned(camera, {1, 0, 0}, 0.02);
   Rng rng(1);
   const Image good = random_view(camera, rng), bad = random_view(moved, rng);

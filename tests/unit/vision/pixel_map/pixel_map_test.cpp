@@ -28,7 +28,7 @@ FloorBlobSettings settings_of(const CameraModel& camera) {
   return settings;
 }
 
-/// A random floor: cylinders that keep a distance from each other, robot and target.
+/// A random floor: cylinders that keep a distance from each other, the robot and the target.
 struct RandomFloor {
   explicit RandomFloor(std::uint64_t seed) : rng(seed) {
     robot.position_m = {-2.3, place(-1.5, 1.5)};
@@ -53,7 +53,7 @@ struct RandomFloor {
   std::vector<SceneCylinder> cylinders;
 };
 
-/// Points on the edge of a cylinder's base: the floor that it covers.
+/// Points on the edge of a cylinder's base, the floor area that it covers.
 std::vector<Vec2> base_pixels(const SceneCylinder& cylinder, const CameraModel& camera) {
   std::vector<Vec2> pixels;
   for (int i = 0; i < 64; ++i) {
@@ -63,7 +63,7 @@ std::vector<Vec2> base_pixels(const SceneCylinder& cylinder, const CameraModel& 
   return pixels;
 }
 
-/// The slow reference: the distance from a point to a convex polygon, 0 inside.
+/// Slow reference: the distance from a point to a convex polygon; 0 inside.
 double distance_px(const Vec2& p, const std::array<Vec2, 4>& corners) {
   double nearest = 1e9;
   int left = 0, right = 0;
@@ -99,14 +99,14 @@ TEST_CASE("robot, target and obstacles are found, and diamonds and discs contain
         REQUIRE(distance_px(pixel, blob.diamond) < 1);
         REQUIRE((pixel - blob.centre).norm() < blob.radius_px + 1);
       }
-      // Neither is much larger than the obstacle with its height.
+      // The disc is not much larger than the obstacle's image, which includes its height.
       const double radius_px = cylinder.circle.radius_m * 133;
       REQUIRE(blob.radius_px < radius_px + 22);
     }
   }
 }
 
-TEST_CASE("without robot or target, or with two of them, none is reported") {
+TEST_CASE("a robot or target that is missing or seen twice is not reported") {
   const CameraModel camera = camera_over_field();
   Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, 1});
   FloorBlobFinder finder(settings_of(camera));
@@ -124,7 +124,7 @@ TEST_CASE("without robot or target, or with two of them, none is reported") {
   }
 }
 
-TEST_CASE("a disc whose centre lies anywhere in a free cell touches no obstacle and stays in the image") {
+TEST_CASE("a disc centred anywhere in a free cell touches no obstacle and stays in the image") {
   const CameraModel camera = camera_over_field();
   Segmenter segmenter(ColourClasses(default_colours(PixelFormat::kYuv422).boxes), {3, 1});
   FloorBlobFinder finder(settings_of(camera));

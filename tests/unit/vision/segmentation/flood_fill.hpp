@@ -10,7 +10,8 @@
 
 namespace sidestep {
 
-/// Slow reference: classifies each pixel, and flood-fills a region from each pixel that is in none yet.
+/// Slow reference: classifies each pixel, and flood-fills a region from each pixel that is not in a region
+/// yet.
 inline std::vector<Region> flood_filled(const ImageView& image, const ColourClasses& classes,
                                         std::uint32_t min_area_px) {
   const int width = image.width_px, height = image.height_px;

@@ -54,7 +54,7 @@ std::vector<Region> found(Segmenter& segmenter, const Image& image) {
   return {regions.begin(), regions.end()};
 }
 
-/// Red where the text has an X.
+/// An image that is red where the text has an X.
 Image image_of(const std::vector<std::string>& rows) {
   Image image(PixelFormat::kRgb, static_cast<int>(rows[0].size()), static_cast<int>(rows.size()));
   for (std::size_t y = 0; y < rows.size(); ++y) {
@@ -87,8 +87,8 @@ TEST_CASE("all kernels find the same regions as flood filling") {
   }
 }
 
-TEST_CASE("all kernels classify every RGB colour by its definition") {
-  // All values of red with all of green or blue, the third component fixed.
+TEST_CASE("all kernels classify every RGB colour by definition") {
+  // All values of red with all values of green or blue, the third component fixed.
   const auto seed = static_cast<std::uint64_t>(GENERATE(range(1, 6)));
   Rng rng(seed);
   const ColourClasses classes(boxes(8, rng));
@@ -175,7 +175,7 @@ TEST_CASE("regions of different colours are never merged") {
   CHECK(regions[1].colour == 1);
 }
 
-TEST_CASE("regions of a noisy frame beyond the limit are dropped") {
+TEST_CASE("in a noisy frame, regions beyond the limit are dropped") {
   Image image(PixelFormat::kRgb, 1000, 1000);
   for (int y = 0; y < 1000; y += 2) {
     for (int x = 0; x < 1000; x += 2) image.row(y)[3 * static_cast<std::ptrdiff_t>(x)] = 255;
@@ -184,7 +184,7 @@ TEST_CASE("regions of a noisy frame beyond the limit are dropped") {
   CHECK(segmenter.segment(image.view()).size() == RegionBuilder::kMaxRegions);
 }
 
-TEST_CASE("segmenting a second frame allocates nothing") {
+TEST_CASE("segmenting a second frame does not allocate") {
   Rng rng(7);
   const Image image = blocks(PixelFormat::kYuv422, 640, 100, rng);
   Segmenter segmenter(ColourClasses(boxes(5, rng)));

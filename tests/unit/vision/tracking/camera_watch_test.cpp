@@ -32,19 +32,19 @@ TEST_CASE("the floor is watched once every camera has sent some frames") {
   CHECK_FALSE(f.watch.has(77));
 }
 
-TEST_CASE("after a gap a camera has to send some frames again") {
+TEST_CASE("after a gap, a camera must send some frames again") {
   Fixture f({0});
   f.frames(0, CameraWatch::kFrames);
   REQUIRE(f.is_complete());
   const Time last = f.now;
   CHECK(f.watch.is_complete(last + CameraWatch::kMaxAge));
   CHECK_FALSE(f.watch.is_complete(last + CameraWatch::kMaxAge + milliseconds(1)));
-  SECTION("a short one does not count, nor does a frame that arrives late") {
+  SECTION("a short gap or a late frame does not count") {
     f.watch.on_frame(0, last - milliseconds(500));
     f.watch.on_frame(0, f.now = last + CameraWatch::kMaxGap);
     CHECK(f.is_complete());
   }
-  SECTION("a long one") {
+  SECTION("a long gap counts") {
     f.watch.on_frame(0, f.now = last + CameraWatch::kMaxGap + milliseconds(1));
     CHECK_FALSE(f.is_complete());
     f.frames(0, CameraWatch::kFrames - 1);
@@ -57,7 +57,7 @@ TEST_CASE("while a camera is silent, however long, there may be obstacles that o
   f.frames(3, CameraWatch::kFrames);
   f.frames(8, CameraWatch::kFrames);
   REQUIRE(f.is_complete());
-  // Camera 3 dies.
+  // Camera 3 fails.
   f.frames(8, 35);
   bool was_complete = false;
   for (int i = 0; i < 10'000; ++i) {
@@ -70,7 +70,7 @@ TEST_CASE("while a camera is silent, however long, there may be obstacles that o
   CHECK(f.is_complete());
 }
 
-TEST_CASE("a floor without cameras is not watched, and one that was never heard is not forgotten") {
+TEST_CASE("a floor is not watched if it has no cameras or one was never heard") {
   Fixture none({});
   CHECK_FALSE(none.is_complete());
   Fixture f({3, 8});

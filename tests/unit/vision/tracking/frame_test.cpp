@@ -17,7 +17,7 @@ msg::RobotDetection valid_robot() {
   return frame.robots()[0];
 }
 
-/// A frame with an invalid and a valid detection must keep only the valid one.
+/// Only the valid one of two detections must be kept.
 void check_that_only_the_valid_one_is_kept(const msg::RobotDetection& bad) {
   msg::DetectionFrame message = frame_message(0, kBegin);
   message.robots().push_back(bad);
@@ -48,8 +48,8 @@ TEST_CASE("only a detection with an invalid confidence or robot number is droppe
   msg::RobotDetection d = valid_robot();
   SECTION("confidence below 0") { d.confidence(-0.001); }
   SECTION("confidence above 1") { d.confidence(1.001); }
-  SECTION("first number out of range") { d.robot(kMaxRobots); }
-  SECTION("largest number") { d.robot(0xffffffff); }
+  SECTION("first robot number out of range") { d.robot(kMaxRobots); }
+  SECTION("largest robot number") { d.robot(0xffffffff); }
   check_that_only_the_valid_one_is_kept(d);
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("a frame just within the time limits is accepted") {
   CHECK(frame.robots().size() == 1);
 }
 
-TEST_CASE("how far a frame may be ahead follows from the clock bound") {
+TEST_CASE("the clock bound determines how far a frame may be ahead") {
   const Duration max_lead{250'000'000};
   Frame frame;
   frame.assign(frame_message(0, kBegin + Duration{249'000'000}), kBegin, max_lead);
@@ -109,8 +109,8 @@ TEST_CASE("a frame with an invalid obstacle does not count as complete") {
   Frame frame;
   frame.assign(message, kBegin);
   CHECK(frame.obstacles_complete_within_m() == kCompleteEverywhere_m);
-  SECTION("place") { message.obstacles()[0].x_m(std::nan("")); }
-  SECTION("radius") { message.obstacles()[0].radius_m(0); }
+  SECTION("invalid position") { message.obstacles()[0].x_m(std::nan("")); }
+  SECTION("invalid radius") { message.obstacles()[0].radius_m(0); }
   frame.assign(message, kBegin);
   CHECK(frame.is_usable());
   CHECK(frame.obstacles().size() == 1);
@@ -120,9 +120,9 @@ TEST_CASE("a frame with an invalid obstacle does not count as complete") {
 TEST_CASE("a frame with counts out of range is rejected as a whole") {
   msg::DetectionFrame message = frame_message(0, kBegin);
   std::uint64_t expected = 1;
-  SECTION("balls") { message.ball_count(5); }
-  SECTION("obstacles") { message.obstacle_count(msg::MAX_OBSTACLES + 1); }
-  SECTION("robots") {
+  SECTION("too many balls") { message.ball_count(5); }
+  SECTION("too many obstacles") { message.obstacle_count(msg::MAX_OBSTACLES + 1); }
+  SECTION("too many robots") {
     message.robots().assign(kMaxRobots + 1, valid_robot());
     expected = kMaxRobots + 1;
   }
@@ -134,7 +134,7 @@ TEST_CASE("a frame with counts out of range is rejected as a whole") {
   CHECK(frame.rejected() == expected);
 }
 
-TEST_CASE("a frame whose claim of completeness is impossible is rejected as a whole") {
+TEST_CASE("a frame with an impossible completeness distance is rejected as a whole") {
   const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(), -1e-9, 1.001e9,
                               std::numeric_limits<double>::infinity());
   CAPTURE(bad);
@@ -153,7 +153,7 @@ TEST_CASE("a frame whose claim of completeness is impossible is rejected as a wh
   CHECK(frame.obstacles_complete_within_m() == 0.5);
 }
 
-TEST_CASE("a reused frame holds nothing of its previous message") {
+TEST_CASE("a reused frame contains nothing from its previous message") {
   msg::DetectionFrame message = frame_message(7, kBegin);
   message.robots().assign(kMaxRobots, valid_robot());
   add_ball(message, {0, 0});

@@ -9,7 +9,7 @@ namespace sidestep::incomplete_frames_test {
 using namespace sidestep::test;
 
 TEST_CASE(
-    "obstacles that a frame left out may be nearer by their motion, their error and the distance of other "
+    "an incomplete frame's distance shrinks by obstacle motion, position error and the distance between "
     "robots") {
   const std::uint64_t seed = GENERATE(range(1u, 21u));
   CAPTURE(seed);

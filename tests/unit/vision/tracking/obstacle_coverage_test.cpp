@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where agents believe that obstacles may be, while these pass through each other and are missed in some
-// frames.
+// Checks that obstacles stay within the discs in which agents expect them, even if they pass through each
+// other and some frames miss them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,7 +19,7 @@ constexpr double kNoise_m = 0.0015;
 constexpr double kMaxSpeed_mps = 1.5;
 constexpr Duration kFrame{16'666'667};
 
-/// Walks between random places of one square metre, at constant speed.
+/// Walks at constant speed between random places within one square metre.
 struct Walker {
   double radius_m, speed_mps;
   Vec2 position_m, goal_m;
@@ -57,7 +57,7 @@ std::vector<Walker> random_walkers(Rng& rng) {
   return walkers;
 }
 
-/// The largest protrusion of a walker in fifty seconds.
+/// The largest protrusion of any walker in fifty seconds.
 double max_protrusion_m(std::uint64_t seed, double miss_probability) {
   Rng rng(seed);
   std::vector<Walker> walkers = random_walkers(rng);
@@ -67,7 +67,7 @@ double max_protrusion_m(std::uint64_t seed, double miss_probability) {
   double largest_m = 0;
   for (int i = 0; i < 3000; ++i) {
     const Time t = kBegin + i * kFrame;
-    const bool are_all_seen = i < 2;  // before its second observation an obstacle is not listed
+    const bool are_all_seen = i < 2;  // an obstacle is not listed before its second observation
     std::vector<Circle> seen;
     for (Walker& walker : walkers) {
       walker.step(to_seconds(kFrame), rng);
@@ -101,7 +101,7 @@ TEST_CASE("obstacles that pass through each other stay within the discs in which
                                   << 1e3 * largest_m << " mm");
 }
 
-TEST_CASE("a track takes the size of the latest observation at once") {
+TEST_CASE("a track adopts the size of the latest observation immediately") {
   ObstacleTracker tracker({.max_speed_mps = kMaxSpeed_mps, .position_noise_m = kNoise_m});
   Frame frame;
   msg::ObstacleList list;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which obstacles are listed, and up to which distance from robots the list claims to be complete, against
-// brute force.
+// Which obstacles are listed, and up to which distance from robots the list claims to be complete. Compared
+// with brute force.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -46,7 +46,7 @@ struct Crowd {
   }
 };
 
-/// A camera that sees everything with x from `low_m` to `high_m`, without misses.
+/// A camera that sees every object with x from `low_m` to `high_m`, without misses.
 struct StripCamera {
   std::uint32_t number = 0;
   double low_m = 0, high_m = 0;
@@ -84,7 +84,7 @@ double edge_distance_m(const Vec2& obstacle_m, const msg::WorldState& world) {
   return min_distance - kRadius_m;
 }
 
-/// Indices of the crowd that are listed: where they were when they were last observed.
+/// Indices of the listed obstacles, matched by their positions at their last observations.
 std::set<std::size_t> listed_of(const msg::ObstacleList& list, const Crowd& crowd) {
   std::set<std::size_t> found;
   std::map<std::int64_t, std::vector<Vec2>> positions_m;  // by time of observation
@@ -100,7 +100,7 @@ std::set<std::size_t> listed_of(const msg::ObstacleList& list, const Crowd& crow
   return found;
 }
 
-/// Everything that the definition of ObstacleList promises.
+/// Checks all promises in the definition of ObstacleList.
 void check_list(const msg::ObstacleList& list, const msg::WorldState& world, const Crowd& crowd) {
   const Time t = time_from_ns(list.valid_at_ns());
   REQUIRE(list.valid_at_ns() == world.valid_at_ns());
@@ -162,7 +162,7 @@ TEST_CASE("every obstacle nearer than the list claims to be complete is listed, 
     incomplete += is_incomplete;
     useful += is_incomplete && list.complete_within_m() > 0.3;
   }
-  // A single camera sees all robots, so that its statement holds for each of them.
+  // With a single camera, which sees all robots, the list's claim holds for each of them.
   if (incomplete > 0 && camera_count == 1) CHECK(useful > 0);
 }
 
@@ -209,8 +209,8 @@ TEST_CASE("if all tracks are in use, the list is complete up to the nearest obst
   for (int k = 0; k < 20; ++k) {
     const Time t = kBegin + k * kFrame;
     for (const StripCamera& camera : cameras) {
-      // All cameras see the robots, so that all state a distance. One robot is among the obstacles that the
-      // last cameras see, for which no tracks are left.
+      // All cameras see the robots, so each states a distance. One robot is among the obstacles seen by the
+      // last cameras, for which no tracks are left.
       msg::DetectionFrame frame = camera.capture(t, crowd, {}, rng);
       add_noisy_robot(frame, 0, {{3.5, 0}, {0, 0}, 0}, {kNoise_m}, rng);
       add_noisy_robot(frame, 1, {{-2, 1}, {0, 0}, 0}, {kNoise_m}, rng);
@@ -224,7 +224,7 @@ TEST_CASE("if all tracks are in use, the list is complete up to the nearest obst
   CHECK(fixture.rejected() > 0);
 }
 
-TEST_CASE("without a tracked robot, an incomplete list claims nothing") {
+TEST_CASE("without a tracked robot, an incomplete list makes no claim of completeness") {
   const auto count = GENERATE(std::size_t{100}, std::size_t{300});
   Rng rng(4);
   const Crowd crowd(count, 0.3, rng);
@@ -239,13 +239,13 @@ TEST_CASE("without a tracked robot, an incomplete list claims nothing") {
   CHECK(list.complete_within_m() == (count > msg::MAX_OBSTACLES ? 0 : kCompleteEverywhere_m));
 }
 
-TEST_CASE("an incomplete frame counts until the camera's next frame, and at most for a second") {
+TEST_CASE("an incomplete frame counts until the camera's next frame, at most for a second") {
   Rng rng(5);
   const StripCamera camera{0, -10, 30};
   Crowd crowd(msg::MAX_OBSTACLES, 0.3, rng);
   Crowd few(10, 0.3, rng);
   few.stop();
-  for (int i = 0; i < 44; ++i) crowd.centres_m.emplace_back(8 + 0.3 * i, 0);  // which frames leave out
+  for (int i = 0; i < 44; ++i) crowd.centres_m.emplace_back(8 + 0.3 * i, 0);  // frames omit these
   crowd.stop();
   TrackerFixture fixture(1);
   const auto feed = [&](const Crowd& seen, Time captured_at, Time arrival) {
@@ -257,7 +257,7 @@ TEST_CASE("an incomplete frame counts until the camera's next frame, and at most
   const double at_first = complete_within_m(last);
   CHECK(at_first > 2);
   CHECK(at_first < 4);
-  // What was left out may approach.
+  // The omitted obstacles may approach.
   CHECK(complete_within_m(last + 100 * kMs) == Approx(at_first - 0.15).margin(0.01));
   CHECK(complete_within_m(last + 900 * kMs) < at_first - 1.3);
   SECTION("the next frame is complete") {

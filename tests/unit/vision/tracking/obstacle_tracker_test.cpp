@@ -18,7 +18,7 @@ msg::DetectionFrame empty_frame(std::uint32_t camera, Time at) {
   return frame;
 }
 
-/// Walks back and forth on a segment at a constant speed, turning instantly.
+/// Walks back and forth along a segment at a constant speed, turning instantly.
 struct Walker {
   Vec2 from_m, to_m;
   double speed_mps;
@@ -40,7 +40,7 @@ const msg::TrackedObstacle* nearest(const msg::ObstacleList& list, const Vec2& t
   return best;
 }
 
-TEST_CASE("walkers keep their numbers and are reported at their last observations from two cameras") {
+TEST_CASE("walkers seen by two cameras keep their numbers and are reported at their last observations") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   const double missed = GENERATE(0.0, 0.2);
   CAPTURE(seed, missed);
@@ -85,7 +85,7 @@ TEST_CASE("walkers keep their numbers and are reported at their last observation
   CHECK(fixture.rejected() == 0);
 }
 
-TEST_CASE("an obstacle is published after its second observation, and dropped 1 s after its last") {
+TEST_CASE("an obstacle is published after its second observation and dropped 1 s after its last") {
   TrackerFixture fixture(0);
   auto frame = empty_frame(0, kBegin);
   add_obstacle(frame, {1, 1});
@@ -105,7 +105,7 @@ TEST_CASE("an obstacle is published after its second observation, and dropped 1 
   CHECK(fixture.obstacles_at(kBegin + 3100 * kMs).obstacles()[0].obstacle() > first);
 }
 
-TEST_CASE("late and duplicate frames change no track and start none") {
+TEST_CASE("late and duplicate frames neither change tracks nor start new ones") {
   Rng rng(5);
   const Walker walker{{-2, 0}, {2, 0}, 1.5};
   TrackerFixture fixture(0);
@@ -126,7 +126,7 @@ TEST_CASE("late and duplicate frames change no track and start none") {
   CHECK(list.obstacles()[0].vx_mps() == Approx(1.5).margin(0.1));
 }
 
-TEST_CASE("an invalid obstacle is dropped alone, an invalid count drops the whole frame") {
+TEST_CASE("an invalid obstacle alone is dropped, but an invalid count drops the whole frame") {
   auto message = empty_frame(0, kBegin);
   add_obstacle(message, {1, 2});
   Frame frame;
@@ -135,7 +135,7 @@ TEST_CASE("an invalid obstacle is dropped alone, an invalid count drops the whol
   SECTION("x") { d.x_m(bad); }
   SECTION("y") { d.y_m(bad); }
   SECTION("radius") { d.radius_m(bad); }
-  SECTION("no radius") { d.radius_m(0); }
+  SECTION("zero radius") { d.radius_m(0); }
   add_obstacle(message, {3, 4});
   frame.assign(message, kBegin);
   REQUIRE(frame.obstacles().size() == 1);

@@ -14,7 +14,7 @@ constexpr Duration kPeriod{16'000'000};
 
 Observation seen(Time at, const Vec2& position_m) { return {at, 0, position_m, 0}; }
 
-/// The confirmed track of a robot that rests, last observed at kBegin.
+/// The confirmed track of a resting robot, last observed at kBegin.
 TrackState resting(const Vec2& position_m, const TrackModel& model) {
   TrackState state;
   for (int i = 40; i >= 0; --i) state = advanced(state, seen(kBegin - i * kPeriod, position_m), model);
@@ -22,13 +22,13 @@ TrackState resting(const Vec2& position_m, const TrackModel& model) {
   return state;
 }
 
-TEST_CASE("an observation belongs to a track within the gate, and not a millionth beyond") {
+TEST_CASE("an observation within the gate belongs to the track, but one a millionth outside does not") {
   const TrackModel model;
   const Vec2 place_m(2, 1);
   const TrackState state = resting(place_m, model);
   ConstantVelocityFilter<2> predicted = state.filter.position;
   predicted.predict(to_seconds(kPeriod), model.motion, model.rolling_mps2);
-  // The filter is as uncertain in all directions, so its distance grows with the square of the offset.
+  // The filter is equally uncertain in all directions, so its distance grows with the square of the offset.
   const double unit2 = predicted.squared_distance({1, 0}, model.position_noise_m * model.position_noise_m);
   const double gate_m = model.gate_sigma / std::sqrt(unit2);
   REQUIRE(gate_m < model.gate_m);
@@ -53,11 +53,11 @@ TEST_CASE("of two observations away from a track, the one nearer to the track be
   CHECK(three.candidate.position.position() == near_m);
 }
 
-TEST_CASE("a displaced robot is where two observations show it, without averaging in others") {
+TEST_CASE("two observations displace a robot's track without averaging in older ones") {
   const TrackModel model;
   const Vec2 place_m(2, 1), displaced_m(2.05, 1);
   const TrackState state = resting(place_m, model);
-  // Two more cameras, whose pictures are as old.
+  // Two more cameras whose images have the same capture time.
   TrackState moved = advanced(state, seen(kBegin, displaced_m), model);
   CHECK(moved.last.position_m == place_m);
   moved = advanced(moved, seen(kBegin, displaced_m), model);

@@ -47,7 +47,7 @@ TEST_CASE("filtered velocities and positions of a driving robot are more accurat
   CHECK(velocity.rms() < 0.7 * measured_velocity.rms());
 }
 
-TEST_CASE("errors of the world at the time of publication match its variances") {
+TEST_CASE("the world state's errors at the time of publication match its variances") {
   const std::uint64_t seed = GENERATE(31u, 32u, 33u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -71,7 +71,8 @@ TEST_CASE("errors of the world at the time of publication match its variances") 
   }
   INFO("mean NEES of position " << position / count << ", velocity " << velocity / count << ", worst "
                                 << worst);
-  // 2 is exact consistency. The model allows for more agile driving than this, so the mean may be lower.
+  // A mean of 2 is exactly consistent. The model allows for more agile driving than this, so the mean may be
+  // lower.
   CHECK(position / count < 2.2);
   CHECK(position / count > 0.5);
   CHECK(velocity / count < 2.5);
@@ -109,7 +110,7 @@ TEST_CASE("the observed pose of a robot that accelerates at 5 m/s² is unbiased,
   CHECK(errors.rms() < 1.05 * noise_m);
 }
 
-TEST_CASE("latency is compensated: under constant acceleration the world lags by millimetres") {
+TEST_CASE("latency is compensated: under constant acceleration the world state lags by millimetres") {
   const TrueMotion motion = TrueMotion::accelerating({{0, 0}, {0, 0}, 0}, {5, 0}, 0, 0.5);
   TrackerFixture fixture(1);
   double worst = 0;
@@ -124,13 +125,13 @@ TEST_CASE("latency is compensated: under constant acceleration the world lags by
     worst = std::max(worst, error);
     if (truth.velocity_mps.x() > 1) CHECK(error < 0.3 * (truth.position_m - motion.at(t).position_m).norm());
   }
-  // a t²/2 over 35 ms is 3.1 mm; the rest is the filter's velocity lag. Without prediction the error is 60
-  // mm.
+  // a t²/2 over 35 ms is 3.1 mm, and the rest is the filter's velocity lag. Without prediction, the error
+  // would be 60 mm.
   CHECK(worst < 0.008);
   CHECK(worst > 0.001);
 }
 
-TEST_CASE("a robot observed by two cameras is fused to a more accurate pose than either's") {
+TEST_CASE("the fused pose of a robot observed by two cameras is more accurate than either camera's") {
   Rng rng(51);
   TrackerFixture fixture(1);
   Errors observed;

@@ -15,7 +15,7 @@ void feed_at_rest(TrackerFixture& fixture, const Vec2& position_m, double from_s
   }
 }
 
-TEST_CASE("a robot is published after three consistent observations, not before") {
+TEST_CASE("a robot is published after three consistent observations and not before") {
   TrackerFixture fixture(1);
   for (int i = 0; i < 3; ++i) {
     const Time t = kBegin + i * kFrame;
@@ -69,7 +69,7 @@ TEST_CASE("a robot that brakes to a halt unobserved stays within the published u
   CHECK((position_of(*robot) - truth).norm() < 3 * std::sqrt(robot->position_variance_m2()));
 }
 
-TEST_CASE("ghosts never move an observed robot, never create one, and are counted") {
+TEST_CASE("ghosts never move an observed robot, never create a robot, and are counted") {
   const std::uint64_t seed = GENERATE(81u, 82u, 83u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -94,7 +94,7 @@ TEST_CASE("ghosts never move an observed robot, never create one, and are counte
     REQUIRE(world.robots()[0].robot() == 0);
     REQUIRE((position_of(world.robots()[0]) - motion.at(t).position_m).norm() < 0.01);
   }
-  // The last ghosts of either robot are not yet classified.
+  // The last ghosts of both robots are not classified yet.
   CHECK(fixture.rejected() + 4 >= ghosts);
   CHECK(fixture.rejected() <= ghosts + 4);
 }
@@ -113,7 +113,7 @@ TEST_CASE("a ghost within the uncertainty of an unobserved robot does not take o
   CHECK(robot->observed_at_ns() < to_ns(after_s(1)));
 }
 
-TEST_CASE("a wrong heading does not turn a robot's track, and is counted") {
+TEST_CASE("a wrong heading does not turn a robot's track and is counted") {
   Rng rng(94);
   TrackerFixture fixture(1);
   feed_at_rest(fixture, {1, 1}, 0, 1, rng);
@@ -150,7 +150,7 @@ TEST_CASE("a robot that was rotated on the spot is tracked again") {
   CHECK(fixture.robot_at(0, after_s(1.3))->heading_rad() == Approx(3).margin(0.05));
 }
 
-TEST_CASE("robots that are not in the roster are ignored") {
+TEST_CASE("robots that are not on the roster are ignored") {
   TrackerFixture fixture(2);
   for (int i = 0; i < 10; ++i) {
     msg::DetectionFrame frame = frame_message(0, kBegin + i * kFrame);
@@ -165,7 +165,7 @@ TEST_CASE("robots that are not in the roster are ignored") {
   CHECK(fixture.rejected() == 20);
 }
 
-TEST_CASE("two robots that pass within 0.19 m never swap, even if a camera confuses them at times") {
+TEST_CASE("two robots that pass within 0.19 m never swap, even if a camera occasionally confuses them") {
   const std::uint64_t seed = GENERATE(range(100u, 130u));
   const double speed_mps = GENERATE(0.3, 2.0);
   CAPTURE(seed, speed_mps);
@@ -196,8 +196,8 @@ TEST_CASE("two robots that pass within 0.19 m never swap, even if a camera confu
 }
 
 TEST_CASE("an unobserved ball bounces off the wall and off robots") {
-  // Closed-form reference from the last observation: straight motion with friction, and back with the
-  // restitution's share of the speed.
+  // Closed-form reference from the last observation: straight motion with friction, then back at the speed
+  // times the restitution.
   const bool is_robot = GENERATE(false, true);
   CAPTURE(is_robot);
   Scenario scenario;
@@ -243,7 +243,7 @@ TEST_CASE("an unobserved ball bounces off the wall and off robots") {
   CHECK(after_bounce > 10);
 }
 
-TEST_CASE("a ball is found, tracked, kicked and lost, and a second one does not interfere") {
+TEST_CASE("a ball is found, tracked, kicked and lost, and a second ball does not interfere") {
   Rng rng(141);
   TrackerFixture fixture(0);
   Vec2 position{-2, 0}, velocity{2, 0};

@@ -35,7 +35,7 @@ std::vector<Arrival> frames_of_two_cameras(Rng& rng, double duration_s) {
 
 bool by_arrival(const Arrival& a, const Arrival& b) { return a.at < b.at; }
 
-TEST_CASE("late, reordered and duplicate frames give the same world, bit for bit, as frames in order") {
+TEST_CASE("late, reordered and duplicate frames give the same world state, bit for bit, as frames in order") {
   const std::uint64_t seed = GENERATE(range(200u, 220u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -86,7 +86,7 @@ TEST_CASE("a frame at the start of the stored history is processed as if in orde
   }
   TrackerFixture expected(1), fixture(1);
   for (const auto& frame : frames) expected.feed(frame);
-  // Of 39 observations the last 32 are stored: from number 7 on.
+  // Of 39 observations, the last 32 are stored, from number 7 on.
   const std::size_t late = 8;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (i != late) fixture.feed(frames[i]);
@@ -97,7 +97,7 @@ TEST_CASE("a frame at the start of the stored history is processed as if in orde
   CHECK(fixture.world_at(now) == expected.world_at(now));
 }
 
-TEST_CASE("updates and publications allocate nothing") {
+TEST_CASE("updating and publishing do not allocate") {
   Rng rng(241);
   const std::vector<Arrival> frames = frames_of_two_cameras(rng, 1);
   TrackerFixture fixture(3);
@@ -110,7 +110,7 @@ TEST_CASE("updates and publications allocate nothing") {
   CHECK(allocation_count() == before);
 }
 
-TEST_CASE("arbitrary numbers in frames leave the world finite") {
+TEST_CASE("arbitrary numbers in frames leave the world state finite") {
   const std::uint64_t seed = GENERATE(range(250u, 260u));
   CAPTURE(seed);
   Rng rng(seed);

@@ -20,7 +20,7 @@ struct Fixture {
     node.emplace(bus, scenario, 77, FrameSource::kCaller, cameras);
     events.emplace(*node);
   }
-  /// Runs, with a frame of the camera every 20 ms; each shows the robot if `is_seen`.
+  /// Runs for `duration` with a camera frame every 20 ms. Each frame shows the robot if `is_seen`.
   void run(Duration duration, std::uint32_t camera, bool is_seen, Duration clock_error = Duration{0}) {
     const Time end = network.now() + duration;
     while (network.now() < end) {
@@ -39,7 +39,7 @@ struct Fixture {
   std::optional<LogEvents> events;
 };
 
-TEST_CASE("a camera that falls silent is lost, and back with its next frame") {
+TEST_CASE("a camera that falls silent is reported as lost, and as back with its next frame") {
   Fixture f({4});
   f.run(1000 * kMs, 4, false);
   f.wait(2000 * kMs);
@@ -51,7 +51,7 @@ TEST_CASE("a camera that falls silent is lost, and back with its next frame") {
   CHECK(f.events->all().size() == 3);
 }
 
-TEST_CASE("a robot that no camera sees is lost, and reported when it is seen again") {
+TEST_CASE("a robot that no camera sees is reported as lost, and later as seen again") {
   Fixture f;
   f.run(1000 * kMs, 0, true);
   f.run(2000 * kMs, 0, false);
@@ -64,11 +64,11 @@ TEST_CASE("a robot that no camera sees is lost, and reported when it is seen aga
 }
 
 TEST_CASE(
-    "refused frames are reported ever more rarely with the reason, as are cameras without any usable frame") {
+    "refused frames and cameras without any usable frame are reported with the reason, ever more rarely") {
   Fixture f({2, 3});
   f.run(20'000 * kMs, 2, true, 3000 * kMs);
   CAPTURE(f.events->text());
-  CHECK(f.events->count("captured -3.000 s before it arrived") == 4);  // 1, 10, 100, 1000
+  CHECK(f.events->count("captured -3.000 s before it arrived") == 4);  // at frames 1, 10, 100 and 1000
   CHECK(f.events->count("camera 2 has sent no usable frame so far") == 1);
   CHECK(f.events->count("camera 3 has sent no usable frame so far") == 1);
   CHECK(f.events->all().size() == 6);
@@ -78,7 +78,7 @@ TEST_CASE(
   CHECK(f.events->count("camera 3: 1 frame(s) refused so far: malformed") == 1);
 }
 
-TEST_CASE("frames of cameras that are not configured are reported, ever more rarely") {
+TEST_CASE("frames of cameras that are not configured are reported ever more rarely") {
   Fixture f;
   for (std::uint32_t camera = 1; camera <= 10'000; ++camera)
     f.node->add_frame(frame_message(camera, f.network.now()));

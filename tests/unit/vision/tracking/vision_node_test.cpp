@@ -25,7 +25,7 @@ Scenario scenario_of(RobotId robots) {
   return scenario;
 }
 
-/// Two cameras over one robot, each publishing detections captured 35 ms ago.
+/// Two cameras over one robot. Each publishes detections that were captured 35 ms ago.
 class Cameras {
  public:
   Cameras(Bus& bus, const TrueMotion& motion, Rng rng)
@@ -63,7 +63,7 @@ std::vector<msg::WorldState> worlds_of_a_run(std::uint64_t seed, const NetworkSp
   return worlds;
 }
 
-TEST_CASE("the node publishes worlds at the cameras' rate, valid at their publication") {
+TEST_CASE("the node publishes world states at the cameras' rate, valid at the time of publication") {
   Rng rng(301);
   const TrueMotion motion = TrueMotion::driving(rng, 6);
   const auto worlds = worlds_of_a_run(301, {}, motion);
@@ -85,7 +85,7 @@ TEST_CASE("the node publishes worlds at the cameras' rate, valid at their public
   }
 }
 
-TEST_CASE("the world remains usable when the network loses, delays, duplicates and reorders frames") {
+TEST_CASE("world states remain usable when the network loses, delays, duplicates and reorders frames") {
   const std::uint64_t seed = GENERATE(311u, 312u, 313u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -111,7 +111,7 @@ TEST_CASE("the world remains usable when the network loses, delays, duplicates a
   CHECK(with_robot > 150);
 }
 
-TEST_CASE("the same seed gives the same worlds") {
+TEST_CASE("the same seed gives the same world states") {
   Rng rng(321);
   const TrueMotion motion = TrueMotion::driving(rng, 6);
   NetworkSpec network;
@@ -120,7 +120,7 @@ TEST_CASE("the same seed gives the same worlds") {
   CHECK(worlds_of_a_run(321, network, motion) == worlds_of_a_run(321, network, motion));
 }
 
-TEST_CASE("the node publishes worlds even if no frame arrives") {
+TEST_CASE("the node publishes world states even if no frame arrives") {
   SimNetwork net(331, kBegin, {});
   SimBus vision_bus(net), listener_bus(net);
   int count = 0;
@@ -135,7 +135,7 @@ TEST_CASE("the node publishes worlds even if no frame arrives") {
   CHECK(count >= 58);
 }
 
-TEST_CASE("the node publishes a list of obstacles with every world, complete once every camera watches") {
+TEST_CASE("the node publishes an obstacle list with every world state, complete once every camera watches") {
   SimNetwork net(335, kBegin, {});
   SimBus camera_bus(net), vision_bus(net), listener_bus(net);
   std::vector<std::int64_t> worlds_ns;
@@ -174,7 +174,7 @@ TEST_CASE("the node publishes a list of obstacles with every world, complete onc
   CHECK(lists.back().obstacles()[0].y_m() == Approx(2));
 }
 
-// As with the league's packets and with images.
+// The caller provides the frames, as with the league's packets and with images.
 TEST_CASE(
     "the list is complete only while every configured camera watches, and other cameras do not matter") {
   SimNetwork net(351, kBegin, {});
@@ -201,15 +201,15 @@ TEST_CASE(
     }
   };
   run(5, {cameras[0]});
-  CHECK_FALSE(was_complete);  // the other one was never heard
+  CHECK_FALSE(was_complete);  // the other camera was never heard
   run(1, {cameras[0], cameras[1]});
   CHECK(is_complete);
   run(0.7, {cameras[1]});
   run(10, {cameras[1]});
-  CHECK_FALSE(was_complete);  // dead
+  CHECK_FALSE(was_complete);  // the other camera is dead
   run(1, {cameras[0], cameras[1]});
   CHECK(is_complete);
-  // Anybody may send packets with any number: neither do they stop robots, nor are they used.
+  // Any process may send packets with any camera number. They neither stop robots nor are used.
   msg::DetectionFrame forged = frame_message(20, net.now());
   forged.obstacles_complete_within_m(0);
   add_obstacle(forged, {1, 1});
@@ -224,7 +224,9 @@ TEST_CASE(
   CHECK(drops_of(*node).total(DropReason::kMalformedFrame) == 63);
 }
 
-TEST_CASE("a node with frames from its caller ignores the bus and calls its listener with every world") {
+TEST_CASE(
+    "a node that gets its frames from its caller ignores the bus and calls its listener with every world "
+    "state") {
   SimNetwork net(341, kBegin, {});
   SimBus camera_bus(net), vision_bus(net);
   VisionNode node(vision_bus, scenario_of(2), 1, FrameSource::kCaller);
@@ -249,7 +251,7 @@ TEST_CASE("a node with frames from its caller ignores the bus and calls its list
   CHECK((position_of(latest.robots()[0]) - Vec2(1, 2)).norm() < 1e-3);
 }
 
-TEST_CASE("vision sees robots again after its clock and the cameras' were ahead") {
+TEST_CASE("vision sees robots again after its clock and the cameras' clocks were ahead") {
   const Duration ahead = std::chrono::milliseconds(GENERATE(50, 5000, 3'500'000));
   CAPTURE(to_seconds(ahead));
   Rng rng(3);

@@ -17,7 +17,7 @@ double length_m(std::span<const Vec2> path) {
   return sum;
 }
 
-/// The distance of the nearest point from the polyline of the centres.
+/// The point's distance from the polyline through the centres.
 double clearance_m(const BubbleBand& band, std::span<const Vec2> points) {
   const auto bubbles = band.bubbles();
   double nearest2 = 1e9;
@@ -28,7 +28,7 @@ double clearance_m(const BubbleBand& band, std::span<const Vec2> points) {
   return std::sqrt(nearest2);
 }
 
-/// Two walls of points along the x axis, from x = -1 to 7, and perhaps more obstacles.
+/// Two walls of points along the x axis, from x = -1 to 7, and possibly more obstacles.
 std::vector<Vec2> walls(double half_width_m) {
   std::vector<Vec2> points;
   for (double x = -1; x < 7; x += 0.02) {
@@ -44,7 +44,7 @@ ObstaclePoints obstacles_of(std::span<const Vec2> points) {
   return result;
 }
 
-TEST_CASE("forces on bubbles agree with their written-out definition") {
+TEST_CASE("forces on bubbles agree with their explicit definition") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -78,7 +78,7 @@ TEST_CASE("the passage between bubbles is as wide as the largest disc that fits 
     Rng rng(seed);
     const Bubble a{{0, 0}, rng.uniform(0.1, 1), {0, 0}, 0};
     const Bubble b{{rng.uniform(0, 1.5), 0}, rng.uniform(0.1, 1), {0, 0}, 0};
-    // Computed slowly: the largest disc at each position of the axis, limited by the boundary of the union.
+    // Slow reference: the largest disc at each position of the axis, limited by the boundary of the union.
     double least = std::min(a.radius_m, b.radius_m);
     for (int k = 0; k <= 200; ++k) {
       const Vec2 at = k / 200.0 * b.centre_m;
@@ -99,7 +99,7 @@ TEST_CASE("the passage between bubbles is as wide as the largest disc that fits 
   CHECK(passage_m({{0, 0}, 1, {0, 0}, 0}, {{3, 0}, 1, {0, 0}, 0}) == 0);
 }
 
-TEST_CASE("a band from a planner's path stays free and gets no longer than the path") {
+TEST_CASE("a band made from a planned path stays free and gets no longer than the path") {
   int checked = 0;
   double shortened_m = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
@@ -141,7 +141,7 @@ TEST_CASE("a band from a planner's path stays free and gets no longer than the p
   CAPTURE(shortened_m);
 }
 
-TEST_CASE("a band in free space becomes nearly straight, and shorter than a detour") {
+TEST_CASE("in free space, a band becomes nearly straight and shorter than a detour") {
   BubbleBand band(kRadius_m);
   const std::vector<Vec2> detour{{0, 0}, {1.5, 1.2}, {3, -1}, {4.5, 1.5}, {6, 0}};
   const ObstaclePoints free = obstacles_of({});
@@ -155,7 +155,7 @@ TEST_CASE("a band in free space becomes nearly straight, and shorter than a deto
   CHECK_FALSE(band.is_broken());
 }
 
-TEST_CASE("a band opens up when an obstacle approaches, and breaks when the passage closes") {
+TEST_CASE("a band makes way for an approaching obstacle, and breaks when the passage closes") {
   BubbleBand band(kRadius_m);
   const std::vector<Vec2> walls_m = walls(1.2), path{{0, 0}, {6, 0}};
   band.start(path, obstacles_of(walls_m));
@@ -170,9 +170,9 @@ TEST_CASE("a band opens up when an obstacle approaches, and breaks when the pass
     REQUIRE_FALSE(band.is_broken());
     REQUIRE(clearance_m(band, points) >= kRadius_m - 1e-5);
   }
-  // The band passes the post on its right side, which is now 1.3 m wide.
+  // The band passes to the right of the post, where the passage is now 1.3 m wide.
   CHECK(band.position_m(3).y() < y - kRadius_m);
-  // The passage closes when it is narrower than the robot.
+  // The passage closes once it is narrower than the robot.
   double broken_at_m = 0;
   for (; y > -1 && broken_at_m == 0; y -= 0.01) {
     points = walls_m;
@@ -185,7 +185,7 @@ TEST_CASE("a band opens up when an obstacle approaches, and breaks when the pass
   CHECK(broken_at_m < 2.8 * kRadius_m);
 }
 
-TEST_CASE("the band's beginning follows the robot to the goal") {
+TEST_CASE("the start of the band follows the robot to the goal") {
   BubbleBand band(kRadius_m);
   const std::vector<Vec2> points = walls(0.5), path{{0, 0}, {2, 0.1}, {6, 0}};
   const ObstaclePoints free = obstacles_of(points);
@@ -211,7 +211,7 @@ TEST_CASE("bubbles far along the band ignore obstacles near the robot") {
   CHECK(band.masked_m(2) == 0);
   CHECK(band.masked_m(6) == Approx(2));
   CHECK(band.masked_m(12) == 4);
-  // The path leads back past the robot: at 10 m, it is 0.4 m from a post that is 1 m from the robot.
+  // The path returns past the robot: 10 m along the path, it is 0.4 m from a post that is 1 m from the robot.
   const std::vector<Vec2> path{{0, 0}, {5, 0}, {5, 1.4}, {-2, 1.4}};
   const Vec2 post(0, 1);
   const ObstaclePoints free = obstacles_of({&post, 1});
@@ -237,7 +237,7 @@ TEST_CASE("a band works with a distance query") {
   for (const Bubble& bubble : band.bubbles()) CHECK(bubble.radius_m >= kRadius_m);
 }
 
-TEST_CASE("bad paths, positions and radii of bands are refused") {
+TEST_CASE("bands refuse invalid paths, positions and radii") {
   CHECK_THROWS_AS(BubbleBand(0), std::invalid_argument);
   CHECK_THROWS_AS(BubbleBand(2.1), std::invalid_argument);
   BubbleBand band(kRadius_m);

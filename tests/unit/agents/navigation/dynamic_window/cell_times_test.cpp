@@ -9,13 +9,13 @@
 namespace sidestep::cell_times_test {
 
 constexpr GridWindow kAll{{0, kGridSide - 1}, {0, kGridSide - 1}};
-constexpr double kHorizon_s = 0.75;  // exact in single precision
+constexpr double kHorizon_s = 0.75;  // exactly representable in single precision
 
 /// Compares the times of random cells and velocities with the minimum over many points of the cell.
-/// `exact(point, row, column)` is the exact time; negative for forbidden velocities.
+/// `exact(point, row, column)` is the exact time; negative if the velocity is forbidden.
 template <typename Exact>
 void compare_with_points(const CellTimes& times, Rng& rng, Exact exact) {
-  constexpr int kPoints = 24;  // along each side of a cell
+  constexpr int kPoints = 24;  // points along each side of a cell
   int compared = 0;
   double sum_off_s = 0;
   for (int i = 0; i < 20'000 && compared < 2500; ++i) {
@@ -41,11 +41,11 @@ void compare_with_points(const CellTimes& times, Rng& rng, Exact exact) {
     sum_off_s += least_s - stored_s;
   }
   CHECK(compared > 300);
-  // The points are not the cell, so they are a little later.
+  // Only some points are sampled, so their minimum may be slightly later.
   CHECK(sum_off_s / compared < 1e-3);
 }
 
-TEST_CASE("the times of cells are the minimum over all their points, for hulls") {
+TEST_CASE("cell times are the minimum over all points of the cell, for hulls") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   CAPTURE(seed);
   Rng rng(seed);
@@ -59,8 +59,8 @@ TEST_CASE("the times of cells are the minimum over all their points, for hulls")
   });
 }
 
-TEST_CASE("the times of cells are the minimum over all their points, for a thin hull") {
-  // Thinner than a cell: it crosses cells without containing any of their corners.
+TEST_CASE("cell times are the minimum over all points of the cell, for a thin hull") {
+  // The hull is thinner than a cell: it crosses cells without containing any of their corners.
   const DifferentialDrive drive;
   const ConvexPolygon hull{{{-0.3, -0.004}, {0.31, -0.004}, {0.31, 0.004}, {-0.3, 0.004}}};
   const Hull outline(hull);
@@ -72,7 +72,7 @@ TEST_CASE("the times of cells are the minimum over all their points, for a thin 
   });
 }
 
-TEST_CASE("the times of cells are the minimum over all their points, for discs") {
+TEST_CASE("cell times are the minimum over all points of the cell, for discs") {
   const double radius_m = 0.09, speed_mps = 2;
   const CellTimes times = disc_cell_times(radius_m, speed_mps, 0.08, kHorizon_s);
   Rng rng(5);
@@ -100,7 +100,7 @@ TEST_CASE("a disc's time to collision agrees with dense time steps") {
   CHECK(hits > 150);
 }
 
-TEST_CASE("tables give the minimum over the cells of all points, never later than exact times") {
+TEST_CASE("tables give the minimum over the cells of all points, and are never later than exact times") {
   const std::uint64_t seed = GENERATE(1, 2);
   CAPTURE(seed);
   Rng rng(seed);
@@ -144,7 +144,7 @@ TEST_CASE("tables give the minimum over the cells of all points, never later tha
   }
 }
 
-TEST_CASE("a table of a part of the grid has the same entries") {
+TEST_CASE("a table of part of the grid has the same entries as the whole table") {
   const DifferentialDrive drive;
   const ConvexPolygon hull{{{-0.2, -0.2}, {0.2, -0.2}, {0.2, 0.2}, {-0.2, 0.2}}};
   CollisionTable table(hull_cell_times(drive, hull, 0.06, kHorizon_s), Quantiser::uniform(kHorizon_s));

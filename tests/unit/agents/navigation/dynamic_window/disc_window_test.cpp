@@ -26,7 +26,7 @@ std::vector<Vec2> random_points(Rng& rng, std::size_t count) {
   return points;
 }
 
-TEST_CASE("a disc may use exactly those velocities that it can reach and stop from") {
+TEST_CASE("a disc may choose exactly the velocities that it can reach and stop from") {
   DiscWindow exact(kRadius_m, kLimits, settings_for(CollisionMethod::kExact));
   DiscWindow table(kRadius_m, kLimits, settings_for(CollisionMethod::kUniformTable));
   std::size_t by_exact = 0, by_table = 0;
@@ -46,7 +46,7 @@ TEST_CASE("a disc may use exactly those velocities that it can reach and stop fr
         const Vec2 v = kLimits.speed_mps / 20 * Vec2(i, j);
         if (v.norm() > kLimits.speed_mps + 1e-9) continue;
         if (!is_admissible((v - query.velocity_mps) / *query.window_s, query.velocity_mps, kLimits)) continue;
-        // The motion for as long as braking and a cycle take, at full speed.
+        // The motion at full speed during braking and one cycle.
         const Segment path{Vec2(0, 0), v * (v.norm() / kLimits.deceleration_mps2 + kCycle_s)};
         const bool is_free = std::ranges::all_of(
             points, [&](const Vec2& p) { return squared_distance(p, path) > kRadius_m * kRadius_m; });
@@ -73,7 +73,7 @@ TEST_CASE("a disc may use exactly those velocities that it can reach and stop fr
   CHECK(by_table > by_exact * 3 / 4);
 }
 
-TEST_CASE("without obstacles, the best velocity is the fastest towards the goal") {
+TEST_CASE("without obstacles, the best velocity is the fastest one towards the goal") {
   DiscWindow window(kRadius_m, kLimits, settings_for(CollisionMethod::kExact));
   DiscWindowQuery query;
   query.goal_m = {3, 4};
@@ -83,7 +83,9 @@ TEST_CASE("without obstacles, the best velocity is the fastest towards the goal"
   CHECK((choice.admissible[0].velocity_mps - Vec2(1.2, 1.6)).norm() < 1e-9);
 }
 
-TEST_CASE("if the grid is too coarse for a cycle, the velocities next to the current one are considered") {
+TEST_CASE(
+    "if a cycle is too short to reach another grid velocity, the grid velocities around the current one are "
+    "considered") {
   DiscWindow window(kRadius_m, kLimits, settings_for(CollisionMethod::kExact));
   DiscWindowQuery query;
   query.velocity_mps = {0.55, -0.25};
@@ -95,7 +97,7 @@ TEST_CASE("if the grid is too coarse for a cycle, the velocities next to the cur
     CHECK((rated.velocity_mps - query.velocity_mps).cwiseAbs().maxCoeff() < 0.051);
 }
 
-TEST_CASE("a point within the disc makes it brake") {
+TEST_CASE("a point inside the disc makes it brake") {
   for (const CollisionMethod method : {CollisionMethod::kExact, CollisionMethod::kLloydMaxTable}) {
     DiscWindow window(kRadius_m, kLimits, settings_for(method));
     const Vec2 inside(0.05, 0.05);
@@ -130,7 +132,8 @@ TEST_CASE("a disc among random posts reaches most goals and touches nothing") {
       query.window_s = 0.1;
       const DiscWindowChoice& choice = window.choose(query);
       REQUIRE_FALSE(choice.is_touching);
-      // Without an admissible velocity the robot brakes in a straight line, as each chosen velocity permits.
+      // Without an admissible velocity the robot brakes in a straight line, which every chosen velocity
+      // permits.
       const double speed = velocity.norm();
       const double after = std::max(0.0, speed - kLimits.deceleration_mps2 * kCycle_s);
       if (!choice.admissible.empty())
@@ -144,11 +147,11 @@ TEST_CASE("a disc among random posts reaches most goals and touches nothing") {
     }
     arrived += is_there ? 1 : 0;
   }
-  // The method is local: some robots get stuck.
+  // The method is local, so some robots get stuck.
   CHECK(arrived >= kRuns / 2);
 }
 
-TEST_CASE("bad settings and queries of discs are refused") {
+TEST_CASE("disc windows refuse invalid settings and queries") {
   CHECK_THROWS_AS(DiscWindow(0, kLimits), std::invalid_argument);
   CHECK_THROWS_AS(DiscWindow(kRadius_m, {.acceleration_mps2 = 0}), std::invalid_argument);
   DiscWindow window(kRadius_m, kLimits, settings_for(CollisionMethod::kExact));

@@ -7,7 +7,7 @@ namespace sidestep::drive_among_posts_test {
 
 const ConvexPolygon kHull = pointed_hull();
 
-/// A robot that drives among random posts by dynamic window.
+/// A robot that uses the dynamic window to drive among random posts.
 struct Drive {
   DifferentialDrive drive;
   std::vector<Vec2> posts_m;
@@ -17,7 +17,7 @@ struct Drive {
 
   Vec2 seen(const Vec2& at) const { return rotated(at - position_m, -heading_rad); }
 
-  /// Drives a cycle; returns the smallest distance of a post from the hull.
+  /// Drives for a cycle. Returns the smallest distance of a post from the hull.
   double step(DynamicWindow& window, double cycle_s) {
     std::vector<Vec2> points;
     for (const Vec2& post : posts_m) points.push_back(seen(post));
@@ -61,7 +61,7 @@ TEST_CASE("a robot among random posts reaches most goals and touches nothing") {
     }
     arrived += is_there ? 1 : 0;
   }
-  // The method is local: some robots get stuck.
+  // The method is local, so some robots get stuck.
   CHECK(arrived >= kRuns / 2);
 }
 

@@ -9,7 +9,9 @@ DriveGoal goal_at(double degrees, double distance_m = 2) {
   return {rotated(Vec2(distance_m, 0), degrees * std::numbers::pi / 180), std::nullopt, 0.1};
 }
 
-TEST_CASE("a robot turns until the goal lies ahead, drives, and aims again if the goal is too far aside") {
+TEST_CASE(
+    "a robot turns until the goal lies ahead, drives, and turns again if the goal is too far off its "
+    "heading") {
   DriveState state = DriveState::kTurn;
   const auto next = [&](const DriveGoal& goal, double speed_mps) {
     return state = next_state(state, goal, speed_mps);

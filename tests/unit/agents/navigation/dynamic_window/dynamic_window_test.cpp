@@ -28,7 +28,7 @@ std::vector<Vec2> random_points(Rng& rng, std::size_t count, double half_side_m,
 
 using Admissible = std::map<std::pair<int, int>, RatedWheelSpeeds>;
 
-/// Indexed by the wheel speeds.
+/// indexed by the wheel speeds
 Admissible by_index(const WindowChoice& choice, const DifferentialDrive& drive) {
   const auto index = [&](double speed) {
     return static_cast<int>(std::lround(speed / drive.wheel_speed_mps * (kGridSide / 2))) + kGridSide / 2;
@@ -39,7 +39,7 @@ Admissible by_index(const WindowChoice& choice, const DifferentialDrive& drive) 
   return result;
 }
 
-/// The admissible velocities while the robot drives, computed slowly from the definitions.
+/// Slow reference: the velocities that are admissible while the robot drives, by definition.
 Admissible reference(const DifferentialDrive& drive, const DynamicWindowSettings& settings,
                      const WindowQuery& query) {
   const Hull outline(padded(kHull, settings.padding_m));
@@ -59,7 +59,7 @@ Admissible reference(const DifferentialDrive& drive, const DynamicWindowSettings
         time_s = std::min(time_s, outline.time_to_collision_s(point, {v, w}));
       const double brake_s = std::max(std::abs(left), std::abs(right)) / drive.wheel_acceleration_mps2;
       if (time_s <= brake_s + query.cycle_s + 1e-6) continue;
-      // The standstill pose, integrated: a cycle at full speed, then constant deceleration.
+      // The standstill pose by integration: one cycle at full speed, then constant deceleration.
       Vec2 rest(0, 0);
       double heading = 0;
       constexpr int kSteps = 4000;
@@ -100,7 +100,7 @@ TEST_CASE("the exact window agrees with a slow reference") {
     WindowQuery query;
     query.points_m = points;
     query.wheels = {rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5)};
-    query.goal.position_m = {2, 0.1};  // ahead, so the robot drives
+    query.goal.position_m = {2, 0.1};  // the goal is ahead, so the robot drives
     query.window_s = seed % 3 == 0 ? 10 : 0.2;
     const WindowChoice& choice = window.choose(query);
     CHECK(choice.state == DriveState::kGo);
@@ -126,7 +126,7 @@ TEST_CASE("the exact window agrees with a slow reference") {
   }
 }
 
-TEST_CASE("everything that tables admit is admissible exactly, and they admit nearly as much") {
+TEST_CASE("tables admit only exactly admissible velocities, and nearly all of those") {
   const DifferentialDrive drive;
   DynamicWindow exact(drive, kHull, settings_for(CollisionMethod::kExact));
   DynamicWindow tables[] = {{drive, kHull, settings_for(CollisionMethod::kUniformTable)},
@@ -136,7 +136,7 @@ TEST_CASE("everything that tables admit is admissible exactly, and they admit ne
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    // Some points lie within a cell's length of the hull: their cells are not in the tables.
+    // Some points lie within a cell's length of the hull, and tables omit their cells.
     const std::vector<Vec2> points = random_points(rng, 8, seed % 2 == 0 ? 0.5 : 1.2, outline);
     WindowQuery query;
     query.points_m = points;
@@ -157,7 +157,7 @@ TEST_CASE("everything that tables admit is admissible exactly, and they admit ne
   for (const std::size_t count : admitted) CHECK(count > admitted_exactly * 3 / 4);
 }
 
-TEST_CASE("a point within the padded hull makes the robot brake") {
+TEST_CASE("a point inside the padded hull makes the robot brake") {
   const DifferentialDrive drive;
   for (const CollisionMethod method : {CollisionMethod::kExact, CollisionMethod::kUniformTable}) {
     DynamicWindow window(drive, kHull, settings_for(method));
@@ -170,7 +170,7 @@ TEST_CASE("a point within the padded hull makes the robot brake") {
     CHECK(choice.is_touching);
     CHECK(choice.admissible.empty());
     CHECK_FALSE(choice.best);
-    // The wheels slow down in proportion, so the robot stays on its arc.
+    // Both wheels slow down in proportion, so the robot stays on its arc.
     CHECK(choice.command.left_mps == Approx(0.4 - 0.0572));
     CHECK(choice.command.right_mps == Approx(choice.command.left_mps / 2));
   }
@@ -179,7 +179,7 @@ TEST_CASE("a point within the padded hull makes the robot brake") {
 TEST_CASE("points within a cell of the hull block only motions that run into them") {
   const DifferentialDrive drive;
   DynamicWindow window(drive, kHull, settings_for(CollisionMethod::kUniformTable));
-  // Beside the robot, 15 mm from the padded hull, on both sides.
+  // The posts stand on both sides of the robot, 15 mm from the padded hull.
   const std::vector<Vec2> posts{{0, -0.235}, {0, 0.235}};
   for (const Vec2& post : posts)
     CHECK_FALSE(window.table()->time_s(*window.table()->grid().cell_of(post), 0));
@@ -198,7 +198,7 @@ TEST_CASE("points within a cell of the hull block only motions that run into the
   }
 }
 
-TEST_CASE("a robot that has to turn on the spot only turns") {
+TEST_CASE("a robot that must turn on the spot only turns") {
   const DifferentialDrive drive;
   DynamicWindow window(drive, kHull, settings_for(CollisionMethod::kExact));
   WindowQuery query;
@@ -217,7 +217,7 @@ TEST_CASE("a robot that has to turn on the spot only turns") {
   CHECK(drive.motion(choice->command).turn_rate_radps < -0.1);
 }
 
-TEST_CASE("bad settings and queries are refused") {
+TEST_CASE("invalid settings and queries are refused") {
   const DifferentialDrive drive;
   DynamicWindowSettings settings = settings_for(CollisionMethod::kExact);
   settings.weights = {0, 0, 0};

@@ -8,8 +8,8 @@ namespace sidestep::hull_test {
 
 constexpr double kHorizon_s = 3, kStep_s = 1e-3;
 
-/// Calls `visit(time_s, point)` with the point's position in the robot's frame at each of many small steps of
-/// the robot, which are integrated by the midpoint rule, until it returns false.
+/// Integrates the robot's motion in small steps by the midpoint rule. Calls `visit(time_s, point)` with the
+/// point's position in the robot's frame at each step, until it returns false.
 template <typename Visit>
 void step(const Vec2& point_m, const ArcMotion& motion, Visit visit) {
   Vec2 position(0, 0);
@@ -22,7 +22,7 @@ void step(const Vec2& point_m, const ArcMotion& motion, Visit visit) {
   }
 }
 
-TEST_CASE("the robot's view after a time agrees with integrating its motion") {
+TEST_CASE("a point's position in the moving robot's frame agrees with integrating the motion") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);
   Rng rng(seed);
@@ -50,7 +50,7 @@ TEST_CASE("exact times to collision agree with dense time steps") {
       REQUIRE(time_s == 0);
       continue;
     }
-    // Never inside before the time.
+    // The point is never inside the hull before the time.
     step(point, motion, [&](double t, const Vec2& seen) {
       if (t < time_s) REQUIRE(signed_distance(seen, hull.corners_m) > -kIntegration_m);
       return t < time_s;
@@ -59,7 +59,7 @@ TEST_CASE("exact times to collision agree with dense time steps") {
       ++misses;
       continue;
     }
-    // On the outline at that time, and inside soon after, unless it only grazes the outline.
+    // At that time the point is on the outline. Soon after it is inside, unless it only grazes the outline.
     ++hits;
     const Vec2 entry = seen_after(point, motion, time_s);
     REQUIRE(std::abs(signed_distance(entry, hull.corners_m)) < 1e-8);
@@ -68,7 +68,7 @@ TEST_CASE("exact times to collision agree with dense time steps") {
   CHECK(misses > 200);
 }
 
-TEST_CASE("times to collision change little from straight to nearly straight motions") {
+TEST_CASE("times to collision change little between straight and nearly straight motions") {
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Rng rng(seed);
@@ -79,7 +79,7 @@ TEST_CASE("times to collision change little from straight to nearly straight mot
     const double straight_s = outline.time_to_collision_s(point, {0.5, 0});
     const double left_s = outline.time_to_collision_s(point, {0.5, 1e-9});
     const double right_s = outline.time_to_collision_s(point, {0.5, -1e-9});
-    // Points within a nanometre of passing the hull may do either.
+    // Points that pass the hull within a nanometre may collide or not.
     if (straight_s > 5 || left_s > 5 || right_s > 5) continue;
     ++compared;
     CHECK(left_s == Approx(straight_s).margin(1e-6));
@@ -88,8 +88,8 @@ TEST_CASE("times to collision change little from straight to nearly straight mot
   CHECK(compared > 100);
 }
 
-TEST_CASE("a point that a turning robot reaches only after more than half a turn is found") {
-  // The robot turns left on the spot, and the point lies on its right.
+TEST_CASE("a collision after more than half a turn is found") {
+  // The robot turns left on the spot; the point lies on its right.
   const Hull outline(ConvexPolygon{{{0, -0.01}, {1, -0.01}, {1, 0.01}, {0, 0.01}}});
   const double time_s = outline.time_to_collision_s({0, -0.5}, {0, 1});
   CHECK(time_s == Approx(1.5 * std::numbers::pi - std::asin(0.01 / 0.5)).margin(1e-9));
@@ -112,7 +112,7 @@ TEST_CASE("a padded hull contains all points within its padding, and little more
       ++near;
       REQUIRE(outline.contains(point));
     }
-    // The cut corners reach at most this far.
+    // The cut corners extend at most this far.
     if (distance_m > 1.42 * padding_m) REQUIRE_FALSE(outline.contains(point));
   }
   CHECK(near > 0);

@@ -30,7 +30,7 @@ double mean_error_s(const Quantiser& quantiser, const std::vector<float>& times)
   return sum / static_cast<double>(times.size());
 }
 
-TEST_CASE("stored times are never later than true ones") {
+TEST_CASE("quantised times are never later than true ones") {
   const std::uint64_t seed = GENERATE(range(1, 20));
   CAPTURE(seed);
   Rng rng(seed);
@@ -42,14 +42,14 @@ TEST_CASE("stored times are never later than true ones") {
     for (const float time : times) {
       const float stored = quantiser.decode(quantiser.encode(time));
       REQUIRE(stored <= time);
-      // Quantising a quantised time again does not change it.
+      // Quantising a quantised time does not change it.
       REQUIRE(quantiser.decode(quantiser.encode(stored)) == stored);
     }
     CHECK(quantiser.decode(quantiser.encode(2 * kHorizon_s)) == kHorizon_s);
   }
 }
 
-TEST_CASE("level numbers compare like the times that they represent") {
+TEST_CASE("levels are ordered like the times that they represent") {
   Rng rng(3);
   const std::vector<float> times = random_times(rng, 2000);
   const Quantiser quantiser = Quantiser::lloyd_max(times, kHorizon_s);
@@ -87,7 +87,7 @@ TEST_CASE("more levels give smaller errors, and a few fitted levels give smaller
   CHECK(fine_s < mean_error_s(Quantiser::uniform(kHorizon_s), times));
 }
 
-TEST_CASE("a quantiser refuses bad horizons, level counts and times") {
+TEST_CASE("a quantiser refuses invalid horizons, level counts and times") {
   const std::vector<float> times{0.1F, 0.2F}, negative{-0.1F};
   CHECK_THROWS_AS(Quantiser::uniform(0), std::invalid_argument);
   CHECK_THROWS_AS(Quantiser::lloyd_max(times, kHorizon_s, 2), std::invalid_argument);

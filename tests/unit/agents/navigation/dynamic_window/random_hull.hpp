@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// The convex hull of a few random points around the origin, at most `radius_m` away on each axis.
+/// The convex hull of a few random points, at most `radius_m` from the origin on each axis.
 inline ConvexPolygon random_hull(Rng& rng, double radius_m) {
   for (;;) {
     std::vector<Vec2> points;
@@ -22,12 +22,12 @@ inline ConvexPolygon random_hull(Rng& rng, double radius_m) {
   }
 }
 
-/// A robot that is pointed ahead, 0.55 m long.
+/// A robot with a pointed front, 0.55 m long.
 inline ConvexPolygon pointed_hull() {
   return {{{-0.25, -0.2}, {0.2, -0.2}, {0.3, 0}, {0.2, 0.2}, {-0.25, 0.2}}};
 }
 
-/// A random motion; some are straight, nearly straight, on the spot, or no motion at all.
+/// A random motion. Some are straight or nearly straight, turn on the spot, or do not move.
 inline ArcMotion random_motion(Rng& rng) {
   const double speed = rng.uniform(-1, 1), turn = rng.uniform(-3, 3);
   switch (rng.below(10)) {

@@ -52,7 +52,7 @@ TEST_CASE("a robot descends around a post to its goal") {
   }
 }
 
-TEST_CASE("in a U-shaped obstacle the robot gets stuck in a local minimum, which is reported") {
+TEST_CASE("a robot in a U-shaped obstacle gets stuck in a local minimum, which is reported") {
   //      +------+
   //  robot →    |    goal
   //      +------+
@@ -67,7 +67,7 @@ TEST_CASE("in a U-shaped obstacle the robot gets stuck in a local minimum, which
   CHECK(end.x() > 0);
   CHECK(end.x() < 1 - kRadius_m);
   CHECK(std::abs(end.y()) < 0.5 - kRadius_m);
-  // There the forces cancel: the force at the goal's distance alone would be above 1.
+  // The forces cancel there: the goal's force alone would be above 1 at this distance.
   const ObstaclePoints free = obstacles_of(points);
   CHECK(field.force(end, {2, 0}, free(end, 0)).norm() < 0.5);
 }
@@ -81,7 +81,7 @@ TEST_CASE("a rotational field leads around a wall at which the plain field gets 
   CHECK(around.end == DescentEnd::kArrived);
 }
 
-TEST_CASE("a descent ends at a contact, or when its steps are used up") {
+TEST_CASE("a descent ends at a contact or when its steps are used up") {
   const std::vector<Vec2> post{{0.05, 0}};
   PotentialField field(kRadius_m);
   CHECK(field.descend({0, 0}, {2, 0}, obstacles_of(post), 100).end == DescentEnd::kTouching);
@@ -89,7 +89,7 @@ TEST_CASE("a descent ends at a contact, or when its steps are used up") {
   CHECK(field.descend({0, 0}, {2, 0}, obstacles_of({}), 1000).end == DescentEnd::kArrived);
 }
 
-TEST_CASE("bad settings of potential fields are refused") {
+TEST_CASE("potential fields refuse invalid settings") {
   CHECK_THROWS_AS(PotentialField(-1), std::invalid_argument);
   CHECK_THROWS_AS(PotentialField(kRadius_m, {.reach_m = 0}), std::invalid_argument);
 }

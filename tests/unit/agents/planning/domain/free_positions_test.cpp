@@ -27,7 +27,7 @@ Vec2 random_position(Rng& rng) {
   return {x, y};
 }
 
-TEST_CASE("the nearest free position is as near as the first of the list") {
+TEST_CASE("the nearest free position is as near as the first one in the list") {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
@@ -50,7 +50,7 @@ TEST_CASE("the nearest free position is as near as the first of the list") {
 }
 
 TEST_CASE(
-    "the exit of a blocked start is the nearest one that a straight motion out of the obstacles reaches") {
+    "a blocked start's exit is the nearest free position that a straight line out of the obstacles reaches") {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
@@ -63,13 +63,13 @@ TEST_CASE(
       return kField.contains(p, kRadius_m) && !world.touches(p, kRadius_m) && domain.check(start, p);
     };
     const std::optional<Vec2> exit = domain.exit();
-    // Each ray by small steps.
+    // Slow reference: follows rays in small steps.
     double reference_m = 1e9;
     for (int i = 0; i < 256; ++i)
       for (double d = 0.005; d < reference_m && d < 3; d += 0.005)
         if (can_exit(start + d * rotated(Vec2(1, 0), i * 2 * std::numbers::pi / 256)))
           reference_m = std::min(reference_m, d);
-    if (!exit) continue;  // the search misses gaps between its steps
+    if (!exit) continue;  // the search misses gaps narrower than its step
     ++found;
     CHECK(can_exit(*exit));
     CHECK((*exit - start).norm() >= 0.97 * reference_m - 0.005);
@@ -78,7 +78,7 @@ TEST_CASE(
   CHECK(found > 60);
 }
 
-TEST_CASE("a domain for checks allows the same motions as one with a goal") {
+TEST_CASE("a domain for checks permits the same motions as a domain with a goal") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

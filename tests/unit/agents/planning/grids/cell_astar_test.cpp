@@ -27,7 +27,7 @@ BitGrid random_grid(int columns, int rows, double share, Rng& rng) {
   return grid;
 }
 
-/// The slow reference: lengths from the start by relaxing all steps until nothing changes (Bellman, Ford).
+/// Slow reference: path lengths from the start by relaxing all steps until nothing changes (Bellman, Ford).
 double shortest(const BitGrid& blocked, const Cell& start, const Cell& goal) {
   const int columns = blocked.columns(), rows = blocked.rows();
   const auto is_free = [&](int x, int y) {
@@ -57,7 +57,7 @@ double shortest(const BitGrid& blocked, const Cell& start, const Cell& goal) {
   return at(goal.column, goal.row);
 }
 
-TEST_CASE("with an admissible heuristic A* finds the shortest path on cells, in valid steps") {
+TEST_CASE("with an admissible heuristic, A* finds the shortest path over cells in valid steps") {
   const CellHeuristic heuristic =
       GENERATE(CellHeuristic::kNone, CellHeuristic::kStraight, CellHeuristic::kOctile);
   CellAstar astar(heuristic);
@@ -90,8 +90,8 @@ TEST_CASE("with an admissible heuristic A* finds the shortest path on cells, in 
   CHECK(none > 10);
 }
 
-TEST_CASE("the octile heuristic never exceeds the remaining path, but Manhattan does") {
-  // On a free grid the octile heuristic is exact.
+TEST_CASE("the octile heuristic never exceeds the remaining path length, but Manhattan does") {
+  // On a free grid, the octile heuristic is exact.
   const BitGrid free(9, 9);
   for (int x = 0; x < 9; ++x) {
     for (int y = 0; y < 9; ++y) {
@@ -103,7 +103,7 @@ TEST_CASE("the octile heuristic never exceeds the remaining path, but Manhattan 
   }
 }
 
-TEST_CASE("A* with the Manhattan heuristic returns paths that are longer than necessary") {
+TEST_CASE("with the Manhattan heuristic, A* returns paths longer than necessary") {
   CellAstar manhattan(CellHeuristic::kManhattan);
   int longer = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {

@@ -12,7 +12,7 @@ namespace sidestep::cells_test {
 
 struct Outcome {
   int solved = 0;
-  double over_shortest = 0;  // mean
+  double over_shortest = 0;  // mean excess over the shortest path
 };
 
 template <typename Planner>
@@ -78,7 +78,7 @@ TEST_CASE("the trapezoids cover exactly the free positions") {
   const ObstacleWorld obstacles(world.obstacles);
   Rng rng(seed);
   TrapezoidalDecomposition planner;
-  // A query without a straight path, which would skip the decomposition.
+  // This query has no straight path, which would skip the decomposition.
   const Vec2 start = world.queries[0].start_m, goal = world.queries[0].goal_m;
   planner.plan({obstacles, world.field, world.radius_m, start, goal}, start, {}, rng);
   PlanWorld smaller_robot = world, larger_robot = world;
@@ -106,7 +106,7 @@ TEST_CASE("the trapezoids cover exactly the free positions") {
   }
 }
 
-TEST_CASE("obstacles at and beyond the border of the field do not change the trapezoids inside") {
+TEST_CASE("obstacles on or beyond the field's border do not change the trapezoids inside") {
   PlanWorld world;
   world.obstacles = {Box{{-0.5, -2}, {0.5, 2}}};
   const Vec2 start(-3, 0), goal(3, 0);
@@ -122,7 +122,7 @@ TEST_CASE("obstacles at and beyond the border of the field do not change the tra
   const ObstacleWorld more(world.obstacles);
   const Plan<Vec2>& plan = planner.plan({more, world.field, world.radius_m, start, goal}, start, {}, rng);
   CHECK(plan.length == Approx(length_m).epsilon(1e-6));
-  // An obstacle that crosses the border, and leaves only the way below the box.
+  // This obstacle crosses the border and leaves only the way below the box.
   world.obstacles.push_back(Box{{-0.1, 1}, {0.1, 8}});
   const ObstacleWorld most(world.obstacles);
   const Plan<Vec2>& below = planner.plan({most, world.field, world.radius_m, start, goal}, start, {}, rng);
@@ -149,7 +149,8 @@ PlanWorld aligned_world(Rng& rng) {
   return world;
 }
 
-TEST_CASE("the decomposition solves whatever the visibility graph solves, even if boundaries coincide") {
+TEST_CASE(
+    "the decomposition solves every query that the visibility graph solves, even if boundaries coincide") {
   TrapezoidalDecomposition trapezoids;
   LazyVisibility visibility;
   int solved = 0, unsolvable = 0;

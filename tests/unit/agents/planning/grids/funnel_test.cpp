@@ -17,7 +17,7 @@ double length_of(const std::vector<Vec2>& path) {
   return length;
 }
 
-/// Whether the straight line from one point to another passes through vertical portals that lie between them.
+/// Whether the straight line between two points passes through all vertical portals between them.
 bool passes(const Vec2& from, const Vec2& to, std::span<const PortalEdge> portals) {
   for (const PortalEdge& portal : portals) {
     const double x = portal.left_m.x();
@@ -28,7 +28,7 @@ bool passes(const Vec2& from, const Vec2& to, std::span<const PortalEdge> portal
   return true;
 }
 
-/// The length of the shortest path over ends of portals, by comparison of all.
+/// The length of the shortest path over portal ends, found by comparing all such paths.
 double shortest_m(const Vec2& from, const std::vector<PortalEdge>& portals, const Vec2& to) {
   std::vector<Vec2> points{from};
   for (const PortalEdge& portal : portals) points.insert(points.end(), {portal.left_m, portal.right_m});
@@ -55,7 +55,7 @@ TEST_CASE("the path through portals is the shortest one") {
     const auto x = static_cast<double>(i + 1);
     const double above_m = rng.uniform(0, height_m), below_m = rng.uniform(0, height_m);
     portals.push_back({{x, middle_m + above_m}, {x, middle_m - below_m}});
-    // A portal that begins or ends where the one before does.
+    // Some portals share an end with the previous portal.
     if (i > 0 && rng.chance(0.2))
       portals[i].left_m.y() = std::max(portals[i - 1].left_m.y(), portals[i].right_m.y());
   }
@@ -67,7 +67,7 @@ TEST_CASE("the path through portals is the shortest one") {
   for (std::size_t i = 1; i < path.size(); ++i) REQUIRE(passes(path[i - 1], path[i], portals));
   CHECK(length_of(path) == Approx(shortest_m(from, portals, to)).epsilon(1e-9));
 
-  // The same path backwards.
+  // The reversed path has the same length.
   std::vector<PortalEdge> reversed;
   for (auto portal = portals.rbegin(); portal != portals.rend(); ++portal)
     reversed.push_back({portal->right_m, portal->left_m});
@@ -76,8 +76,8 @@ TEST_CASE("the path through portals is the shortest one") {
   CHECK(length_of(back) == Approx(length_of(path)).epsilon(1e-9));
 }
 
-TEST_CASE("a path turns around the common end of several portals once") {
-  // Portals like the spokes of a wheel, passed clockwise.
+TEST_CASE("a path turns only once around the common end of several portals") {
+  // The portals are arranged like the spokes of a wheel and passed clockwise.
   const Vec2 hub(0, 0);
   const std::vector<PortalEdge> portals{
       {{-1, 0}, hub}, {{-1, 1}, hub}, {{0, 1}, hub}, {{1, 1}, hub}, {{1, 0}, hub}};

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// With coordinates from -half to half.
+/// A random point whose coordinates lie between -half and half.
 inline GridPoint random_grid_point(Rng& rng, std::int32_t half) {
   const auto coordinate = [&] {
     return static_cast<std::int32_t>(rng.below(2 * std::uint64_t(half) + 1)) - half;
@@ -17,7 +17,7 @@ inline GridPoint random_grid_point(Rng& rng, std::int32_t half) {
   return {x, y};
 }
 
-/// Up to this many random segments, at most `max_length` long on each axis, divided where they cross. On a
+/// Up to this many random segments, at most `max_length` long on each axis, split where they cross. On a
 /// small grid, many share ends or are vertical.
 inline std::vector<GridSegment> random_divided_segments(Rng& rng, std::size_t count, std::int32_t half,
                                                         std::int32_t max_length) {

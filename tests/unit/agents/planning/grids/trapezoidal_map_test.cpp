@@ -11,11 +11,12 @@ namespace sidestep::trapezoidal_map_test {
 
 using Index = TrapezoidalMap::Index;
 
-/// Compares the heights of two segments at a point within the extent of both, exactly on small grids:
-/// positive if a is higher. Where they meet on the vertical line through the point, this line is slightly
-/// sheared: it intersects them right of where they meet if that is below the point, and left of it otherwise.
+/// Compares the heights of two segments at a point that lies within the extent of both: positive if a is
+/// higher. Exact on small grids. If the segments meet on the vertical line through the point, that line is
+/// sheared slightly: it then intersects them to the right of where they meet if they meet below the point,
+/// otherwise to the left.
 std::int64_t compare_heights(const GridSegment& a, const GridSegment& b, const GridPoint& at) {
-  // y = numerator / width, where a vertical segment contains the point.
+  // y = numerator / width; on a vertical segment, y is that of the point.
   const auto y_of = [&](const GridSegment& s) {
     const std::int64_t width = s.right.x - s.left.x;
     if (width == 0) return std::pair(std::int64_t{at.y}, std::int64_t{1});
@@ -28,7 +29,8 @@ std::int64_t compare_heights(const GridSegment& a, const GridSegment& b, const G
   return a_numerator < at.y * a_width ? steeper : -steeper;
 }
 
-/// The segments directly below and above a point that lies on no segment, found by comparing with all.
+/// The segments directly below and above a point that lies on no segment, found by comparing with all
+/// segments.
 std::pair<Index, Index> segments_around(const TrapezoidalMap& map, const GridPoint& p) {
   Index below = map.box_bottom(), above = map.box_top();
   for (Index i = 0; i + 2 < map.segments().size(); ++i) {
@@ -49,7 +51,7 @@ double area_of(const TrapezoidalMap& map, const TrapezoidalMap::Trapezoid& t) {
   return width_of(t) == 0 ? 0 : width_of(t) * (left + right) / 2;
 }
 
-/// Whether an end of a segment lies inside a trapezoid: then it should have been divided.
+/// Whether an end of a segment lies inside a trapezoid, which should then have been split.
 bool contains_end(const TrapezoidalMap& map, const TrapezoidalMap::Trapezoid& t) {
   for (Index i = 0; i + 2 < map.segments().size(); ++i)
     for (const GridPoint& end : {map.segments()[i].left, map.segments()[i].right})
@@ -89,7 +91,7 @@ void check_map(const TrapezoidalMap& map, std::int32_t half) {
   CHECK(area == Approx(side * side).epsilon(1e-12));
 }
 
-/// The neighbours of a trapezoid by comparison with all: those with a common part of a wall.
+/// A trapezoid's neighbours, found by comparing with all trapezoids: they share part of a wall with it.
 std::size_t count_right_neighbours(const TrapezoidalMap& map, const TrapezoidalMap::Trapezoid& t) {
   std::size_t count = 0;
   for (const TrapezoidalMap::Trapezoid& other : map.trapezoids()) {
@@ -103,7 +105,7 @@ std::size_t count_right_neighbours(const TrapezoidalMap& map, const TrapezoidalM
   return count;
 }
 
-TEST_CASE("a trapezoidal map is consistent and locates points like a comparison with all segments") {
+TEST_CASE("a trapezoidal map is consistent, and point location agrees with a comparison with all segments") {
   const std::uint64_t seed = GENERATE(range(1, 7));
   const std::size_t count = GENERATE(0, 1, 2, 10, 60);
   // On the smallest grid, most segments share ends or x coordinates with others.
@@ -139,7 +141,7 @@ TEST_CASE("a trapezoidal map is consistent and locates points like a comparison 
   CHECK((located > 100 || half == 4));
 }
 
-/// Trapezoids without the order in which they are stored.
+/// The trapezoids regardless of the order in which they are stored.
 std::vector<std::array<std::int64_t, 6>> sorted_trapezoids(const TrapezoidalMap& map) {
   std::vector<std::array<std::int64_t, 6>> keys;
   for (const TrapezoidalMap::Trapezoid& t : map.trapezoids())
@@ -168,7 +170,7 @@ TEST_CASE("the trapezoids do not depend on the order of insertion") {
   CHECK(sorted_trapezoids(second) == before);
 }
 
-/// Horizontal segments, one above and beyond the other, for which insertion in this order gives a search
+/// Horizontal segments, each above and beyond the previous one. Inserting them in this order gives a search
 /// structure of linear depth.
 std::vector<GridSegment> staircase(std::int32_t count) {
   std::vector<GridSegment> segments;
@@ -187,11 +189,11 @@ double mean_steps(const TrapezoidalMap& map, const GridPoint& half, Rng& rng) {
   return steps / kPoints;
 }
 
-TEST_CASE("locating a point takes a logarithmic number of steps, whatever the segments") {
+TEST_CASE("locating a point takes a logarithmic number of steps for any segments") {
   const bool is_staircase = GENERATE(true, false);
   double small_steps = 0;
   for (const std::int32_t count : {64, 1024, 16384}) {
-    // Expected over the random orders: de Berg et al. 2008, theorem 6.3, with its constant.
+    // The expected number over the random orders: de Berg et al. 2008, theorem 6.3, with its constant.
     double mean = 0, slowest = 0;
     constexpr std::uint64_t kSeeds = 10;
     std::size_t size = 0;
@@ -214,7 +216,7 @@ TEST_CASE("locating a point takes a logarithmic number of steps, whatever the se
     CHECK(mean < 12 * harmonic);
     CHECK(mean > std::log2(static_cast<double>(size)) / 2);
     CHECK(slowest < 2 * mean);
-    // With 16 times the segments, the number of steps grows only by a constant.
+    // With 16 times as many segments, the number of steps grows only by a constant.
     if (small_steps > 0) CHECK(mean < small_steps + 5 * std::log(16.0));
     small_steps = mean;
   }

@@ -13,7 +13,7 @@ bool is_on(const GridPoint& p, const GridSegment& s) {
          std::min(s.left.y, s.right.y) <= p.y && p.y <= std::max(s.left.y, s.right.y);
 }
 
-/// Whether segments have anything in common other than ends.
+/// Whether two segments share any point other than ends.
 bool overlap_or_cross(const GridSegment& a, const GridSegment& b) {
   const auto is_inner = [](const GridPoint& p, const GridSegment& s) {
     return p != s.left && p != s.right && is_on(p, s);
@@ -31,7 +31,7 @@ double distance(const GridPoint& p, const GridPoint& a, const GridPoint& b) {
   return std::hypot(px - along * x, py - along * y);
 }
 
-/// A triangle with its corners counter-clockwise.
+/// A triangle with its corners in counter-clockwise order.
 std::vector<GridPoint> random_triangle(Rng& rng, std::int32_t half) {
   for (;;) {
     const GridPoint a = random_grid_point(rng, half), b = random_grid_point(rng, half),
@@ -40,7 +40,7 @@ std::vector<GridPoint> random_triangle(Rng& rng, std::int32_t half) {
   }
 }
 
-TEST_CASE("divided segments have only ends in common") {
+TEST_CASE("split segments share only their ends") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   const std::int32_t half = GENERATE(4, 30, 1000, kMaxGridCoordinate);
   CAPTURE(seed, half);
@@ -53,7 +53,7 @@ TEST_CASE("divided segments have only ends in common") {
   }
 }
 
-TEST_CASE("dividing polygons does not change how many of them cover a point far from their boundaries") {
+TEST_CASE("splitting polygons does not change how many of them cover a point far from their boundaries") {
   const std::uint64_t seed = GENERATE(range(1, 11));
   CAPTURE(seed);
   Rng rng(seed);
@@ -104,7 +104,7 @@ TEST_CASE("common boundaries of two polygons are merged") {
   };
   CHECK(find(common) == boundaries.end());
   REQUIRE(find(below) != boundaries.end());
-  // Above a vertical segment is its left.
+  // For a vertical segment, the side above is its left side.
   CHECK(find(below)->winding == 1);
 }
 

@@ -9,7 +9,7 @@
 
 namespace sidestep::course_test {
 
-/// The shortest time for a distance, by trying peak speeds in small steps.
+/// The shortest time for a distance, found by trying peak speeds in small steps.
 double slowly_found_time_s(double distance_m, const MotionLimits& limits) {
   double best_s = 1e9;
   constexpr int kSteps = 20'000;
@@ -47,7 +47,7 @@ TEST_CASE("a leg obeys the limits, takes the shortest time and ends exactly at i
   CHECK(leg_times(0, MotionLimits{}).total() == Duration{0});
 }
 
-TEST_CASE("a clipped trajectory equals the whole one within its interval, and rests after it") {
+TEST_CASE("a clipped trajectory equals the whole one within its interval and rests afterwards") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -67,7 +67,7 @@ TEST_CASE("a clipped trajectory equals the whole one within its interval, and re
   }
 }
 
-TEST_CASE("a course agrees with a sampled comparison on whether a motion is clear of it") {
+TEST_CASE("a course agrees with sampling on whether a motion is clear of it") {
   int clear = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     CAPTURE(seed);

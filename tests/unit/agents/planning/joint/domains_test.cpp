@@ -16,7 +16,7 @@ struct Floor {
   JointProblem problem;
 };
 
-/// Robots and circles at random positions, free or not.
+/// Robots and circles at random positions, which need not be free.
 Floor random_floor(Rng& rng, int robots) {
   Floor floor;
   for (int i = 0; i < 3; ++i) floor.obstacles.emplace_back(Circle{random_position(rng, 1.5), 0.2});
@@ -29,7 +29,7 @@ Floor random_floor(Rng& rng, int robots) {
   return floor;
 }
 
-TEST_CASE("a composite motion is free exactly if the independent check of its courses says so") {
+TEST_CASE("a composite motion is free exactly if an independent check of its courses finds it free") {
   int free = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -43,7 +43,7 @@ TEST_CASE("a composite motion is free exactly if the independent check of its co
     CAPTURE(fault);
     const bool is_free = domain.check(path[0], path[1]);
     ++(is_free ? free : blocked);
-    // Motions that are too close for less than a millisecond may escape the sampled check.
+    // The sampled check may miss robots that are too close for less than a millisecond.
     if (is_free)
       CHECK(fault.empty());
     else if (fault.empty())
@@ -58,7 +58,7 @@ TEST_CASE("a composite motion is free exactly if the independent check of its co
   CHECK(blocked > 100);
 }
 
-TEST_CASE("an extension of the composite tree is free, and nearer to its target") {
+TEST_CASE("an extension of the composite tree is free and brings it nearer to its target") {
   int extended = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
@@ -77,14 +77,15 @@ TEST_CASE("an extension of the composite tree is free, and nearer to its target"
   CHECK(extended > 50);
 }
 
-TEST_CASE("a motion in space and time is free exactly if the independent check of both courses says so") {
+TEST_CASE(
+    "a motion in space and time is free exactly if an independent check of both courses finds it free") {
   int free = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
     Floor floor = random_floor(rng, 2);
     floor.problem.world = &floor.world;
-    // The other robot stays on the floor, clear of obstacles that it does not know.
+    // The other robot stays on the floor. It ignores obstacles, so its course is checked without them.
     const std::vector<Course> others{random_course(rng, 2, 1.8)};
     floor.problem.starts_m[1] = others[0].legs().front().at_start().position_m;
     floor.problem.goals_m[1] = others[0].rest_position_m();
@@ -114,7 +115,7 @@ TEST_CASE("a motion in space and time is free exactly if the independent check o
   CHECK(blocked > 100);
 }
 
-TEST_CASE("a state that is too early cannot be reached, but its position can") {
+TEST_CASE("a state that is too early is unreachable, but its position is reachable") {
   Rng rng(1);
   Floor floor;
   floor.problem.world = &floor.world;
@@ -132,7 +133,7 @@ TEST_CASE("a state that is too early cannot be reached, but its position can") {
   CHECK(domain.distance(domain.goal(*reached), domain.goal(domain.goal(*reached))) == 0);
 }
 
-TEST_CASE("shortening keeps a path free, and never makes it arrive later") {
+TEST_CASE("shortening keeps a path free and never makes it arrive later") {
   int shorter = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
@@ -141,7 +142,7 @@ TEST_CASE("shortening keeps a path free, and never makes it arrive later") {
     floor.problem.world = &floor.world;
     const std::vector<Course> others{random_course(rng, 2, 1.8)};
     const SpaceTimeDomain domain(floor.problem, 0, others);
-    // A detour by way of random states.
+    // A detour via random states.
     std::vector<SpaceTimeState> path{domain.start()};
     for (int i = 0; i < 40 && path.size() < 6; ++i)
       if (const auto next = domain.extend(path.back(), domain.sample(rng))) path.push_back(*next);

@@ -12,7 +12,7 @@ namespace sidestep::joint_planners_test {
 
 const Budget kBudget{20'000, 20'000};
 
-/// Free positions at least `apart_m` apart from each other and from the obstacles.
+/// Free positions that are at least `apart_m` apart from each other and from the obstacles.
 std::vector<Vec2> places(Rng& rng, const ObstacleWorld& world, std::size_t count) {
   std::vector<Vec2> result;
   while (result.size() < count) {
@@ -49,7 +49,7 @@ void check_on_random_floors() {
     const JointPlan plan = planner.plan(problem, kBudget, first);
     REQUIRE(plan.arrives());
     CHECK(fault_of(problem, obstacles, plan.courses) == "");
-    // Each trajectory satisfies the rules that the coordinator checks.
+    // Each trajectory must satisfy the rules that the coordinator checks.
     const FloorRules rules{problem.field, obstacles, problem.limits, problem.radius_m, problem.margin_m};
     for (const Course& course : plan.courses)
       for (const Trajectory& leg : course.legs()) {
@@ -84,7 +84,7 @@ struct BayFloor {
   JointProblem problem;
 };
 
-TEST_CASE("robots in a corridor pass each other by way of its bay") {
+TEST_CASE("robots in a corridor use its bay to pass each other") {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
     const BayFloor floor;
@@ -95,8 +95,8 @@ TEST_CASE("robots in a corridor pass each other by way of its bay") {
   }
 }
 
-TEST_CASE("priorities fail if the first robot's path leaves no room for the second") {
-  // The robots drive as fast as they can, so whichever is first is past the bay before the other is in it.
+TEST_CASE("prioritised planning fails if the first robot's path leaves no room for the second") {
+  // The robots drive as fast as they can, so the first one is past the bay before the other one is inside.
   const BayFloor floor;
   Rng rng(1);
   const JointPlan plan = PrioritisedPlanner().plan(floor.problem, kBudget, rng);

@@ -14,8 +14,8 @@ namespace sidestep::prm_test {
 
 using Roadmaps = Prm<DiscDomain>;
 
-/// Bellman-Ford over the roadmap's edges that are free in this world: the shortest path between its last two
-/// nodes.
+/// The shortest path between the roadmap's last two nodes, by Bellman-Ford over the edges that are free in
+/// this world.
 double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
   std::vector<double> length(map.size(), std::numeric_limits<double>::infinity());
   length[map.size() - 2] = 0;
@@ -34,7 +34,7 @@ double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
   return length.back();
 }
 
-TEST_CASE("roadmaps find valid paths in all worlds, the same ones from the same seed") {
+TEST_CASE("roadmaps find valid paths in all worlds, and the same seed gives the same paths") {
   const auto seed = GENERATE(1u, 2u);
   const PrmSettings radial{.connection = {.method = Connection::kRadial, .neighbours = 8}};
   const PrmSettings within{.connection = {.method = Connection::kRadius}};
@@ -90,7 +90,7 @@ TEST_CASE("a query returns the roadmap's shortest path, even after obstacles hav
   CHECK(compared >= 10);
 }
 
-/// A wall with a gap and a passage at its end, and a box that closes the gap:
+/// A wall with a gap and a passage at its end. A box closes the gap:
 ///
 ///     |    .    |
 ///     |    #    |
@@ -124,7 +124,7 @@ bool goes_through_gap(const std::vector<Vec2>& path) {
   return false;
 }
 
-/// The shortest path between the last two nodes on a new roadmap of the same nodes.
+/// The shortest path between the last two nodes on a new roadmap with the same nodes.
 double shortest_on_new(const Roadmap<DiscDomain>& old, const DiscDomain& domain) {
   Roadmap<DiscDomain> fresh;
   for (std::uint32_t node = 0; node < old.size(); ++node)
@@ -133,7 +133,7 @@ double shortest_on_new(const Roadmap<DiscDomain>& old, const DiscDomain& domain)
 }
 
 TEST_CASE("a dynamic roadmap uses a gap that was closed when the roadmap was built") {
-  Distribution same_nodes, new_nodes;  // length relative to that in a new roadmap
+  Distribution same_nodes, new_nodes;  // length relative to that on a new roadmap
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
     GapWorld gap;
@@ -143,7 +143,7 @@ TEST_CASE("a dynamic roadmap uses a gap that was closed when the roadmap was bui
     REQUIRE(closed.arrives());
     REQUIRE_FALSE(goes_through_gap(closed.states));
     gap.open();
-    // With this budget no node is added.
+    // With this budget, no node is added.
     const Budget budget{.nodes = planner.roadmap().size()};
     const Plan<Vec2> opened = planner.plan(gap.domain(), gap.start_m, budget, rng);
     REQUIRE(opened.arrives());
@@ -160,14 +160,12 @@ TEST_CASE("a dynamic roadmap uses a gap that was closed when the roadmap was bui
   CAPTURE(same_nodes.median(), same_nodes.quantile(1), new_nodes.median(), new_nodes.quantile(1));
   CHECK(same_nodes.median() < 1.01);
   CHECK(same_nodes.quantile(1) < 1.1);
-  // A new roadmap can have nodes in the gap.
+  // A new roadmap may have nodes in the gap.
   CHECK(new_nodes.median() < 1.1);
   CHECK(new_nodes.quantile(1) < 1.25);
 }
 
-TEST_CASE(
-    "an old roadmap that keeps all blocked motions is as good as a new one on its nodes once obstacles "
-    "leave") {
+TEST_CASE("an old roadmap that keeps all blocked motions is as good as a new one once obstacles leave") {
   const auto seed = GENERATE(1u, 2u, 3u);
   PlanWorld world = make_world("circles", 15, seed);
   ObstacleWorld obstacles(world.obstacles);
@@ -191,11 +189,11 @@ TEST_CASE(
     ++compared;
   }
   CHECK(compared >= 8);
-  // Motions that are blocked in this world are edges, but not free ones.
+  // Motions that are blocked in this world are edges, but not free edges.
   CHECK(planner.roadmap().edges().size() > edges);
 }
 
-TEST_CASE("a roadmap of a world that does not change does not use blocked motions") {
+TEST_CASE("a roadmap of an unchanging world does not use blocked motions") {
   const auto seed = GENERATE(1u, 2u);
   const PlanWorld world = make_world("circles", 15, seed);
   const ObstacleWorld obstacles(world.obstacles);
@@ -229,7 +227,7 @@ TEST_CASE("radial connection joins a node with one neighbour in each sector") {
   CHECK(sectors.size() == 8);
 }
 
-TEST_CASE("connection within a radius joins a node with all visible nodes there") {
+TEST_CASE("connection within a radius joins a node with all visible nodes within that radius") {
   const auto seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   const PlanWorld world = make_world("circles", 1, seed);
@@ -250,7 +248,7 @@ TEST_CASE("connection within a radius joins a node with all visible nodes there"
   CHECK(joined > 100);
 }
 
-TEST_CASE("a roadmap built ahead equals the one that the first query would build") {
+TEST_CASE("a roadmap built in advance equals the one that the first query would build") {
   const PlanWorld world = make_world("circles", 1, 3);
   const ObstacleWorld obstacles(world.obstacles);
   const auto& [start, goal] = world.queries[0];

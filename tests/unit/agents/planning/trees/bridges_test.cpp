@@ -36,7 +36,7 @@ double shortest_by_brute_force(const Tree& a, const Tree& b,
   return d[0][a.size()];
 }
 
-TEST_CASE("the path over bridges is the shortest over the union of the trees") {
+TEST_CASE("the path over bridges is the shortest in the union of the trees") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 60));
   CAPTURE(seed);
   Rng rng(seed);

@@ -41,7 +41,7 @@ void compare(std::uint64_t seed) {
   }
 }
 
-TEST_CASE("the K-D tree finds the same neighbour as linear search") {
+TEST_CASE("the K-D tree finds the same neighbour as a linear search") {
   const auto seed = GENERATE(range<std::uint64_t>(0, 8));
   compare<2>(seed);
   compare<3>(seed);

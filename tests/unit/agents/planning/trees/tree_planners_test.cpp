@@ -16,7 +16,7 @@ bool connects(const Plan<State>& plan, const State& start, const State& goal) {
   return plan.states.front() == start && plan.states.back() == goal;
 }
 
-/// Plans every query of every world twice; compares, measures and checks the paths.
+/// Plans every query of every world twice, compares the two paths and checks them.
 template <typename Planner, typename Settings>
 void plan_all_worlds(const Settings& settings, std::uint64_t seed, double min_solved) {
   for (const std::string& name : world_names()) {
@@ -49,7 +49,7 @@ void plan_all_worlds(const Settings& settings, std::uint64_t seed, double min_so
   }
 }
 
-/// Two halves of the cube, separated by a wall of balls, with or without a hole.
+/// Two halves of the cube that are separated by a wall of balls, with or without a hole.
 BallDomain divided_cube(bool with_hole) {
   std::vector<BallDomain::Ball> wall;
   for (int i = -5; i <= 5; ++i)
@@ -60,17 +60,17 @@ BallDomain divided_cube(bool with_hole) {
 
 const BallDomain::State kCubeStart{-0.8, -0.8, 0.8};
 
-TEST_CASE("a tree finds valid paths in all worlds, the same ones from the same seed") {
+TEST_CASE("a tree finds valid paths in all worlds, and the same seed gives the same paths") {
   const auto seed = GENERATE(1u, 2u, 3u);
   plan_all_worlds<Errt<DiscDomain>>(ErrtSettings{.cache_capacity = 0}, seed, 0.8);
 }
 
-TEST_CASE("a tree with a cache finds valid paths in all worlds, the same ones from the same seed") {
+TEST_CASE("a tree with a cache finds valid paths in all worlds, and the same seed gives the same paths") {
   const auto seed = GENERATE(1u, 2u, 3u);
   plan_all_worlds<Errt<DiscDomain>>(ErrtSettings{}, seed, 0.8);
 }
 
-TEST_CASE("two trees find valid paths in all worlds, the same ones from the same seed") {
+TEST_CASE("two trees find valid paths in all worlds, and the same seed gives the same paths") {
   const auto seed = GENERATE(1u, 2u, 3u);
   plan_all_worlds<BidirectionalErrt<DiscDomain>>(BidirectionalErrtSettings{}, seed, 0.9);
   plan_all_worlds<BidirectionalErrt<DiscDomain>>(BidirectionalErrtSettings{.bridges = 4}, seed, 0.9);
@@ -92,8 +92,7 @@ TEST_CASE("tree planners work in any domain") {
   }
 }
 
-TEST_CASE(
-    "a planner that runs out of budget returns a path to the nearest point to the goal that it reached") {
+TEST_CASE("a planner that runs out of budget returns a path to the reached point nearest to the goal") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(seed);
   const BallDomain domain = divided_cube(false);

@@ -40,14 +40,14 @@ TEST_CASE("a full cache drops its oldest waypoints") {
 TEST_CASE("a full cache drops the least recently used waypoints") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
-  cache.use(0);  // a plan grew towards 1
+  cache.use(0);  // a plan grew towards waypoint 1
   cache.store({5}, rng);
   CHECK(contents(cache) == std::set{1, 3, 4, 5});
   cache.store({6, 7}, rng);
   CHECK(contents(cache) == std::set{1, 5, 6, 7});
 }
 
-TEST_CASE("a full cache drops its oldest waypoints if a plan used them all") {
+TEST_CASE("a full cache drops its oldest waypoints if a plan used all of them") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
   for (std::size_t i = 0; i < 4; ++i) cache.use(i);
@@ -55,7 +55,7 @@ TEST_CASE("a full cache drops its oldest waypoints if a plan used them all") {
   CHECK(contents(cache) == std::set{3, 4, 5, 6});
 }
 
-TEST_CASE("a cache of the whole plan holds only the last plan") {
+TEST_CASE("a whole-plan cache holds only the last plan") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kWholePlan, rng);
   CHECK(contents(cache) == std::set{3, 4});
@@ -63,7 +63,7 @@ TEST_CASE("a cache of the whole plan holds only the last plan") {
   CHECK(contents(cache) == std::set{5, 6, 7});
 }
 
-TEST_CASE("random replacement drops each old waypoint equally often") {
+TEST_CASE("random replacement drops all old waypoints equally often") {
   Rng rng(3);
   int kept[4] = {};
   for (int round = 0; round < 4000; ++round) {

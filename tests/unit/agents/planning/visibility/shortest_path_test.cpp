@@ -10,9 +10,9 @@
 
 namespace sidestep::shortest_path_test {
 
-/// Independent slow reference: Dijkstra on a grid whose cells are joined with all cells up to three cells
-/// away, checked by sampling. Its paths are at most 1.4 % longer than the shortest path with the grid's width
-/// as extra clearance.
+/// Independent slow reference: Dijkstra on a grid. Each cell is joined with all cells up to three cells away,
+/// and joins are checked by sampling. Its paths are at most 1.4 % longer than the shortest path with one grid
+/// width of extra clearance.
 class ReferenceGrid {
  public:
   ReferenceGrid(const PlanWorld& world, double step_m, double min_separation_m)
@@ -25,7 +25,7 @@ class ReferenceGrid {
       for (int j = 0; j < cells_; ++j) free_[index(i, j)] = is_free(inflated_world, centre(i, j));
   }
 
-  /// Infinite without a path.
+  /// Infinite if there is no path.
   double length_m(const Vec2& start, const Vec2& goal) const {
     std::vector<double> length(free_.size(), std::numeric_limits<double>::infinity());
     using Item = std::tuple<double, int, int>;
@@ -104,7 +104,7 @@ Shortest plan_both(const PlanWorld& world, const Vec2& start, const Vec2& goal) 
   return {graph.shortest_m(), plan.length, lazy_plan.length};
 }
 
-/// Walls that continue others, begin on others or at the field's border, or partly overlap others; boxes and
+/// Walls that continue other walls, start at walls or at the field's border, or overlap partly; boxes and
 /// triangles with a corner on a wall.
 std::vector<Shape> joined_walls(Rng& rng, std::size_t count) {
   std::vector<Segment> walls;
@@ -152,7 +152,7 @@ void check_agreement(const PlanWorld& world, Rng& rng, std::size_t queries) {
   }
 }
 
-TEST_CASE("the shortest path around a circle is two tangents and an arc") {
+TEST_CASE("the shortest path around a circle consists of two tangents and an arc") {
   // start ---.._  _..--- goal, both 2 m from the centre of a circle of 0.4 m; the robot's radius is 0.1 m
   const auto [exact, polyline, lazy] = plan_both(world_of({Circle{{0, 0}, 0.4}}), {-2, 0}, {2, 0});
   const double expected = 2 * std::sqrt(4 - 0.25) + 0.5 * (std::numbers::pi - 2 * std::acos(0.25));
@@ -206,7 +206,7 @@ TEST_CASE("lazy and full visibility graphs agree in all worlds") {
   }
 }
 
-TEST_CASE("the shortest path is no longer than on a fine grid and not much shorter") {
+TEST_CASE("the shortest path is no longer than on a fine grid, and not much shorter") {
   const auto seed = GENERATE(4u, 5u);
   for (const std::string name : {"circles", "u"}) {
     const PlanWorld world = make_world(name, 3, seed);
@@ -241,7 +241,7 @@ TEST_CASE("visibility graphs report that no path exists") {
   CHECK(plan.states.back().norm() < 2.5);
 }
 
-TEST_CASE("all tangents of a full visibility graph are free even if an obstacle covers the field's centre") {
+TEST_CASE("a full visibility graph has only free tangents even if an obstacle covers the field's centre") {
   const auto seed = GENERATE(1u, 2u);
   PlanWorld world = make_world("circles", 1, seed);
   world.obstacles.push_back(Circle{{0.1, 0}, 0.5});
@@ -275,7 +275,7 @@ TEST_CASE("lazy and full visibility graphs agree for touching and overlapping wa
   check_agreement(world, rng, 6);
 }
 
-TEST_CASE("the shortest path around an angled wall turns once at its corner") {
+TEST_CASE("the shortest path around an angled wall turns once, at its corner") {
   // start |
   //       |____  goal below
   const Segment vertical{{0, 5}, {0, 0}}, horizontal{{0, 0}, {4, 0}};

@@ -7,7 +7,7 @@
 
 namespace sidestep::costs_test {
 
-TEST_CASE("discs in cells that a shape does not block never touch it, and no cell far away is blocked") {
+TEST_CASE("discs at free cells never touch the shape, and no cell far away is blocked") {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -28,7 +28,7 @@ TEST_CASE("discs in cells that a shape does not block never touch it, and no cel
   }
 }
 
-TEST_CASE("occupied cells block the same cells as boxes of their size") {
+TEST_CASE("occupied cells block the same cells as boxes of the same size") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -50,7 +50,7 @@ TEST_CASE("occupied cells block the same cells as boxes of their size") {
   }
 }
 
-TEST_CASE("shapes and bitmaps outside the grid block nothing, invalid ones are rejected") {
+TEST_CASE("shapes and bitmaps outside the grid block nothing, and invalid ones are refused") {
   CostGrid grid({.columns = 5, .rows = 5});
   block_shape(grid, Circle{{10, 10}, 1}, 0.5);
   block_shape(grid, Circle{{-10, 0.2}, 1}, 0.5);
@@ -61,7 +61,8 @@ TEST_CASE("shapes and bitmaps outside the grid block nothing, invalid ones are r
   CHECK_THROWS_AS(block_shape(grid, Circle{{0, 0}, 1}, -0.1), std::invalid_argument);
 }
 
-/// The risk by trying many times: the best agreement of a time at which the cell is covered with the arrival.
+/// Slow reference for the risk: samples times when the disc covers the cell and keeps the best match with the
+/// arrival.
 double sampled_risk(const MovingDisc& disc, const RiskSettings& settings, const Vec2& robot_m,
                     const Vec2& at) {
   double risk = 0;
@@ -76,7 +77,7 @@ double sampled_risk(const MovingDisc& disc, const RiskSettings& settings, const 
   return risk;
 }
 
-TEST_CASE("risk is highest where robot and person meet") {
+TEST_CASE("risk is highest where the robot and a person meet") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -94,7 +95,7 @@ TEST_CASE("risk is highest where robot and person meet") {
   }
 }
 
-TEST_CASE("removed discs restore costs and the field exactly") {
+TEST_CASE("removing discs restores the costs and the field exactly") {
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

@@ -7,12 +7,12 @@
 
 namespace sidestep::descent_test {
 
-/// Whether a segment passes through the interior of a blocked cell, by checking all blocked cells.
+/// Whether a segment crosses the interior of a blocked cell, found by checking all blocked cells.
 bool crosses_blocked(const CostGrid& grid, const Vec2& from_m, const Vec2& to_m) {
   const GridLayout& layout = grid.layout();
   for (GridCell cell = 0; cell < layout.size(); ++cell) {
     if (!grid.is_blocked(cell)) continue;
-    // Clips the segment to the cell, which is made a little smaller (Liang, Barsky 1984).
+    // Clips the segment to a slightly smaller cell (Liang, Barsky 1984).
     const Vec2 half = Vec2(0.5, 0.5) * layout.resolution_m * (1 - 1e-6), along = to_m - from_m;
     const Vec2 low = layout.centre_of(cell) - half - from_m, high = layout.centre_of(cell) + half - from_m;
     double enter = 0, leave = 1;
@@ -62,7 +62,7 @@ TEST_CASE("traced paths end at the goal and cross no obstacle") {
   }
 }
 
-TEST_CASE("on free floor, a path by fast marching is nearly straight") {
+TEST_CASE("on a free floor, a fast-marching path is nearly straight") {
   const CostGrid grid({.columns = 120, .rows = 120, .resolution_m = 0.05});
   const Vec2 goal(1.03, 2.22);
   const EStar field = propagated(grid, goal);
@@ -89,7 +89,7 @@ TEST_CASE("paths avoid expensive regions if the way around is cheaper") {
   for (const Vec2& at : path) REQUIRE(signed_distance(at, Box{{2, 2}, {4, 4}}) > -0.05);
 }
 
-TEST_CASE("there is no direction and no path where the goal cannot be reached") {
+TEST_CASE("where the goal is unreachable, there is no direction and no path") {
   CostGrid grid({.columns = 10, .rows = 10});
   for (std::uint32_t row = 0; row < 10; ++row) grid.block(grid.layout().cell(5, row));
   const EStar field = propagated(grid, {0.85, 0.5});

@@ -5,7 +5,7 @@
 
 namespace sidestep::field_test {
 
-/// The reference: sweeps over all cells, in double precision, until nothing changes.
+/// Reference: sweeps over all cells in double precision until nothing changes.
 std::vector<double> swept(const CostGrid& grid, GridCell goal, GridKernel kernel) {
   const GridLayout& layout = grid.layout();
   constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -61,7 +61,7 @@ TEST_CASE("a field solves the kernel's equations") {
   }
 }
 
-TEST_CASE("the wavefront NF1 counts the same number of steps as E* with the NF1 kernel") {
+TEST_CASE("the NF1 wavefront counts as many steps as E* with the NF1 kernel") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -82,7 +82,7 @@ TEST_CASE("the wavefront NF1 counts the same number of steps as E* with the NF1 
   CHECK_THROWS_AS(wave.propagate(CostGrid({.columns = 3, .rows = 3}), 9), std::invalid_argument);
 }
 
-TEST_CASE("cells near the goal that see it have exact distances") {
+TEST_CASE("cells near the goal and in its line of sight have exact distances") {
   // . . # .    The goal sees past corners, not through walls: the wall's right side is in its shadow.
   // . . # .
   // G . # .
@@ -94,7 +94,7 @@ TEST_CASE("cells near the goal that see it have exact distances") {
   for (GridCell cell = 0; cell < layout.size(); ++cell) {
     const double distance = (layout.centre_of(cell) - goal).norm() / layout.resolution_m;
     const Vec2 at = layout.in_cells(layout.centre_of(cell)), from = layout.in_cells(goal);
-    // The points where the line from the goal crosses the wall's sides, at x = 10 and x = 11.
+    // The points where the line of sight from the goal crosses the wall's sides, at x = 10 and x = 11.
     const auto height_at = [&](double x) {
       return from.y() + (at.y() - from.y()) * (x - from.x()) / (at.x() - from.x());
     };
@@ -108,7 +108,7 @@ TEST_CASE("cells near the goal that see it have exact distances") {
   }
 }
 
-TEST_CASE("exact distances do not cross regions with a different cost") {
+TEST_CASE("exact distances do not extend across regions with a different cost") {
   CostGrid grid({.columns = 30, .rows = 9});
   const GridLayout& layout = grid.layout();
   for (std::uint32_t row = 0; row < 9; ++row) grid.set_cost(layout.cell(10, row), 7);

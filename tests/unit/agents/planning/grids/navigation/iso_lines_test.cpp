@@ -6,7 +6,7 @@
 
 namespace sidestep::iso_lines_test {
 
-TEST_CASE("iso-lines of a free floor are circles around the goal") {
+TEST_CASE("iso-lines on a free floor are circles around the goal") {
   const CostGrid grid({.columns = 60, .rows = 50, .resolution_m = 0.1, .origin_m = {-2, 1}});
   const Vec2 goal = grid.layout().centre_of(grid.layout().cell(22, 31));
   const EStar field = propagated(grid, goal, {.kernel = GridKernel::kLineOfSight});
@@ -21,7 +21,7 @@ TEST_CASE("iso-lines of a free floor are circles around the goal") {
   CHECK_THROWS_AS(iso_lines(field, 0), std::invalid_argument);
 }
 
-TEST_CASE("iso-lines leave out cells that are blocked or not reached") {
+TEST_CASE("iso-lines omit blocked and unreached cells") {
   CostGrid grid({.columns = 20, .rows = 10});
   for (std::uint32_t row = 0; row < 10; ++row) grid.block(grid.layout().cell(10, row));
   const double wall_m = 10 * grid.layout().resolution_m;

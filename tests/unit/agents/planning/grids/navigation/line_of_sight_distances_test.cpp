@@ -5,7 +5,7 @@
 
 namespace sidestep::sight_test {
 
-/// The reference: straight motions between all corners of cells, each compared with all blocked cells.
+/// Reference: checks straight motions between all cell corners against all blocked cells.
 class AllPairs {
  public:
   AllPairs(const CostGrid& grid, const Vec2& goal_m)
@@ -43,12 +43,12 @@ class AllPairs {
     return x < 0 || y < 0 || x >= columns_ || y >= rows_ ||
            grid_.is_blocked(static_cast<GridCell>(y * columns_ + x));
   }
-  /// Whether two blocked cells meet at a corner.
+  /// Whether two blocked cells meet at this corner.
   bool is_pinched(int x, int y) const {
     return (is_blocked(x, y) && is_blocked(x - 1, y - 1)) || (is_blocked(x - 1, y) && is_blocked(x, y - 1));
   }
-  /// Whether a segment avoids the interior of a square: when clipped to the square, nothing or only a part of
-  /// its border is left.
+  /// Whether a segment avoids the interior of a square: clipping it to the square leaves nothing or only part
+  /// of the square's border.
   static bool avoids(const Vec2& a, const Vec2& b, int x, int y) {
     double first = 0, last = 1;
     const Vec2 along = b - a, low(x, y);
@@ -67,7 +67,7 @@ class AllPairs {
     for (int y = 0; y < rows_; ++y)
       for (int x = 0; x < columns_; ++x)
         if (is_blocked(x, y) && !avoids(a, b, x, y)) return false;
-    // Between two blocked cells that meet at a corner, or share an edge.
+    // A motion between two blocked cells that meet at a corner or share an edge.
     for (int y = 0; y <= rows_; ++y) {
       for (int x = 0; x <= columns_; ++x) {
         const Vec2 at(x, y);
@@ -112,7 +112,7 @@ LineOfSightDistances lengths_of(const CostGrid& grid, const Vec2& goal_m) {
   return lengths;
 }
 
-TEST_CASE("lengths by line of sight equal those over all straight motions between corners") {
+TEST_CASE("line-of-sight distances equal the shortest over all straight motions between corners") {
   const double blocked = GENERATE(0.0, 0.1, 0.2, 0.4);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(blocked, seed);
@@ -137,7 +137,7 @@ TEST_CASE("lengths by line of sight equal those over all straight motions betwee
   }
 }
 
-TEST_CASE("paths by line of sight are free, and as long as their stated lengths") {
+TEST_CASE("line-of-sight paths are free and as long as stated") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

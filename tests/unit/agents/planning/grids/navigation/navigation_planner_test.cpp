@@ -11,7 +11,7 @@ NavigationSettings with_kernel(GridKernel kernel) { return {.field = {.kernel = 
 
 struct Totals {
   int solved = 0;
-  double over_shortest = 0;  // mean
+  double over_shortest = 0;  // mean excess over the shortest path
 };
 
 Totals plan_queries(const PlanWorld& world, const NavigationSettings& settings) {
@@ -39,14 +39,14 @@ Totals plan_queries(const PlanWorld& world, const NavigationSettings& settings) 
 }
 
 TEST_CASE(
-    "navigation functions lead to the goal in all worlds, E* on paths little longer than the shortest") {
+    "navigation functions lead to the goal in all worlds, and E* paths are hardly longer than the shortest") {
   const auto seed = GENERATE(1u, 2u, 3u);
   for (const std::string& name : world_names()) {
     CAPTURE(name, seed);
     const PlanWorld world = make_world(name, 10, seed);
     const Totals estar = plan_queries(world, {});
     const Totals nf1 = plan_queries(world, with_kernel(GridKernel::kNf1));
-    // The passages of the narrow worlds may be narrower than the cells require.
+    // The passages of the narrow worlds may be too narrow for cells.
     CHECK((estar.solved >= 9 || name == "gap" || name == "trap"));
     CHECK(nf1.solved == estar.solved);
     if (estar.solved == 0) continue;
@@ -70,7 +70,7 @@ void change(ObstacleWorld& world, Rng& rng) {
   world.add(Circle{{x, y}, rng.uniform(0.1, 0.5)});
 }
 
-TEST_CASE("after obstacles have moved, the path is exactly that of a newly created planner") {
+TEST_CASE("after obstacles have moved, the path equals that of a newly created planner") {
   const auto kernel = GENERATE(GridKernel::kLsm, GridKernel::kNf1);
   const auto seed = GENERATE(1u, 2u, 3u);
   const PlanWorld world = make_world(seed == 2 ? "mixed" : "circles", 6, seed);
@@ -80,7 +80,7 @@ TEST_CASE("after obstacles have moved, the path is exactly that of a newly creat
   int compared = 0;
   for (int i = 0; i < 40; ++i) {
     change(obstacles, rng);
-    // The goal and the radius change now and then, the start always does.
+    // The start changes in every round, the goal and the radius only sometimes.
     const auto& [from, goal] = world.queries[static_cast<std::size_t>(i / 7)];
     const double y = rng.uniform(-0.5, 0.5), x = rng.uniform(-0.5, 0.5);
     const Vec2 start = from + Vec2(x, y);
@@ -99,7 +99,7 @@ TEST_CASE("after obstacles have moved, the path is exactly that of a newly creat
 }
 
 TEST_CASE("a replan computes only the cells whose values change") {
-  // The start is to the left, the goal to the right of a wall. A circle moves behind the goal.
+  // The start is to the left of a wall, the goal to the right. A circle moves behind the goal.
   ObstacleWorld obstacles({Box{{-0.1, -2}, {0.1, 2}}, Circle{{4, 0}, 0.2}});
   const Vec2 start(-2, 0.1), goal(2, 0);
   NavigationPlanner planner;
@@ -119,8 +119,9 @@ TEST_CASE("a replan computes only the cells whose values change") {
   CHECK(next < first / 10);
 }
 
-TEST_CASE("starts and goals in blocked cells are joined to free ones") {
-  // Both touch the wall nearly, so their cells are blocked, and the goal's by the field's edge as well.
+TEST_CASE("starts and goals in blocked cells are joined to free cells") {
+  // Start and goal almost touch the wall, so their cells are blocked. The field's edge also blocks the goal's
+  // cell.
   //  ____________
   //      |      g|
   //     s|       |
@@ -138,7 +139,7 @@ TEST_CASE("starts and goals in blocked cells are joined to free ones") {
   CHECK(is_valid_path(world, plan.states, 1e-9));
 }
 
-TEST_CASE("a start deep in an obstacle, or far outside the field, is left") {
+TEST_CASE("a path from deep inside an obstacle or far outside the field leads out") {
   const ObstacleWorld obstacles({Circle{{0, 0}, 1}});
   NavigationPlanner planner;
   Rng rng(1);
@@ -158,8 +159,8 @@ TEST_CASE("a start deep in an obstacle, or far outside the field, is left") {
   }
 }
 
-TEST_CASE("a goal in a free cell that is cut off from the others is joined to one that is not") {
-  // The passages around the goal's cell are wide enough for the disc, but not for cells.
+TEST_CASE("a goal in a cut-off free cell is joined to a connected free cell") {
+  // The passages around the goal's cell are wide enough for the disc but too narrow for cells.
   const PlanWorld world{"cell",
                         {10, 10},
                         0.1,
@@ -178,7 +179,7 @@ TEST_CASE("a goal in a free cell that is cut off from the others is joined to on
   CHECK(is_valid_path(world, plan.states, 1e-9));
 }
 
-TEST_CASE("without a path, the plan reports that and stays at the start") {
+TEST_CASE("without a path, the plan says so and stays at the start") {
   //  +---+
   //  | g |    s
   //  +---+
@@ -201,7 +202,7 @@ TEST_CASE("without a path, the plan reports that and stays at the start") {
   CHECK(plan(start, goal).arrives());
 }
 
-/// The largest distance of a path from the line y = 0 between two coordinates x.
+/// The path's largest distance from the line y = 0 between two x coordinates.
 double farthest_from_middle_m(const std::vector<Vec2>& path_m, double from_x_m, double to_x_m) {
   double farthest_m = 0;
   for (const Vec2& at : path_m)
@@ -209,7 +210,7 @@ double farthest_from_middle_m(const std::vector<Vec2>& path_m, double from_x_m, 
   return farthest_m;
 }
 
-TEST_CASE("with a cost of clearance, paths keep to the middle of a corridor and move with it") {
+TEST_CASE("with a clearance cost, paths keep to the middle of a corridor, even if the corridor moves") {
   //  ###############   start and goal lie at opposite walls
   //              g
   //   s
@@ -223,7 +224,7 @@ TEST_CASE("with a cost of clearance, paths keep to the middle of a corridor and 
     const Vec2 start(-3, shift_m - 0.45), goal(3, shift_m + 0.45);
     const DiscDomain domain(obstacles, {10, 10}, 0.1, start, goal);
     CAPTURE(shift_m);
-    REQUIRE(domain.check(start, goal));  // the straight path
+    REQUIRE(domain.check(start, goal));  // the straight path is free
     std::vector<Vec2> path_m = planner.plan(domain, start, {}, rng).states;
     REQUIRE(path_m.back() == goal);
     for (Vec2& at : path_m) at.y() -= shift_m;
@@ -232,7 +233,7 @@ TEST_CASE("with a cost of clearance, paths keep to the middle of a corridor and 
   }
 }
 
-TEST_CASE("on floors without room for a disc, there is no path") {
+TEST_CASE("floors without room for the disc have no path") {
   const ObstacleWorld nothing({Circle{{0, 0}, 0.1}});
   NavigationPlanner planner;
   Rng rng(1);

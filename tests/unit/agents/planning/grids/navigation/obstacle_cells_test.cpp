@@ -35,7 +35,7 @@ CostGrid blocked_by(const ObstacleWorld& world, double radius_m) {
   return grid;
 }
 
-TEST_CASE("the blocked cells follow obstacles that appear, move and disappear, and another world") {
+TEST_CASE("the blocked cells follow obstacles that appear, move and disappear, and a replaced world") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -60,7 +60,7 @@ TEST_CASE("the blocked cells follow obstacles that appear, move and disappear, a
   }
 }
 
-TEST_CASE("only cells of obstacles that have changed are visited") {
+TEST_CASE("only cells of changed obstacles are visited") {
   ObstacleWorld world({Circle{{1, 1}, 0.3}, Circle{{2, 1}, 0.3}});
   ObstacleCells cells(kLayout, 0.1);
   cells.update(world);
@@ -91,7 +91,7 @@ TEST_CASE("every cell that a shape blocks is found once") {
   }
 }
 
-TEST_CASE("obstacle cells need a valid layout and radius") {
+TEST_CASE("obstacle cells require a valid layout and radius") {
   CHECK_THROWS_AS(ObstacleCells({.columns = 0, .rows = 3}, 0.1), std::invalid_argument);
   CHECK_THROWS_AS(ObstacleCells(kLayout, -0.1), std::invalid_argument);
   CHECK_THROWS_AS(ObstacleCells(kLayout, std::nan("")), std::invalid_argument);

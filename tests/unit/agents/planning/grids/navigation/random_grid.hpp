@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// A grid with random blocked cells and, in a third of the grids, random costs.
+/// A grid with random blocked cells. One third of the grids also have random costs.
 inline CostGrid random_grid(Rng& rng, std::uint32_t columns, std::uint32_t rows, double blocked) {
   CostGrid grid({.columns = columns, .rows = rows, .resolution_m = 0.1, .origin_m = {-2, 1}});
   const bool is_weighted = rng.chance(0.33);

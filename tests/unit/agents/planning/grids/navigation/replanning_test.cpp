@@ -4,7 +4,7 @@
 
 namespace sidestep::replanning_test {
 
-/// Changes the costs of a few cells: a wall, a patch, or single cells; blocked, freed or weighted.
+/// Blocks, frees or reweights a few cells: a wall, a patch, or single cells.
 void change_costs(Rng& rng, CostGrid& grid, EStar& field) {
   const GridLayout& layout = grid.layout();
   const auto column = static_cast<std::uint32_t>(rng.below(layout.columns));
@@ -24,7 +24,7 @@ void change_costs(Rng& rng, CostGrid& grid, EStar& field) {
   }
 }
 
-TEST_CASE("a replanned field equals one from scratch, bit by bit") {
+TEST_CASE("a replanned field equals one computed from scratch, bit by bit") {
   const auto kernel = GENERATE(GridKernel::kNf1, GridKernel::kAlpha, GridKernel::kLsm,
                                GridKernel::kSecondOrderLsm, GridKernel::kLineOfSight);
   const auto exact_radius_cells = GENERATE(0, 4, 20);
@@ -78,7 +78,7 @@ TEST_CASE("a field is propagated only as far as the robot") {
   field.propagate_until(near);
   const std::uint64_t first = field.expansions();
   CHECK(field.value(near) == Approx(40).epsilon(0.01));
-  CHECK(first < 6'000);  // the quarter disc of radius 40 and the part of the disc beyond the border at 20
+  CHECK(first < 6'000);  // The quarter disc of radius 40, and the part of the disc beyond the border at 20.
   field.propagate_until(near);
   CHECK(field.expansions() == first);
   field.propagate();
@@ -106,7 +106,7 @@ TEST_CASE("replanning expands only cells whose value changes") {
   }
 }
 
-TEST_CASE("a new goal begins a new field") {
+TEST_CASE("a new goal starts a new field") {
   Rng rng(3);
   CostGrid grid = random_grid(rng, 40, 30, 0.2);
   EStar field = propagated(grid, random_position(rng, grid.layout()));
@@ -131,7 +131,7 @@ TEST_CASE("E* rejects invalid input") {
   CHECK_THROWS_AS(CostGrid({.columns = 3, .rows = 4, .resolution_m = 0}), std::invalid_argument);
 }
 
-TEST_CASE("a blocked goal cannot be reached until it is freed") {
+TEST_CASE("a blocked goal is unreachable until it is freed") {
   CostGrid grid({.columns = 30, .rows = 30});
   const GridCell goal = grid.layout().cell(10, 12);
   grid.block(goal);

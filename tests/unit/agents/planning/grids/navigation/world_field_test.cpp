@@ -6,7 +6,7 @@
 
 namespace sidestep::world_field_test {
 
-TEST_CASE("cells cover the positions of the disc and leave margins narrower than a cell") {
+TEST_CASE("cells cover the disc's positions and leave margins narrower than a cell") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     Rng rng(seed);
     const double length_m = rng.uniform(0.05, 40), width_m = rng.uniform(0.05, 40);
@@ -41,7 +41,7 @@ TEST_CASE("floors whose length is a multiple of the cell size are covered comple
   CHECK(layout->resolution_m == Approx(0.05));
 }
 
-TEST_CASE("invalid settings, floors and goals of a navigation function are rejected") {
+TEST_CASE("navigation functions reject invalid settings, floors and goals") {
   CHECK_THROWS_AS(layout_of({10, 10}, 0.1, {.contact_cost = 1e7}), std::invalid_argument);
   CHECK_THROWS_AS(layout_of({10, 10}, -0.1, {}), std::invalid_argument);
   CHECK_THROWS_AS(layout_of({std::nan(""), 10}, 0.1, {}), std::invalid_argument);
@@ -49,7 +49,7 @@ TEST_CASE("invalid settings, floors and goals of a navigation function are rejec
   CHECK_THROWS_AS(field.set_goal({2, 0}), std::invalid_argument);
 }
 
-/// The costs and the values of all cells, computed from scratch: the slow way, with all obstacles.
+/// Slow reference: computes the costs and values of all cells from scratch, with all obstacles.
 EStar from_scratch(const GridLayout& layout, const ObstacleWorld& world, double radius_m,
                    const WorldFieldSettings& settings, const Vec2& goal_m) {
   CostGrid grid(layout);
@@ -59,7 +59,7 @@ EStar from_scratch(const GridLayout& layout, const ObstacleWorld& world, double 
     bool is_blocked = false;
     for (const ObstacleId id : world.obstacles()) {
       nearest_m = std::min(nearest_m, signed_distance(centre, world.shape(id)));
-      // The distance of the shape from the cell: that of the cell's edges, or 0 if the shape lies within it.
+      // The distance from the shape to the cell's edges, or 0 if the shape lies within the cell.
       const std::array<Vec2, 4> corners = corners_of(Box{centre - half, centre + half});
       for (std::size_t i = 0; i < 4; ++i)
         is_blocked |= squared_distance(Segment{corners[i], corners[(i + 1) % 4]}, world.shape(id)) <=
@@ -74,7 +74,7 @@ EStar from_scratch(const GridLayout& layout, const ObstacleWorld& world, double 
   return field;
 }
 
-TEST_CASE("costs of clearance and values follow obstacles that move") {
+TEST_CASE("clearance costs and values follow moving obstacles") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Rng rng(seed);
     const Field floor{3.4, 2.4};
