@@ -9,7 +9,7 @@
 
 #include "tests/study/table/study_table.hpp"
 
-/// A row: cells by the names of their columns.
+/// A row: cells by column name.
 using StudyRow = std::map<std::string, std::string>;
 
 /// A temporary folder for a study's files.
@@ -21,7 +21,7 @@ class StudyFolder {
   StudyFolder& operator=(const StudyFolder&) = delete;
 
   std::string path() const { return path_.string(); }
-  /// Reads the rows of a study's table, and checks the lines of its head.
+  /// Reads the rows of a study's table and checks the lines of its header.
   std::vector<StudyRow> table(const std::string& study, const std::string& name, std::uint64_t seed) const;
   bool has_png(const std::string& name) const;
 
@@ -35,15 +35,15 @@ std::vector<StudyRow> without_times(std::vector<StudyRow> rows);
 /// The number in a column of the only row with the given cells.
 double number_in(const std::vector<StudyRow>& rows, const StudyRow& cells, const std::string& column);
 
-/// Runs an experiment for a seed.
+/// Runs an experiment with a seed.
 using Experiment = std::function<sidestep::StudyTable(std::uint64_t seed, const sidestep::ProgressCallback&)>;
 
 /// Checks what holds for every experiment: each row has a cell for each column, each plot has lines with
 /// points, progress is reported up to the end, the same seed gives the same rows except for times, and a
-/// different seed gives different ones.
+/// different seed gives different rows.
 void check_experiment(const Experiment& experiment);
 
 /// The sum of a column over the rows with the value `is` in the column `where`. Fails the test if there are
-/// none.
+/// no such rows.
 double sum_of(const std::vector<StudyRow>& rows, const std::string& column, const std::string& where,
               const std::string& is);

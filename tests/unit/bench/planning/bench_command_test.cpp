@@ -7,7 +7,7 @@
 
 namespace sidestep::bench_command_test {
 
-/// The exit code of `bench planning ARGUMENTS` in one world with few queries.
+/// The exit code of `bench planning ARGUMENTS` in one world with a few queries.
 int bench(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"test", "bench", "planning"});
   std::vector<char*> argv;
@@ -29,17 +29,18 @@ std::vector<std::string> quick_with(std::initializer_list<std::string> more) {
   return arguments;
 }
 
-TEST_CASE("the planning benchmark exits with 0 when nothing is wrong") { CHECK(bench(kQuick) == 0); }
+TEST_CASE("the planning benchmark exits with 0 when nothing goes wrong") { CHECK(bench(kQuick) == 0); }
 
-TEST_CASE("the planning benchmark exits with 1 when a planner's path is not valid") {
+TEST_CASE("the planning benchmark exits with 1 when a planner returns an invalid path") {
   CHECK(bench(quick_with({"--plant", "invalid-path"})) == kExitFailure);
 }
 
-TEST_CASE("the planning benchmark exits with 1 when a namesake solves significantly fewer queries") {
+TEST_CASE(
+    "the planning benchmark exits with 1 when our planner solves significantly fewer queries than OMPL's") {
   CHECK(bench(quick_with({"--plant", "weak-namesake"})) == kExitFailure);
 }
 
-TEST_CASE("the planning benchmark refuses wrong arguments") {
+TEST_CASE("the planning benchmark rejects invalid arguments") {
   CHECK(bench({"--world", "ocean"}) == kExitUsage);
   CHECK(bench({"--planner", "dijkstra"}) == kExitUsage);
   CHECK(bench({"--plant", "roses"}) == kExitUsage);

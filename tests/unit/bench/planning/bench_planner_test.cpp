@@ -16,7 +16,7 @@ std::vector<std::string> names_of(const std::vector<BenchPlanner>& planners) {
   return names;
 }
 
-TEST_CASE("the benchmark has every planner of ours and every peer once") {
+TEST_CASE("the benchmark contains each of our planners and each OMPL planner exactly once") {
   std::vector<std::string> names = names_of(bench_planners()), expected = planner_names();
   expected.insert(expected.end(), ompl_planner_names().begin(), ompl_planner_names().end());
   std::sort(names.begin(), names.end());
@@ -24,7 +24,7 @@ TEST_CASE("the benchmark has every planner of ours and every peer once") {
   CHECK(names == expected);
 }
 
-TEST_CASE("RRT and RRTConnect are compared with OMPL's as namesakes, and nothing else is") {
+TEST_CASE("only RRT and RRTConnect are compared with OMPL planners of the same name") {
   for (const BenchPlanner& planner : bench_planners()) {
     CAPTURE(planner.name);
     const bool has_peer =
@@ -35,14 +35,14 @@ TEST_CASE("RRT and RRTConnect are compared with OMPL's as namesakes, and nothing
   }
 }
 
-TEST_CASE("the peers of selected namesakes are selected too") {
+TEST_CASE("selecting one of our planners also selects its namesake in OMPL") {
   CHECK(select_planners(bench_planners(), {}).size() == bench_planners().size());
   CHECK(names_of(select_planners(bench_planners(), {"bi-errt"})) == std::vector<std::string>{"bi-errt"});
   const auto selected = names_of(select_planners(bench_planners(), {"rrt"}));
   CHECK(selected.size() == (ompl_planner_names().empty() ? 1 : 2));
 }
 
-TEST_CASE("every planner of the benchmark answers with a valid path and its time") {
+TEST_CASE("every planner in the benchmark returns a valid path and its planning time") {
   const BenchmarkWorld world(make_world("u", 3, 1));
   for (const BenchPlanner& planner : bench_planners()) {
     CAPTURE(planner.name);
@@ -59,8 +59,8 @@ TEST_CASE("every planner of the benchmark answers with a valid path and its time
   }
 }
 
-TEST_CASE("a planner gives up a query when its time is over") {
-  // The positions are separated by a wall.
+TEST_CASE("a planner gives up on a query when its time runs out") {
+  // A wall separates start and goal.
   PlanWorld closed;
   closed.obstacles = {Box{{-0.1, -6}, {0.1, 6}}};
   closed.queries = {{{-3, 0}, {3, 0}}};
@@ -76,7 +76,7 @@ TEST_CASE("a planner gives up a query when its time is over") {
   }
 }
 
-TEST_CASE("namesakes need as many iterations as their peers") {
+TEST_CASE("our planners need as many iterations as their namesakes in OMPL") {
   const std::string world = GENERATE(as<std::string>(), "maze", "circles");
   std::vector<PlanWorld> worlds;
   for (const std::uint64_t seed : {1, 2, 3, 4}) worlds.push_back(make_world(world, 100, seed));
@@ -90,7 +90,7 @@ TEST_CASE("namesakes need as many iterations as their peers") {
   }
 }
 
-TEST_CASE("planted planners have the faults that their names state, and other names are refused") {
+TEST_CASE("broken planners have the faults that their names state, and unknown names are rejected") {
   const BenchmarkWorld world(make_world("u", 8, 1));
   const QueryFunction invalid = planted_planner("invalid-path").prepare(world, 1);
   const QueryFunction weak = planted_planner("weak-namesake").prepare(world, 1);

@@ -16,7 +16,7 @@ BenchPlanner planner_of(std::string name, const Answer& answer) {
           }};
 }
 
-/// A correct answer: the shortest path.
+/// The correct answer: the shortest path.
 TimedPlan right_answer(const BenchmarkWorld& world, const PlanQuery& query) {
   TangentGraph graph(world.obstacles, world.world.field, world.world.radius_m);
   const std::vector<Vec2> path = graph.plan(query.start_m, query.goal_m).states;
@@ -34,7 +34,7 @@ std::vector<std::string> failures(const std::vector<BenchPlanner>& planners) {
   return query_bench_failures(bench_queries(worlds, planners, 10, 1), planners);
 }
 
-TEST_CASE("the benchmark passes planners with valid paths and counts what they did") {
+TEST_CASE("the benchmark passes planners with valid paths and counts their work") {
   const BenchPlanner good = planner_of("good", right_answer);
   const std::vector<PlanWorld> worlds{make_world("u", 20, 1), make_world("u", 15, 2)};
   const auto rows = bench_queries(worlds, {good}, 10, 1);
@@ -58,7 +58,8 @@ TEST_CASE("the benchmark fails a planner whose path leads through an obstacle") 
   CHECK_THAT(found[0], StartsWith("reckless: ") && ContainsSubstring("not valid"));
 }
 
-TEST_CASE("the benchmark fails a path that is only wrong after smoothing, or does not join start and goal") {
+TEST_CASE(
+    "the benchmark fails a path that is invalid only after smoothing or does not connect start and goal") {
   const int fault = GENERATE(0, 1, 2, 3);
   CAPTURE(fault);
   const auto found =
@@ -74,13 +75,13 @@ TEST_CASE("the benchmark fails a path that is only wrong after smoothing, or doe
   CHECK_THAT(found[0], StartsWith("faulty: "));
 }
 
-TEST_CASE("the result of a planner that gave up a query is not checked") {
+TEST_CASE("the benchmark does not check the path of a planner that gave up") {
   CHECK(failures({planner_of("silent", [](const BenchmarkWorld&, const PlanQuery&) {
           return TimedPlan{};
         })}).empty());
 }
 
-TEST_CASE("the benchmark fails a namesake that solves significantly fewer queries, and only a namesake") {
+TEST_CASE("a planner with a namesake fails if it solves significantly fewer queries than that") {
   const auto gives_up_every = [](int nth) {
     return [nth, count = std::make_shared<int>(0)](const BenchmarkWorld& world, const PlanQuery& query) {
       return ++*count % nth == 0 ? TimedPlan{} : right_answer(world, query);
@@ -94,11 +95,11 @@ TEST_CASE("the benchmark fails a namesake that solves significantly fewer querie
   const auto found = failures({peer, namesake(planner_of("weak", gives_up_every(4)), "peer")});
   REQUIRE(found.size() == 1);
   CHECK_THAT(found[0], StartsWith("weak solved 30 of 40 queries, its peer peer 40 of 40"));
-  // The peer may be the weak one.
+  // The OMPL planner may be the weaker one.
   CHECK(failures({planner_of("weak peer", gives_up_every(4)), namesake(peer, "weak peer")}).empty());
 }
 
-TEST_CASE("every planner gets every query once, in blocks in an order shuffled by the seed") {
+TEST_CASE("every planner gets every query once, in blocks whose order the seed shuffles") {
   constexpr std::size_t kQueries = 50 * kBlock;
   const auto sequence = [](std::uint64_t seed) {
     std::vector<std::pair<std::string, double>> asked;
@@ -113,7 +114,7 @@ TEST_CASE("every planner gets every query once, in blocks in an order shuffled b
   };
   const auto asked = sequence(1);
   const PlanWorld world = make_world("empty", kQueries, 1);
-  REQUIRE(asked.size() == 3 * (kQueries + 1));  // one each to warm up
+  REQUIRE(asked.size() == 3 * (kQueries + 1));  // includes one warm-up query per planner
   std::set<std::string> orders;
   for (std::size_t block = 0; block < kQueries; block += kBlock) {
     std::string order;
@@ -133,7 +134,7 @@ TEST_CASE("every planner gets every query once, in blocks in an order shuffled b
   CHECK(sequence(2) != asked);
 }
 
-TEST_CASE("a table gives a 99th percentile only for a thousand queries, and ratios of medians") {
+TEST_CASE("a table gives a 99th percentile only for at least a thousand queries, and ratios of medians") {
   const std::vector<BenchPlanner> planners{{"peer", "", false, {}}, {"ours", "peer", true, {}}};
   const std::size_t queries = GENERATE(999u, 1000u);
   std::vector<QueryBenchRow> rows(2);

@@ -9,7 +9,7 @@ TEST_CASE("planners replan valid paths among moving circles") {
   CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache", "estar", "nf1"}, 60, 1).empty());
 }
 
-TEST_CASE("planners that rely on a fixed world are left out if the world moves") {
+TEST_CASE("planners that need a static world are left out if obstacles move") {
   CHECK(bench_replanning({"visibility", "prm"}, 10, 1).empty());
 }
 

@@ -7,7 +7,7 @@
 
 namespace sidestep::significance_test {
 
-/// Slow reference: enumerates every choice of the trials that succeed.
+/// Slow reference: enumerates every choice of which trials succeed.
 double enumerated_p(std::size_t successes, std::size_t trials, std::size_t other_successes,
                     std::size_t other_trials) {
   const std::size_t total = successes + other_successes;
@@ -21,7 +21,7 @@ double enumerated_p(std::size_t successes, std::size_t trials, std::size_t other
   return as_few / all;
 }
 
-TEST_CASE("Fisher's test gives the probability found by enumeration") {
+TEST_CASE("Fisher's exact test gives the same probability as enumeration") {
   for (std::size_t trials = 1; trials <= 6; ++trials)
     for (std::size_t other_trials = 1; other_trials <= 6; ++other_trials)
       for (std::size_t successes = 0; successes <= trials; ++successes)
@@ -32,7 +32,7 @@ TEST_CASE("Fisher's test gives the probability found by enumeration") {
         }
 }
 
-TEST_CASE("Fisher's test finds a difference in a thousand queries and none where there is none") {
+TEST_CASE("Fisher's exact test finds a real difference in a thousand queries and no spurious one") {
   CHECK(fewer_successes_p(1000, 1000, 1000, 1000) == Approx(1));
   CHECK(fewer_successes_p(990, 1000, 1000, 1000) < 0.01);
   CHECK(fewer_successes_p(996, 1000, 1000, 1000) > 0.01);

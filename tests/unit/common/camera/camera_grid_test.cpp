@@ -6,7 +6,7 @@
 
 namespace sidestep::camera_grid_test {
 
-TEST_CASE("cameras in a grid see the whole field with the overlaps") {
+TEST_CASE("a grid of cameras covers the whole field with the required overlap") {
   const Field field{12, 9};
   VisionSpec spec;
   spec.columns = 2;

@@ -24,7 +24,7 @@ Vec2 reference_pixel(const CameraParameters& c, const Vec3& point_m) {
   return c.focal_length_px * (ru > 0 ? rd / ru : 1) * undistorted + c.principal_point_px;
 }
 
-TEST_CASE("a camera projects as the league defines it") {
+TEST_CASE("the projection matches the league's definition") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);
@@ -40,7 +40,7 @@ TEST_CASE("a camera projects as the league defines it") {
   }
 }
 
-TEST_CASE("a projected point is recovered from its pixel") {
+TEST_CASE("back-projecting a pixel recovers the projected point") {
   const std::uint64_t seed = 4;
   CAPTURE(seed);
   Rng rng(seed);
@@ -85,8 +85,8 @@ TEST_CASE("the Jacobian is the derivative of the projection") {
   }
 }
 
-TEST_CASE("a camera does not see points behind it or outside the domain of its lens") {
-  CameraParameters parameters;  // 4 m over the origin, looking down
+TEST_CASE("a camera sees neither points behind it nor points outside the domain of its lens") {
+  CameraParameters parameters;  // 4 m above the origin, looking down
   const CameraModel camera(parameters);
   CHECK((camera.position_m() - Vec3(0, 0, 4)).norm() < 1e-15);
   CHECK((*camera.pixel_of(Vec3(1, 0.5, 0)) - Vec2(389.5 + 150, 289.5 - 75)).norm() < 1e-12);

@@ -16,7 +16,7 @@ double reference_factor(double c) {
   return static_cast<double>(low);
 }
 
-TEST_CASE("the distortion is inverted to the last bits") {
+TEST_CASE("inverting the distortion is accurate to the last bits") {
   const std::uint64_t seed = 17;
   CAPTURE(seed);
   Rng rng(seed);
@@ -33,14 +33,14 @@ TEST_CASE("the distortion is inverted to the last bits") {
   CHECK(lens::distortion_factor(0) == 1);
 }
 
-TEST_CASE("the factors are NaN outside the domain of the lens") {
+TEST_CASE("the distortion factors are NaN outside the domain of the lens") {
   CHECK(std::isnan(lens::distortion_factor(-0.1471)));
   CHECK(std::isnan(lens::distortion_factor(-4.0 / 27)));
   CHECK(std::isnan(lens::distortion_factor(INFINITY)));
   CHECK(std::isnan(lens::distortion_factor(NAN)));
   CHECK(std::isnan(lens::undistortion_factor(-0.3001)));
   CHECK(std::isnan(lens::undistortion_factor(NAN)));
-  // Both bounds describe the same point, where dr_u/dr_d is 0.1.
+  // Both limits belong to the same point, where dr_u/dr_d is 0.1.
   const double s = lens::distortion_factor(lens::kMinUndistortedKr2);
   CHECK(s * s * lens::kMinUndistortedKr2 == Approx(lens::kMinDistortedKr2));
   CHECK(1 + 3 * lens::kMinDistortedKr2 == Approx(0.1));

@@ -8,7 +8,7 @@
 
 namespace sidestep::overhead_camera_test {
 
-TEST_CASE("an overhead camera sees its whole rectangle and little more") {
+TEST_CASE("an overhead camera sees its whole rectangle and little beyond it") {
   const std::uint64_t seed = 6;
   CAPTURE(seed);
   Rng rng(seed);
@@ -45,7 +45,7 @@ TEST_CASE("an overhead camera sees its whole rectangle and little more") {
   }
 }
 
-TEST_CASE("the long side of the image lies along the long side of the rectangle") {
+TEST_CASE("the long side of the image is parallel to the long side of the rectangle") {
   OverheadCamera mount;
   const CameraModel along = overhead_camera_model(mount);
   CHECK((*along.pixel_of(Vec3(1, 0, 0))).x() > 400);

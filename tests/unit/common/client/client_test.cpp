@@ -27,8 +27,8 @@ Settings settings_for(const TestDomain& domain) {
   return settings;
 }
 
-/// Answers every order in a thread of its own, and reports robot 5, which arrives at once. Robots above 7 do
-/// not exist.
+/// Answers every order from its own thread, and reports that robot 5 arrives at once. Robots above 7 do not
+/// exist.
 class FakeCoordinator {
  public:
   explicit FakeCoordinator(const TestDomain& domain)
@@ -82,7 +82,7 @@ class FakeCoordinator {
   std::thread thread_;
 };
 
-TEST_CASE("a client waits for the answer to an order, which it repeats until then") {
+TEST_CASE("a client repeats an order until it is answered") {
   const TestDomain domain;
   Client client(settings_for(domain));
   const OrderId hold = client.hold_all(), unknown = client.cancel(8);
@@ -95,7 +95,7 @@ TEST_CASE("a client waits for the answer to an order, which it repeats until the
   CHECK(coordinator.last_sender() == client_id("test"));
 }
 
-TEST_CASE("an operator's orders are sent in the operator's name") {
+TEST_CASE("an operator's orders carry the operator's sender id") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Settings settings = settings_for(domain);
@@ -106,7 +106,7 @@ TEST_CASE("an operator's orders are sent in the operator's name") {
   CHECK(coordinator.last_sender() == static_cast<std::uint32_t>(Sender::kOperator));
 }
 
-TEST_CASE("a zone is over when it is accepted, and the next zone with its number replaces it") {
+TEST_CASE("setting a zone is complete once it is accepted, and setting it again replaces it") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -122,7 +122,7 @@ TEST_CASE("a zone is over when it is accepted, and the next zone with its number
   CHECK(client.state(other)->phase == OrderPhase::kAccepted);
 }
 
-TEST_CASE("callbacks are called for every change and may give orders, and waiting in them returns at once") {
+TEST_CASE("callbacks run on every change, may give orders, and never block when they wait") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -141,7 +141,7 @@ TEST_CASE("callbacks are called for every change and may give orders, and waitin
   client.on_change(nullptr);
 }
 
-TEST_CASE("several threads can use a client at the same time") {
+TEST_CASE("several threads can use one client at the same time") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -160,7 +160,7 @@ TEST_CASE("several threads can use a client at the same time") {
   CHECK(accepted == 40);
 }
 
-TEST_CASE("a client knows what a robot is doing") {
+TEST_CASE("a client knows what each robot is doing") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -172,7 +172,7 @@ TEST_CASE("a client knows what a robot is doing") {
   CHECK(client.robots()[0].has_own_order);
 }
 
-TEST_CASE("invalid orders are refused without a coordinator") {
+TEST_CASE("a client rejects invalid orders without asking a coordinator") {
   const TestDomain domain;
   Client client(settings_for(domain));
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -196,12 +196,12 @@ TEST_CASE("invalid orders are refused without a coordinator") {
   CHECK(zone_refusal_of({{{0, 0}}, kNan}) == Refusal::kMalformed);
   CHECK(zone_refusal_of({{{0, 0}}, -1}) == Refusal::kMalformed);
   CHECK(zone_refusal_of({{{0, 0}}, 0.3, 0.0}) == Refusal::kMalformed);
-  // This number stands for all robots in messages.
+  // In messages, this number means all robots.
   CHECK(client.wait(client.resume(kAllRobots), kTimeout)->refusal == Refusal::kUnknownRobot);
   CHECK(client.wait(client.go(kAllRobots, {{0, 0}}), kTimeout)->refusal == Refusal::kUnknownRobot);
 }
 
-TEST_CASE("invalid settings of a client are named") {
+TEST_CASE("an error about invalid client settings names the setting") {
   Settings settings;
   CHECK_THROWS_WITH(Client(settings), ContainsSubstring("name"));
   settings.name = "test";

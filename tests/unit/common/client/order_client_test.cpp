@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 constexpr ClientId kClient = 1'000'001;
 constexpr auto kCoordinator = static_cast<std::uint32_t>(Sender::kCoordinator);
 
-/// A client, and a process that answers as a coordinator does.
+/// A client, and a process that answers like a coordinator.
 struct System {
   SimNetwork network{1, time_from_ns(1'000'000'000'000), NetworkSpec{}};
   SimBus client_bus{network}, coordinator_bus{network};
@@ -20,7 +20,7 @@ struct System {
   Writer<msg::OrderMemory> memory = coordinator_bus.advertise(topics::kOrderMemory);
   OrderBook book;
   std::vector<Order> received;
-  std::vector<OrderPhase> phases;  ///< that the client has reported
+  std::vector<OrderPhase> phases;  ///< phases that the client has reported
   bool answers_orders = true;
 
   System() {
@@ -56,8 +56,7 @@ struct System {
 
 Zone disc(double x_m) { return {{{x_m, 0}}, 0.5}; }
 
-TEST_CASE(
-    "zones are for all robots, numbered by the client, and complete when a coordinator remembers them") {
+TEST_CASE("a zone order applies to all robots and is complete when a coordinator remembers it") {
   System system;
   const OrderHandle first = system.client.zone(1, disc(1)), second = system.client.zone(2, disc(2));
   system.run_for(1s);
@@ -77,7 +76,7 @@ TEST_CASE(
   CHECK(system.book.zones().size() == 1);
 }
 
-TEST_CASE("a zone that the client moves is not reported as replaced") {
+TEST_CASE("a zone that its own client moves is not reported as replaced") {
   System system;
   for (int i = 0; i < 100; ++i) {
     system.client.zone(1, disc(0.01 * i));
@@ -89,7 +88,7 @@ TEST_CASE("a zone that the client moves is not reported as replaced") {
   CHECK(system.book.zones()[0].zone.corners_m[0] == Vec2(0.99, 0));
 }
 
-TEST_CASE("if a zone moves while nobody answers, only its last position is repeated") {
+TEST_CASE("if a zone moves while no coordinator answers, only its last position is repeated") {
   System system;
   system.answers_orders = false;
   OrderHandle last = 0;
@@ -105,7 +104,7 @@ TEST_CASE("if a zone moves while nobody answers, only its last position is repea
   CHECK(system.client.find(last)->phase == OrderPhase::kAccepted);
 }
 
-TEST_CASE("a zone in force is not forgotten in favour of later orders, whose number is bounded") {
+TEST_CASE("a client keeps a zone in force while it forgets older finished orders") {
   System system;
   const OrderHandle standing = system.client.zone(7, disc(1));
   std::vector<OrderHandle> handles;
@@ -115,7 +114,7 @@ TEST_CASE("a zone in force is not forgotten in favour of later orders, whose num
     system.run_for(5ms);
   }
   const auto is_known = [&](OrderHandle handle) { return system.client.find(handle) != nullptr; };
-  // The last zone and the last hold are in force.
+  // The last zone and the last hold are still in force.
   CHECK(static_cast<std::size_t>(std::ranges::count_if(handles, is_known)) == OrderClient::kMaxFinal + 2);
   CHECK(is_known(standing));
   CHECK(is_known(handles.back()));
@@ -176,7 +175,7 @@ TEST_CASE("a drive order and a hold that all coordinators have forgotten are sen
   CHECK(system.book.is_held(4));
 }
 
-TEST_CASE("an order that one coordinator lists is sent again to another one that has forgotten it") {
+TEST_CASE("an order that one coordinator has forgotten is sent again even if another still lists it") {
   System system;
   const OrderHandle go = system.client.go(0, {{{1, 0}}});
   system.run_for(100ms);
@@ -193,11 +192,11 @@ TEST_CASE("an order that one coordinator lists is sent again to another one that
   CHECK(system.received[0].number == system.client.find(go)->order.number);
   CHECK(system.book.drive_order(0, Rank::kClient));
   CHECK(system.client.find(go)->phase == OrderPhase::kAccepted);
-  // At all times some process remembers the order.
+  // Some process remembers the order at all times.
   CHECK(system.phases.empty());
 }
 
-TEST_CASE("an order that a coordinator lists is repeated until one has answered or the robot has started") {
+TEST_CASE("an order that a coordinator lists is repeated until a coordinator answers or the robot starts") {
   const auto state = GENERATE(msg::OrderState::ORDER_ACCEPTED, msg::OrderState::ORDER_DRIVING);
   CAPTURE(static_cast<int>(state));
   System system;
@@ -214,7 +213,7 @@ TEST_CASE("an order that a coordinator lists is repeated until one has answered 
   CHECK((system.received.size() == 1) == has_started);
 }
 
-TEST_CASE("a hold that was lifted, by its owner or an operator, is not sent again") {
+TEST_CASE("a hold that its owner or an operator lifted is not sent again") {
   const bool by_owner = GENERATE(true, false);
   CAPTURE(by_owner);
   System system;
@@ -233,7 +232,7 @@ TEST_CASE("a hold that was lifted, by its owner or an operator, is not sent agai
   CHECK_FALSE(is_sent_again(system, hold));
 }
 
-TEST_CASE("an order that has ended another order is sent again when the other returns without it") {
+TEST_CASE("an order that ended another order is sent again if only the ended order reappears") {
   System system;
   const auto kind =
       GENERATE(msg::OrderKind::ORDER_CANCEL, msg::OrderKind::ORDER_RESUME, msg::OrderKind::ORDER_REMOVE_ZONE);
@@ -258,7 +257,7 @@ TEST_CASE("an order that has ended another order is sent again when the other re
   CHECK_FALSE(is_sent_again(system, ending));
 }
 
-TEST_CASE("a drive order that the robot has finished is sent again when the previous order returns") {
+TEST_CASE("a drive order that the robot has finished is sent again if the order before it reappears") {
   System system;
   system.client.go(0, {{{1, 0}}});
   system.run_for(100ms);
@@ -275,7 +274,7 @@ TEST_CASE("a drive order that the robot has finished is sent again when the prev
   CHECK(system.client.find(second)->phase == OrderPhase::kArrived);
 }
 
-TEST_CASE("a hold of one robot stays in force after its client has resumed another robot") {
+TEST_CASE("a hold of one robot stays in force after its client resumes another robot") {
   System system;
   const OrderHandle hold = system.client.hold(3);
   system.run_for(100ms);
@@ -286,7 +285,7 @@ TEST_CASE("a hold of one robot stays in force after its client has resumed anoth
   CHECK(system.book.is_held(3));
 }
 
-TEST_CASE("a client whose clock is behind its earlier orders still moves its zone") {
+TEST_CASE("a client can move its zone even if its clock is behind its earlier orders") {
   System system;
   Order earlier{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient};
   earlier.number = static_cast<OrderNumber>(to_ns(system.client_bus.now() + 20s));
@@ -299,7 +298,7 @@ TEST_CASE("a client whose clock is behind its earlier orders still moves its zon
   CHECK(system.book.zones()[0].zone.corners_m[0] == Vec2(2, 0));
 }
 
-TEST_CASE("a zone that another process of the same name sets is reported as replaced") {
+TEST_CASE("a zone that another process with the same client name overwrites is reported as replaced") {
   System system;
   const OrderHandle zone = system.client.zone(1, disc(1));
   system.run_for(1s);
@@ -312,7 +311,7 @@ TEST_CASE("a zone that another process of the same name sets is reported as repl
   CHECK(system.client.find(zone)->phase == OrderPhase::kReplaced);
 }
 
-TEST_CASE("a client may send the next position of a zone when it hears of the previous one") {
+TEST_CASE("a client may send the next position of a zone as soon as the previous one is confirmed") {
   System system;
   int sent = 1;
   system.client.on_change([&](const SentOrder&) {
@@ -324,7 +323,7 @@ TEST_CASE("a client may send the next position of a zone when it hears of the pr
   CHECK(system.book.zones()[0].zone.corners_m[0].x() == Approx(2));
 }
 
-TEST_CASE("a resume that was lost is not repeated after the next hold") {
+TEST_CASE("a lost resume is not repeated after a later hold") {
   System system;
   system.answers_orders = false;
   const OrderHandle resume = system.client.resume(kAllRobots);
@@ -354,7 +353,7 @@ TEST_CASE("a lost resume of all robots does not end a later hold of one robot") 
 }
 
 TEST_CASE(
-    "a resume that was lost is not numbered above another client's later hold, unless the clock is behind") {
+    "a repeated resume does not override another client's later hold unless this client's clock is behind") {
   const bool is_clock_behind = GENERATE(false, true);
   System system;
   system.answers_orders = false;
@@ -373,7 +372,7 @@ TEST_CASE(
   CHECK((sent->order.number > hold.number) == is_clock_behind);
 }
 
-TEST_CASE("a robot goes where it was last ordered, although the previous order was lost") {
+TEST_CASE("a robot follows the latest drive order even if the previous one was lost") {
   System system;
   system.answers_orders = false;
   const OrderHandle first = system.client.go(0, {{{1, 0}}});

@@ -26,7 +26,7 @@ TEST_CASE("the state of an order changes until the order is over") {
   CHECK_FALSE(states.update(order + 1, kDriving, false));
 }
 
-TEST_CASE("a thread waits until its order is over, whatever happens to other orders") {
+TEST_CASE("a thread waits until its order is over, regardless of other orders") {
   OrderStates states;
   const OrderId order = states.add(), other = states.add();
   std::optional<OrderState> seen;
@@ -38,7 +38,7 @@ TEST_CASE("a thread waits until its order is over, whatever happens to other ord
   CHECK(seen == kArrived);
 }
 
-TEST_CASE("the state of an order may still change after waiting threads have returned, until it is final") {
+TEST_CASE("an order's state may still change after waiting threads have returned, until it is final") {
   OrderStates states;
   const OrderId zone = states.add();
   const OrderState accepted{OrderPhase::kAccepted, Refusal::kNone, 0, true};
@@ -50,7 +50,7 @@ TEST_CASE("the state of an order may still change after waiting threads have ret
   CHECK(states.find(zone) == replaced);
 }
 
-TEST_CASE("waiting ends after the timeout, however short or long that is") {
+TEST_CASE("waiting ends at its timeout, however short or long the timeout is") {
   OrderStates states;
   const OrderId order = states.add();
   states.update(order, kDriving, false);

@@ -43,7 +43,7 @@ msg::WorldState world_with(RobotId robot, double x_m, Time observed_at) {
   return world;
 }
 
-TEST_CASE("a robot is free if its agent and vision report it, nobody holds it and it has nothing to do") {
+TEST_CASE("a robot is free if its agent and vision report it, no hold applies and it has no order") {
   RobotTable table(kSelf);
   CHECK(table.robots(kBegin).empty());
   table.on_status(status_of(3), kBegin);
@@ -65,7 +65,7 @@ TEST_CASE("a robot is free if its agent and vision report it, nobody holds it an
   CHECK_FALSE(table.robots(kBegin)[0].is_free());
 }
 
-TEST_CASE("the table shows whose order a robot carries out, and how far it has got") {
+TEST_CASE("the table shows which client's order a robot carries out and its progress") {
   RobotTable table(kSelf);
   table.on_world_state(world_with(3, 1, kBegin), kBegin);
   const auto after = [&](ClientId client, msg::OrderState state) {
@@ -94,7 +94,7 @@ TEST_CASE("a robot that is no longer heard or seen is not free") {
   CHECK(table.robots(kBegin + RobotTable::kPoseTimeout)[0].is_free());
 
   const Time later = kBegin + RobotTable::kPoseTimeout + milliseconds(1);
-  table.on_world_state(world_with(3, 1, kBegin), later);  // the same observation again
+  table.on_world_state(world_with(3, 1, kBegin), later);  // repeats the same observation
   CHECK(table.robots(later)[0].is_heard);
   CHECK_FALSE(table.robots(later)[0].pose.has_value());
 
@@ -105,7 +105,7 @@ TEST_CASE("a robot that is no longer heard or seen is not free") {
   CHECK_FALSE(table.robots(silent)[0].is_free());
 }
 
-TEST_CASE("hostile statuses and worlds do not change the table") {
+TEST_CASE("invalid statuses and world states do not change the table") {
   RobotTable table(kSelf);
   msg::OrderStatus foreign = status_of(3);
   foreign.header().sender(4);

@@ -13,7 +13,7 @@ TEST_CASE("the counter counts an allocation") {
   CHECK(allocation_count() > before);
 }
 
-TEST_CASE("queries to a world do not allocate") {
+TEST_CASE("collision queries do not allocate memory") {
   const Structure structure = GENERATE(Structure::kLinear, Structure::kMasks, Structure::kTree);
   const std::uint64_t seed = GENERATE(1, 2);
   CAPTURE(structure, seed);

@@ -13,7 +13,7 @@ constexpr double kTolerance_m = 1e-9;
 constexpr Structure kStructures[] = {Structure::kAutomatic, Structure::kLinear, Structure::kMasks,
                                      Structure::kTree};
 
-/// The distance from a path to the nearest shape, by a function that shares no code with the structures.
+/// The distance from a path to the nearest shape, computed without any code of the structures.
 double exact_distance(const ObstacleWorld& world, const Vec2& from, const Vec2& to) {
   double nearest2 = kInfinite;
   for (const ObstacleId id : world.obstacles())
@@ -38,7 +38,7 @@ void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double m
     const Vec2 from = random_position(rng, 1.2 * half_m);
     const Vec2 to = rng.chance(0.1) ? from : from + random_displacement(rng, max_length_m);
     const double distance = exact_distance(world, from, to);
-    // Many radii are near the value at which the answer changes.
+    // Many radii are close to the value at which the answer changes.
     double radius = rng.chance(0.1) ? 0 : rng.uniform(0, 0.2 * half_m);
     if (rng.chance(0.5) && distance < half_m) radius = std::max(0.0, distance + rng.uniform(-1e-6, 1e-6));
     CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
@@ -55,7 +55,7 @@ void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double m
   }
 }
 
-TEST_CASE("a world's answers agree with the exact distances to its shapes") {
+TEST_CASE("an obstacle world's answers agree with the exact distances to its shapes") {
   const std::size_t count = GENERATE(1, 2, 15, 16, 17, 64, 65, 300, 1500);
   const std::uint64_t seed = GENERATE(1, 2, 3);
   for (const Structure structure : kStructures) {
@@ -68,7 +68,7 @@ TEST_CASE("a world's answers agree with the exact distances to its shapes") {
   }
 }
 
-TEST_CASE("the answers of a world of circles agree with the exact distances") {
+TEST_CASE("the answers for a world of circles agree with the exact distances") {
   const std::size_t count = GENERATE(3, 16, 64, 100, 1100);
   const std::uint64_t seed = GENERATE(1, 2, 3);
   for (const Structure structure : kStructures) {
@@ -85,14 +85,14 @@ TEST_CASE("the answers of a world of circles agree with the exact distances") {
   }
 }
 
-TEST_CASE("shapes and paths with integer coordinates are answered correctly") {
+TEST_CASE("queries with integer coordinates are answered correctly") {
   const std::uint64_t seed = GENERATE(range(1, 8));
   Rng rng(seed);
   const auto integer_position = [&] {
     const auto y = static_cast<double>(rng.below(9)), x = static_cast<double>(rng.below(9));
     return Vec2(x - 4, y - 4);
   };
-  // Some shapes are degenerate to points or lines, or collinear with a path.
+  // Some shapes degenerate to points or lines, or are collinear with a path.
   std::vector<Shape> shapes;
   for (int i = 0; i < 12; ++i) {
     const Vec2 a = integer_position(), b = integer_position();
@@ -138,7 +138,7 @@ TEST_CASE("a world far from the origin answers accurately") {
   }
 }
 
-TEST_CASE("a swept disc touches if a disc at any position along its path does") {
+TEST_CASE("sweeping a disc finds contact anywhere along its path") {
   const std::uint64_t seed = GENERATE(range(1, 8));
   const Structure structure = kStructures[GENERATE(range(0, 4))];
   CAPTURE(seed, structure);
@@ -155,14 +155,14 @@ TEST_CASE("a swept disc touches if a disc at any position along its path does") 
   }
 }
 
-TEST_CASE("a world answers correctly after obstacles were added, moved and removed") {
+TEST_CASE("a world stays correct as obstacles are added, moved and removed") {
   const std::uint64_t seed = GENERATE(range(1, 4));
   const Structure structure = kStructures[GENERATE(range(0, 4))];
   const std::size_t count = GENERATE(0, 20, 400);
   CAPTURE(seed, structure, count);
   Rng rng(seed);
   ObstacleWorld world(random_shapes(rng, count, 2), structure);
-  // Initially more obstacles are added than removed, later more are removed.
+  // At first more obstacles are added than removed, later more are removed.
   for (int round = 0; round < 60; ++round) {
     const double add_probability = round < 30 ? 0.3 : 0.05;
     for (int change = 0; change < 15; ++change) {
@@ -206,7 +206,7 @@ TEST_CASE("nothing touches in an empty world") {
   CHECK_FALSE(world.touches({0.5, 0}, 0));
 }
 
-TEST_CASE("shapes with a single common point touch") {
+TEST_CASE("shapes that share a single point touch") {
   const Structure structure = kStructures[GENERATE(range(0, 4))];
   CAPTURE(structure);
   const ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}}, structure);

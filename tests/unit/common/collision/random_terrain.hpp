@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Hills with rough ground, on a grid with a spacing of 1 m.
+/// Hilly, rough terrain on a grid with a spacing of 1 m.
 inline HeightField random_terrain(Rng& rng, std::size_t columns, std::size_t rows) {
   HeightField field{
       {-0.5 * static_cast<double>(columns), -0.5 * static_cast<double>(rows)}, 1, columns, rows, {}};

@@ -18,7 +18,7 @@ inline Vec2 random_displacement(Rng& rng, double max_length_m) {
   return rotated(Vec2(rng.uniform(0, max_length_m), 0), angle_rad);
 }
 
-/// A polygon with its corners on an ellipse, hence convex.
+/// A polygon whose corners lie on an ellipse, so it is convex.
 inline ConvexPolygon random_polygon(Rng& rng, const Vec2& centre, double size_m) {
   std::vector<double> angles(3 + rng.below(5));
   for (std::size_t i = 0; i < angles.size(); ++i)
@@ -48,7 +48,7 @@ inline Shape random_shape(Rng& rng, double half_m, double size_m) {
   }
 }
 
-/// Shapes of all kinds that together cover about a fifth of a square, independent of their number.
+/// Shapes of all kinds that together cover about a fifth of a square, however many there are.
 inline std::vector<Shape> random_shapes(Rng& rng, std::size_t count, double half_m) {
   const double size_m = 0.4 * 2 * half_m / std::sqrt(static_cast<double>(count) + 1);
   std::vector<Shape> shapes;

@@ -31,7 +31,7 @@ std::vector<Vec2> boundary_of(const Shape& shape) {
   return boundary;
 }
 
-/// Whether a ray from the point in x direction crosses the boundary an odd number of times.
+/// Whether a ray from the point in the x direction crosses the boundary an odd number of times.
 bool is_inside(const Vec2& p, const Shape& shape) {
   if (std::holds_alternative<Segment>(shape)) return false;
   const std::vector<Vec2> boundary = boundary_of(shape);
@@ -59,7 +59,7 @@ TEST_CASE("the distance to a shape is the distance to the nearest point of its b
   }
 }
 
-TEST_CASE("the nearest point of the boundary and the facing disc are as far away as the shape") {
+TEST_CASE("the nearest boundary point and the facing disc are as far away as the shape") {
   Rng rng(2);
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -77,7 +77,7 @@ TEST_CASE("the nearest point of the boundary and the facing disc are as far away
   CHECK(inside > 50);
 }
 
-TEST_CASE("the distance between a segment and a shape is the smallest over its points") {
+TEST_CASE("the distance between a segment and a shape is the minimum over the segment's points") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);
   Rng rng(seed);

@@ -32,7 +32,7 @@ TEST_CASE("sweeps by distance agree with exact sweeps") {
   }
 }
 
-TEST_CASE("a clear path takes few distance queries and a grazing one a bounded number") {
+TEST_CASE("a clear path needs few distance queries and a grazing path a bounded number") {
   const Circle circle{{0, 0}, 1};
   int asked = 0;
   const auto clearance = [&](const Vec2& at) {

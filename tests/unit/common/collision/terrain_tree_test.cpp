@@ -33,7 +33,7 @@ double terrain_height(const HeightField& field, const Vec2& position) {
   return corner + (1 - u) * (above - corner) + (1 - v) * (right - corner);
 }
 
-/// Points of the terrain at `per_square` intervals per grid square.
+/// Points of the terrain, at `per_square` intervals per grid square.
 std::vector<Vec3> sampled_terrain(const HeightField& field, std::size_t per_square) {
   std::vector<Vec3> points;
   const double step = field.spacing_m / static_cast<double>(per_square);
@@ -75,7 +75,7 @@ Vec3 random_vector(Rng& rng, double min, double max) {
   return {x, y, z};
 }
 
-TEST_CASE("the tree agrees with a comparison of all triangles") {
+TEST_CASE("the tree agrees with a search over all triangles") {
   const std::uint64_t seed = GENERATE(range(1, 5));
   CAPTURE(seed);
   Rng rng(seed);
@@ -122,7 +122,7 @@ TEST_CASE("the minimum height above terrain agrees with sampling along the path"
   }
 }
 
-TEST_CASE("a ball touches terrain if it comes within its radius or starts below") {
+TEST_CASE("a ball touches terrain if it comes within its radius or starts below it") {
   const std::uint64_t seed = GENERATE(range(1, 10));
   CAPTURE(seed);
   Rng rng(seed);
@@ -140,7 +140,7 @@ TEST_CASE("a ball touches terrain if it comes within its radius or starts below"
   }
 }
 
-TEST_CASE("positions on the edges between triangles have terrain below") {
+TEST_CASE("positions on edges between triangles have terrain below them") {
   const TerrainTree tree(HeightField{{0, 0}, 0.1, 4, 4, std::vector<double>(16, 2.0)});
   for (int i = 0; i <= 30; ++i) {
     for (int k = 0; k <= 30; ++k) {

@@ -15,7 +15,7 @@ std::vector<Shape> obstacles(const std::string& list, std::size_t max_count = 10
   return read_obstacles(map, max_count);
 }
 
-TEST_CASE("obstacles of every kind are read, and reading their written text gives the same obstacles") {
+TEST_CASE("obstacles of every kind survive writing and reading") {
   const std::vector<Shape> read = obstacles(
       "  - {centre_m: [1, 2], radius_m: 0.5}\n"
       "  - circle: {centre_m: [-1, 2], radius_m: 0.25}\n"
@@ -33,9 +33,7 @@ TEST_CASE("obstacles of every kind are read, and reading their written text give
   }
 }
 
-TEST_CASE(
-    "every point within half a wall's thickness of its line is in the wall, and none farther than its "
-    "corners") {
+TEST_CASE("a wall covers every point within half its thickness of its line, and nothing beyond its corners") {
   Rng rng(5);
   for (int i = 0; i < 300; ++i) {
     const double thickness_m = rng.uniform(0.05, 0.5);
@@ -64,7 +62,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("invalid obstacles are refused with the line and the reason") {
+TEST_CASE("an invalid obstacle is rejected with its line and the reason") {
   const auto [list, line, why] = GENERATE(table<std::string, int, std::string>({
       {"  - {}\n", 2, "expected one of circle, box, polygon, segment, wall"},
       {"  - {circle: {centre_m: [0, 0], radius_m: 1}, box: {min_m: [0, 0], max_m: [1, 1]}}\n", 2,
@@ -84,7 +82,7 @@ TEST_CASE("invalid obstacles are refused with the line and the reason") {
   CAPTURE(list);
   try {
     (void)obstacles(list);
-    FAIL("accepted");
+    FAIL("the invalid list was accepted");
   } catch (const ConfigError& error) {
     const std::string message = error.what();
     CAPTURE(message);

@@ -30,7 +30,7 @@ TEST_CASE("a robot is found by its team and number") {
   CHECK_FALSE(find_robot(scenario, Team::kBlue, 19));
 }
 
-TEST_CASE("two robots of one team with the same number are rejected by id, but accepted in two teams") {
+TEST_CASE("two robots with the same number are rejected in one team and accepted in two teams") {
   CHECK_NOTHROW(require_unique_numbers(scenario_of({{3, Team::kBlue}, {19, Team::kYellow}})));
   CHECK_THROWS_AS(require_unique_numbers(scenario_of({{3, Team::kBlue}, {19, Team::kBlue}})),
                   std::invalid_argument);

@@ -14,7 +14,7 @@ namespace sidestep::scenario_error_test {
 const std::string kScenarios = SIDESTEP_SOURCE_DIR "/deploy/scenarios/";
 
 TEST_CASE("a margin below the safety budget is rejected with the required margin") {
-  // The defaults match exactly: 2 x 3 mm + 2 x 0.5 ms x 2 x 2 m/s.
+  // The default margin is exactly sufficient: 2 x 3 mm + 2 x 0.5 ms x 2 x 2 m/s.
   CHECK(budget_of(Scenario{}).required_margin_m() == Approx(0.014).epsilon(1e-12));
   CHECK(error_of(kRobot + "margin_m: 0.014\n") == "accepted");
   check_rejected(kRobot + "margin_m: 0.0139\n", 2, "expected at least 0.014 m");
@@ -67,7 +67,7 @@ TEST_CASE("invalid opponents are rejected with their line") {
   check_rejected(many, 3, "expected at most 1000 elements, got 1001");
 }
 
-TEST_CASE("invalid images are rejected with their line") {
+TEST_CASE("invalid image settings are rejected with their line") {
   const auto images = [](const std::string& keys) { return kRobot + "vision:\n  images: {" + keys + "}\n"; };
   CHECK(error_of(images("")) == "accepted");
   CHECK(error_of(images("format: rgb, width_px: 2448, height_px: 2048")) == "accepted");
@@ -86,7 +86,7 @@ TEST_CASE("invalid images are rejected with their line") {
   check_rejected(twins + "vision: {images: {}}\n", 4, "robots 1 and 17 both have number 1");
 }
 
-TEST_CASE("an absent robot may share its start with another") {
+TEST_CASE("a robot that starts absent may share its start with another robot") {
   const auto pair = [](const std::string& keys) {
     return "robots:\n- {id: 0, start_m: [0, 0], goals_m: [[1, 0]]}\n- {id: 1, start_m: [0, 0.1], goals_m: "
            "[[2, "
@@ -115,7 +115,7 @@ TEST_CASE("unknown and duplicate keys are rejected with their line") {
   check_rejected(kRobot + "vision:\n  miss_probability: 0\n  miss_probability: 0\n", 4, "duplicate key");
 }
 
-TEST_CASE("values of a wrong type are rejected with their line") {
+TEST_CASE("values of the wrong type are rejected with their line") {
   check_rejected(kRobot + "margin_m: wide\n", 2, "expected a number from 0 to 1, got \"wide\"");
   for (const std::string number : {"++0.1", "+-0.1", "+", "+inf", "\"+0.1\"", "+ 0.1"})
     check_rejected(kRobot + "margin_m: " + number + "\n", 2, "expected a number from 0 to 1, got");
@@ -182,7 +182,7 @@ TEST_CASE("missing robots, ids, starts and goals are rejected") {
   check_rejected(kRobot + "obstacles:\n- {centre_m: [2, 2]}\n", 3, "key \"radius_m\" is missing");
 }
 
-TEST_CASE("two robots with the same id are rejected at the second one") {
+TEST_CASE("the second of two robots with the same id is rejected") {
   check_rejected(
       "robots:\n"
       "- {id: 4, start_m: [0, 0], goals_m: [[1, 0]]}\n"
@@ -192,7 +192,7 @@ TEST_CASE("two robots with the same id are rejected at the second one") {
   check_rejected("circle: {count: 5, spacing_m: 0.5}\n" + kRobot, 1, "used twice");
 }
 
-TEST_CASE("more robots than ids are rejected") {
+TEST_CASE("a scenario with more robots than ids is rejected") {
   check_rejected("field: {length_m: 900, width_m: 900}\ncircle:\n  count: 1025\n  spacing_m: 0.4\n", 3,
                  "expected 2 to 1024");
   check_rejected(
@@ -203,7 +203,7 @@ TEST_CASE("more robots than ids are rejected") {
   check_rejected(many, 3, "more robots than ids");
 }
 
-TEST_CASE("overlapping starts and last goals are rejected, the exact minimum distance is accepted") {
+TEST_CASE("overlapping starts and final goals are rejected, but the exact minimum distance is accepted") {
   const auto pair = [](double apart, double goals_apart) {
     std::ostringstream text;
     text
@@ -218,7 +218,7 @@ TEST_CASE("overlapping starts and last goals are rejected, the exact minimum dis
   CHECK(error_of(pair(0.194, 0.194)) == "accepted");
 }
 
-TEST_CASE("starts and goals in blocked cells, and maps that cannot be read, are rejected") {
+TEST_CASE("starts and goals in blocked cells and unreadable maps are rejected") {
   const test::MapFolder folder;
   MapGrid grid;
   grid.columns = grid.rows = 40, grid.resolution_m = 0.1, grid.origin_m = {-2, -2};
@@ -249,10 +249,9 @@ TEST_CASE("starts and goals in blocked cells, and maps that cannot be read, are 
   CHECK_THAT(error("[1, 2]", "[0, 0]", "[1, 0]"), ContainsSubstring("scenario.yaml:1: map: "));
 }
 
-TEST_CASE(
-    "robots drive through unknown cells of a map only if the scenario allows it, and a notice says so") {
+TEST_CASE("robots cross unknown map cells only if the scenario allows it, and a notice says so") {
   const test::MapFolder folder;
-  // 4 x 4 m of cells of 0.1 m: free for x < 0, unknown from x = 0 on.
+  // 4 x 4 m of 0.1 m cells: free for x < 0, unknown from x = 0 on.
   std::string image = "P5 40 40 255\n";
   for (int row = 0; row < 40; ++row) image += std::string(20, '\xfe') + std::string(20, '\xcd');
   write_file(folder / "map.pgm", image);
@@ -282,7 +281,7 @@ TEST_CASE(
   setenv("HOME", home.c_str(), 1);
 }
 
-TEST_CASE("starts and goals in an obstacle or outside the field are rejected") {
+TEST_CASE("starts and goals inside an obstacle or outside the field are rejected") {
   const std::string obstacle = "obstacles: [{centre_m: [2, 0], radius_m: 0.2}]\n";
   const auto robot = [](const char* start, const char* goal) {
     return std::string("robots:\n- id: 0\n  start_m: ") + start + "\n  goals_m: [" + goal + "]\n";
@@ -311,7 +310,7 @@ TEST_CASE("text that is not a single YAML document is rejected with its line") {
   check_rejected(std::string(100000, '['), 1, "expected at most 500 nested brackets");
 }
 
-TEST_CASE("a file with more values than permitted is rejected, even if anchors multiply them") {
+TEST_CASE("a file with too many values is rejected, even if anchors multiply them") {
   std::string many = kRobot + "obstacles: [";
   for (int i = 0; i < 400'000; ++i) many += "0,";
   check_rejected(many + "]\n", 2, "more than 400000 values");
@@ -332,7 +331,7 @@ TEST_CASE("a file with more values than permitted is rejected, even if anchors m
   check_rejected(walls, 3, "the walls have more than 10000 pieces");
 }
 
-TEST_CASE("files that cannot be read are rejected") {
+TEST_CASE("unreadable files are rejected") {
   const auto load_error = [](const std::string& path) -> std::string {
     try {
       (void)load_scenario(path);
@@ -346,7 +345,7 @@ TEST_CASE("files that cannot be read are rejected") {
   CHECK_THAT(load_error("/tmp"), StartsWith("/tmp:1: cannot read the file (a directory"));
 }
 
-TEST_CASE("a mutated scenario is either loaded or rejected with a ConfigError") {
+TEST_CASE("a mutated scenario either loads or is rejected with a ConfigError") {
   const std::uint64_t seed = 20261121;
   CAPTURE(seed);
   Rng rng(seed);

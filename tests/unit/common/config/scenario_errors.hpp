@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// The error of parse_scenario() for a text, or "accepted".
+/// The error message of parse_scenario() for a text, or "accepted".
 inline std::string error_of(const std::string& text) {
   try {
     (void)parse_scenario(text, "file.yaml");

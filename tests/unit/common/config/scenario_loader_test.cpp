@@ -37,7 +37,7 @@ TEST_CASE("the shipped scenarios match their names") {
   CHECK(noisy.command_loss == 0.03);
 }
 
-TEST_CASE("a circle has one spacing between neighbours, and goals opposite the starts") {
+TEST_CASE("robots in a circle are evenly spaced and their goals lie opposite their starts") {
   const Scenario scenario = load_scenario(kScenarios + "circle-100.yaml");
   const auto& robots = scenario.robots;
   REQUIRE(robots.size() == 100);
@@ -49,9 +49,7 @@ TEST_CASE("a circle has one spacing between neighbours, and goals opposite the s
   }
 }
 
-TEST_CASE(
-    "streams give each robot its own cell, and a path across the given number of lanes in one of four "
-    "directions") {
+TEST_CASE("streams give each robot its own cell and a path across the given number of lanes") {
   const Scenario scenario = load_scenario(kScenarios + "streams-1000.yaml");
   const auto& robots = scenario.robots;
   REQUIRE(robots.size() == 1000);
@@ -69,7 +67,7 @@ TEST_CASE(
   for (const auto& [direction, count] : directions) CHECK(count > 200);
 }
 
-TEST_CASE("a number may have one leading plus, whatever type is read") {
+TEST_CASE("a number of any type may have one leading plus") {
   const Scenario s = parse_scenario(
       "robots: [{id: +7, start_m: [+1, -2], heading_rad: +.5, goals_m: [[+1.5, +1e-1, +3]]}]\n"
       "margin_m: +0.02\n",
@@ -205,7 +203,7 @@ TEST_CASE("a scenario without a name is named after its file, in any language") 
   CHECK(parse_scenario("name: " + name + "\n" + kRobot, "other.yaml").name == name);
 }
 
-TEST_CASE("missing keys keep the defaults") {
+TEST_CASE("missing keys keep their defaults") {
   const Scenario given = parse_scenario(kRobot, "dir/lone.yaml"), defaults;
   CHECK(given.name == "lone");
   CHECK(given.cycle == defaults.cycle);

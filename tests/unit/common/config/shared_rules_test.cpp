@@ -20,7 +20,7 @@ const std::string kRobots =
     "  - {id: 5, start_m: [-1, 0], goals_m: [[-1, 1]]}\n"
     "  - {id: 6, team: yellow, start_m: [-2, 0], goals_m: [[-2, 1]]}\n";
 
-TEST_CASE("the rules are listed as keys and values of the scenario") {
+TEST_CASE("the rules are listed as scenario keys and values") {
   const SharedRules rules(scenario_of(kRobots + "obstacles: [{centre_m: [0, 2], radius_m: 0.25}]\n"));
   CHECK(rules.text() ==
         "robots.blue: 0-2, 5\n"
@@ -38,7 +38,7 @@ TEST_CASE("the rules are listed as keys and values of the scenario") {
         "max_opponent_speed_mps: 1.5\n");
 }
 
-TEST_CASE("goals, noise and the network are not rules") {
+TEST_CASE("goals, noise and the network are not part of the rules") {
   Scenario other = scenario_of(kRobots);
   const SharedRules rules(other);
   other.robots.front().goals = {{{2, 2}, 1.0}};
@@ -48,7 +48,7 @@ TEST_CASE("goals, noise and the network are not rules") {
   CHECK(SharedRules(other).fingerprint() == rules.fingerprint());
 }
 
-TEST_CASE("maps that differ in one cell or in their position are different rules") {
+TEST_CASE("maps that differ in one cell or in position are different rules") {
   const auto with_map = [](double origin_m, int column) {
     MapGrid grid;
     grid.columns = 300, grid.rows = 200, grid.origin_m = {origin_m, -5};
@@ -68,7 +68,7 @@ TEST_CASE("maps that differ in one cell or in their position are different rules
   }
 }
 
-TEST_CASE("rules that have been sent equal the original rules") {
+TEST_CASE("rules are unchanged after sending") {
   const SharedRules rules(scenario_of(kRobots));
   const auto received = SharedRules::parse(rules.text());
   REQUIRE(received);
@@ -77,7 +77,7 @@ TEST_CASE("rules that have been sent equal the original rules") {
   CHECK(rules.differences(*received).empty());
 }
 
-TEST_CASE("differing rules are named with both values") {
+TEST_CASE("a rule that differs is named with both values") {
   Scenario other = scenario_of(kRobots);
   const SharedRules own(other);
   other.margin_m = 0.02;
@@ -94,7 +94,7 @@ TEST_CASE("differing rules are named with both values") {
         "robots.blue is unknown instead of 0-2, 5, wings is 2 instead of unknown");
 }
 
-TEST_CASE("the largest roster and the maximum number of obstacles fit, and each obstacle matters") {
+TEST_CASE("rules fit the largest roster and the most obstacles, and each obstacle matters") {
   std::string text = "field: {length_m: 1000, width_m: 1000}\nrobots:\n";
   for (int i = 0; i < 500; ++i)
     text += fmt::format("  - {{id: {}, start_m: [{}, 0], goals_m: [[{}, 1]]}}\n", 2 * i, i - 250, i - 250);
@@ -110,7 +110,7 @@ TEST_CASE("the largest roster and the maximum number of obstacles fit, and each 
   CHECK(differences.front().key == "obstacles");
 }
 
-TEST_CASE("texts that are not rules are refused") {
+TEST_CASE("text that does not contain rules is rejected") {
   for (const std::string text : {"margin_m", "margin_m: 0.01", ": 0.01\n", "margin_m: \n", "margin_m:0.01\n",
                                  "a: 1\na: 2\n", "a: \x1b[2J\n", "a: 1\n\n", "\n", "a: 1\nb\n"}) {
     CAPTURE(text);
@@ -126,7 +126,7 @@ TEST_CASE("texts that are not rules are refused") {
   CHECK(none->fingerprint() != 0);
 }
 
-TEST_CASE("random bytes are refused or give printable rules") {
+TEST_CASE("random bytes are rejected or decode to printable rules") {
   Rng rng(7);
   const std::string original = SharedRules(scenario_of(kRobots)).text();
   for (int i = 0; i < 20'000; ++i) {

@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-/// Runs the function in a separate process, and returns the exit code; -1 if the process died.
+/// Runs the function in a separate process and returns its exit code; -1 if the process died.
 template <typename Work>
 int exit_code_of(Work work) {
   const pid_t pid = fork();
@@ -23,7 +23,7 @@ int exit_code_of(Work work) {
 
 }  // namespace
 
-TEST_CASE("output to a full disk or to a pipe without a reader is lost without other effects") {
+TEST_CASE("output to a full disk or a pipe without a reader is lost without other effects") {
   const int code = exit_code_of([] {
     std::signal(SIGPIPE, SIG_IGN);
     int ends[2];
@@ -51,7 +51,7 @@ TEST_CASE("output reaches the file immediately") {
   close(ends[0]);
 }
 
-TEST_CASE("a file that is opened does not become stdin, stdout or stderr if these are closed") {
+TEST_CASE("an opened file does not become stdin, stdout or stderr if these are closed") {
   const int code = exit_code_of([] {
     for (const int descriptor : {0, 2}) close(descriptor);
     const auto target = [](int descriptor) {

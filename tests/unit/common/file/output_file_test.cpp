@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-TEST_CASE("a file is opened for replacing or appending, and is not inherited") {
+TEST_CASE("a file is opened to replace or append, and child processes do not inherit it") {
   const TemporaryFolder folder;
   const std::string path = folder.file("file");
   std::fputs("one", open_output(path).get());
@@ -23,7 +23,7 @@ TEST_CASE("a file is opened for replacing or appending, and is not inherited") {
   CHECK((fcntl(fileno(file.get()), F_GETFL) & O_NONBLOCK) == 0);
 }
 
-TEST_CASE("a file that cannot be opened, and a pipe that nobody reads, are refused with the reason") {
+TEST_CASE("an error about an unwritable file or a pipe without a reader states the reason") {
   const TemporaryFolder folder;
   const std::string pipe = folder.file("pipe");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);

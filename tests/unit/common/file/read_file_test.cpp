@@ -10,7 +10,7 @@
 
 namespace sidestep::read_file_test {
 
-TEST_CASE("a regular file is read as a whole, up to a size") {
+TEST_CASE("a regular file is read completely, up to a maximum size") {
   const TemporaryFolder folder;
   const std::string text = std::string("a\0b\r\n", 5) + std::string(300'000, 'x');
   write_file(folder.file("text"), text);
@@ -21,7 +21,7 @@ TEST_CASE("a regular file is read as a whole, up to a size") {
   CHECK_FALSE(read_file("/proc/self/status", 1'000'000).empty());
 }
 
-TEST_CASE("anything but a regular file is refused at once") {
+TEST_CASE("anything but a regular file is rejected at once") {
   const TemporaryFolder folder;
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
   CHECK_THROWS_WITH(read_file(folder.file("pipe"), 100), Equals("not a regular file"));

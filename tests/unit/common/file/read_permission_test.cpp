@@ -13,7 +13,7 @@ namespace sidestep::read_permission_test {
 
 namespace fs = std::filesystem;
 
-/// A tree that everybody may read, in a folder that others may enter.
+/// A tree that every user may read, inside a folder that every user may enter.
 struct Tree {
   Tree() {
     fs::permissions(fs::path(file("")).parent_path(), fs::perms(0755));
@@ -27,7 +27,7 @@ struct Tree {
   TemporaryFolder temporary;
 };
 
-TEST_CASE("readable and missing files are not denied") {
+TEST_CASE("readable and missing files do not count as denied") {
   SIDESTEP_NEEDS_ROOT();
   const Tree tree;
   for (const char* name : {"open", "open/closed/file", "link/file", "none", "open/none/file"}) {
@@ -43,22 +43,22 @@ TEST_CASE("a denied read names the user, the path, and the file or folder withou
     return "user nobody may not read " + tree.file(path) + ": " + tree.file(closed) +
            " belongs to root and has mode " + mode;
   };
-  SECTION("a file") {
+  SECTION("the file is unreadable") {
     fs::permissions(tree.file("open/closed/file"), fs::perms(0600));
     CHECK(tree.problem("open/closed/file") == denied("open/closed/file", "open/closed/file", "0600"));
     CHECK(tree.problem("link/file") == denied("link/file", "link/file", "0600"));
   }
-  SECTION("a folder on the way") {
+  SECTION("a parent folder is closed") {
     fs::permissions(tree.file("open/closed"), fs::perms(0700));
     CHECK(tree.problem("open/closed/file") == denied("open/closed/file", "open/closed", "0700"));
     CHECK(tree.problem("open/closed/none") == denied("open/closed/none", "open/closed", "0700"));
     CHECK(tree.problem("link/file") == denied("link/file", "link", "0700"));
   }
-  SECTION("a folder on the way to where a link leads") {
+  SECTION("a parent folder of a link's target is closed") {
     fs::permissions(tree.file("open"), fs::perms(0700));
     CHECK(tree.problem("link/file") == denied("link/file", "open", "0700"));
   }
-  SECTION("a folder that may be passed, but not listed") {
+  SECTION("a parent folder can be entered but not listed") {
     fs::permissions(tree.file("open/closed"), fs::perms(0711));
     CHECK(tree.problem("open/closed/file").empty());
     CHECK(tree.problem("open/closed") == denied("open/closed", "open/closed", "0711"));

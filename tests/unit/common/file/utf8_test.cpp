@@ -7,7 +7,7 @@
 
 namespace sidestep::utf8_test {
 
-TEST_CASE("valid sequences have a length, and all others have none") {
+TEST_CASE("valid UTF-8 sequences have a length and invalid ones have none") {
   const auto [text, length] = GENERATE(table<std::string, std::size_t>({
       {"a", 1},
       {"\t", 1},
@@ -16,9 +16,9 @@ TEST_CASE("valid sequences have a length, and all others have none") {
       {"\xc3\xa4", 2},
       {"\xe4\xba\xa4", 3},
       {"\xf0\x9f\xa4\x96", 4},
-      {"\xc3", 0},              // ends too early
-      {"\xa4", 0},              // a continuation
-      {"\xc0\x80", 0},          // longer than necessary
+      {"\xc3", 0},              // truncated
+      {"\xa4", 0},              // a continuation byte
+      {"\xc0\x80", 0},          // overlong
       {"\xed\xa0\x80", 0},      // a surrogate
       {"\xef\xbf\xbf", 0},      // a non-character
       {"\xf4\x90\x80\x80", 0},  // beyond Unicode

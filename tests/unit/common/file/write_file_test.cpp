@@ -28,7 +28,7 @@ std::string content(const fs::path& path) {
 
 }  // namespace
 
-TEST_CASE("a file is written with its folder, and is replaced as a whole") {
+TEST_CASE("writing a file creates its folder and replaces the file as a whole") {
   const TemporaryFolder folder;
   const std::string path = folder.file("a/b/report.json");
   write_file(path, "a long text\n");
@@ -39,7 +39,7 @@ TEST_CASE("a file is written with its folder, and is replaced as a whole") {
   CHECK(std::distance(fs::directory_iterator(folder.file("a/b")), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE("a file that cannot be written is reported with the reason, and nothing is left behind") {
+TEST_CASE("a file that cannot be written is reported with the reason, and no partial file remains") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(write_file("/dev/null/x", "text"), "cannot write /dev/null/x: Not a directory");
   fs::create_directories(folder.file("folder"));

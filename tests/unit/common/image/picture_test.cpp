@@ -38,7 +38,7 @@ std::string error_of(const Bytes& bytes) {
   }
 }
 
-/// Replaces the bytes from a position on.
+/// Replaces the bytes from a given position on.
 Bytes with(Bytes bytes, std::size_t at, const Bytes& others) {
   std::ranges::copy(others, bytes.begin() + static_cast<std::ptrdiff_t>(at));
   return bytes;
@@ -54,7 +54,7 @@ long peak_memory_kb() {
   return usage.ru_maxrss;
 }
 
-TEST_CASE("pictures in PNG, JPEG and PNM are read") {
+TEST_CASE("PNG, JPEG and PNM images are read") {
   CHECK(error_of(encoded(".png")).empty());
   CHECK(error_of(encoded(".jpg")).empty());
   CHECK(error_of(encoded(".jpg", {cv::IMWRITE_JPEG_PROGRESSIVE, 1})).empty());
@@ -62,7 +62,7 @@ TEST_CASE("pictures in PNG, JPEG and PNM are read") {
   CHECK(error_of(encoded(".ppm", {cv::IMWRITE_PXM_BINARY, 0})).empty());
 }
 
-TEST_CASE("a picture whose header states a huge size is refused before memory is allocated") {
+TEST_CASE("an image whose header states a huge size is rejected before memory is allocated") {
   const long before_kb = peak_memory_kb();
   const Bytes jpeg = encoded(".jpg");
   const std::size_t frame = find(jpeg, {0xff, 0xc0});
@@ -80,7 +80,7 @@ TEST_CASE("a picture whose header states a huge size is refused before memory is
   CHECK(peak_memory_kb() - before_kb < 50'000);
 }
 
-TEST_CASE("data that is not a picture is refused, and so is a damaged picture") {
+TEST_CASE("damaged images and data that is not an image are rejected") {
   CHECK(error_of({}) == "expected a picture in PNG, JPEG or PNM");
   CHECK(error_of(Bytes(100, 'P')) == "expected a picture in PNG, JPEG or PNM");
   CHECK(error_of(encoded(".bmp")) == "expected a picture in PNG, JPEG or PNM");
@@ -91,7 +91,7 @@ TEST_CASE("data that is not a picture is refused, and so is a damaged picture") 
                     "/nowhere/a.png: cannot be read: No such file or directory");
 }
 
-TEST_CASE("a picture's stated size is read without decoding the picture") {
+TEST_CASE("the stated size of an image is read without decoding the image") {
   const auto size = [](std::string_view text) -> std::string {
     const auto found = stated_size(text);
     return found ? std::to_string(found->width_px) + " x " + std::to_string(found->height_px) : "none";

@@ -9,7 +9,7 @@
 
 namespace sidestep::pixel_conversion_test {
 
-TEST_CASE("a YUV image has the brightness of each pixel and the mean colour of each pair") {
+TEST_CASE("a YUV image has each pixel's brightness and each pixel pair's mean colour") {
   const std::uint64_t seed = 5;
   CAPTURE(seed);
   Rng rng(seed);

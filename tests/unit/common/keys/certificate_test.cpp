@@ -16,7 +16,7 @@ struct Fixture {
   Certificate certificate = authority.issue({Role::kAgent, 3, 3}, make_private_key(), now, now + hours(1));
 };
 
-TEST_CASE("a certificate states its owner, its issuer and its validity") {
+TEST_CASE("a certificate states its owner, issuer and validity period") {
   const Fixture f;
   const Authority other("identity authority", f.now, f.now + hours(24));
   CHECK(f.certificate.identity() == Identity{Role::kAgent, 3, 3});
@@ -40,7 +40,7 @@ TEST_CASE("a certificate survives DER encoding, and other bytes are not a certif
   CHECK_FALSE(Certificate::from_der(longer));
 }
 
-TEST_CASE("a certificate with a changed bit is not accepted as the authority's") {
+TEST_CASE("a certificate with one flipped bit is not accepted as signed by the authority") {
   const Fixture f;
   const std::vector<std::uint8_t> der = f.certificate.der();
   const std::uint64_t seed = 44;
@@ -56,7 +56,7 @@ TEST_CASE("a certificate with a changed bit is not accepted as the authority's")
   }
 }
 
-TEST_CASE("prefixes of different identities differ, and have their first bit set") {
+TEST_CASE("different identities have different prefixes, whose first bit is set") {
   const Fixture f;
   std::set<CertifiedPrefix> prefixes;
   for (std::uint32_t robot = 0; robot < 30; ++robot) {
@@ -68,7 +68,7 @@ TEST_CASE("prefixes of different identities differ, and have their first bit set
   CHECK(prefixes.size() == 30);
 }
 
-TEST_CASE("a list of revoked keys contains their serial numbers, and only the authority can make one") {
+TEST_CASE("only the authority can make a revocation list, which contains the revoked serial numbers") {
   const Fixture f;
   const Authority other("identity authority", f.now, f.now + hours(24));
   const TemporaryFolder folder;

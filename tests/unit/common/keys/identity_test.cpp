@@ -11,7 +11,7 @@ namespace sidestep::identity_test {
 
 Identity identity(const std::string& text) { return parse_identity(text).value(); }
 
-TEST_CASE("identities are parsed from the text that they are written as") {
+TEST_CASE("an identity survives writing as text and parsing") {
   for (const char* text :
        {"agent 0", "agent 3", "coordinator 1", "vision", "simulator", "robot 3", "robot 0-10", "referee",
         "client forklift", "client a_b-C9", "operator", "viewer", "judge"}) {
@@ -22,7 +22,7 @@ TEST_CASE("identities are parsed from the text that they are written as") {
   CHECK(folder_name(identity("robot 0-10")) == "robot-0-10");
 }
 
-TEST_CASE("each identity has one text, and other texts are refused") {
+TEST_CASE("each identity has exactly one text form, and other texts are rejected") {
   for (const char* text : {"",
                            "agent",
                            "agent ",
@@ -82,7 +82,7 @@ TEST_CASE("no identity may speak for another process") {
         std::set<std::uint32_t>{number(Sender::kOperator), client_id("a"), client_id("b")});
   CHECK(spoken_for("viewer").empty());
   CHECK(spoken_for("judge").empty());
-  // The simulator has the robots' side of all robots.
+  // The simulator also runs the robot side of every robot.
   CHECK(spoken_for("simulator") ==
         std::set<std::uint32_t>{1, 2, 3, kMaxRobots - 1, number(Sender::kSimulator)});
 }

@@ -25,7 +25,7 @@ std::string problem_of(const std::string& folder, Time now) {
   return "";
 }
 
-TEST_CASE("keys are loaded as they were issued") {
+TEST_CASE("loaded keys equal the issued ones") {
   TestKeys keys({"agent", "3"});
   const KeyFolder folder = load_key_folder(keys.folder_of("agent 3"), keys.now());
   CHECK(folder.identity == Identity{Role::kAgent, 3, 3});
@@ -39,11 +39,11 @@ TEST_CASE("problems with keys are explained in plain words") {
   const std::string folder = keys.folder_of("agent 3");
   const auto problem = [&] { return problem_of(folder, keys.now()); };
   CHECK(problem().empty());
-  SECTION("expired") {
+  SECTION("the certificate has expired") {
     CHECK_THAT(problem_of(folder, keys.now() + hours(2)),
                ContainsSubstring("the key of agent 3 expired on " + date_text(keys.now() + hours(1))));
   }
-  SECTION("revoked") {
+  SECTION("the key is revoked") {
     const TemporaryFolder copy;
     fs::copy(folder, copy.file("agent-3"));
     keys.revoke({Role::kAgent, 3, 3});
@@ -62,34 +62,34 @@ TEST_CASE("problems with keys are explained in plain words") {
                  ContainsSubstring(std::string(name) + " does not exist"));
     }
   }
-  SECTION("others may read the private key") {
+  SECTION("other users can read the private key") {
     fs::permissions(folder + "/key.pem", fs::perms::group_read, fs::perm_options::add);
     CHECK_THAT(problem(), ContainsSubstring("other users may read or change this private key; chmod 600"));
   }
-  SECTION("the private key of another process") {
+  SECTION("the private key belongs to another process") {
     fs::copy_file(keys.folder_of("agent 4") + "/key.pem", folder + "/key.pem",
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("this private key does not match the certificate"));
   }
-  SECTION("another authority") {
+  SECTION("another authority issued the certificate") {
     fs::copy_file(others.folder_of("agent 3") + "/cert.pem", folder + "/cert.pem",
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("cert.pem: issued by an authority other than"));
   }
-  SECTION("the certificate of an authority") {
+  SECTION("the certificate is the authority's own") {
     fs::copy_file(keys.folder() + "/public/identity_ca.cert.pem", folder + "/cert.pem",
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("expected the certificate of an identity"));
   }
-  SECTION("no folder") {
+  SECTION("there is no folder") {
     CHECK_THAT(problem_of(folder + "-none", keys.now()), ContainsSubstring("does not exist"));
   }
 }
 
-/// Keys of agent 3 of which one file is replaced by `text`.
+/// Keys of agent 3 in which `text` replaces one file.
 std::string with_file(const TestKeys& keys, const char* name, const std::string& text) {
   const std::string folder = keys.folder_of("agent 3");
-  fs::remove(folder + "/" + name);  // possibly a link to a file shared by all
+  fs::remove(folder + "/" + name);  // may be a link to a file shared by all identities
   write_file(folder + "/" + name, text);
   return folder;
 }
@@ -105,7 +105,7 @@ std::string permissions_of(const TestKeys& keys, Time from, Time until) {
       .sign(permissions_text(identity, "CN=agent 3,O=Sidestep", from, until));
 }
 
-TEST_CASE("keys that are not valid yet are no usage error, because the clock may still be set") {
+TEST_CASE("keys that are not valid yet are not a usage error because the clock may still be set") {
   const TestKeys keys({"agent", "3"});
   const Time now = keys.now(), before = now - hours(1), later = now + hours(1);
   const auto check = [&](const std::string& folder, Time time, const std::string& what) {
@@ -114,17 +114,19 @@ TEST_CASE("keys that are not valid yet are no usage error, because the clock may
                       ContainsSubstring(what) && ContainsSubstring("is not valid before") &&
                           ContainsSubstring("this host's clock says " + date_text(time)));
   };
-  SECTION("the key") { check(keys.folder_of("agent 3"), before, "cert.pem: the key of agent 3"); }
-  SECTION("the list of revoked keys") {
+  SECTION("the key is not valid yet") {
+    check(keys.folder_of("agent 3"), before, "cert.pem: the key of agent 3");
+  }
+  SECTION("the revocation list is not valid yet") {
     const std::string list = authority_of(keys, "identity_ca").revocation_list({}, later, later + hours(1));
     check(with_file(keys, key_files::kRevoked, list), now, "crl.pem: this list of revoked keys");
   }
-  SECTION("the permissions") {
+  SECTION("the permissions are not valid yet") {
     const std::string permissions = permissions_of(keys, later, later + hours(1));
     check(with_file(keys, key_files::kPermissions, permissions), now,
           "permissions.p7s: the permissions of agent 3");
   }
-  SECTION("the authorities") {
+  SECTION("the authorities are not valid yet") {
     const Authority identities("identity authority", later, later + hours(1));
     const auto key = make_private_key();
     with_file(keys, key_files::kIdentityAuthority, to_pem(identities.certificate()));
@@ -136,26 +138,26 @@ TEST_CASE("keys that are not valid yet are no usage error, because the clock may
   }
 }
 
-TEST_CASE("keys that Fast DDS would refuse without a reason are named") {
+TEST_CASE("keys that Fast DDS would reject without a reason get an error that names the problem") {
   const TestKeys keys({"agent", "3-4"}), others({"agent", "3"});
   const Time now = keys.now(), earlier = now - hours(2);
-  SECTION("a list of revoked keys that has expired") {
+  SECTION("the revocation list has expired") {
     const std::string list = authority_of(keys, "identity_ca").revocation_list({}, earlier, now - hours(1));
     CHECK_THAT(problem_of(with_file(keys, key_files::kRevoked, list), now),
                ContainsSubstring("crl.pem: this list of revoked keys expired on"));
   }
-  SECTION("permissions that have expired") {
+  SECTION("the permissions have expired") {
     const std::string permissions = permissions_of(keys, earlier, now - hours(1));
     CHECK_THAT(problem_of(with_file(keys, key_files::kPermissions, permissions), now),
                ContainsSubstring("permissions.p7s: the permissions of agent 3 expired on"));
   }
-  SECTION("permissions of another process") {
+  SECTION("the permissions belong to another process") {
     const std::string folder = keys.folder_of("agent 3");
     fs::copy_file(keys.folder_of("agent 4") + "/permissions.p7s", folder + "/permissions.p7s",
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem_of(folder, now), ContainsSubstring("expected the permissions of agent 3"));
   }
-  SECTION("documents that another authority has signed") {
+  SECTION("another authority signed the documents") {
     const char* const name = GENERATE(key_files::kPermissions, key_files::kGovernance);
     const std::string folder = keys.folder_of("agent 3");
     fs::remove(folder + "/" + name);
@@ -163,13 +165,13 @@ TEST_CASE("keys that Fast DDS would refuse without a reason are named") {
     CHECK_THAT(problem_of(folder, now),
                ContainsSubstring(std::string(name) + ": the permissions authority beside it has not signed"));
   }
-  SECTION("documents that are not signed") {
+  SECTION("the documents are not signed") {
     CHECK_THAT(problem_of(with_file(keys, key_files::kPermissions, "nonsense"), now),
                ContainsSubstring("permissions.p7s: expected a signed document"));
   }
 }
 
-TEST_CASE("a user without permission is told so, with the file, the user and the owner") {
+TEST_CASE("a user without read permission gets an error that names the file, the user and the owner") {
   SIDESTEP_NEEDS_ROOT();
   const TestKeys keys({"agent", "3"});
   const std::string folder = keys.folder_of("agent 3");
@@ -197,7 +199,7 @@ TEST_CASE("a user without permission is told so, with the file, the user and the
   CHECK(problem(folder) == problem(keys.folder()));
 }
 
-TEST_CASE("a process uses its own keys from a folder with those of several processes") {
+TEST_CASE("a process picks its own keys from a folder that holds keys of several processes") {
   TestKeys keys({"agent", "3", "robot", "0-10", "vision"});
   const auto own = [&](const char* text) {
     return own_key_folder(keys.folder(), parse_identity(text).value());
@@ -207,7 +209,7 @@ TEST_CASE("a process uses its own keys from a folder with those of several proce
   CHECK(own("robot 2-7") == keys.folder() + "/enclaves/robot-0-10");
   CHECK_THROWS_WITH(own("robot 9-11"), ContainsSubstring("has no keys of robot 9-11"));
   CHECK_THROWS_WITH(own("agent 4"), ContainsSubstring("sidestep keys issue"));
-  // A path to the folder of one identity means that identity.
+  // A path to the folder of one identity selects that identity.
   CHECK(own_key_folder(keys.folder_of("vision"), {Role::kViewer}) == keys.folder_of("vision"));
   CHECK_THROWS_WITH(key_folder_of(keys.folder_of("vision"), {Role::kVision}),
                     ContainsSubstring("sidestep keys init"));

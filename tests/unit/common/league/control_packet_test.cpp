@@ -16,7 +16,7 @@ std::vector<std::byte> bytes_of_numbers(std::initializer_list<int> numbers) {
   return bytes;
 }
 
-TEST_CASE("commands of a team are read from the bytes on the wire") {
+TEST_CASE("team commands are read from wire bytes") {
   // robot_commands: id 5, move_command: local_velocity: forward 1, left -0.5, angular 2; kick_speed 4,
   // kick_angle 45.
   const auto bytes =
@@ -40,7 +40,7 @@ TEST_CASE("commands of a team are read from the bytes on the wire") {
   CHECK(robot.kick_angle_rad == Approx(0.7853981634));
 }
 
-TEST_CASE("a simulator command is read from the bytes on the wire") {
+TEST_CASE("a simulator command is read from wire bytes") {
   // control: teleport_robot: id {id 3, team 2 (blue)}, x 1, y -0.5, orientation 2, present true; speed 0.5.
   // config: geometry, vision_port 10020.
   const auto bytes = bytes_of_numbers({0x0a, 0x1e,                                      //
@@ -102,7 +102,7 @@ TEST_CASE("commands and responses survive encoding and decoding") {
   CHECK(decode_simulator_response({}).packet->errors.empty());
 }
 
-TEST_CASE("commands with one hostile value are rejected as a whole") {
+TEST_CASE("team commands with one invalid value are rejected as a whole") {
   const auto error_of = [](auto spoil) {
     wire::control::TeamCommands message;
     auto& robot = *message.add_robots();
@@ -138,7 +138,7 @@ TEST_CASE("commands with one hostile value are rejected as a whole") {
   CHECK(decode_team_commands({}).error == DecodeError::kEmpty);
 }
 
-TEST_CASE("simulator commands with one hostile value are rejected as a whole") {
+TEST_CASE("simulator commands with one invalid value are rejected as a whole") {
   const auto error_of = [](auto spoil) {
     wire::control::SimulatorCommand message;
     auto& robot = *message.mutable_control()->add_teleport_robots();

@@ -26,7 +26,7 @@ class TemporaryFile {
   TemporaryFolder folder_;
 };
 
-/// Alternating vision and tracked packets every 10 ms.
+/// Alternating vision and tracked packets, one every 10 ms.
 std::vector<LogRecord> random_records(Rng& rng, int count) {
   std::vector<LogRecord> records;
   for (int i = 0; i < count; ++i) {
@@ -78,7 +78,7 @@ std::string error_of(const std::string& content) {
   return "accepted";
 }
 
-/// A record header, big-endian.
+/// A big-endian record header.
 std::string header(std::int64_t received_ns, std::int32_t type, std::int32_t size) {
   std::string bytes;
   for (int i = 7; i >= 0; --i) bytes += static_cast<char>(received_ns >> 8 * i & 0xff);
@@ -104,14 +104,14 @@ TEST_CASE("a written log is read back unchanged") {
   CHECK(reader.error().empty());
 }
 
-TEST_CASE("a log has the league's format: magic, version, and big-endian records") {
+TEST_CASE("a log has the league's format: magic, version and big-endian records") {
   const std::byte payload[] = {std::byte{0xaa}, std::byte{0xbb}};
   const std::string content =
       log_of({{time_from_ns(0x0102030405060708), LogType::kVision, {payload[0], payload[1]}}});
   CHECK(content == kFileHeader + std::string("\1\2\3\4\5\6\7\10\0\0\0\4\0\0\0\2\xaa\xbb", 18));
 }
 
-TEST_CASE("a truncated log keeps all complete records") {
+TEST_CASE("all complete records of a truncated log are read") {
   Rng rng(2);
   const auto records = random_records(rng, 8);
   const std::string whole = log_of(records);
@@ -150,7 +150,7 @@ TEST_CASE("a file that is not a log is rejected with the position and the expect
                     ContainsSubstring("/nowhere/x.log: cannot write the file: No such file"));
 }
 
-TEST_CASE("an invalid record ends the reading with its position") {
+TEST_CASE("reading stops at an invalid record and reports its position") {
   const std::string first = kFileHeader + header(5, 4, 3) + "abc";
   const auto error_after_first = [&](const std::string& more) {
     LogReader reader = reader_of(first + more);
@@ -183,7 +183,7 @@ TEST_CASE("records of unknown types are skipped, whatever their length") {
   CHECK(truncated.status() == LogStatus::kTruncated);
 }
 
-TEST_CASE("seek finds the first record after an offset, forwards and backwards") {
+TEST_CASE("seeking finds the first record at or after an offset, forwards and backwards") {
   Rng rng(3);
   const auto records = random_records(rng, 100);
   LogReader reader = reader_of(log_of(records));

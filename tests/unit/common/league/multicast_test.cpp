@@ -27,7 +27,7 @@ Bytes random_bytes(Rng& rng, std::size_t size) {
   return bytes;
 }
 
-/// Receives `count` datagrams; fewer if none arrives for 10 s.
+/// Receives `count` datagrams, or fewer if none arrives for 10 s.
 std::vector<Bytes> received(MulticastReceiver& receiver, std::size_t count) {
   std::vector<Bytes> all;
   pollfd readable{receiver.descriptor(), POLLIN, 0};
@@ -45,7 +45,7 @@ bool is_readable(const MulticastReceiver& receiver) {
   return poll(&readable, 1, 0) > 0;
 }
 
-TEST_CASE("a multicast address and port are parsed, and other text is rejected with what was expected") {
+TEST_CASE("a multicast address with port is parsed, and the error for other text states what was expected") {
   CHECK(parsed("224.5.23.2:10006") == "accepted as 224.5.23.2:10006");
   CHECK(parsed("239.255.255.255:65535") == "accepted as 239.255.255.255:65535");
   for (const char* text : {kVisionEndpoint, kTrackedEndpoint, kRefereeEndpoint}) {
@@ -64,7 +64,7 @@ TEST_CASE("a multicast address and port are parsed, and other text is rejected w
   }
 }
 
-TEST_CASE("an unknown interface is rejected with the list of interfaces") {
+TEST_CASE("an unknown interface is rejected with a list of interfaces") {
   const TestEndpoint group;
   for (const char* interface : {"192.0.2.77", "lo", "", "256.0.0.1"}) {
     CAPTURE(interface);
@@ -75,7 +75,7 @@ TEST_CASE("an unknown interface is rejected with the list of interfaces") {
   }
 }
 
-TEST_CASE("every receiver of a group gets all datagrams unchanged") {
+TEST_CASE("every receiver in a group gets all datagrams unchanged") {
   const TestEndpoint group;
   MulticastReceiver first(group.endpoint(), kLeagueInterface), second(group.endpoint(), kLeagueInterface);
   MulticastSender sender(group.endpoint(), kLeagueInterface);
@@ -93,7 +93,7 @@ TEST_CASE("every receiver of a group gets all datagrams unchanged") {
   CHECK_FALSE(is_readable(first));
 }
 
-TEST_CASE("a receiver gets no datagrams of another group and no unicast datagrams") {
+TEST_CASE("a receiver gets neither another group's datagrams nor unicast datagrams") {
   const TestEndpoint group;
   const Endpoint other{group.endpoint().address ^ 0x100, group.endpoint().port};
   MulticastReceiver receiver(group.endpoint(), kLeagueInterface), of_other(other, kLeagueInterface);
@@ -109,7 +109,7 @@ TEST_CASE("a receiver gets no datagrams of another group and no unicast datagram
   CHECK(received(of_other, 1) == std::vector<Bytes>{wrong});
 }
 
-TEST_CASE("an event loop delivers datagrams to its thread and sleeps in between") {
+TEST_CASE("an event loop delivers datagrams in its thread and sleeps in between") {
   const TestEndpoint group;
   MulticastReceiver receiver(group.endpoint(), kLeagueInterface);
   MulticastSender sender(group.endpoint(), kLeagueInterface);

@@ -21,7 +21,7 @@ DecodeError error_of(const wire::referee::Packet& message) {
   return decode_referee(std::as_bytes(std::span(text))).error;
 }
 
-TEST_CASE("a packet of the referee is read from the bytes on the wire") {
+TEST_CASE("a referee packet is read from wire bytes") {
   // packet_timestamp 1.5 s, stage 2, command 16, command_counter 300, command_timestamp 1 s, a team with a
   // goalkeeper and eleven robots, designated_position (1500, -500) mm, next_command 3.
   const auto bytes = bytes_of_numbers({0x08, 0xe0, 0xc6, 0x5b,                                            //
@@ -42,7 +42,7 @@ TEST_CASE("a packet of the referee is read from the bytes on the wire") {
   CHECK((*decoded.packet->designated_position_m - Vec2(1.5, -0.5)).norm() < 1e-9);
 }
 
-TEST_CASE("a packet of the referee survives encoding and decoding") {
+TEST_CASE("a referee packet survives encoding and decoding") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -59,7 +59,7 @@ TEST_CASE("a packet of the referee survives encoding and decoding") {
   }
 }
 
-TEST_CASE("an invalid packet of the referee is rejected with its reason") {
+TEST_CASE("an invalid referee packet is rejected with the reason") {
   const auto bytes = encode(RefereePacket{std::chrono::seconds(1), RefereeCommand::kStop, 1, {}, Vec2(1, 2)});
   wire::referee::Packet valid;
   REQUIRE(valid.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
@@ -91,7 +91,7 @@ TEST_CASE("an invalid packet of the referee is rejected with its reason") {
   }
 }
 
-TEST_CASE("the commands of the referee have the names and teams of the league") {
+TEST_CASE("referee commands have the league's names and teams") {
   CHECK(name_of(RefereeCommand::kHalt) == "HALT");
   CHECK(name_of(RefereeCommand::kForceStart) == "FORCE_START");
   CHECK(name_of(static_cast<RefereeCommand>(9)) == "DIRECT_FREE_BLUE");

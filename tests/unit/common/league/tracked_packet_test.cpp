@@ -68,7 +68,7 @@ TEST_CASE("a tracked packet survives encoding and decoding") {
   }
 }
 
-TEST_CASE("tracked robots are encoded in metres with the league's team colours") {
+TEST_CASE("tracked robots are encoded in metres and with the league's team colours") {
   TrackedFrame frame;
   frame.frame_number = 4;
   frame.at = std::chrono::milliseconds(1'500);
@@ -91,7 +91,7 @@ TEST_CASE("tracked robots are encoded in metres with the league's team colours")
   CHECK_FALSE(message.tracked_frame().robots(1).has_vel());
 }
 
-TEST_CASE("an invalid tracked packet is rejected with its reason") {
+TEST_CASE("an invalid tracked packet is rejected with the reason") {
   Rng rng(3);
   TrackedPacket packet{"id", std::nullopt, TrackedFrame{}};
   packet.frame->robots.push_back({Team::kBlue, 3, {1.5, -2}, 0.5, Vec2(1, 0), 2.0, 1.0});

@@ -33,7 +33,7 @@ TEST_CASE("a datagram reaches a socket, and the reply reaches the sender") {
   CHECK_THROWS_WITH(UnicastSocket(test.unicast()), StartsWith(to_text(test.unicast()) + ": cannot listen"));
 }
 
-TEST_CASE("addresses of machines are parsed, and mistakes are named") {
+TEST_CASE("host addresses are parsed, and errors name the mistake") {
   CHECK(parse_unicast_endpoint("127.0.0.1:10301") == Endpoint{0x7f000001, 10301});
   CHECK_THROWS_WITH(parse_unicast_endpoint("127.0.0.1"),
                     "\"127.0.0.1\": expected ADDRESS:PORT, such as 127.0.0.1:10300");

@@ -154,7 +154,7 @@ DecodeError error_of(const wire::vision::Packet& message) {
   return decoded.error;
 }
 
-/// The error of the valid message after `change` has modified its detection.
+/// The error for the valid message after `change` has modified its detection.
 template <typename Change>
 DecodeError error_after(Change change) {
   wire::vision::Packet message = valid_message();
@@ -178,7 +178,7 @@ TEST_CASE("a vision packet survives encoding and decoding") {
   }
 }
 
-TEST_CASE("a detection from another program is decoded into metres and radians") {
+TEST_CASE("another program's detection is decoded into metres and radians") {
   const auto decoded = decode_vision(bytes_of(valid_message()));
   REQUIRE(decoded.packet);
   CHECK_FALSE(decoded.packet->geometry);
@@ -198,7 +198,7 @@ TEST_CASE("a detection from another program is decoded into metres and radians")
   check_close(*detection.blue[0].height_m, 0.15);
 }
 
-TEST_CASE("an encoded packet has every field that the league requires, in its units") {
+TEST_CASE("an encoded packet has every required field in the league's units") {
   DetectionFrame detection;
   detection.frame_number = 3;
   detection.camera = 1;
@@ -226,7 +226,7 @@ TEST_CASE("an encoded packet has every field that the league requires, in its un
   CHECK(message.detection().robots_blue_size() == 0);
 }
 
-TEST_CASE("field numbers and types are the league's") {
+TEST_CASE("field numbers and types match the league's definition") {
   // From the league's tables: key = field number * 8 + type (0 varint, 1 double, 2 message,
   // 5 float).
   DetectedRobot robot;
@@ -246,7 +246,7 @@ TEST_CASE("field numbers and types are the league's") {
       4 * 8 + 0, 2,                                         // camera
       7 * 8 + 2, 37,                                        // a blue robot
       1 * 8 + 5, 0,  0, 0,    0,                            // confidence
-      2 * 8 + 0, 5,                                         // robot's number
+      2 * 8 + 0, 5,                                         // robot number
       3 * 8 + 5, 0,  0, 0x80, 0x3f,                         // x: 1
       4 * 8 + 5, 0,  0, 0,    0,    5 * 8 + 5, 0, 0, 0, 0,  // y, orientation
       6 * 8 + 5, 0,  0, 0,    0,    7 * 8 + 5, 0, 0, 0, 0,  // pixel
@@ -260,7 +260,7 @@ TEST_CASE("field numbers and types are the league's") {
   CHECK(bytes == expected);
 }
 
-TEST_CASE("a packet with an invalid number is rejected as a whole with its reason") {
+TEST_CASE("a packet with an invalid number is rejected as a whole with the reason") {
   using D = wire::vision::DetectionFrame;
   CHECK(error_of(valid_message()) == DecodeError::kNone);
   for (const float wrong : {kNan, kInfinity, -kInfinity, 100'001.0F, -1e30F}) {
@@ -308,7 +308,7 @@ TEST_CASE("a packet with missing fields or too many elements is rejected") {
         }) == DecodeError::kTooMany);
 }
 
-TEST_CASE("an invalid geometry is rejected with its reason") {
+TEST_CASE("an invalid geometry is rejected with the reason") {
   Rng rng(5);
   VisionPacket packet;
   packet.geometry = test::random_geometry(rng);

@@ -7,7 +7,7 @@
 
 namespace sidestep::map_allocation_test {
 
-TEST_CASE("queries to a map and scans do not allocate") {
+TEST_CASE("map queries and laser scans do not allocate memory") {
   const std::uint64_t seed = GENERATE(1, 2);
   CAPTURE(seed);
   Rng rng(seed);

@@ -7,7 +7,7 @@
 
 namespace sidestep::bit_grid_test {
 
-TEST_CASE("runs of bits are found as by checking each bit") {
+TEST_CASE("runs of bits are found as if by checking each bit") {
   const std::uint64_t seed = GENERATE(range(1, 60));
   CAPTURE(seed);
   Rng rng(seed);
@@ -33,7 +33,7 @@ TEST_CASE("runs of bits are found as by checking each bit") {
   }
 }
 
-TEST_CASE("a run of bits is set and cleared without its neighbours") {
+TEST_CASE("setting or clearing a run of bits does not affect its neighbours") {
   for (const int begin : {0, 1, 63, 64, 65}) {
     for (const int end : {begin, begin + 1, 64, 65, 128, 130}) {
       CAPTURE(begin, end);
@@ -51,7 +51,7 @@ TEST_CASE("a run of bits is set and cleared without its neighbours") {
   }
 }
 
-TEST_CASE("a grid without cells is refused") {
+TEST_CASE("a grid without cells is rejected") {
   CHECK_THROWS_AS(BitGrid(0, 1), std::invalid_argument);
   CHECK_THROWS_AS(BitGrid(1, -1), std::invalid_argument);
 }

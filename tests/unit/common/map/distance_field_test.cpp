@@ -9,7 +9,7 @@
 
 namespace sidestep::distance_field_test {
 
-/// The distances to the nearest blocked cell, by comparing all pairs of cells; -1 for cells not written.
+/// Squared distances in cells as distance_transform() reports them; -1 for cells that it does not report.
 std::vector<std::int32_t> transformed(const BitGrid& bits) {
   const auto columns = static_cast<std::size_t>(bits.columns());
   std::vector<std::int32_t> squared(columns * static_cast<std::size_t>(bits.rows()), -1);
@@ -28,7 +28,7 @@ std::int32_t slow_squared(const BitGrid& bits, int column, int row) {
   return nearest;
 }
 
-TEST_CASE("the distance transform equals comparing all pairs of cells") {
+TEST_CASE("the distance transform equals a comparison of all pairs of cells") {
   const std::uint64_t seed = GENERATE(range(1, 150));
   CAPTURE(seed);
   Rng rng(seed);
@@ -76,7 +76,7 @@ TEST_CASE("lower bounds never exceed the exact distance") {
   }
 }
 
-TEST_CASE("a path that the field calls clear touches nothing") {
+TEST_CASE("a path that the distance field calls clear touches nothing") {
   const std::uint64_t seed = GENERATE(range(1, 100));
   CAPTURE(seed);
   Rng rng(seed);
@@ -94,7 +94,7 @@ TEST_CASE("a path that the field calls clear touches nothing") {
   }
 }
 
-TEST_CASE("the field alone decides paths through open space") {
+TEST_CASE("the distance field alone clears paths through open space") {
   const MapGrid grid{400, 400, 0.05, {0, 0}};
   BitGrid bits(400, 400);
   bits.set(200, 200);
@@ -105,7 +105,7 @@ TEST_CASE("the field alone decides paths through open space") {
   CHECK_FALSE(field.is_clear({1, 1}, {19, 0.2}, 0.3));
 }
 
-TEST_CASE("the field proves nothing for invalid numbers") {
+TEST_CASE("the distance field never calls a path with invalid numbers clear") {
   const DistanceField field(OccupancyMap({9, 9, 1, {0, 0}}, BitGrid(9, 9)));
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = 1 / 0.0;
   CHECK(field.lower_bound_m({4.5, 4.5}) > 4);

@@ -9,12 +9,11 @@
 namespace sidestep::floor_map_test {
 
 //   +-----------+   field
-//   |  +--+     |   map with blocked cells; all around it is blocked
+//   |  +--+     |   map with blocked cells; everything around it is blocked
 //   |  |# |     |
 //   |  +--+     |
 //   +-----------+
-TEST_CASE(
-    "the boxes of a map that is smaller than the field cover what is blocked, also on every side of it") {
+TEST_CASE("the boxes of a map smaller than the field cover its blocked cells and everything around it") {
   int blocked = 0, free = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);

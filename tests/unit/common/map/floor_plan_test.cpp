@@ -8,7 +8,7 @@
 
 namespace sidestep::floor_plan_test {
 
-/// The number of free cells that the first one reaches by edges, and of all free cells.
+/// The number of free cells that the first free cell reaches across edges, and the number of all free cells.
 std::pair<int, int> reached_and_free(const OccupancyMap& map) {
   const MapGrid& grid = map.grid();
   BitGrid seen(grid.columns, grid.rows);
@@ -66,7 +66,7 @@ TEST_CASE("the same seed gives the same floor plan") {
   CHECK(plan.extent().min_m == Vec2(1, 2));
 }
 
-TEST_CASE("invalid floor plans are refused") {
+TEST_CASE("invalid floor plan settings are rejected") {
   const MapGrid grid{300, 200, 0.05, {0, 0}};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refuse = [&](auto change) {

@@ -10,7 +10,7 @@ namespace sidestep::laser_scanner_test {
 constexpr double kPi = std::numbers::pi;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-TEST_CASE("beams divide the field of view") {
+TEST_CASE("beams divide the field of view evenly") {
   const LaserScanner half({181, kPi, 0.05, 8});
   CHECK(half.beam_angle_rad(0) == Approx(-kPi / 2));
   CHECK(half.beam_angle_rad(90) == Approx(0).margin(1e-12));
@@ -22,7 +22,7 @@ TEST_CASE("beams divide the field of view") {
   CHECK(LaserScanner({1, 1, 0, 8}).beam_angle_rad(0) == 0);
 }
 
-TEST_CASE("every beam of a scan is the ray in its direction") {
+TEST_CASE("every beam of a scan is a ray in the beam's direction") {
   const std::uint64_t seed = GENERATE(range(1, 60));
   CAPTURE(seed);
   Rng rng(seed);
@@ -49,7 +49,7 @@ TEST_CASE("every beam of a scan is the ray in its direction") {
     for (int beam = 0; beam < settings.beams; ++beam, ++all) {
       const float range_m = ranges_m[static_cast<std::size_t>(beam)];
       const double angle_rad = heading_rad + scanner.beam_angle_rad(beam);
-      // A ray that grazes an obstacle may miss it: a ray beside it may be right.
+      // A ray that grazes an obstacle may miss it, so a ray slightly beside it may be right.
       bool agrees = false;
       for (const double turn_rad : {0.0, -1e-7, 1e-7}) {
         const double ray_m = cast_ray(scene, at, rotated({1, 0}, angle_rad + turn_rad), settings.max_range_m);
@@ -64,7 +64,7 @@ TEST_CASE("every beam of a scan is the ray in its direction") {
   if (has_map && settings.max_range_m > 3) CHECK(seen > all / 10);
 }
 
-TEST_CASE("ranges out of limits are infinite") {
+TEST_CASE("ranges beyond the limits are infinite") {
   const std::vector<Circle> disc{{{3, 0}, 1}};
   const RayScene scene{nullptr, nullptr, nullptr, disc};
   const auto range_m = [&](const LaserSettings& settings, const Vec2& at) {
@@ -79,7 +79,7 @@ TEST_CASE("ranges out of limits are infinite") {
   CHECK(range_m({1, 1, 0, 8}, {5, 0}) == kInfinite);
 }
 
-TEST_CASE("invalid scanners and scans are refused") {
+TEST_CASE("invalid scanners and scans are rejected") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const LaserSettings& settings :
        {LaserSettings{0, 1, 0, 1}, LaserSettings{100'001, 1, 0, 1}, LaserSettings{1, 0, 0, 1},

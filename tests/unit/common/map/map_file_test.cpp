@@ -15,7 +15,7 @@ using test::kMapYaml;
 using test::MapFolder;
 using test::replaced;
 
-/// A raw image of one row.
+/// A raw image with one row.
 std::string row_of(const std::string& pixels) {
   return "P5 " + std::to_string(pixels.size()) + " 1 255\n" + pixels;
 }
@@ -29,7 +29,7 @@ TEST_CASE("a map is read with its position, and unknown cells are blocked") {
   CHECK(drawing(map) == ".##/.../");
 }
 
-TEST_CASE("probabilities follow map_server's rules") {
+TEST_CASE("occupancy probabilities follow map_server's rules") {
   const MapFolder folder;
   // p = (255 - v) / 255: 203 has p = 0.20392, 204 has 0.2, 206 has 0.19216, 207 has 0.18824.
   const std::string image = row_of("\xff\xcf\xce\xcc\xcb\x80\x01");
@@ -47,13 +47,12 @@ TEST_CASE("probabilities follow map_server's rules") {
           "####./");
   CHECK(drawing(folder.load(kMapYaml + "mode: trinary\n", image)) == "...####/");
   CHECK(drawing(folder.load(kMapYaml + "mode: scale\n", image)) == "...####/");
-  // Raw samples are per cent, and unknown above 100.
+  // Raw values are percentages, and unknown above 100.
   CHECK(drawing(folder.load(kMapYaml + "mode: raw\n", row_of(std::string("\0\x13\x14\x64\xff", 5)))) ==
         "..###/");
 }
 
-TEST_CASE(
-    "the grey that map savers write is unknown regardless of the thresholds, and blocked unless allowed") {
+TEST_CASE("the grey that map savers use for unknown cells means unknown, whatever the thresholds") {
   const MapFolder folder;
   // Free, unknown, likely free, likely occupied, occupied.
   const std::string image = row_of(std::string("\xfe\xcd\xd2\x80\0", 5));
@@ -67,7 +66,7 @@ TEST_CASE(
     CHECK(drawing(allowed.cells) == "....#/");
     CHECK(allowed.unknown == blocked.unknown);
   }
-  // In mode scale, every grey is a probability.
+  // In mode "scale", every grey value is a probability.
   const LoadedMap scaled = folder.load_all(replaced(kMapYaml, "0.196\n", "0.25\n") + "mode: scale\n", image);
   CHECK(drawing(scaled.cells) == "...##/");
   CHECK(scaled.unknown == 1);
@@ -102,14 +101,14 @@ TEST_CASE("all kinds of PGM images give the same map") {
   }
 }
 
-TEST_CASE("the path of the image is relative to the YAML file or absolute") {
+TEST_CASE("the path of the image may be absolute or relative to the YAML file") {
   const MapFolder folder;
   write_file(folder / "images/other.pgm", row_of("\xff"));
   CHECK(drawing(folder.load(replaced(kMapYaml, "map.pgm", "images/other.pgm"), "")) == "./");
   CHECK(drawing(folder.load(replaced(kMapYaml, "map.pgm", folder / "images/other.pgm"), "")) == "./");
 }
 
-TEST_CASE("a map that is written is read as the same map") {
+TEST_CASE("a map survives writing and reading") {
   const std::uint64_t seed = GENERATE(range(1, 30));
   CAPTURE(seed);
   Rng rng(seed);
@@ -122,7 +121,7 @@ TEST_CASE("a map that is written is read as the same map") {
   CHECK(read.grid().origin_m == map.grid().origin_m);
 }
 
-TEST_CASE("errors of the YAML file have its line") {
+TEST_CASE("errors in the YAML file are reported with their line") {
   const MapFolder folder;
   const auto check = [&](const std::string& old_part, const std::string& new_part, int line,
                          const std::string& why) {
@@ -154,7 +153,7 @@ TEST_CASE("errors of the YAML file have its line") {
   CHECK_THROWS_AS(load_map(folder / "none.yaml"), ConfigError);
 }
 
-TEST_CASE("errors of an image name it on the line of its key") {
+TEST_CASE("errors in an image are reported with its name and the line of its key") {
   const MapFolder folder;
   const auto check = [&](const std::string& image, const std::string& why) {
     const std::string error = folder.error(kMapYaml, image);

@@ -21,7 +21,7 @@ class MapFolder {
 
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
 
-  /// The map of a YAML text and, unless empty, an image "map.pgm".
+  /// The map given by a YAML text and, unless empty, an image "map.pgm".
   OccupancyMap load(const std::string& yaml, const std::string& image) const {
     return load_all(yaml, image).cells;
   }
@@ -47,17 +47,17 @@ class MapFolder {
       std::filesystem::temp_directory_path() / ("sidestep-map-test-" + std::to_string(getpid()));
 };
 
-/// A map of cells of 0.1 m in "map.pgm" with the thresholds 0.65 and 0.196; `image` is on line 1.
+/// A map with 0.1 m cells in "map.pgm" and the thresholds 0.65 and 0.196; the key `image` is on line 1.
 inline const std::string kMapYaml =
     "image: map.pgm\nresolution: 0.1\norigin: [-1.5, 2.25, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
     "free_thresh: 0.196\n";
 
-/// A text with one occurrence of a part replaced.
+/// A text in which one occurrence of a part is replaced.
 inline std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
   return text.replace(text.find(old_part), old_part.size(), new_part);
 }
 
-/// '#' for blocked and '.' for free cells; the highest row first, each row followed by '/'.
+/// '#' for blocked and '.' for free cells; top row first, with '/' after each row.
 inline std::string drawing(const OccupancyMap& map) {
   std::string rows;
   for (int row = map.grid().rows - 1; row >= 0; --row, rows += '/')

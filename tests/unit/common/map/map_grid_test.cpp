@@ -24,7 +24,7 @@ TEST_CASE("a point is in the cell whose borders surround it") {
   }
 }
 
-TEST_CASE("far points are outside, on their side of the map") {
+TEST_CASE("distant points are outside, on their side of the map") {
   const MapGrid grid{3, 2, 0.5, {1, 1}};
   const double infinite = std::numeric_limits<double>::infinity();
   CHECK(grid.cell_at({-1e300, infinite}) == Cell{-1, 2});
@@ -53,7 +53,7 @@ TEST_CASE("the cells that meet a box are those whose closed squares overlap it")
   }
 }
 
-TEST_CASE("grids out of range are refused") {
+TEST_CASE("grids out of range are rejected") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(check({16'384, 4'096, 0.05, {0, 0}}));
   CHECK_NOTHROW(check({1, 1, 0.001, {-1e6, 1e6}}));

@@ -11,12 +11,12 @@ namespace sidestep::occupancy_map_test {
 constexpr double kTolerance_m = 1e-9;
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// The distance from a point to the outside, negative inside it.
+/// The distance from a point inside the map to the outside; negative for a point outside it.
 double distance_to_outside(const Vec2& p, const Box& map) {
   return std::min((p - map.min_m).minCoeff(), (map.max_m - p).minCoeff());
 }
 
-/// Compares with every blocked cell.
+/// Checks every blocked cell.
 double slow_distance(const Vec2& p, const OccupancyMap& map) {
   double nearest_m = std::max(0.0, distance_to_outside(p, map.extent()));
   for (const Box& box : test::blocked_boxes(map))
@@ -41,14 +41,14 @@ double slow_distance(const Vec2& from, const Vec2& to, const Box& box) {
 double slow_distance(const Vec2& from, const Vec2& to, const OccupancyMap& map) {
   double nearest_m = std::min(distance_to_outside(from, map.extent()), distance_to_outside(to, map.extent()));
   for (const Box& box : test::blocked_boxes(map)) {
-    // No point of the path is nearer than its middle by more than half its length.
+    // No point of the path is nearer than its middle by more than half the path's length.
     const double bound_m = test::distance_to_box((from + to) / 2, box) - (to - from).norm() / 2;
     if (bound_m <= nearest_m + kTolerance_m) nearest_m = std::min(nearest_m, slow_distance(from, to, box));
   }
   return nearest_m;
 }
 
-/// '#' is blocked; the first line is the highest row. Cells of one metre from the origin.
+/// '#' is blocked; the first line is the top row. Cells of one metre, starting at the origin.
 OccupancyMap drawn(const std::vector<std::string>& rows) {
   BitGrid bits(static_cast<int>(rows[0].size()), static_cast<int>(rows.size()));
   for (int row = 0; row < bits.rows(); ++row)
@@ -72,7 +72,7 @@ TEST_CASE("cells keep their positions, and everything outside is blocked") {
   CHECK(map.cell_at({1.5, 0.5}) == Cell{1, 0});
 }
 
-TEST_CASE("distances equal those to the nearest of all cells") {
+TEST_CASE("the distance to a map is the distance to its nearest blocked cell") {
   const std::uint64_t seed = GENERATE(range(1, 120));
   CAPTURE(seed);
   Rng rng(seed);
@@ -87,7 +87,7 @@ TEST_CASE("distances equal those to the nearest of all cells") {
   }
 }
 
-TEST_CASE("moving discs touch whatever they come near enough to") {
+TEST_CASE("a moving disc touches every cell that it comes near enough to") {
   const std::uint64_t seed = GENERATE(range(1, 60));
   CAPTURE(seed);
   Rng rng(seed);
@@ -111,7 +111,7 @@ TEST_CASE("moving discs touch whatever they come near enough to") {
   CHECK(touching > 0);
 }
 
-TEST_CASE("the boxes of a region cover exactly its blocked cells once") {
+TEST_CASE("the boxes of a region cover exactly its blocked cells without overlap") {
   const std::uint64_t seed = GENERATE(range(1, 80));
   CAPTURE(seed);
   Rng rng(seed);
@@ -139,7 +139,7 @@ TEST_CASE("the boxes of a region cover exactly its blocked cells once") {
         if (covers != (is_expected ? 1 : 0)) FAIL("cell " << column << ", " << row << ": " << covers);
       }
     }
-    // Points of the region that are outside, or on the map's border, are in a box, and no others.
+    // A point of the region lies in an outside box if and only if it is outside the map or on its border.
     for (int j = 0; j < 20; ++j) {
       const double x_m = rng.uniform(region.min_m.x(), region.max_m.x());
       const double y_m = rng.uniform(region.min_m.y(), region.max_m.y());
@@ -174,7 +174,7 @@ TEST_CASE("walls and solid areas are single boxes") {
   CHECK(count({{20, 1}, {21, 2}}) == 1);
 }
 
-TEST_CASE("a callback that returns false ends the listing of boxes") {
+TEST_CASE("listing boxes stops when the callback returns false") {
   const OccupancyMap map = drawn({"#.#",  //
                                   "...",  //
                                   "#.#"});
@@ -230,7 +230,7 @@ TEST_CASE("few rectangles cover simple maps") {
   CHECK_FALSE(room.rectangles(3));
 }
 
-TEST_CASE("invalid maps and queries are refused") {
+TEST_CASE("invalid maps and queries are rejected") {
   CHECK_THROWS_AS(OccupancyMap(MapGrid{2, 1, 0.05, {0, 0}}, BitGrid(1, 2)), std::invalid_argument);
   CHECK_THROWS_AS(OccupancyMap(MapGrid{1, 1, 0, {0, 0}}, BitGrid(1, 1)), std::invalid_argument);
   const OccupancyMap map = drawn({"..", ".."});

@@ -13,7 +13,7 @@ namespace sidestep::png_image_test {
 using test::kMapYaml;
 using test::replaced;
 
-/// A PNG image of samples of 8 bits, or of linear samples of 16 bits.
+/// A PNG image with 8-bit samples, or with linear 16-bit samples.
 std::string encoded(unsigned columns, unsigned rows, png_uint_32 format, const void* samples) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
@@ -47,7 +47,7 @@ std::string chunk(const std::string& type, const std::string& data) {
   return big_endian(static_cast<std::uint32_t>(data.size())) + type + data + big_endian(~crc);
 }
 
-/// A PNG image whose chunks between header and pixels are replaced.
+/// A PNG image in which the chunks between header and pixels are replaced.
 std::string with_chunks(const std::string& png, const std::string& chunks) {
   constexpr std::size_t kHeaderEnd = 33;
   return png.substr(0, kHeaderEnd) + chunks + png.substr(png.find("IDAT") - 4);
@@ -93,7 +93,7 @@ TEST_CASE("grey values are used as stored") {
   }
 }
 
-TEST_CASE("samples of 16 bits are not brightened") {
+TEST_CASE("16-bit samples are not brightened") {
   const std::vector<png_uint_16> samples{0, 0x3fff, 0x7fff, 0xbfff, 0xffff};
   const std::string png = with_chunks(encoded(5, 1, PNG_FORMAT_LINEAR_Y, samples.data()), "");
   CHECK(drawing(png, 0.55) == "###../");
@@ -110,7 +110,7 @@ TEST_CASE("colours are averaged and transparent pixels are blocked") {
   CHECK(drawing(encoded(3, 1, PNG_FORMAT_RGBA, pixels.data()), 0.5) == ".##/");
 }
 
-TEST_CASE("an image whose gamma would change its values is refused") {
+TEST_CASE("an image whose gamma would change its values is rejected") {
   const std::string png = grey(2, 1, {0, 205});
   for (const std::uint32_t gamma : {0U, 1U, 10'000U, 60'000U, 100'000U, 0xffffffffU}) {
     CHECK_THAT(error_of(with_chunks(png, chunk("gAMA", big_endian(gamma)))),
@@ -120,9 +120,9 @@ TEST_CASE("an image whose gamma would change its values is refused") {
   }
 }
 
-TEST_CASE("damaged PNG images are refused") {
+TEST_CASE("damaged PNG images are rejected") {
   const std::string png = grey(40, 30, std::vector<png_byte>(1200, 200));
-  // The necessary data ends with the compressed pixels, before the checksum and the chunk IEND.
+  // The necessary data ends with the compressed pixels, before the checksum and the IEND chunk.
   for (std::size_t size = 2; size + 16 < png.size(); ++size) {
     CAPTURE(size);
     CHECK_THAT(error_of(png.substr(0, size)), StartsWith("it is"));
@@ -132,7 +132,7 @@ TEST_CASE("damaged PNG images are refused") {
   CHECK_THAT(error_of(broken), ContainsSubstring("not a valid PNG image"));
 }
 
-TEST_CASE("PNG images that are too large are refused before they are decompressed") {
+TEST_CASE("PNG images that are too large are rejected before they are decompressed") {
   const auto with_size = [](std::uint32_t columns, std::uint32_t rows) {
     const std::string png = grey(1, 1, {255});
     const std::string header = big_endian(columns) + big_endian(rows) + std::string("\x8\0\0\0\0", 5);

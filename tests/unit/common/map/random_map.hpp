@@ -16,8 +16,8 @@ inline BitGrid noise(Rng& rng, int columns, int rows, double blocked_part) {
   return bits;
 }
 
-/// A map of 1 x 1 to 140 x `max_rows` cells: without free or blocked cells, with noise, few blocked cells,
-/// few free ones, or rooms.
+/// A map of 1 x 1 to 140 x `max_rows` cells: all free, all blocked, noise, few blocked cells, few free cells,
+/// or rooms.
 inline OccupancyMap random_map(Rng& rng, int max_rows) {
   MapGrid grid;
   grid.columns = 1 + static_cast<int>(rng.below(rng.chance(0.5) ? 12 : 140));
@@ -38,7 +38,7 @@ inline OccupancyMap random_map(Rng& rng, int max_rows) {
   return {grid, noise(rng, grid.columns, grid.rows, kBlockedParts[kind])};
 }
 
-/// A position in or near a map; often on a border or a corner of a cell.
+/// A position in or near a map, often on the border or a corner of a cell.
 inline Vec2 random_map_position(Rng& rng, const MapGrid& grid) {
   const Box around = inflated(grid.extent(), 0.5 * grid.resolution_m);
   const double x_m = rng.uniform(around.min_m.x(), around.max_m.x());
@@ -50,7 +50,7 @@ inline Vec2 random_map_position(Rng& rng, const MapGrid& grid) {
   return position;
 }
 
-/// The boxes of all blocked cells, by looking at each cell.
+/// The boxes of all blocked cells, found by checking each cell.
 inline std::vector<Box> blocked_boxes(const OccupancyMap& map) {
   std::vector<Box> boxes;
   const MapGrid& grid = map.grid();
@@ -60,7 +60,7 @@ inline std::vector<Box> blocked_boxes(const OccupancyMap& map) {
   return boxes;
 }
 
-/// The distance from a point to a solid box, by the nearest point.
+/// The distance from a point to a solid box, measured to the box's nearest point.
 inline double distance_to_box(const Vec2& p, const Box& box) {
   return (p - p.cwiseMax(box.min_m).cwiseMin(box.max_m)).norm();
 }

@@ -12,7 +12,7 @@ namespace sidestep::ray_cast_test {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTolerance_m = 1e-9;
 
-/// Where a ray enters a box, from its intersections with the slabs of both axes.
+/// Where a ray enters a box, computed by intersecting the slabs of both axes.
 double entry_m(const Vec2& from, const Vec2& direction, const Box& box) {
   double enters_m = 0, leaves_m = kInfinite;
   for (int axis = 0; axis < 2; ++axis) {
@@ -28,13 +28,13 @@ double entry_m(const Vec2& from, const Vec2& direction, const Box& box) {
   return enters_m <= leaves_m ? enters_m : kInfinite;
 }
 
-/// Compares with every blocked cell, slightly inflated.
+/// Checks every blocked cell, slightly inflated.
 double slow_cast(const std::vector<Box>& cells, const Box& map, const Vec2& from, const Vec2& direction,
                  double inflation_m) {
   double nearest_m = kInfinite;
   for (const Box& cell : cells)
     nearest_m = std::min(nearest_m, entry_m(from, direction, inflated(cell, inflation_m)));
-  // The outside: four boxes larger than any map.
+  // The outside, as four boxes larger than any map.
   const double far_m = 1e4;
   for (const Box& outside :
        {Box{{-far_m, -far_m}, {map.min_m.x(), far_m}}, Box{{map.max_m.x(), -far_m}, {far_m, far_m}},
@@ -53,7 +53,7 @@ Vec2 random_direction(Rng& rng) {
   return rotated({1, 0}, rng.uniform(-4, 4));
 }
 
-TEST_CASE("rays end at the first of all blocked cells") {
+TEST_CASE("a ray ends at the first blocked cell") {
   const std::uint64_t seed = GENERATE(range(1, 150));
   CAPTURE(seed);
   Rng rng(seed);
@@ -85,7 +85,7 @@ TEST_CASE("a ray does not slip between cells that touch at a corner") {
   CHECK(cast_ray(map, field, {3.5, 3.5}, {-diagonal, -diagonal}, 10) == Approx(1.5 * std::numbers::sqrt2));
 }
 
-TEST_CASE("a ray in a scene ends at the nearest of map, shapes and discs") {
+TEST_CASE("a ray in a scene ends at the nearest map cell, shape or disc") {
   const std::uint64_t seed = GENERATE(range(1, 30));
   CAPTURE(seed);
   Rng rng(seed);
@@ -112,7 +112,7 @@ TEST_CASE("a ray in a scene ends at the nearest of map, shapes and discs") {
   }
 }
 
-TEST_CASE("invalid rays are refused") {
+TEST_CASE("invalid rays are rejected") {
   const OccupancyMap map({4, 4, 1, {0, 0}}, BitGrid(4, 4));
   const DistanceField field(map);
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -19,7 +19,7 @@ TEST_CASE("every colour has its own index and name") {
   CHECK(!colour_named(""));
 }
 
-TEST_CASE("colours are converted to YUV by the standard, and back") {
+TEST_CASE("colours are converted to YUV by the standard and back") {
   CHECK(yuv_of({255, 255, 255}) == Yuv{255, 128, 128});
   CHECK(yuv_of({0, 0, 0}) == Yuv{0, 128, 128});
   CHECK(yuv_of({255, 0, 0}) == Yuv{76, 85, 255});
@@ -38,7 +38,7 @@ TEST_CASE("colours are converted to YUV by the standard, and back") {
   }
 }
 
-TEST_CASE("any two colours are distinguishable to a camera") {
+TEST_CASE("a camera can distinguish any two colours") {
   for (const NamedColour& a : kColours) {
     for (const NamedColour& b : kColours) {
       if (a.colour >= b.colour) continue;

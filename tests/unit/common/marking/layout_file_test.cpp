@@ -26,7 +26,7 @@ void check_rejected(const std::string& old_text, const std::string& new_text, in
   INFO(text);
   try {
     (void)parse_layout(text, "pair.yaml");
-    FAIL("it was accepted");
+    FAIL("the invalid layout was accepted");
   } catch (const ConfigError& error) {
     INFO(error.what());
     const std::string beginning = "pair.yaml:" + std::to_string(line) + ": ";

@@ -64,7 +64,7 @@ void compare(const MarkerLayout& layout, Rng& rng) {
     const PoseError predicted = predicted_pose_error(layout, sd_m);
     const SampledError sampled = sampled_error(layout, sd_m, rng);
     CAPTURE(layout.dots.size(), sd_m);
-    // Four standard errors of a standard deviation over 40,000 trials are 1.4 %.
+    // Four standard errors of a standard deviation estimated from 40,000 trials are 1.4 %.
     CHECK(sampled.longitudinal_m == Approx(predicted.longitudinal_m).epsilon(0.015));
     CHECK(sampled.lateral_m == Approx(predicted.lateral_m).epsilon(0.015));
     CHECK(sampled.heading_rad == Approx(predicted.heading_rad).epsilon(0.015));
@@ -83,7 +83,7 @@ TEST_CASE("sampled pose errors match the prediction") {
   compare(lopsided, rng);
 }
 
-TEST_CASE("the predicted error of the butterfly matches the closed form") {
+TEST_CASE("the butterfly's predicted error matches the closed form") {
   const PoseError error = predicted_pose_error(butterfly(), 0.001);
   CHECK(error.centroid_m == Approx(0.001 / std::sqrt(5.0)));
   CHECK(error.longitudinal_m == Approx(error.centroid_m));

@@ -8,8 +8,8 @@
 
 namespace sidestep {
 
-/// Rings of `symmetries` equally spaced dots around the centre, so that the layout has that many rotational
-/// symmetries. No patterns.
+/// Rings of `symmetries` equally spaced dots around the centre, which give the layout that many rotational
+/// symmetries. The layout has no patterns.
 inline MarkerLayout random_rings(std::size_t symmetries, std::size_t rings, Rng& rng) {
   MarkerLayout layout;
   layout.centre = {{rng.uniform(-0.02, 0.02), rng.uniform(-0.02, 0.02)}, 0.01};

@@ -5,7 +5,7 @@
 
 namespace sidestep::blockage_text_test {
 
-TEST_CASE("the cause of a blockage is described in a clause") {
+TEST_CASE("a clause describes the cause of a blockage") {
   const auto text = [](msg::BlockReason reason) {
     return to_text(Blockage{reason, 5, {1.234, -2}, {0.5, 0.25}});
   };

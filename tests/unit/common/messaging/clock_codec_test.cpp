@@ -29,7 +29,7 @@ msg::ClockReading reading_of(const std::string& host = "robot-7", const std::str
   return message;
 }
 
-TEST_CASE("a reading of a clock is decoded, whatever the clock shows") {
+TEST_CASE("a clock reading is decoded, whatever the clock shows") {
   const auto answer = decode(reading_of());
   REQUIRE(answer);
   CHECK(answer->process == 7);
@@ -51,7 +51,7 @@ TEST_CASE("a reading of a clock is decoded, whatever the clock shows") {
   CHECK(decode(from_1970));
 }
 
-TEST_CASE("a reading with any hostile value is refused") {
+TEST_CASE("a clock reading with any invalid value is refused") {
   const std::vector<std::function<void(msg::ClockReading&)>> changes{
       [](auto& m) { m.process(kMaxRobots), m.header().sender(kMaxRobots); },
       [](auto& m) {
@@ -79,7 +79,7 @@ TEST_CASE("a reading with any hostile value is refused") {
   }
 }
 
-TEST_CASE("the names of a host and a scenario cannot contain escape sequences") {
+TEST_CASE("host and scenario names cannot contain escape sequences") {
   CHECK(decode(reading_of("a\x1b[2Jb\r\x80 c"))->host == "a?[2Jb???c");
   CHECK(decode(reading_of(""))->host.empty());
   CHECK(decode(reading_of("",
@@ -94,7 +94,7 @@ TEST_CASE("the names of a host and a scenario cannot contain escape sequences") 
   const std::string longest(300, 'x');
   CHECK(encode_place(longest, longest).size() == msg::MAX_PLACE);
   CHECK(printable_name(std::string(300, 'x')).size() == msg::MAX_PLACE_NAME);
-  // Letters of other languages are kept, and none is cut in two.
+  // Letters of other languages are kept, and no letter is cut in two.
   CHECK(printable_name("über-halle-東") == "über-halle-東");
   CHECK(printable_name("\xc2\x9b"
                        "2J\x7f\xff") == "??2J??");

@@ -11,7 +11,7 @@ namespace sidestep::clock_responder_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a process answers a probe with its clock, its host's clock, and its role") {
+TEST_CASE("a process answers a probe with its clock, its host's clock and its role") {
   SimNetwork network(1, time_from_ns(1'700'000'000'000'000'000), NetworkSpec{});
   SimBus client(network), process(network, {network.new_process(), {2s, 0, {}}});
   const ClockResponder responder(process, {5, 77, 0.0005, "robot-5", "crossing"},
@@ -42,7 +42,7 @@ TEST_CASE("a process answers a probe with its clock, its host's clock, and its r
   CHECK(answers[0].scenario == "crossing");
 }
 
-TEST_CASE("however many probes arrive, a process answers at a bounded rate") {
+TEST_CASE("a process answers probes at a bounded rate, however many arrive") {
   SimNetwork network(1, time_from_ns(1'700'000'000'000'000'000), NetworkSpec{});
   SimBus client(network), process(network);
   const ClockResponder responder(process, {5, 77, 0.0005, "robot-5", "crossing"},

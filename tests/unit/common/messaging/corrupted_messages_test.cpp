@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages with random bytes: whatever the codecs accept is within its bounds.
+// Messages with random bytes: whatever the codecs accept must be within bounds.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -20,7 +20,7 @@ using namespace random_messages;
 std::uint64_t hostile_word(Rng& rng) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr std::array kNumbers{std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, 1e300, -1.0};
-  constexpr std::uint64_t kLowest = std::uint64_t{1} << 63;  // as a signed number
+  constexpr std::uint64_t kLowest = std::uint64_t{1} << 63;  // the lowest signed number
   switch (rng.below(4)) {
     case 0:
       return std::bit_cast<std::uint64_t>(kNumbers[rng.below(kNumbers.size())]);
@@ -33,7 +33,7 @@ std::uint64_t hostile_word(Rng& rng) {
   }
 }
 
-/// The message with some of its bytes replaced; nullopt if a bus would not deliver those bytes.
+/// The message with some of its bytes replaced; nullopt if a bus would not deliver it.
 template <typename Message>
 std::optional<Message> corrupted(const Topic<Message>& topic, const Message& original, Rng& rng) {
   std::vector<std::uint8_t> bytes;
@@ -43,7 +43,7 @@ std::optional<Message> corrupted(const Topic<Message>& topic, const Message& ori
       bytes[rng.below(bytes.size())] = static_cast<std::uint8_t>(rng.bits());
       continue;
     }
-    // Numbers of eight bytes are aligned.
+    // Eight-byte numbers are aligned.
     const std::uint64_t word = hostile_word(rng), begin = 8 * rng.below(bytes.size() / 8);
     for (std::size_t i = 0; i < 8; ++i) bytes[begin + i] = static_cast<std::uint8_t>(word >> (8 * i));
   }
@@ -129,7 +129,7 @@ TEST_CASE("feedback with random bytes is refused or within bounds") {
       });
 }
 
-TEST_CASE("a proposal with random bytes is refused, or its candidates are malformed or within bounds") {
+TEST_CASE("a proposal with random bytes is refused or its candidates are malformed or within bounds") {
   int malformed = 0;
   check_corrupted(
       topics::kProposal, [](Rng& rng) { return message_of(random_proposal(rng)); },
@@ -151,7 +151,7 @@ TEST_CASE("a proposal with random bytes is refused, or its candidates are malfor
   CHECK(malformed > 1000);
 }
 
-TEST_CASE("a registration with random bytes is refused, or its versions are malformed or within bounds") {
+TEST_CASE("a registration with random bytes is refused or its versions are malformed or within bounds") {
   int malformed = 0;
   check_corrupted(
       topics::kRegistration, [](Rng& rng) { return message_of(random_registration(rng)); },

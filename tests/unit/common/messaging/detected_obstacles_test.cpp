@@ -33,7 +33,7 @@ double distance_m(const Circle& obstacle, const msg::DetectionFrame& frame) {
   return min_distance - obstacle.radius_m;
 }
 
-TEST_CASE("a frame lists every obstacle that is nearer to one of its robots than its claimed completeness") {
+TEST_CASE("a frame lists every obstacle within the range for which it claims to be complete") {
   const std::uint64_t seed = GENERATE(range(1u, 40u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -61,7 +61,7 @@ TEST_CASE("a frame lists every obstacle that is nearer to one of its robots than
   if (crowd.size() > msg::MAX_OBSTACLES) CHECK(complete_within_m == Approx(farthest_m));
 }
 
-TEST_CASE("a frame without robots claims no completeness if it cannot hold all obstacles") {
+TEST_CASE("a frame without robots that cannot hold all obstacles claims no completeness") {
   msg::DetectionFrame frame;
   std::vector<Circle> detected(msg::MAX_OBSTACLES, {{1, 1}, 0.1});
   set_obstacles(detected, frame);

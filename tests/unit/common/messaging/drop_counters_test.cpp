@@ -35,7 +35,7 @@ TEST_CASE("drops are counted by reason and robot") {
   CHECK(sum.counts().size() == drops.counts().size());
 }
 
-TEST_CASE("any number of robots takes the same memory, and no count is lost") {
+TEST_CASE("memory does not grow with the number of robots, and no count is lost") {
   DropCounters drops;
   for (RobotId robot = 0; robot < 100'000; ++robot) drops.count(DropReason::kMalformedCommand, robot);
   CHECK(drops.counts().size() == DropCounters::kCapacity);
@@ -44,7 +44,7 @@ TEST_CASE("any number of robots takes the same memory, and no count is lost") {
   CHECK(drops.total(DropReason::kFencedCommand) == 1);
 }
 
-TEST_CASE("every reason has its own lower-case name, and a description") {
+TEST_CASE("every drop reason has its own lower-case name and a description") {
   std::set<std::string> names;
   for (const DropReasonInfo& info : kDropReasons) {
     const std::string name = info.name;
@@ -55,7 +55,7 @@ TEST_CASE("every reason has its own lower-case name, and a description") {
   }
 }
 
-TEST_CASE("encoding and decoding counters preserves those above zero") {
+TEST_CASE("counters above zero survive encoding and decoding") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -79,7 +79,7 @@ TEST_CASE("encoding and decoding counters preserves those above zero") {
   for (const DropReasonInfo& info : kDropReasons) CHECK(again.total(info.reason) == drops.total(info.reason));
 }
 
-TEST_CASE("hostile counters are refused") {
+TEST_CASE("invalid counters are refused") {
   msg::Counters valid;
   valid.process(7);
   valid.header().sender(7);
@@ -98,7 +98,7 @@ TEST_CASE("hostile counters are refused") {
   CHECK(is_refused([](msg::Counters& m) { m.counts().resize(msg::MAX_COUNTERS + 1, m.counts()[0]); }));
 }
 
-TEST_CASE("a process publishes its counters and those of its bus once per second") {
+TEST_CASE("a process publishes its own counters and its bus's once per second") {
   SimNetwork network{1, time_from_ns(1'000'000'000'000), {}};
   SimBus bus(network), outside(network);
   std::vector<msg::Counters> received;
@@ -118,7 +118,7 @@ TEST_CASE("a process publishes its counters and those of its bus once per second
   CHECK((*counts)[1].count == 2);
 }
 
-TEST_CASE("the simulated network counts lost messages, and those that do not fit a paused process's queue") {
+TEST_CASE("the simulated network counts lost messages and those that overflow a paused process's queue") {
   NetworkSpec spec;
   spec.loss = 0.5;
   SimNetwork network{1, time_from_ns(1'000'000'000'000), spec};

@@ -6,7 +6,7 @@
 
 namespace sidestep::histogram_codec_test {
 
-TEST_CASE("a message preserves a histogram") {
+TEST_CASE("a histogram survives encoding and decoding") {
   const std::uint64_t seed = 9;
   CAPTURE(seed);
   Rng rng(seed);
@@ -21,7 +21,7 @@ TEST_CASE("a message preserves a histogram") {
   CHECK(decoded.max() == histogram.max());
 }
 
-TEST_CASE("a hostile message gives a histogram that is wrong but harmless") {
+TEST_CASE("a malicious message decodes to a wrong but harmless histogram") {
   msg::DurationCounts message;
   message.max_ns(~std::uint64_t{0});
   for (auto& bucket : message.buckets()) bucket = ~std::uint32_t{0};

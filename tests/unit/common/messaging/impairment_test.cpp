@@ -23,7 +23,7 @@ msg::NetworkFault valid_fault() {
   return fault;
 }
 
-TEST_CASE("without a fault every message arrives once, without delay") {
+TEST_CASE("without a fault every message arrives once without delay") {
   Impairment impairment;
   for (int i = 0; i < 100; ++i) {
     const MessageCopies copies = impairment.receive(kAgent);
@@ -63,7 +63,7 @@ TEST_CASE("losses, bursts, duplicates and delays have the statistics of the faul
   CHECK(late < 0.45 * total_copies);  // skewed to the right
 }
 
-TEST_CASE("each sender has its own bursts, and the same seed gives the same losses") {
+TEST_CASE("each sender has its own loss bursts, and the same seed gives the same losses") {
   auto fault = valid_fault();
   fault.loss(0.5);
   fault.mean_burst(50);
@@ -82,8 +82,8 @@ TEST_CASE("each sender has its own bursts, and the same seed gives the same loss
 
 TEST_CASE("no message arrives if the link is cut or the loss is 1") {
   auto fault = valid_fault();
-  SECTION("cut") { fault.is_cut(true); }
-  SECTION("lost") { fault.loss(1); }
+  SECTION("the link is cut") { fault.is_cut(true); }
+  SECTION("the loss is 1") { fault.loss(1); }
   Impairment impairment;
   impairment.set(*link_quality_from(fault), 1);
   for (int i = 0; i < 100; ++i) CHECK(impairment.receive(kAgent).count == 0);

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-TEST_CASE("a schema contains the type after everything that it uses, and nothing else") {
+TEST_CASE("a schema contains a type after all types that it uses, and nothing else") {
   const std::string idl =
       "module a { const long N = 3;\n"
       "@final struct Unused { long x; };\n"

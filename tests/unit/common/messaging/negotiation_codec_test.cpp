@@ -25,7 +25,7 @@ msg::Proposal full_proposal() {
   return message_of(proposal);
 }
 
-/// A registration with as many versions as fit.
+/// A registration with the maximum number of versions.
 msg::Registration full_registration() {
   Registration registration{kRobot, 1000, 7, time_from_ns(5), VersionSet()};
   for (VersionNumber number = 1; !registration.versions->is_full(); ++number)
@@ -33,7 +33,7 @@ msg::Registration full_registration() {
   return message_of(registration);
 }
 
-TEST_CASE("encoding and decoding a proposal preserves it bit for bit") {
+TEST_CASE("a proposal survives encoding and decoding bit for bit") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -54,7 +54,7 @@ TEST_CASE("encoding and decoding a proposal preserves it bit for bit") {
   }
 }
 
-TEST_CASE("encoding and decoding a registration preserves it bit for bit") {
+TEST_CASE("a registration survives encoding and decoding bit for bit") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -74,7 +74,7 @@ TEST_CASE("encoding and decoding a registration preserves it bit for bit") {
   }
 }
 
-TEST_CASE("encoding and decoding a verdict preserves it") {
+TEST_CASE("a verdict survives encoding and decoding") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -95,7 +95,7 @@ TEST_CASE("encoding and decoding a verdict preserves it") {
   }
 }
 
-TEST_CASE("a message that does not speak for its sender's robot is refused") {
+TEST_CASE("a message that does not concern its sender's own robot is refused") {
   const auto check_refused = [](auto message) {
     REQUIRE(decode(message, kNow));
     message.header().sender(kRobot + 1);
@@ -112,7 +112,7 @@ TEST_CASE("a message that does not speak for its sender's robot is refused") {
   check_refused(full_registration());
 }
 
-TEST_CASE("a hostile candidate is malformed, and the other candidates remain") {
+TEST_CASE("an invalid candidate is malformed, and the other candidates remain") {
   const std::size_t hostile = GENERATE(range(0, int{msg::MAX_CANDIDATES}));
   CAPTURE(hostile);
   const auto check_malformed = [=](auto spoil) {
@@ -131,7 +131,7 @@ TEST_CASE("a hostile candidate is malformed, and the other candidates remain") {
   check_malformed([](msg::Version& v) { v.robot(kMaxRobots); });
 }
 
-TEST_CASE("candidates with another base or start than the first one are malformed") {
+TEST_CASE("candidates whose base or start differs from the first candidate's are malformed") {
   msg::Proposal message = full_proposal();
   message.candidates()[1].base(6);
   message.candidates()[3].start_ns(1);
@@ -139,14 +139,14 @@ TEST_CASE("candidates with another base or start than the first one are malforme
   REQUIRE(proposal);
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i)
     CHECK(proposal->candidates[i].has_value() == (i != 1 && i != 3));
-  // No later candidate agrees with a first one that differs from them.
+  // If the first candidate differs, all later ones are malformed.
   message = full_proposal();
   message.candidates()[0].base(6);
   CHECK(decode(message, kNow)->candidates[0]);
   CHECK_FALSE(decode(message, kNow)->candidates[1]);
 }
 
-TEST_CASE("a proposal without candidates, or with too many, is decoded without candidates") {
+TEST_CASE("a proposal with no or too many candidates is decoded without candidates") {
   for (const int count : {0, msg::MAX_CANDIDATES + 1, 255}) {
     CAPTURE(count);
     msg::Proposal message = full_proposal();
@@ -159,7 +159,7 @@ TEST_CASE("a proposal without candidates, or with too many, is decoded without c
   }
 }
 
-TEST_CASE("a registration with hostile versions is decoded without versions") {
+TEST_CASE("a registration with invalid versions is decoded without versions") {
   using Message = msg::Registration;
   const auto is_malformed = [](auto spoil) {
     Message message = full_registration();
@@ -181,7 +181,7 @@ TEST_CASE("a registration with hostile versions is decoded without versions") {
     const std::size_t other = (i + 1) % VersionSet::kCapacity;
     CHECK(is_malformed([=](Message& m) { m.versions()[i] = m.versions()[other]; }));
   }
-  // The slots beyond the count are not read.
+  // Entries beyond the count are not read.
   CHECK_FALSE(is_malformed([](Message& m) { m.version_count(7), m.versions()[7].x_m(kNan); }));
   CHECK_FALSE(is_malformed([](Message& m) { m.version_count(0), m.is_absent(true); }));
 }
@@ -223,7 +223,7 @@ TEST_CASE("a message with an implausible incarnation or epoch is refused") {
   check_refused(state);
 }
 
-TEST_CASE("only a coordinator speaks for a coordinator") {
+TEST_CASE("only a coordinator may send a coordinator's messages") {
   msg::CoordinatorState state;
   msg::Verdict verdict;
   verdict.robot(kRobot);
@@ -236,7 +236,7 @@ TEST_CASE("only a coordinator speaks for a coordinator") {
   }
   state.header().sender(10007);
   verdict.header().sender(10007);
-  CHECK_FALSE(decode(state, kNow));  // a coordinator with another number
+  CHECK_FALSE(decode(state, kNow));  // names another coordinator
   state.coordinator(7);
   CHECK(decode(state, kNow));
   CHECK(decode(verdict, kRobot));
@@ -272,7 +272,7 @@ TEST_CASE("a coordinator's heartbeat is decoded unchanged") {
   CHECK(decode(message, kNow)->epoch == 0);
 }
 
-TEST_CASE("a coordinator's heartbeat with an invalid place of a displaced robot is refused") {
+TEST_CASE("a heartbeat with an invalid position of a displaced robot is refused") {
   msg::CoordinatorState message;
   message.header().sender(10000);
   msg::RobotNotice good;
@@ -298,7 +298,7 @@ TEST_CASE("a coordinator's heartbeat with an invalid place of a displaced robot 
   CHECK_FALSE(decode(message, kNow));
 }
 
-TEST_CASE("a coordinator's heartbeat with an implausible epoch or an unknown mode is refused") {
+TEST_CASE("a heartbeat with an implausible epoch or an unknown mode is refused") {
   const auto now = static_cast<Epoch>(to_ns(kNow));
   constexpr Epoch kHour = 3'600'000'000'000;
   msg::CoordinatorState message;
@@ -319,7 +319,7 @@ TEST_CASE("a coordinator's heartbeat with an implausible epoch or an unknown mod
   }
 }
 
-TEST_CASE("the reason of a coordinator's role is decoded unchanged, and a hostile one is refused") {
+TEST_CASE("the cause of a coordinator's role is decoded unchanged, and an invalid one is refused") {
   msg::CoordinatorState message;
   message.header().sender(10000);
   for (int i = 0; i <= static_cast<int>(msg::RoleReason::ROLE_SHARED_EPOCH); ++i) {

@@ -45,7 +45,7 @@ TEST_CASE("orders survive encoding and decoding") {
   CHECK(area->zone.speed_limit_mps == 1.5);
 }
 
-TEST_CASE("orders from senders who may not give them, or with a value out of range, are refused") {
+TEST_CASE("orders from senders who may not give them or with a value out of range are refused") {
   const auto is_refused = [](msg::Order message, auto spoil) {
     REQUIRE(decode(message, kNow));
     spoil(message);
@@ -79,7 +79,7 @@ TEST_CASE("orders from senders who may not give them, or with a value out of ran
   }
 }
 
-TEST_CASE("a memory of any size survives on as many pages as necessary") {
+TEST_CASE("an order memory of any size is sent on as many pages as necessary") {
   std::vector<RememberedOrder> orders;
   for (RobotId robot = 0; robot < 100; ++robot) {
     RememberedOrder order{go(robot), {msg::OrderState::ORDER_ARRIVED, 1}};
@@ -105,7 +105,7 @@ TEST_CASE("a memory of any size survives on as many pages as necessary") {
     message.page_count(kMaxOrderPages);
     CHECK(decode(message, kNow));
     message.process(10000);
-    CHECK_FALSE(decode(message, kNow));  // speaks for another
+    CHECK_FALSE(decode(message, kNow));  // in another process's name
   }
   REQUIRE(decoded.size() == orders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {
@@ -156,7 +156,7 @@ TEST_CASE("an agent's report on its order survives encoding and decoding") {
   CHECK(decoded->blockage->blocker_m == Vec2(1, 2));
   CHECK(decoded->blockage->nearest_m == Vec2(3, 4));
   CHECK_FALSE(decoded->remaining_s);
-  // A robot that has arrived and then must leave a zone has still arrived.
+  // A robot that has arrived and must then leave a zone has still arrived.
   report.progress.state = msg::OrderState::ORDER_ARRIVED;
   CHECK(encode(report).order_state() == msg::OrderState::ORDER_ARRIVED);
   report.blockage.reset();
@@ -167,7 +167,7 @@ TEST_CASE("an agent's report on its order survives encoding and decoding") {
   CHECK_FALSE(decode(message)->blockage);
 }
 
-TEST_CASE("an agent's report with a value out of range, or of another robot, is refused") {
+TEST_CASE("an agent's report with a value out of range or about another robot is refused") {
   OrderReport report{3, kClient, 17, {msg::OrderState::ORDER_DRIVING, 2}};
   report.blockage = Blockage{};
   msg::OrderStatus good = encode(report);

@@ -14,11 +14,11 @@ inline constexpr RobotId kRobot = 3;
 /// The receiver's clock.
 inline constexpr Time kNow = time_from_ns(1'800'000'000'000'000'000);
 
-/// Any incarnation, epoch or version number that messages may contain at kNow.
+/// Any incarnation, epoch or version number that a message may contain at kNow.
 inline std::uint64_t random_number(Rng& rng) {
   return rng.below(static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1))));
 }
-/// Any time that messages may contain at kNow.
+/// Any time that a message may contain at kNow.
 inline Time random_time(Rng& rng) { return time_from_ns(static_cast<std::int64_t>(random_number(rng))); }
 
 inline Version random_version(Rng& rng) {
@@ -110,7 +110,7 @@ inline Verdict random_verdict(Rng& rng) {
   return verdict;
 }
 
-/// The message of a value that has a time of sending.
+/// The message for a value, with the value's sending time in its header.
 template <typename Value>
 auto message_of(const Value& value) {
   auto message = encode(value);

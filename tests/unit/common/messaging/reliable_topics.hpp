@@ -15,14 +15,14 @@ namespace sidestep {
 /// Tests of messages on a reliable topic (Qos::kEvent). They run on the simulated network and over DDS, so
 /// that the two behave alike. A rig has one process that writes and one that reads:
 ///
-///     void start_writer(), kill_writer(), start_reader(), kill_reader()   a process; killed as by kill -9
-///     void write(number, key)            makes the writer publish a message, and waits until it has
+///     void start_writer(), kill_writer(), start_reader(), kill_reader()   kill as by kill -9
+///     void write(number, key)            makes the writer publish a message, and returns when it has
 ///     std::vector<std::uint64_t> received     the numbers that the reader has received, except 0
-///     int markers                             how often it has received 0
-///     void cut(), heal()                 what the writer sends does not arrive
-///     void lose(fraction)                at random
+///     int markers                             how often the reader has received 0
+///     void cut(), heal()                 block and unblock the writer's messages
+///     void lose(fraction)                lose this fraction of messages at random
 ///     void run_for(duration)
-///     bool wait_until(condition)         false if it does not hold for very long
+///     bool wait_until(condition)         false if the condition stays false for very long
 ///     void stop_writer(duration)         SIGSTOP, then SIGCONT; then publishes 1 at once
 namespace reliable_topics {
 
@@ -58,7 +58,7 @@ void write_all(Rig& rig, const Numbers& numbers, std::uint32_t keys = 1) {
   for (const std::uint64_t number : numbers) rig.write(number, static_cast<std::uint32_t>(number) % keys);
 }
 
-/// Whether the reader receives a further message, with the number, from now on.
+/// Whether the reader receives another message, with this number, from now on.
 template <typename Rig>
 bool hears(Rig& rig, std::uint64_t number) {
   rig.write(number, 0);
@@ -178,40 +178,40 @@ void lost_after_a_long_stop(Rig& rig) {
 }  // namespace sidestep
 
 /// Defines the tests for a rig.
-#define SIDESTEP_TEST_RELIABLE_TOPICS(Rig, network)                                                  \
-  TEST_CASE("reliable messages are sent again after a cut, in order, " network) {                    \
-    Rig rig;                                                                                         \
-    reliable_topics::sent_again_after_a_cut(rig);                                                    \
-  }                                                                                                  \
-  TEST_CASE("reliable messages that have not arrived are lost with their writer, " network) {        \
-    Rig rig;                                                                                         \
-    reliable_topics::lost_with_the_writer(rig);                                                      \
-  }                                                                                                  \
-  TEST_CASE("a writer keeps its last 64 messages of a key for a reader that is cut off, " network) { \
-    Rig rig;                                                                                         \
-    reliable_topics::history_of_one_key(rig);                                                        \
-  }                                                                                                  \
-  TEST_CASE("a writer keeps the last messages of each key, in order within the key, " network) {     \
-    Rig rig;                                                                                         \
-    reliable_topics::history_of_two_keys(rig);                                                       \
-  }                                                                                                  \
-  TEST_CASE("a reader that starts late gets no earlier reliable message, " network) {                \
-    Rig rig;                                                                                         \
-    reliable_topics::nothing_for_a_late_reader(rig);                                                 \
-  }                                                                                                  \
-  TEST_CASE("a reader that restarts gets no reliable message of the time in between, " network) {    \
-    Rig rig;                                                                                         \
-    reliable_topics::nothing_for_a_restarted_reader(rig);                                            \
-  }                                                                                                  \
-  TEST_CASE("what a process writes before the others have found it is lost, " network) {             \
-    Rig rig;                                                                                         \
-    reliable_topics::nothing_before_discovery(rig);                                                  \
-  }                                                                                                  \
-  TEST_CASE("with random losses all reliable messages arrive late but in order, " network) {         \
-    Rig rig;                                                                                         \
-    reliable_topics::late_but_in_order_with_losses(rig);                                             \
-  }                                                                                                  \
-  TEST_CASE("what a process writes right after a stop of eight seconds is lost, " network) {         \
-    Rig rig;                                                                                         \
-    reliable_topics::lost_after_a_long_stop(rig);                                                    \
+#define SIDESTEP_TEST_RELIABLE_TOPICS(Rig, network)                                                    \
+  TEST_CASE("reliable messages are sent again in order after a cut, " network) {                       \
+    Rig rig;                                                                                           \
+    reliable_topics::sent_again_after_a_cut(rig);                                                      \
+  }                                                                                                    \
+  TEST_CASE("undelivered reliable messages are lost with their writer, " network) {                    \
+    Rig rig;                                                                                           \
+    reliable_topics::lost_with_the_writer(rig);                                                        \
+  }                                                                                                    \
+  TEST_CASE("a writer keeps its last 64 messages of a key for a reader that is cut off, " network) {   \
+    Rig rig;                                                                                           \
+    reliable_topics::history_of_one_key(rig);                                                          \
+  }                                                                                                    \
+  TEST_CASE("a writer keeps the last messages of each key and their order within the key, " network) { \
+    Rig rig;                                                                                           \
+    reliable_topics::history_of_two_keys(rig);                                                         \
+  }                                                                                                    \
+  TEST_CASE("a reader that starts late gets no earlier reliable messages, " network) {                 \
+    Rig rig;                                                                                           \
+    reliable_topics::nothing_for_a_late_reader(rig);                                                   \
+  }                                                                                                    \
+  TEST_CASE("a restarted reader misses the reliable messages sent while it was down, " network) {      \
+    Rig rig;                                                                                           \
+    reliable_topics::nothing_for_a_restarted_reader(rig);                                              \
+  }                                                                                                    \
+  TEST_CASE("messages written before other processes have discovered the writer are lost, " network) { \
+    Rig rig;                                                                                           \
+    reliable_topics::nothing_before_discovery(rig);                                                    \
+  }                                                                                                    \
+  TEST_CASE("with random losses all reliable messages arrive late but in order, " network) {           \
+    Rig rig;                                                                                           \
+    reliable_topics::late_but_in_order_with_losses(rig);                                               \
+  }                                                                                                    \
+  TEST_CASE("messages written right after a stop of eight seconds are lost, " network) {               \
+    Rig rig;                                                                                           \
+    reliable_topics::lost_after_a_long_stop(rig);                                                      \
   }

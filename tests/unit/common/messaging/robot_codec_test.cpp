@@ -15,7 +15,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kHostileTimes_ns[] = {to_ns(kNow + std::chrono::hours(1)), -1, to_ns(kMaxTime) + 1,
                                              to_ns(Time::max()), to_ns(Time::min())};
-/// Hostile values of an incarnation, epoch or version number.
+/// Invalid values of an incarnation, epoch or version number.
 constexpr std::uint64_t kHostileNumbers[] = {static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1))),
                                              std::uint64_t{1} << 62, std::uint64_t{1} << 63,
                                              std::numeric_limits<std::uint64_t>::max()};
@@ -36,7 +36,7 @@ msg::Feedback full_robot_report() {
   return encode(robot_report);
 }
 
-TEST_CASE("encoding and decoding a command preserves it bit for bit") {
+TEST_CASE("a command survives encoding and decoding bit for bit") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -62,7 +62,7 @@ TEST_CASE("encoding and decoding a command preserves it bit for bit") {
   }
 }
 
-TEST_CASE("encoding and decoding feedback preserves it bit for bit") {
+TEST_CASE("feedback survives encoding and decoding bit for bit") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -96,7 +96,7 @@ TEST_CASE("encoding and decoding feedback preserves it bit for bit") {
   }
 }
 
-TEST_CASE("a command with one hostile field is refused") {
+TEST_CASE("a command with one invalid field is refused") {
   using Message = msg::Command;
   const auto is_refused = [](auto spoil) {
     Message message = full_command();
@@ -132,14 +132,14 @@ TEST_CASE("a command with one hostile field is refused") {
     CHECK(is_refused([=](Message& m) { m.fix().x_m(bad); }));
     CHECK(is_refused([=](Message& m) { m.fix().y_m(bad); }));
   }
-  // The unused parts of a command are not read.
+  // Unused parts of a command are not read.
   CHECK_FALSE(is_refused([](Message& m) { m.has_fix(false), m.fix().x_m(kNan); }));
   CHECK_FALSE(is_refused([](Message& m) { m.has_version(false), m.version().x_m(kNan); }));
   CHECK_FALSE(is_refused([](Message& m) { m.fix().captured_at_ns(to_ns(Time::min())); }));
   CHECK_FALSE(decode(full_command(), kRobot + 1, kNow));
 }
 
-TEST_CASE("feedback with one hostile field is refused") {
+TEST_CASE("feedback with one invalid field is refused") {
   using Message = msg::Feedback;
   const auto is_refused = [](auto spoil) {
     Message message = full_robot_report();
@@ -184,7 +184,7 @@ TEST_CASE("feedback with one hostile field is refused") {
   CHECK_FALSE(decode(full_robot_report(), kRobot + 1, kNow));
 }
 
-TEST_CASE("feedback of a robot that has received no command contains none") {
+TEST_CASE("feedback of a robot that has not received a command contains no command") {
   msg::Feedback message = full_robot_report();
   REQUIRE(decode(message, kRobot, kNow)->command);
   message.command_stamp_ns(0);

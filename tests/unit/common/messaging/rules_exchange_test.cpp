@@ -19,7 +19,7 @@ Scenario with_margin(double margin_m) {
   return scenario;
 }
 
-/// A process that publishes states of a coordinator and counts those that it receives.
+/// A process that publishes coordinator states and counts those that it receives.
 struct Process {
   Process(SimNetwork& network, std::uint32_t process, std::optional<double> margin_m)
       : id(process), bus(network) {
@@ -56,19 +56,19 @@ TEST_CASE("two processes with different rules refuse each other's messages, and 
     if (i >= 100) b.publish();
     network.run_until(network.now() + 20ms);
   }
-  CHECK(a.received == 200);  // its own
+  CHECK(a.received == 200);  // its own messages
   CHECK(b.received == 100);
   CHECK(a.observed == 300);
   CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 100);
   CHECK(drops_of(b.bus).total(DropReason::kOtherRules) == 200);
   const std::string refuses_b = "refuses coordinator 1, which has different rules",
                     refuses_a = "refuses coordinator, which has different rules";
-  // b learns first that a is there; a learns of b from its rules.
+  // b learns first that a is there; a learns of b from b's rules.
   CHECK(b.mismatches == std::vector{refuses_a, refuses_a + ": margin_m is 0.01 instead of 0.02"});
   CHECK(a.mismatches == std::vector{refuses_b + ": margin_m is 0.02 instead of 0.01"});
 }
 
-TEST_CASE("messages without rules are refused by a process with rules, and received by one without") {
+TEST_CASE("a process with rules refuses messages without rules, and a process without rules accepts them") {
   SimNetwork network = lossless();
   Process with(network, 10000, 0.01), without(network, 10001, std::nullopt);
   with.publish();
@@ -87,13 +87,13 @@ TEST_CASE("rules are sent rarely, however many messages are refused") {
     b.publish();
     network.run_until(network.now() + 10ms);
   }
-  CHECK(sent >= 34);  // the first ones are lost: nobody has found their writers
-  CHECK(sent <= 42);  // rules of two processes, for ten seconds
+  CHECK(sent >= 34);  // the first ones are lost: no process has discovered their writers
+  CHECK(sent <= 42);  // rules of two processes for ten seconds
   CHECK(a.mismatches.size() == 2);
 }
 
 TEST_CASE("one refused message is enough for both sides to name the difference") {
-  // The process that refuses it has not sent its rules before, so nobody has found their writer.
+  // The process that refuses it has not sent its rules before, so no process has discovered its writer.
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01), b(network, 10001, 0.02);
   network.run_until(network.now() + 1s);
@@ -105,7 +105,7 @@ TEST_CASE("one refused message is enough for both sides to name the difference")
             "refuses coordinator, which has different rules: margin_m is 0.01 instead of 0.02"});
 }
 
-TEST_CASE("however many processes are invented, 256 are named, and then one every ten seconds") {
+TEST_CASE("of any number of made-up processes, 256 are named and then one every ten seconds") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01);
   a.bus.subscribe(topics::kRegistration, [](const msg::Registration&) {});
@@ -120,7 +120,7 @@ TEST_CASE("however many processes are invented, 256 are named, and then one ever
   }
   CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 5000);
   CHECK(a.mismatches.size() == 257);
-  // A process that really has different rules is named too, within twice that time.
+  // A process that really has different rules is also named, within twice that time.
   Process b(network, 10001, 0.02);
   const auto is_b = [](const std::string& text) { return text.find("coordinator 1") != std::string::npos; };
   for (int i = 0; i < 2000 && std::ranges::none_of(a.mismatches, is_b); ++i) {

@@ -17,14 +17,13 @@ constexpr Duration kCycle = 16ms;
 // Incarnations of different processes.
 constexpr std::uint64_t kOne = 1'000'000, kTwo = 2'000'000, kThree = 3'000'000;
 
-TEST_CASE("all messages of a single process are used, also after breaks") {
+TEST_CASE("all messages from a single process are used, even after breaks") {
   SoleSender sender;
   for (const Duration at : {0ms, 16ms, 500ms, 3000ms, 20000ms})
     CHECK(sender.receive(7, kBegin + at) == Outcome::kCounts);
 }
 
-TEST_CASE(
-    "a process follows another one after a second of silence, and its messages are refused until then") {
+TEST_CASE("messages from a second process are refused until the first has been silent for a second") {
   SoleSender sender;
   CHECK(sender.receive(kOne, kBegin) == Outcome::kCounts);
   Time now = kBegin + 100ms;
@@ -42,8 +41,7 @@ TEST_CASE("a single message from another process has no effect") {
   }
 }
 
-TEST_CASE(
-    "if two processes both keep sending, no messages are used from the second cycle until one is gone") {
+TEST_CASE("messages from two competing processes are ignored until one of them is gone") {
   const std::uint64_t first = GENERATE(kOne, kThree);
   SoleSender sender;
   Time now = kBegin;
@@ -62,14 +60,14 @@ TEST_CASE(
   }
   CHECK(counted == 1);
   CHECK(reported == 1);
-  SECTION("the later one is gone") {
+  SECTION("the later process is gone") {
     const Time gone_at = now;
     while (now < gone_at + SoleSender::kGoneAfter - kCycle)
       CHECK(sender.receive(first, now += kCycle) == Outcome::kRefused);
     now += kCycle;
     CHECK(sender.receive(first, now += kCycle) == Outcome::kCounts);
   }
-  SECTION("the earlier one is gone") {
+  SECTION("the earlier process is gone") {
     const Time gone_at = now;
     while (now < gone_at + SoleSender::kGoneAfterContest - kCycle)
       CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kRefused);
@@ -78,7 +76,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a process that starts among others trusts no sender until it has listened") {
+TEST_CASE("a process that has just started trusts no sender until it has listened for a while") {
   SoleSender sender(SoleSender::kListening);
   Time now = kBegin;
   for (; now < kBegin + SoleSender::kListening; now += kCycle)
@@ -86,7 +84,7 @@ TEST_CASE("a process that starts among others trusts no sender until it has list
   for (int i = 0; i < 100; ++i) CHECK(sender.receive(1, now += kCycle) == Outcome::kCounts);
 }
 
-TEST_CASE("a process that starts while two are sending trusts neither, whichever it hears first") {
+TEST_CASE("a process that starts while two others send trusts neither, whichever it hears first") {
   const auto seed = GENERATE(range(1u, 101u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -94,7 +92,7 @@ TEST_CASE("a process that starts while two are sending trusts neither, whichever
   int reported = 0;
   for (int cycle = 0; cycle < 600; ++cycle) {
     for (const std::uint64_t incarnation : {1u, 2u}) {
-      // The messages arrive in any order, with losses.
+      // The messages arrive in any order, some are lost.
       if (rng.chance(0.3)) continue;
       const Time now = kBegin + kCycle * cycle + from_seconds(rng.uniform(0, 0.001));
       const Outcome outcome = sender.receive(incarnation, now);
@@ -105,7 +103,7 @@ TEST_CASE("a process that starts while two are sending trusts neither, whichever
   CHECK(reported == 1);
 }
 
-TEST_CASE("a receiver whose clock was set back trusts and follows senders as before") {
+TEST_CASE("a receiver whose clock was set back still trusts and follows senders") {
   const Duration listening = GENERATE(Duration{0}, SoleSender::kListening);
   CAPTURE(to_seconds(listening));
   const Duration ahead = 436s;
@@ -129,7 +127,7 @@ TEST_CASE("a receiver whose clock was set back trusts and follows senders as bef
   }
 }
 
-TEST_CASE("with three or more processes no message is used either") {
+TEST_CASE("messages from three or more competing processes are ignored too") {
   const auto seed = GENERATE(range(1u, 51u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -142,7 +140,7 @@ TEST_CASE("with three or more processes no message is used either") {
   }
 }
 
-TEST_CASE("a robot that raises its incarnation is heard at once, but its earlier messages are not") {
+TEST_CASE("a robot that raises its incarnation is heard at once, and its older messages are refused") {
   SoleSender sender;
   Time now = kBegin;
   for (std::uint64_t incarnation = 0; incarnation < 5; ++incarnation) {
@@ -151,13 +149,14 @@ TEST_CASE("a robot that raises its incarnation is heard at once, but its earlier
     CHECK(sender.receive(kOne + incarnation, now += 1ms) == Outcome::kRefused);
     now += SoleSender::kGoneAfter;
   }
-  // A process that began later is another one, and so is one that began a moment earlier.
+  // A process that began much later is another one, and so is one that began earlier.
   CHECK(sender.receive(kOne + 5, now) == Outcome::kCounts);
   CHECK(sender.receive(kOne + 5 + SoleSender::kMaxRaise + 1, now) == Outcome::kRefused);
   CHECK(sender.receive(kOne - 1, now) != Outcome::kCounts);
 }
 
-TEST_CASE("a reader of a single-writer topic gets nothing from two writers, and reports that once") {
+TEST_CASE(
+    "messages from two writers of a single-writer topic are ignored, and the conflict is reported once") {
   SimNetwork network(1, kBegin, {});
   SimBus first(network), second(network), reader(network);
   auto one = first.advertise(topics::kFeedback, 3), two = second.advertise(topics::kFeedback, 3);
@@ -186,7 +185,7 @@ TEST_CASE("a reader of a single-writer topic gets nothing from two writers, and 
   CHECK(drops_of(reader).total(DropReason::kContestedSender) >= 98);
 }
 
-/// A process that counts messages, and knows which others have its id.
+/// A process that counts messages and detects others with its id.
 struct Part {
   SimBus bus;
   std::vector<Incarnation> others;
@@ -209,8 +208,7 @@ struct Part {
   }
 };
 
-TEST_CASE(
-    "processes that share an id but must run alone detect each other once, and not by a single message") {
+TEST_CASE("processes that wrongly share an id detect each other once, but not from a single message") {
   const auto id = static_cast<std::uint32_t>(
       GENERATE(Sender::kSimulator, Sender::kVision, Sender::kReferee, Sender::kCoordinator));
   SimNetwork network(1, kBegin, {});
@@ -231,7 +229,7 @@ TEST_CASE(
   CHECK(other.others.empty());
 }
 
-TEST_CASE("another process is found even after very many messages from invented ones") {
+TEST_CASE("another process with the same id is detected even after many messages from made-up ones") {
   SimNetwork network(1, kBegin, {});
   const auto id = static_cast<std::uint32_t>(Sender::kVision);
   Part first(network, id, 100), second(network, id, 200), inventor(network, id, 0);
@@ -248,7 +246,7 @@ TEST_CASE("another process is found even after very many messages from invented 
   CHECK(first.others == std::vector<Incarnation>{200});
 }
 
-TEST_CASE("several processes may have the id of the same agent") {
+TEST_CASE("several processes may use the same agent's id") {
   SimNetwork network(1, kBegin, {});
   Part first(network, 3, 100), second(network, 3, 200);
   for (int i = 0; i < 5; ++i) {

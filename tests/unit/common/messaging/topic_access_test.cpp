@@ -13,7 +13,7 @@ constexpr Role kAllRoles[] = {Role::kAgent,  Role::kCoordinator, Role::kVision, 
 
 Identity identity(const std::string& text) { return parse_identity(text).value(); }
 
-/// The names of all topics of which it may write, or read, some channel.
+/// The names of all topics with a channel that `who` may write or read.
 std::set<std::string> topics_of(const Identity& who,
                                 bool (*may)(const Identity&, const TopicInfo&, std::uint32_t)) {
   std::set<std::string> result;
@@ -37,7 +37,7 @@ TEST_CASE("only judges read the ground truth, and watchers write nothing that mo
                                                                          "clock_probe", "rules"});
 }
 
-TEST_CASE("agents and robots have only the channels of their own robots") {
+TEST_CASE("agents and robots can access only their own robots' channels") {
   const Identity agent = identity("agent 3"), robots = identity("robot 2-4");
   for (std::uint32_t robot = 0; robot < 8; ++robot) {
     CAPTURE(robot);
@@ -53,7 +53,7 @@ TEST_CASE("agents and robots have only the channels of their own robots") {
   }
 }
 
-TEST_CASE("agents exchange no messages with each other, but all other processes that work together do") {
+TEST_CASE("agents exchange no messages with each other, but all other cooperating processes do") {
   const auto exchange = [](const char* a, const char* b) {
     return exchange_messages(identity(a), identity(b));
   };

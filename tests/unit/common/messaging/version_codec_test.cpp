@@ -8,7 +8,7 @@
 
 namespace sidestep::version_codec_test {
 
-TEST_CASE("encoding and decoding a version preserves it bit for bit") {
+TEST_CASE("a version survives encoding and decoding bit for bit") {
   Rng rng(1);
   for (int i = 0; i < 10'000; ++i) {
     const Version in{static_cast<RobotId>(rng.below(kMaxRobots)), rng.bits(), rng.bits(), rng.bits(),
@@ -62,7 +62,7 @@ TEST_CASE("a version with a non-finite or implausible number is refused") {
   CHECK_FALSE(decode(corrupted));
 }
 
-TEST_CASE("encoding and decoding an intent preserves it to single precision") {
+TEST_CASE("an intent survives encoding and decoding to single precision") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);

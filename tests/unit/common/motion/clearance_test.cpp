@@ -93,7 +93,7 @@ TEST_CASE("robots that meet between two samples are not clear") {
   CHECK_FALSE(is_clear(a, b, 0.19));
 }
 
-TEST_CASE("robots are compared at equal times, so one may pass where the other has been") {
+TEST_CASE("robots are compared at equal times, so one may cross where the other has been") {
   // b crosses the origin 0.5 s after a.
   const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 0.5);
   const auto b = moving(kBegin + from_seconds(0.3), {0, -0.6}, {0, 1.5}, {0, 0}, 0.4);
@@ -137,7 +137,7 @@ TEST_CASE("equal motions, resting robots and empty phases have a clearance") {
   CHECK(clearance_m(c, empty, 0) == Approx(0.5).margin(1e-8));
 }
 
-TEST_CASE("the clearance covers all time, long after both trajectories have ended") {
+TEST_CASE("the clearance covers all time, including long after both trajectories have ended") {
   const auto a = moving(kBegin, {0, 0}, {1, 0}, {0, 0}, 0.1);
   const auto b = Trajectory::resting(kBegin + std::chrono::hours(24), a.rest_position_m() + Vec2(0.1, 0));
   CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-8));
@@ -207,7 +207,7 @@ TEST_CASE("the clearance from a shape equals the minimum of a dense search") {
   CHECK(clear > 100);
 }
 
-TEST_CASE("a trajectory is clear of a map exactly if it is clear of each blocked cell and of the outside") {
+TEST_CASE("a trajectory is clear of a map if and only if it is clear of every blocked cell and the outside") {
   const std::uint64_t seed = GENERATE(51u, 52u, 53u, 54u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -231,7 +231,7 @@ TEST_CASE("a trajectory is clear of a map exactly if it is clear of each blocked
       double clearance = std::numeric_limits<double>::infinity();
       for (const Box& cell : cells) clearance = std::min(clearance, clearance_m(a, Shape(cell), separation));
       CAPTURE(i, k, clearance);
-      // The edges of merged cells are rounded like the edges of the cells.
+      // The edges of merged cells are rounded like those of single cells.
       if (std::abs(clearance) > 1e-9) REQUIRE(is_clear(a, map, separation) == (clearance >= 0));
       clear += clearance >= 0 ? 1 : 0;
       near += std::abs(clearance) < 0.1 ? 1 : 0;
@@ -245,7 +245,7 @@ TEST_CASE("a trajectory is clear of a map exactly if it is clear of each blocked
   CHECK(clear_by_field > 10);
 }
 
-TEST_CASE("a trajectory that leaves the map on a path of more than a hundred metres is not clear") {
+TEST_CASE("a trajectory that leaves the map after more than a hundred metres is not clear") {
   MapGrid grid;
   grid.columns = grid.rows = 400, grid.origin_m = {-10, -10};
   const FloorMap map(OccupancyMap(grid, BitGrid(grid.columns, grid.rows)));

@@ -15,7 +15,7 @@ double sampled_distance_m(const Trajectory& a, const Trajectory& b, Time from) {
   return smallest;
 }
 
-TEST_CASE("the remaining trajectory equals the trajectory from a time on") {
+TEST_CASE("the remaining trajectory equals the original from the given time on") {
   Rng rng(4);
   for (int i = 0; i < 500; ++i) {
     const Trajectory whole = random_trajectory(rng);
@@ -32,8 +32,7 @@ TEST_CASE("the remaining trajectory equals the trajectory from a time on") {
   }
 }
 
-TEST_CASE(
-    "the relaxed separation is the minimum separation, or the distance of the base if that is smaller") {
+TEST_CASE("the relaxed separation is the minimum separation or the base's distance, whichever is smaller") {
   Rng rng(5);
   int smaller = 0;
   for (int i = 0; i < 500; ++i) {
@@ -53,7 +52,7 @@ TEST_CASE(
   CHECK(smaller > 50);
 }
 
-TEST_CASE("a robot that is too near a blocked cell may leave it, but not come nearer") {
+TEST_CASE("a robot that is too close to a blocked cell may leave it but not come nearer") {
   MapGrid grid;
   grid.columns = grid.rows = 40, grid.resolution_m = 0.1, grid.origin_m = {-2, -2};
   BitGrid blocked(grid.columns, grid.rows);

@@ -39,8 +39,7 @@ TEST_CASE("samples lie in A(v) and fill it, and limited accelerations respect th
   CHECK(furthest_behind < -4.9);
 }
 
-TEST_CASE(
-    "an acceleration that may be held is admissible at every moment, and others are not at some moment") {
+TEST_CASE("an acceleration may be held if and only if it is admissible at every moment") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -56,7 +55,7 @@ TEST_CASE(
     constexpr int kSteps = 400;
     for (int step = 0; step <= kSteps; ++step) {
       const Vec2 then = v + to_seconds(duration) * step / kSteps * a;
-      // At rest there is no direction, and in the last instant before it the robot still brakes.
+      // At rest there is no direction, and in the last instant before rest the robot still brakes.
       if (then.norm() > 1e-6) is_admissible_throughout &= is_admissible(a, then, kLimits);
     }
     const bool may = may_be_held(a, v, kLimits, duration);

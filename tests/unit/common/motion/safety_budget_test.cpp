@@ -9,7 +9,7 @@
 
 namespace sidestep::safety_budget_test {
 
-TEST_CASE("the budget line shows how the margin is composed, and the spare part") {
+TEST_CASE("the budget line shows how the margin is composed and how much is to spare") {
   CHECK(budget_line({}, 0.014) ==
         "safety budget: margin 14.0 mm = 2 x 5.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s");
   CHECK(
@@ -26,7 +26,7 @@ TEST_CASE("the budget line shows how the margin is composed, and the spare part"
   CHECK_THAT(budget_line({0.005, 0, 2}, 0.0104), EndsWith("+ 0.4 mm to spare"));
 }
 
-TEST_CASE("tracking errors and clock offsets within the budget do not bring robots into contact") {
+TEST_CASE("tracking errors and clock offsets within the budget do not cause contact") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -42,7 +42,7 @@ TEST_CASE("tracking errors and clock offsets within the budget do not bring robo
         budget.speed_mps = std::max(budget.speed_mps, state.velocity_mps.norm());
       }
     }
-    // Discs without a radius, so the clearance is the margin.
+    // Discs of zero radius, so the clearance is the margin.
     const double margin = clearance_m(a, b, 0);
     const Time from = std::max(a.start(), b.start()) + from_seconds(budget.clock_bound_s);
     const double seconds = std::max(0.0, to_seconds(std::max(a.end(), b.end()) - from));

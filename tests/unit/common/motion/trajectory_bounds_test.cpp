@@ -6,7 +6,7 @@
 
 namespace sidestep::trajectory_bounds_test {
 
-TEST_CASE("a trajectory stays in the disc of its bounds") {
+TEST_CASE("a trajectory stays within the disc of its bounds") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -36,7 +36,7 @@ TEST_CASE("bounds are batchable with at most two non-empty phases of moderate si
   CHECK(bounds.second_half_mps2.x() == Approx(-2.5));
   CHECK(bounds.second_velocity_mps.x() == Approx(1.1));
   CHECK(trajectory_bounds(Trajectory::resting(start, {1, 2})).is_batchable);
-  // Not at rest at the end, and too far away.
+  // The trajectory does not end at rest, and is too far away.
   CHECK_FALSE(trajectory_bounds(trajectory).is_batchable);
   CHECK_FALSE(trajectory_bounds(Trajectory::resting(start, {1e6, 0})).is_batchable);
   Trajectory three(start, {{0, 0}, {0, 0}});

@@ -24,7 +24,7 @@ TEST_CASE("a trajectory matches numerical integration") {
   }
 }
 
-TEST_CASE("every trajectory with a stop ends at rest and remains at rest") {
+TEST_CASE("every trajectory with a stop ends at rest and stays at rest") {
   Rng rng(2);
   for (int i = 0; i < 100'000; ++i) {
     const Trajectory trajectory = random_trajectory(rng);

@@ -49,11 +49,11 @@ TEST_CASE("a phase that brakes at D may not continue at D after the velocity has
   CHECK(held_for({1, 0}, {-5, 0}, 0.201) == Validity::kBeyondLimits);
   CHECK(held_for({1, 0}, {-5, 0}, 0.4) == Validity::kBeyondLimits);
   CHECK(held_for({1, 0}, {-3, 0}, 0.4) == Validity::kValid);
-  // Across the velocity at the end, though braking at the start.
+  // Across the velocity at the end, although it brakes at the start.
   CHECK(held_for({0.5, 0.1}, {-4.5, 0}, 0.05) == Validity::kValid);
   CHECK(held_for({0.5, 0.1}, {-4.5, 0}, 0.11) == Validity::kBeyondLimits);
   CHECK(held_for({0, 1}, {0, -4.9}, 0.21) == Validity::kBeyondLimits);
-  // In a later phase.
+  // Beyond the limits in a later phase.
   Trajectory later(t, {{0, 0}, {0.5, 0}});
   later.append(from_seconds(0.1), {3, 0});
   later.append(from_seconds(0.2), {-5, 0});
@@ -76,7 +76,7 @@ TEST_CASE("a continuation starts with the position and velocity of its base") {
   }
 }
 
-TEST_CASE("a NaN is beyond the limits") {
+TEST_CASE("a NaN violates the limits") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Time t = time_from_ns(1'000'000'000);
   Trajectory bad(t, {{0, 0}, {nan, 0}});

@@ -16,7 +16,7 @@ DdsSettings with_keys(const TestDomain& domain, const TestKeys& keys) {
   return settings;
 }
 
-TEST_CASE("bases have no keys, so with keys their topics need a separate domain") {
+TEST_CASE("bases have no keys, so a process with keys needs a separate domain for their topics") {
   const TestDomain domain;
   const TestKeys keys({"robot", "0-1"});
   DdsBus bus(with_keys(domain, keys));
@@ -35,7 +35,7 @@ TEST_CASE("without keys and without a separate domain, bases use the agents' net
   CHECK(bases_bus(bus, {}).get() == &bus);
 }
 
-TEST_CASE("a process with keys exchanges twists with a base in a domain without keys, in its own thread") {
+TEST_CASE("a process with keys exchanges twists with a keyless base in a separate domain and thread") {
   const TestDomain domain, of_bases;
   const TestKeys keys({"robot", "0-1"});
   DdsBus bus(with_keys(domain, keys));

@@ -39,7 +39,7 @@ struct Fixture {
   }
 };
 
-TEST_CASE("options set their variables, and the others keep their defaults") {
+TEST_CASE("options set their variables, and omitted options keep their defaults") {
   Fixture f;
   REQUIRE(f.error_of({"--speed", "2.5", "--robots", "1,2,7", "--mode=slow", "--verbose"}).empty());
   CHECK(f.speed_mps == 2.5);
@@ -51,7 +51,7 @@ TEST_CASE("options set their variables, and the others keep their defaults") {
   CHECK_FALSE(f.report);
 }
 
-TEST_CASE("negative numbers are not options, even without the zero before the point") {
+TEST_CASE("negative numbers are not options, even without a zero before the point") {
   Fixture f;
   std::string place;
   f.line.root().add_option("PLACE", place);
@@ -70,7 +70,7 @@ TEST_CASE("an option with an optional value takes its default if the value is om
   CHECK(f.report == expected);
 }
 
-TEST_CASE("a refused value is reported with its option") {
+TEST_CASE("a rejected value is reported with its option") {
   const auto [arguments, option] = GENERATE(table<std::vector<std::string>, std::string>({
       {{"--speed", "5.1"}, "--speed"},
       {{"--speed", "fast"}, "--speed"},
@@ -92,7 +92,7 @@ TEST_CASE("a refused value is reported with its option") {
   CHECK_THAT(f.error_of(arguments), ContainsSubstring(option));
 }
 
-TEST_CASE("a refused value is reported with the permitted values") {
+TEST_CASE("a rejected value is reported with the permitted values") {
   const auto [arguments, expected] = GENERATE(table<std::vector<std::string>, std::string>({
       {{"--speed", "5.1"}, "--speed: expected a number in [0, 5], got \"5.1\""},
       {{"--speed", "fast"}, "--speed: expected a number in [0, 5], got \"fast\""},
@@ -142,7 +142,7 @@ TEST_CASE("an unknown command is named, and the commands are listed") {
   CHECK_THROWS_WITH(line.parse({"outer"}), ContainsSubstring("subcommand is required"));
 }
 
-TEST_CASE("numbers that must be positive are neither too large nor too small to be a duration") {
+TEST_CASE("a positive number is rejected if it is too large or too small for a duration") {
   const auto [text, is_valid] = GENERATE(table<std::string, bool>({{"1e-9", true},
                                                                    {"0.5", true},
                                                                    {"1e9", true},
@@ -165,12 +165,12 @@ TEST_CASE("numbers that must be positive are neither too large nor too small to 
   }
 }
 
-TEST_CASE("options that need or exclude each other are checked") {
+TEST_CASE("options that require or exclude each other are checked") {
   CHECK_THAT(Fixture().error_of({"--verbose"}), ContainsSubstring("--mode"));
   CHECK_THAT(Fixture().error_of({"--speed", "1", "--position", "0,0"}), ContainsSubstring("--speed"));
 }
 
-TEST_CASE("a callback's usage error is reported, and only the given subcommand's callback is called") {
+TEST_CASE("a callback's usage error is reported, and only the chosen subcommand's callback runs") {
   CommandLine line("A program under test.", "sidestep-test");
   line.root().require_subcommand();
   bool is_called = false;
@@ -183,7 +183,7 @@ TEST_CASE("a callback's usage error is reported, and only the given subcommand's
   CHECK(is_called);
 }
 
-TEST_CASE("wrong usage ends a program with exit code 2 and --help with 0") {
+TEST_CASE("invalid usage exits with code 2 and --help exits with 0") {
   const auto exit_code = [](const char* argument) {
     Fixture f;
     const char* const arguments[] = {"sidestep-test", argument};

@@ -12,7 +12,7 @@ namespace sidestep::host_clock_watch_test {
 using namespace std::chrono_literals;
 
 /// A process with a wrong clock, whose host's clock is set during the test, and one with the right clock that
-/// sends a heartbeat, and a robot's fact, every 20 ms.
+/// sends a heartbeat and a robot report every 20 ms.
 struct Scene {
   SimNetwork network{1, time_from_ns(1'700'000'000'000'000'000), NetworkSpec{}};
   SimBus bus, other;
@@ -48,7 +48,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a process adopts its host's clock some seconds after that was set, if its references agree") {
+TEST_CASE("a process adopts its host's new clock after some seconds if its references agree") {
   const ClockReference reference = GENERATE(ClockReference::kCoordinators, ClockReference::kRobots);
   const bool uses_heartbeats = reference == ClockReference::kCoordinators;
   CAPTURE(uses_heartbeats);
@@ -64,7 +64,7 @@ TEST_CASE("a process adopts its host's clock some seconds after that was set, if
   CHECK(scene.adopted == 1);
 }
 
-TEST_CASE("a process that is in use or has the right clock keeps its clock when the host's is set") {
+TEST_CASE("a process that is in use or has the right clock keeps it when the host's clock is set") {
   const bool is_right = GENERATE(true, false);
   CAPTURE(is_right);
   Scene scene(ClockReference::kCoordinators, is_right ? Duration(0s) : Duration(-1h));

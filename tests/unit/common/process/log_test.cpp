@@ -17,7 +17,7 @@ LogLevel parsed(std::vector<std::string> arguments) {
   return level;
 }
 
-TEST_CASE("the option --log-level takes the name of each level, and the level is info without it") {
+TEST_CASE("the option --log-level takes the name of each level and defaults to info") {
   CHECK(parsed({}) == LogLevel::kInfo);
   for (std::size_t i = 0; i < kLogLevelNames.size(); ++i) {
     CAPTURE(i);
@@ -25,7 +25,7 @@ TEST_CASE("the option --log-level takes the name of each level, and the level is
   }
 }
 
-TEST_CASE("a wrong log level is a usage error that lists the levels") {
+TEST_CASE("an invalid log level is a usage error that lists the levels") {
   for (const char* wrong : {"verbose", "INFO", "2", ""}) {
     CAPTURE(wrong);
     CHECK_THROWS_AS(parsed({"--log-level", wrong}), UsageError);
@@ -38,7 +38,7 @@ TEST_CASE("a wrong log level is a usage error that lists the levels") {
   }
 }
 
-TEST_CASE("a line has the time, the level, the process and the text") {
+TEST_CASE("a log line has the time, the level, the process and the text") {
   const std::regex line(R"(\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\.\d{3} warning agent-3: something \{happened\})");
   CHECK(std::regex_match(log_line("agent-3", LogLevel::kWarning, "something {happened}"), line));
   const CaptureStderr captured;
@@ -50,7 +50,7 @@ TEST_CASE("a line has the time, the level, the process and the text") {
   CHECK(std::regex_match(text.substr(0, text.size() - 1), line));
 }
 
-TEST_CASE("the log contains the lines of its level and of higher ones") {
+TEST_CASE("the log contains lines of its level and higher ones") {
   constexpr auto kOff = static_cast<std::size_t>(LogLevel::kOff);
   for (std::size_t level = 0; level <= kOff; ++level) {
     CAPTURE(kLogLevelNames[level]);
@@ -65,7 +65,7 @@ TEST_CASE("the log contains the lines of its level and of higher ones") {
   set_up_log("test", LogLevel::kInfo);
 }
 
-TEST_CASE("an event below the level of its listener is not formatted") {
+TEST_CASE("an event below its listener's level is not formatted") {
   struct Node {
     EventReporter events;
     void on_event(LogLevel level, OnLogEvent callback) { events.set_listener(level, std::move(callback)); }

@@ -39,7 +39,7 @@ Program test_program() {
   return program;
 }
 
-TEST_CASE("wrong usage and an invalid scenario exit with 2, --help exits with 0, and nothing starts") {
+TEST_CASE("invalid usage and an invalid scenario exit with 2, --help exits with 0, and no node starts") {
   Program program = test_program();
   bool started = false;
   program.start = [&](DdsBus&, const Scenario&, Incarnation) {
@@ -84,13 +84,13 @@ TEST_CASE("an exception at start is printed on stderr, and the exit code is 1") 
   const Outcome no_interface = run(test_program(), arguments);
   CHECK(no_interface.exit_code == kExitFailure);
   CHECK_THAT(no_interface.err, ContainsSubstring("192.0.2.1"));
-  arguments.back() = "eth0";  // will never be an address
+  arguments.back() = "eth0";  // not an address of this machine
   const Outcome no_address = run(test_program(), arguments);
   CHECK(no_address.exit_code == kExitUsage);
   CHECK_THAT(no_address.err, ContainsSubstring("got 'eth0'"));
 }
 
-TEST_CASE("a process whose keys are not valid yet exits with 1, so that a service manager starts it again") {
+TEST_CASE("a process whose keys are not valid yet exits with 1, so that a service manager restarts it") {
   const auto run_with = [](const TestKeys& keys) {
     std::vector<std::string> arguments = good_arguments();
     arguments.insert(arguments.end(), {"--keys", keys.folder()});
@@ -106,7 +106,7 @@ TEST_CASE("a process whose keys are not valid yet exits with 1, so that a servic
   CHECK_THAT(late.err, ContainsSubstring("the key of agent 1 expired on"));
 }
 
-TEST_CASE("an option without a value has its default, and an option that is absent has no value") {
+TEST_CASE("an option without a value has its default, and an absent option has no value") {
   const auto parsed = [](std::vector<std::string> arguments) {
     CommandLine command_line("test", "test");
     const CliCommand app = command_line.root();
@@ -154,7 +154,7 @@ TEST_CASE("a signal shuts the process down in order: nodes before the bus, exit 
   CHECK_THAT(outcome.err, ContainsSubstring("agent-3: Fast DDS " + fast_dds_version() + ", domain "));
 }
 
-TEST_CASE("a later run of a process has a higher incarnation, unless others would refuse it") {
+TEST_CASE("a later run of a process has a higher incarnation, unless other processes would refuse it") {
   const Time now = time_from_ns(1'000'000'000'000'000);
   const auto reading = static_cast<Incarnation>(to_ns(now)), minute = Incarnation{60'000'000'000};
   CHECK(next_incarnation(0, now) == reading);

@@ -32,7 +32,7 @@ TEST_CASE("a reason that never occurred takes no space") {
   CHECK(drops.total() == 4);
 }
 
-TEST_CASE("drops of more robots than there is space for are counted without the robots") {
+TEST_CASE("once space for robots runs out, drops are counted without the robot") {
   DropCounters drops;
   for (RobotId robot = 0; robot < 1000; ++robot) drops.count(DropReason::kLateFact, robot, 2);
   CHECK(drops.counts().size() == DropCounters::kCapacity);

@@ -33,8 +33,8 @@ RememberedOrder zone(ClientId client, std::uint32_t zone_number, OrderNumber num
   return remembered;
 }
 
-/// The rules in words, from the list of all orders: a robot is held if there is a hold of it after which
-/// neither its owner nor an operator has sent a resume for it.
+/// The rules in words, from the list of all orders: a robot is held if it has a hold after which neither the
+/// hold's owner nor an operator has sent a resume for the robot.
 bool is_held_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot) {
   const auto concerns = [=](const Order& o) { return o.robot == robot || o.robot == kAllRobots; };
   return std::ranges::any_of(orders, [&](const RememberedOrder& h) {
@@ -47,7 +47,7 @@ bool is_held_by_reference(const std::vector<RememberedOrder>& orders, RobotId ro
   });
 }
 
-/// The last order to drive of a rank.
+/// The latest drive order or cancel of a rank.
 const Order* drive_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot, Rank rank) {
   const Order* last = nullptr;
   for (const RememberedOrder& o : orders) {
@@ -60,7 +60,7 @@ const Order* drive_by_reference(const std::vector<RememberedOrder>& orders, Robo
   return last;
 }
 
-TEST_CASE("books that hear the same orders agree with each other and with the rules, whatever the order") {
+TEST_CASE("order books that hear the same orders in any sequence agree with each other and with the rules") {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);
@@ -78,7 +78,7 @@ TEST_CASE("books that hear the same orders agree with each other and with the ru
     OrderBook first, second;
     for (const RememberedOrder& o : orders) first.merge(o);
     for (std::size_t i = orders.size(); i-- > 0;) {
-      // Out of order, and twice.
+      // Out of order, and some orders twice.
       second.merge(orders[i]);
       second.merge(orders[rng.below(static_cast<std::uint32_t>(orders.size()))]);
     }
@@ -99,7 +99,7 @@ TEST_CASE("books that hear the same orders agree with each other and with the ru
   }
 }
 
-TEST_CASE("only its owner or an operator can lift a hold, even if only for one robot of a hold of all") {
+TEST_CASE("only a hold's owner or an operator can lift it, even for one robot of a hold of all") {
   OrderBook book;
   book.merge(hold(kAllRobots, kAnna, 10));
   book.merge(resume(kAllRobots, kBert, 11));
@@ -117,17 +117,17 @@ TEST_CASE("only its owner or an operator can lift a hold, even if only for one r
   CHECK(book.is_held(4));
 }
 
-TEST_CASE("an order is known by its number, and a late order changes nothing") {
+TEST_CASE("an order is identified by its number, and a late order changes nothing") {
   OrderBook book;
   CHECK(book.merge(go(3, kAnna, 10)) == OrderBook::Outcome::kStored);
   CHECK(book.merge(go(3, kAnna, 10)) == OrderBook::Outcome::kKnown);
   CHECK(book.merge(go(3, kBert, 9)) == OrderBook::Outcome::kReplaced);
   CHECK(book.merge(go(3, kBert, 11)) == OrderBook::Outcome::kStored);
-  CHECK(book.merge(go(3, kOperator, 5)) == OrderBook::Outcome::kStored);  // has a place of its own
+  CHECK(book.merge(go(3, kOperator, 5)) == OrderBook::Outcome::kStored);  // has its own place
   CHECK(book.newest_number() == 11);
 }
 
-TEST_CASE("progress only grows, and a robot leaves what it has finished when it begins another order") {
+TEST_CASE("an order's progress never goes back, and a robot leaves a finished order when it begins another") {
   OrderBook book;
   book.merge(go(3, kAnna, 10));
   book.merge(go(3, kOperator, 11));
@@ -155,9 +155,7 @@ RememberedOrder removal(ClientId client, std::uint32_t zone_number, OrderNumber 
   return remembered;
 }
 
-TEST_CASE(
-    "a zone stays until it is removed, each client numbers its own zones, and a client's zones are bounded "
-    "in number") {
+TEST_CASE("a zone stays until removed, each client numbers its own zones, and their number is bounded") {
   OrderBook book;
   book.merge(zone(kAnna, 1, 10));
   book.merge(zone(kBert, 1, 11));
@@ -167,7 +165,7 @@ TEST_CASE(
   CHECK(book.merge(zone(kAnna, 1, 10)) == OrderBook::Outcome::kReplaced);
   for (std::uint32_t i = 2; i < 1000; ++i) book.admit(zone(kAnna, i, 100 + i).order);
   CHECK(book.admit(zone(kBert, 7, 5000).order) == OrderBook::Outcome::kFull);
-  CHECK(book.admit(zone(kBert, 1, 5000).order) == OrderBook::Outcome::kStored);  // moves
+  CHECK(book.admit(zone(kBert, 1, 5000).order) == OrderBook::Outcome::kStored);  // replaces the same zone
   CHECK(book.zones().size() == OrderBook::kMaxZones);
   CHECK(book.admit(zone(kReferee, 7, 5000).order) == OrderBook::Outcome::kStored);
   for (std::uint32_t i = 0; i < 2000; ++i) book.admit(hold(5, kAnna + i, 100).order);
@@ -176,7 +174,7 @@ TEST_CASE(
   CHECK(book.is_held(1));
 }
 
-TEST_CASE("of two orders with the same number, that of the client with the higher id wins") {
+TEST_CASE("of two orders with the same number, the one from the client with the higher id wins") {
   for (const auto kind : {msg::OrderKind::ORDER_GO, msg::OrderKind::ORDER_CANCEL}) {
     const RememberedOrder of_anna = order(kind, 3, kAnna, 10), of_bert = go(3, kBert, 10);
     OrderBook first, second;
@@ -191,9 +189,7 @@ TEST_CASE("of two orders with the same number, that of the client with the highe
   }
 }
 
-TEST_CASE(
-    "a resume lifts only holds with lower numbers, so an operator's resume does not lift a hold with its own "
-    "number") {
+TEST_CASE("a resume lifts only holds with lower numbers") {
   for (const bool hold_is_first : {true, false}) {
     for (const RobotId scope : {RobotId{3}, kAllRobots}) {
       OrderBook book;
@@ -226,7 +222,7 @@ TEST_CASE("lifted holds and removed zones free their places permanently") {
   CHECK(most <= OrderBook::kMaxResumes + OrderBook::kMaxRemovals);
 }
 
-TEST_CASE("the owner of a hold can lift it, one by one or all at once, however many there are") {
+TEST_CASE("the owner can lift any number of holds, one by one or all at once") {
   for (const bool all_at_once : {true, false}) {
     OrderBook book;
     OrderNumber number = 0;
@@ -252,7 +248,7 @@ TEST_CASE("an operator's resume of all robots removes all holds and resumes of c
   }
   book.merge(resume(kAllRobots, kOperator, 1000));
   CHECK(book.all().size() == 1);
-  CHECK(book.merge(hold(7, kAnna, 999)) == OrderBook::Outcome::kReplaced);  // late
+  CHECK(book.merge(hold(7, kAnna, 999)) == OrderBook::Outcome::kReplaced);  // arrives late
   CHECK_FALSE(book.is_held(7));
 }
 
@@ -271,12 +267,12 @@ TEST_CASE(
   }
   CHECK_FALSE(book.is_held(3));
   CHECK(book.zones().empty());
-  // A new one is admitted, and so is one of the operator.
+  // New holds are admitted, also from the operator.
   CHECK(book.admit(hold(3, kAnna, ++number).order) == OrderBook::Outcome::kStored);
   CHECK(book.admit(hold(4, kOperator, 5).order) == OrderBook::Outcome::kStored);
 }
 
-TEST_CASE("a robot that was released from a hold of all stays released, whatever else is lifted") {
+TEST_CASE("a robot released from a hold of all robots stays released, whatever else is lifted") {
   OrderBook book;
   OrderNumber number = 0;
   book.admit(hold(kAllRobots, kAnna, ++number).order);
@@ -287,7 +283,7 @@ TEST_CASE("a robot that was released from a hold of all stays released, whatever
   CHECK(book.is_held(6));
 }
 
-TEST_CASE("clients can release every robot of a large fleet from their holds of all, one by one") {
+TEST_CASE("clients can release every robot of a large fleet one by one from a hold of all robots") {
   OrderBook book, other;
   OrderNumber number = 0;
   const ClientId third = kAnna + 7;
@@ -307,21 +303,21 @@ TEST_CASE("clients can release every robot of a large fleet from their holds of 
   CHECK(held_in(book) == 0);
   for (const RememberedOrder& order : book.all()) other.merge(order);
   CHECK(held_in(other) == 0);
-  // Another client finds no room, reports this, and resumes all robots.
+  // A third client finds no space, reports this, and resumes all robots.
   if (clients < 2) return;
   book.admit(hold(kAllRobots, third, ++number).order);
   CHECK(book.admit(resume(3, third, ++number).order) == OrderBook::Outcome::kFull);
   CHECK(held_in(book) == static_cast<int>(kMaxRobots));
   CHECK(book.admit(resume(kAllRobots, third, ++number).order) == OrderBook::Outcome::kStored);
   CHECK(held_in(book) == 0);
-  // Lifting the hold frees its room.
+  // Lifting the hold frees its space.
   CHECK(book.admit(resume(kAllRobots, kAnna, ++number).order) == OrderBook::Outcome::kStored);
   book.admit(hold(kAllRobots, third, ++number).order);
   CHECK(book.admit(resume(3, third, ++number).order) == OrderBook::Outcome::kStored);
   CHECK_FALSE(book.is_held(3));
 }
 
-TEST_CASE("exceptions from holds of all that other processes remember are bounded") {
+TEST_CASE("the number of exceptions from holds of all robots that other processes remember is bounded") {
   OrderBook book;
   OrderNumber number = 0;
   for (ClientId i = 0; i < 5; ++i) {
@@ -329,10 +325,10 @@ TEST_CASE("exceptions from holds of all that other processes remember are bounde
     for (RobotId robot = 0; robot < kMaxRobots; ++robot) book.merge(resume(robot, kAnna + i, ++number));
   }
   CHECK(book.all().size() <= OrderBook::kMaxMergedExceptions + 5);
-  CHECK(book.is_held(0));  // rather than released
+  CHECK(book.is_held(0));  // beyond the bound, a robot stays held
 }
 
-TEST_CASE("orders that another process remembers are never refused, however full a book is") {
+TEST_CASE("orders that another process remembers are never refused, however full the book is") {
   OrderBook book;
   OrderNumber number = 0;
   for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)

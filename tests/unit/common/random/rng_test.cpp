@@ -10,10 +10,10 @@ namespace sidestep::rng_test {
 
 constexpr std::uint64_t kSeed = 11;
 constexpr int kSamples = 60'000;
-// A count deviates from its expectation by more than this many standard deviations once in 16,000 times.
+// A count deviates from its expectation by more standard deviations than this once in 16,000 times.
 constexpr double kMaxDeviations = 4;
 
-TEST_CASE("a seed gives the same bits everywhere") {
+TEST_CASE("a seed gives the same bits on every machine") {
   Rng rng(1);
   // Computed with the published code of xoshiro256++ and splitmix64.
   for (const std::uint64_t expected :

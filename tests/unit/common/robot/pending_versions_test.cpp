@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Versions that wait for one start.
+// Pending versions with the same start.
 #include "common/robot/robot_side.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/common/robot/test_memory.hpp"
@@ -11,9 +11,9 @@ using test::command;
 using test::rest_version;
 using test::TestMemory;
 
-TEST_CASE("of versions with the same start, the lower number goes first, in whatever order they arrive") {
+TEST_CASE("among versions with the same start, the lower number goes first, whatever order they arrive in") {
   const bool is_lower_first = GENERATE(true, false);
-  // The second version continues the first one, or the same base.
+  // The second version continues the first one or their common base.
   const bool is_chain = GENERATE(true, false);
   CAPTURE(is_lower_first, is_chain);
   TestMemory memory;

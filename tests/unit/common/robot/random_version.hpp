@@ -24,7 +24,7 @@ inline Version random_version(RobotId robot, VersionNumber number, Rng& rng) {
     version.trajectory.append(Duration{static_cast<std::int64_t>(rng.uniform(0.0, 5e8))}, vec(3));
   append_stop(version.trajectory, 5);
   version.inflation_m = rng.chance(0.5) ? rng.uniform(0.0, 0.1) : 0;
-  // Intents are floats on the wire.
+  // Intents are floats in messages.
   const auto rounded = [&](double bound) { return Vec2(vec(bound).cast<float>().cast<double>()); };
   if (rng.chance(0.5))
     version.intent = {rounded(2), static_cast<float>(rng.uniform(0.0, 1.0)), rounded(6), rounded(6),

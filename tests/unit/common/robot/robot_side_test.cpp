@@ -47,7 +47,7 @@ Estimate<Real> exactly_at(const Version& version, std::int64_t t_ns) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("a robot side repeats every version bit for bit and allocates nothing", "", float,
+TEMPLATE_TEST_CASE("the robot side repeats every version bit for bit and allocates nothing", "", float,
                    double) {
   Rng rng(24);
   TestMemory memory;
@@ -82,7 +82,7 @@ TEMPLATE_TEST_CASE("a robot side repeats every version bit for bit and allocates
   CHECK(side.counts().activated == sent.size() - (sent.back().start_ns > at_ms(5000) ? 1 : 0));
 }
 
-TEMPLATE_TEST_CASE("a robot side's own stop brakes to rest from the estimate", "", float, double) {
+TEMPLATE_TEST_CASE("a robot's own stop brakes to rest from its estimate", "", float, double) {
   Rng rng(25);
   for (int i = 0; i < 500; ++i) {
     TestMemory memory;
@@ -112,8 +112,7 @@ TEMPLATE_TEST_CASE("a robot side's own stop brakes to rest from the estimate", "
   }
 }
 
-TEST_CASE(
-    "a robot whose motors respond late refuses versions that start too soon for them, and reports its lead") {
+TEST_CASE("a robot with slow motors refuses versions that start too soon and reports its lead") {
   TestMemory memory;
   Settings<double> settings;
   settings.actuation_lead_ns = 100'000'000;
@@ -127,7 +126,7 @@ TEST_CASE(
   CHECK(side.robot_report(at_ms(101)).lead_ns == 100'000'000);
 }
 
-TEST_CASE("a robot whose motors obey late begins its own stop with the motion under way") {
+TEST_CASE("the own stop of a robot with slow motors begins with the motion already under way") {
   TestMemory memory;
   Settings<double> settings;
   settings.actuation_lead_ns = 100'000'000;
@@ -160,7 +159,7 @@ TEST_CASE("a robot whose motors obey late begins its own stop with the motion un
   CHECK(stop.inflation_m == Approx(0.007));
 }
 
-TEST_CASE("a robot whose motors obey at once ignores motion under way in its own stop") {
+TEST_CASE("the own stop of a robot with immediate motors ignores motion under way") {
   TestMemory memory;
   RobotSide<double> side({}, {});
   side.begin_at_rest(0, 0);
@@ -189,7 +188,7 @@ TEMPLATE_TEST_CASE("a robot whose estimated pose or velocity is not finite has n
   side.begin_at_rest(0, 0);
   REQUIRE(side.may_report());
   Estimate<TestType> estimate;
-  // The motion under way is read for an own stop only.
+  // The motion under way is read only for an own stop.
   if (field >= 4) estimate.position_m.x = 1;
   estimate.under_way.part_count = 1;
   estimate.under_way.parts[0].duration_ns = 50'000'000;
@@ -205,7 +204,7 @@ TEMPLATE_TEST_CASE("a robot whose estimated pose or velocity is not finite has n
   CHECK_FALSE(side.has_pose());
   CHECK_FALSE(side.may_report());
   CHECK_FALSE(side.is_off_reference());
-  // It accepts nothing until it has found its pose, and makes an own stop there.
+  // The robot accepts nothing until it has found its pose, where it makes an own stop.
   const Version version = rest_version(101, 0, 50);
   CHECK(side.on_command(command(100, 1, &version), at_ms(2), memory));
   CHECK_FALSE(side.has_pending());
@@ -218,19 +217,19 @@ TEMPLATE_TEST_CASE("a robot whose estimated pose or velocity is not finite has n
   CHECK(side.executing().x_m == 2);
 }
 
-TEMPLATE_TEST_CASE("a robot that does not know how far off it may be stops with the maximum inflation", "",
+TEMPLATE_TEST_CASE("a robot that does not know its position error stops with the maximum inflation", "",
                    float, double) {
   const TestType nan = std::numeric_limits<TestType>::quiet_NaN();
   TestMemory memory;
   RobotSide<TestType> side({}, {});
   side.begin_at_rest(0, 0);
   Estimate<TestType> estimate;
-  SECTION("because its error is not finite") {
-    estimate.position_m.x = TestType(0.004);  // within the bound, if nothing were uncertain
+  SECTION("its position error is not finite") {
+    estimate.position_m.x = TestType(0.004);  // within the bound if there were no uncertainty
     estimate.position_error_rms_m = nan;
     REQUIRE(side.needs_uncertainty(at_ms(1), estimate.position_m));
   }
-  SECTION("because its displacement is not finite") {
+  SECTION("its displacement is not finite") {
     estimate.position_m.x = TestType(0.0031);
     estimate.jump_m = nan;
   }
@@ -258,7 +257,7 @@ TEST_CASE("a robot does not plan to switch to a version that it will refuse") {
   CHECK(side.executing().number == 106);
 }
 
-TEST_CASE("a robot that is switched off and on while being carried is put down at its rest version") {
+TEST_CASE("a robot that is power-cycled while being carried is put down at its rest version") {
   TestMemory memory;
   RobotSide<double> side({}, {});
   side.begin_at_rest(0, 0);
@@ -287,16 +286,14 @@ TEST_CASE("a robot without a pose accepts no version") {
   side.check_reference(at_ms(2), {}, memory);
   CHECK_FALSE(side.is_off_reference());
   side.find_pose();
-  CHECK_FALSE(side.may_report());  // it has no version yet that begins where it is
+  CHECK_FALSE(side.may_report());  // it has no version yet that begins at its pose
   side.check_reference(at_ms(3), {}, memory);
   CHECK(side.may_report());
   CHECK(side.is_off_reference());
   CHECK(side.own_stop_reason() == OwnStopReason::kRestart);
 }
 
-TEST_CASE(
-    "a robot whose clock is set back makes an own stop by the new time, numbered above all that it "
-    "received") {
+TEST_CASE("a robot whose clock is set back makes an own stop numbered above everything it received") {
   const std::int64_t back_ns = GENERATE(1'000'000, 5'000'000'000, 3'500'000'000'000);
   CAPTURE(back_ns);
   TestMemory memory;
@@ -314,7 +311,7 @@ TEST_CASE(
   side.set_clock_back(now_ns);
   CHECK_FALSE(side.may_report());
   CHECK_FALSE(side.has_pending());
-  // The command is repeated before the robot has made its stop.
+  // The command arrives again before the robot has made its stop.
   (void)side.on_command(command(100, 1, &pending), now_ns, memory);
   CHECK_FALSE(side.has_pending());
   side.check_reference(now_ns + 1'000'000, estimate, memory);
@@ -325,12 +322,12 @@ TEST_CASE(
   CHECK(robot_report.executing->start_ns == now_ns + 1'000'000);
   CHECK(robot_report.executing->number >= 102 + RobotSide<double>::kOwnNumberGap);
   CHECK(robot_report.executing->vx_mps == estimate.velocity_mps.x);
-  // By the new clock that version would be in time, but it was granted for times of the old one.
+  // By the new clock that version would be in time, but it was granted by the old one.
   (void)side.on_command(command(100, 1, &pending), now_ns + 2'000'000, memory);
   CHECK_FALSE(side.switch_next(before_ns + 20'000'000));
 }
 
-TEST_CASE("a lifted robot whose clock is set back stays lifted, and has no pending version") {
+TEST_CASE("a lifted robot whose clock is set back stays lifted and has no pending version") {
   TestMemory memory;
   RobotSide<double> side({}, {});
   side.begin_at_rest(1, 2);

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-TEST_CASE("a version that the robot side repeats equals the one that it received, bit for bit") {
+TEST_CASE("a version repeated by the robot side equals the received one bit for bit") {
   Rng rng(21);
   for (int i = 0; i < 1000; ++i) {
     const msg::Version received = encode(test::random_version(7, 100 + static_cast<VersionNumber>(i), rng));
@@ -19,9 +19,7 @@ TEST_CASE("a version that the robot side repeats equals the one that it received
   }
 }
 
-TEST_CASE(
-    "the robot side follows a version exactly as other processes do in double precision, within 3 um in "
-    "single") {
+TEST_CASE("the robot side follows a version as other processes do, within 3 um in single precision") {
   Rng rng(22);
   for (int i = 0; i < 300; ++i) {
     const Version version = test::random_version(7, 100, rng);

@@ -14,7 +14,7 @@ using test::command;
 using test::rest_version;
 using test::TestMemory;
 
-TEST_CASE("a robot stores the agent and the epoch before it acknowledges them") {
+TEST_CASE("a robot stores the agent and epoch before it acknowledges them") {
   TestMemory memory;
   RobotSide<double> side({}, {});
   side.begin_at_rest(1, 2);
@@ -46,7 +46,7 @@ TEST_CASE("a robot whose memory fails neither obeys nor acknowledges a new agent
   CHECK(side.robot_report(at_ms(80)).executing->number == 102);
 }
 
-TEST_CASE("a robot that restarts refuses what it refused before, and still knows that it has moved") {
+TEST_CASE("a restarted robot refuses what it refused before and still knows that it has moved") {
   TestMemory memory;
   {
     RobotSide<float> side({}, {});
@@ -73,7 +73,7 @@ TEST_CASE("a robot that restarts refuses what it refused before, and still knows
   CHECK_FALSE(side.has_pending());
 }
 
-TEST_CASE("after a restart at any time a robot's own number exceeds all that it has received or used") {
+TEST_CASE("after a restart at any time, a robot numbers its own stop above all received and used numbers") {
   Rng rng(23);
   TestMemory memory;
   std::optional<RobotSide<double>> side(std::in_place, Settings<double>{}, DurableState{});
@@ -107,7 +107,7 @@ TEST_CASE("a robot stores rarely: a day of commands costs a few writes") {
   side.begin_at_rest(0, 0);
   std::uint64_t number = 1'700'000'000'000'000'000;
   const std::uint64_t agent = number;
-  // 60 cycles a second, with four proposals of five candidates each.
+  // 60 cycles a second with four proposals of five candidates each.
   for (int i = 0; i < 86'400 * 60; i += 100) {
     number += 20 * 100;
     const Version version = rest_version(number, 0, 0, agent);
@@ -116,7 +116,7 @@ TEST_CASE("a robot stores rarely: a day of commands costs a few writes") {
   CHECK(memory.writes <= 5);
 }
 
-TEST_CASE("a robot that cannot store the number of its own stop makes the stop, and is silent until it can") {
+TEST_CASE("a robot that cannot store the number of its own stop still stops but is silent until it can") {
   TestMemory memory;
   RobotSide<double> side({}, {});
   side.begin_at_rest(0, 0);

@@ -5,7 +5,7 @@
 
 namespace sidestep::robot::test {
 
-/// A memory that a test can read, and make fail.
+/// A memory that a test can read and make fail.
 class TestMemory final : public StableMemory {
  public:
   [[nodiscard]] bool store(const DurableState& state) override {

@@ -8,14 +8,14 @@ namespace sidestep::clock_error_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a clock that drifts by a part in a million gains a microsecond per second") {
+TEST_CASE("a clock that drifts by one part per million gains a microsecond per second") {
   const ClockError clock{3ms, 1, Time{1000s}};
   CHECK(clock.reading(Time{1000s}) == Time{1000s + 3ms});
   CHECK(clock.reading(Time{1010s}) == Time{1010s + 3ms + 10us});
   CHECK(ClockError{-3ms}.reading(Time{1010s}) == Time{1010s - 3ms});
 }
 
-TEST_CASE("the true time is the first at which a clock shows a reading") {
+TEST_CASE("a reading is converted to the first true time at which the clock shows it") {
   Rng rng(1);
   for (int i = 0; i < 1000; ++i) {
     CAPTURE(i);

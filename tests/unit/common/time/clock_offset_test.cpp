@@ -18,7 +18,7 @@ struct TwoClocks {
   Rng rng;
   Duration offset;  // offset of the peer's clock at kBegin
   double drift_ppm = 0;
-  double min_s, mean_s;  // of a delay, which is exponential above the minimum
+  double min_s, mean_s;  ///< of an exponentially distributed delay above a minimum
   double loss = 0;
 
   Duration true_offset(Time local) const {
@@ -75,7 +75,7 @@ TEST_CASE("the measured interval contains the true offset for any delays, losses
   CHECK(measured.jumps() == 0);
 }
 
-TEST_CASE("the uncertainty falls to that of the fastest exchange with 30 % of the messages lost") {
+TEST_CASE("the uncertainty falls to that of the fastest exchange even if 30 % of the messages are lost") {
   TwoClocks clocks{Rng(7), from_seconds(0.004), 20, 0.0002, 0.001, 0.3};
   ClockOffset measured;
   for (int i = 0; i < 600; ++i) {
@@ -88,7 +88,7 @@ TEST_CASE("the uncertainty falls to that of the fastest exchange with 30 % of th
   CHECK_FALSE(measured.at(now)->is_beyond(from_seconds(0.005)));
 }
 
-TEST_CASE("an exchange bounds the offset by its two delays, and several by the intersection") {
+TEST_CASE("one exchange bounds the offset by its two delays, and several by their intersection") {
   ClockOffset measured;
   CHECK_FALSE(measured.at(kBegin));
   // The peer's clock is 10 ms ahead: 3 ms there, 1 ms until the reply, 2 ms back.
@@ -133,7 +133,7 @@ TEST_CASE("after a clock jump only later exchanges count") {
 }
 
 TEST_CASE(
-    "a peer clock that jumps between its two timestamps leaves the offset unknown until the next exchange") {
+    "if the peer's clock jumps between its two timestamps, the offset is unknown until the next exchange") {
   ClockOffset measured;
   REQUIRE(measured.add(exchange_ms(0, 1, 2, 3)));
   REQUIRE(measured.add(exchange_ms(10, 11, 62, 13)));
@@ -152,7 +152,7 @@ TEST_CASE("invalid timestamps change nothing") {
   const auto before = measured.at(kBegin + from_seconds(0.003));
   CHECK_FALSE(measured.add(exchange_ms(10, 11, 12, 9)));     // received before it was sent
   CHECK_FALSE(measured.add(exchange_ms(10, 12, 11, 13)));    // the peer replied before it received
-  CHECK_FALSE(measured.add(exchange_ms(-11'000, 1, 2, 3)));  // longer than an exchange takes
+  CHECK_FALSE(measured.add(exchange_ms(-11'000, 1, 2, 3)));  // longer than any exchange takes
   constexpr std::int64_t kValid = 1'000'000'000'000'000;
   const std::vector<std::int64_t> hostile{0, -1, std::numeric_limits<std::int64_t>::min(),
                                           std::numeric_limits<std::int64_t>::max(), to_ns(kMaxTime) + 1};
@@ -171,7 +171,7 @@ TEST_CASE("invalid timestamps change nothing") {
   CHECK(measured.jumps() == 0);
 }
 
-TEST_CASE("the extreme timestamps that are accepted cause no overflow") {
+TEST_CASE("the most extreme accepted timestamps cause no overflow") {
   ClockOffset measured;
   const Time last = kMaxTime, first = time_from_ns(1);
   REQUIRE(measured.add({first, last, last, first + Duration{5}}));
@@ -182,7 +182,7 @@ TEST_CASE("the extreme timestamps that are accepted cause no overflow") {
   CHECK(difference(*measured.at(last), *measured.at(last)).low <= Duration{0});
 }
 
-TEST_CASE("the offset of two clocks is the difference of their offsets against a third") {
+TEST_CASE("the offset of two clocks is the difference of their offsets from a third") {
   const OffsetInterval robot{Duration{100}, Duration{300}}, coordinator{Duration{50}, Duration{80}};
   CHECK(difference(robot, coordinator).low == Duration{20});
   CHECK(difference(robot, coordinator).high == Duration{250});

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-/// A process and those whose messages it hears, in true time.
+/// A process and the processes whose messages it hears, in true time.
 struct Scene {
   ClockRecovery recovery;
   Time now = kBegin;
@@ -26,7 +26,7 @@ struct Scene {
     }
   }
   bool end_period() { return recovery.end_period(host_ahead - own_ahead, is_in_use); }
-  /// Whether it adopts the host's clock after this many periods with a reference.
+  /// Whether the process adopts the host's clock after this many periods with a reference.
   bool adopts(Duration reference_ahead, Duration delay = 1ms, int periods = ClockRecovery::kPeriods) {
     bool result = false;
     for (int i = 0; i < periods; ++i) {
@@ -48,7 +48,7 @@ TEST_CASE("a process adopts its host's clock once that agrees with others and it
   CHECK(scene.adopts(0s, delay, 1));
 }
 
-TEST_CASE("a process keeps its clock if it is within the clock bound of the others' clocks") {
+TEST_CASE("a process keeps its clock if it is within the clock bound of other processes' clocks") {
   Scene scene;
   scene.recovery = ClockRecovery(100ms);
   scene.own_ahead = -90ms;
@@ -65,7 +65,7 @@ TEST_CASE("a step of the host's clock changes nothing while another process agre
   Scene scene;
   scene.host_ahead = step;
   CHECK_FALSE(scene.adopts(0s, delay, 20));
-  // A process started since then that agrees with the host makes no difference.
+  // It makes no difference if a process started since then agrees with the host.
   for (int i = 0; i < 20; ++i) {
     scene.hear(1, 0s, delay);
     scene.hear(2, step, delay);
@@ -73,7 +73,7 @@ TEST_CASE("a step of the host's clock changes nothing while another process agre
   }
 }
 
-TEST_CASE("a process whose host's clock has not been set, or that is in use, keeps its clock") {
+TEST_CASE("a process keeps its clock if it is in use or its host's clock has not been set") {
   Scene scene;
   CHECK_FALSE(scene.adopts(1h, 1ms, 20));
   scene.own_ahead = -24h;
@@ -81,14 +81,14 @@ TEST_CASE("a process whose host's clock has not been set, or that is in use, kee
   CHECK_FALSE(scene.adopts(0s, 1ms, 20));
 }
 
-TEST_CASE("a process keeps its own clock if neither that nor its host's clock agrees with others") {
+TEST_CASE("a process keeps its clock if neither that nor its host's clock agrees with others") {
   Scene scene;
   scene.own_ahead = -24h;
   scene.host_ahead = -12h;
   CHECK_FALSE(scene.adopts(0s, 1ms, 20));
 }
 
-TEST_CASE("no references, too few messages and impossible stamps are no evidence") {
+TEST_CASE("absent references, too few messages and impossible stamps are not evidence") {
   Scene scene;
   scene.own_ahead = -24h;
   for (int i = 0; i < 20; ++i) {
@@ -101,7 +101,7 @@ TEST_CASE("no references, too few messages and impossible stamps are no evidence
   }
 }
 
-TEST_CASE("the evidence restarts when the host's clock is set again, or one period has none") {
+TEST_CASE("evidence is collected afresh when the host's clock is set again or a period lacks evidence") {
   Scene scene;
   scene.own_ahead = -24h;
   scene.host_ahead = 100ms;
@@ -113,7 +113,7 @@ TEST_CASE("the evidence restarts when the host's clock is set again, or one peri
   CHECK(scene.adopts(0s, 1ms, 1));
 }
 
-TEST_CASE("invented references do not exhaust memory, and cannot make a process adopt another clock") {
+TEST_CASE("made-up references cannot exhaust memory or make a process adopt another clock") {
   Scene scene;
   scene.host_ahead = 1h;
   for (int period = 0; period < 5; ++period) {

@@ -10,7 +10,7 @@
 
 namespace sidestep::histogram_test {
 
-TEST_CASE("a quantile is at most one bucket above the sorted reference") {
+TEST_CASE("a quantile is at most one bucket above the value from sorting") {
   const std::uint64_t seed = GENERATE(1, 2, 3, 4, 5, 6, 7, 8);
   CAPTURE(seed);
   Rng rng(seed);

@@ -60,7 +60,7 @@ TEST_CASE("the filter's estimate equals batch least squares over all observation
   CAPTURE(seed);
   Rng rng(seed);
   constexpr int kSteps = 12;
-  // Joint covariance of the positions at all steps with the last state, from the model alone.
+  // Joint covariance of the positions at all steps and the last state, from the model alone.
   std::vector<double> gaps(kSteps);
   for (double& gap : gaps) gap = rng.uniform(0.001, 0.1);
   std::vector<Eigen::Matrix2d> prior{Eigen::Vector2d(kNoise_m * kNoise_m, 2.25).asDiagonal()};
@@ -95,7 +95,7 @@ TEST_CASE("the filter's estimate equals batch least squares over all observation
   CHECK((filter.covariance() - covariance).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST_CASE("a rolling ball is predicted to come to rest and to stay at rest") {
+TEST_CASE("a rolling ball is predicted to come to rest and stay there") {
   Eigen::Vector2d position{0, 0}, velocity{0.6, -0.8};
   // Two exact observations, a millisecond apart, determine the filter's velocity.
   Filter2 rolling(position, 1e-12, 100);

@@ -69,7 +69,7 @@ TEST_CASE("a fix is compared with the estimate at its capture time, not with the
   for (int i = 0; i < 100; ++i) estimator.advance(now += kPeriod, {{2, 0}, 0}, {0, 0}, 0);
   REQUIRE(estimator.correct(kBegin + milliseconds(40), {0.08, 0}, 0));
   CHECK((estimator.position_m() - Vec2(0.2, 0)).norm() < 1e-9);
-  // Likewise for a time between two control periods.
+  // A fix captured between two control periods.
   REQUIRE(estimator.correct(kBegin + std::chrono::microseconds(60'250), {0.1205, 0}, 0));
   CHECK((estimator.position_m() - Vec2(0.2, 0)).norm() < 1e-9);
 }
@@ -100,7 +100,7 @@ TEST_CASE("a fix older than the history is refused, and one within it is used") 
   CHECK(estimator.correct(now - milliseconds(500), {0, 0}, 0));
 }
 
-TEST_CASE("after a gap in time, fixes from before it are refused") {
+TEST_CASE("after a gap in time, fixes from before the gap are refused") {
   PoseEstimator estimator({0, 0}, 0, kBegin, {});
   Time now = kBegin;
   for (int i = 0; i < 100; ++i) estimator.advance(now += kPeriod, {}, {0, 0}, 0);
@@ -110,7 +110,7 @@ TEST_CASE("after a gap in time, fixes from before it are refused") {
   CHECK(estimator.correct(now - milliseconds(15), {0, 0}, 0));
 }
 
-TEST_CASE("a robot that is carried while its wheels roll does not mistake that for an odometry error") {
+TEST_CASE("carrying a robot while its wheels roll is not mistaken for an odometry error") {
   const double rolls_mps = GENERATE(-0.2, -0.1, 0.0, 0.1, 0.2);
   CAPTURE(rolls_mps);
   const EstimatorSettings settings{0.01, 0.005, 0.0005};

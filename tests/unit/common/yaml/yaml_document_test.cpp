@@ -35,7 +35,7 @@ TEST_CASE("tabs elsewhere are allowed, and other errors are not mistaken for tab
   CHECK_THAT(yaml_error("a: [1,\tb: {\n"), ContainsSubstring("not YAML"));
 }
 
-TEST_CASE("a merge key adds the entries of another mapping that the mapping lacks") {
+TEST_CASE("a merge key adds another mapping's entries that this mapping lacks") {
   const auto [text, expected] = GENERATE(table<std::string, std::string>({
       {"[&a {x: 1, y: 2}, {<<: *a, y: 3}]", "[{x: 1, y: 2}, {y: 3, x: 1}]"},
       {"[{<<: {x: 1}}]", "[{x: 1}]"},
@@ -54,7 +54,7 @@ TEST_CASE("a merge key adds the entries of another mapping that the mapping lack
   }
 }
 
-TEST_CASE("a wrong merge key is refused with its line") {
+TEST_CASE("an invalid merge key is rejected with its line") {
   const auto [text, line, why] = GENERATE(table<std::string, int, std::string>({
       {"a: 1\n<<: 3\n", 2, "expected a mapping, or a list of mappings, to merge"},
       {"a: 1\n<<: [{b: 1}, 2]\n", 2, "expected a mapping, or a list of mappings, to merge"},
@@ -68,7 +68,7 @@ TEST_CASE("a wrong merge key is refused with its line") {
   CHECK_THAT(yaml_error(text), ContainsSubstring(why));
 }
 
-TEST_CASE("robots of a scenario share keys by a merge key, and an error names the line of the shared key") {
+TEST_CASE("robots share keys by a merge key, and an error names the shared key's line") {
   const Scenario scenario = parse_scenario(
       "robots:\n"
       "  - &first {id: 0, start_m: [0, 0], heading_rad: 1}\n"

@@ -26,7 +26,7 @@ std::string structure_error(const std::string& text) {
   return "accepted";
 }
 
-TEST_CASE("YAML with far more structure than the permitted values need is refused before it is read") {
+TEST_CASE("YAML with far more structure than the permitted values need is rejected before it is parsed") {
   const std::string part =
       GENERATE("[],", "{}", "a,", "a:\n", "*a,", "&a ", "!a ", "'a' ", "\"a\" ", "? ", "[#]\n", "%a b ");
   CAPTURE(part);
@@ -36,7 +36,7 @@ TEST_CASE("YAML with far more structure than the permitted values need is refuse
   CHECK(structure_error("[" + repeated(part, kMaxValues / 2)) == "accepted");
 }
 
-TEST_CASE("brackets may nest as deep as yaml-cpp can read, and those in comments do not count") {
+TEST_CASE("brackets may nest as deep as yaml-cpp can parse, and brackets in comments do not count") {
   CHECK(structure_error("a: 1\nb: " + repeated("[", 501)) ==
         "file.yaml:2: expected at most 500 nested brackets");
   CHECK(structure_error(repeated("[{", 300)) == "file.yaml:1: expected at most 500 nested brackets");

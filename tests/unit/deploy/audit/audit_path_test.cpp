@@ -74,7 +74,7 @@ TEST_CASE("a fast approach after a long rest is found, whichever path starts fir
   }
 }
 
-TEST_CASE("the closest approach has its time, and is not sought before the given one") {
+TEST_CASE("the time of the closest approach is found, and times before the given one are not searched") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -97,8 +97,8 @@ TEST_CASE("the closest approach has its time, and is not sought before the given
   }
 }
 
-TEST_CASE("for paths that never come near each other, the distance is found at the later start") {
-  // Both drive away from each other for a second, and then rest.
+TEST_CASE("if two paths never come near each other, their distance is found at the later start") {
+  // Both robots drive away from each other for a second and then rest.
   const auto away = [](double from_m, double speed_mps) {
     Trajectory trajectory(time_from_ns(1'000'000'000), {{from_m, 0}, {speed_mps, 0}});
     trajectory.append(from_seconds(2), {-speed_mps / 2, 0});
@@ -109,7 +109,7 @@ TEST_CASE("for paths that never come near each other, the distance is found at t
   CHECK(found.at_ns == 1'000'000'000);
 }
 
-TEST_CASE("two robots that brake slowly, one towards the other, are found to come near") {
+TEST_CASE("two robots that brake slowly towards each other are found to come near") {
   int near = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
@@ -142,39 +142,41 @@ TEST_CASE("implausible versions are rejected") {
   CHECK(is_sane(version));
   msg::MotionPhase& last = version.phases()[msg::MAX_PHASES - 1];
   const double sign = GENERATE(1, -1);
-  SECTION("not a number") {
-    SECTION("as a coordinate") { version.x_m(std::nan("")); }
-    SECTION("as a speed") { version.vy_mps(std::nan("")); }
-    SECTION("as an inflation") { version.inflation_m(std::nan("")); }
-    SECTION("as an acceleration") { last.ax_mps2(std::nan("")); }
+  SECTION("a number is NaN or infinite") {
+    SECTION("the position") { version.x_m(std::nan("")); }
+    SECTION("the speed") { version.vy_mps(std::nan("")); }
+    SECTION("the inflation") { version.inflation_m(std::nan("")); }
+    SECTION("the acceleration") { last.ax_mps2(std::nan("")); }
   }
-  SECTION("too many phases") { version.phase_count(GENERATE(std::uint8_t{msg::MAX_PHASES + 1}, 200)); }
-  SECTION("a start at a negative time") { version.start_ns(-1); }
-  SECTION("far from every floor") {
+  SECTION("there are too many phases") {
+    version.phase_count(GENERATE(std::uint8_t{msg::MAX_PHASES + 1}, 200));
+  }
+  SECTION("the start time is negative") { version.start_ns(-1); }
+  SECTION("the position is far from any floor") {
     version.x_m(sign * 9999), version.y_m(-sign * 9999);
     CHECK(is_sane(version));
     SECTION("in x") { version.x_m(sign * 10'001); }
     SECTION("in y") { version.y_m(sign * 10'001); }
   }
-  SECTION("faster than any robot") {
+  SECTION("the speed is higher than any robot's") {
     version.vx_mps(sign * 99), version.vy_mps(-sign * 99);
     CHECK(is_sane(version));
     SECTION("in x") { version.vx_mps(sign * 101); }
     SECTION("in y") { version.vy_mps(sign * 101); }
   }
-  SECTION("accelerations of no robot, also in the last phase") {
+  SECTION("the acceleration is higher than any robot's, in the last phase too") {
     last.ax_mps2(sign * 999), last.ay_mps2(-sign * 999);
     CHECK(is_sane(version));
     SECTION("in x") { last.ax_mps2(sign * 1001); }
     SECTION("in y") { last.ay_mps2(sign * 1001); }
   }
-  SECTION("phases of negative duration, or that last for more than a minute") {
+  SECTION("a phase has a negative duration or lasts for more than a minute") {
     version.phases()[0].duration_ns(0), last.duration_ns(60'000'000'000);
     CHECK(is_sane(version));
-    SECTION("the first one") { version.phases()[0].duration_ns(-1); }
-    SECTION("the last one") { last.duration_ns(60'000'000'001); }
+    SECTION("the first phase") { version.phases()[0].duration_ns(-1); }
+    SECTION("the last phase") { last.duration_ns(60'000'000'001); }
   }
-  SECTION("inflations that are negative, or larger than robots") {
+  SECTION("the inflation is negative or larger than a robot") {
     version.inflation_m(10);
     CHECK(is_sane(version));
     version.inflation_m(GENERATE(-0.001, 10.001));

@@ -18,7 +18,7 @@ Violation violation() {
   return violation;
 }
 
-TEST_CASE("a line of text states everything that is known about a violation") {
+TEST_CASE("a line of text states everything known about a violation") {
   Violation v = violation();
   CHECK(to_line(v) == "2.500000 base (ledger rule 1): robot 4: too far");
   v.version = 1;
@@ -30,7 +30,7 @@ TEST_CASE("a line of text states everything that is known about a violation") {
         "2.500000 base (ledger rule 1): robot 4 version 1, robot 3 version 9, epoch 1: too far");
 }
 
-TEST_CASE("a line of JSON contains everything that is known about a violation") {
+TEST_CASE("a line of JSON contains everything known about a violation") {
   Violation v = violation();
   v.version = 7;
   const auto json = [&] { return nlohmann::json::parse(to_json_line(v)); };

@@ -11,7 +11,7 @@
 
 namespace sidestep::audit_shape_test {
 
-/// A triangle to hexagon, counter-clockwise.
+/// A counter-clockwise polygon with three to six corners.
 ConvexPolygon random_polygon(Rng& rng) {
   const auto corners = static_cast<int>(3 + rng.below(4));
   const Vec2 centre = random_vector(rng, 1);
@@ -24,7 +24,7 @@ ConvexPolygon random_polygon(Rng& rng) {
   return polygon;
 }
 
-/// One shape of each kind, and a segment without length.
+/// One shape of each kind, and a segment of zero length.
 std::vector<Shape> random_shapes(Rng& rng) {
   const Vec2 corner = random_vector(rng, 1), point = random_vector(rng, 1);
   return {Circle{random_vector(rng, 1), rng.uniform(0.05, 0.5)},

@@ -23,13 +23,13 @@ TEST_CASE("an audit that heard nothing does not judge") {
   CHECK(verdict_line(AuditTotals()) == "not judged: no messages were received");
 }
 
-TEST_CASE("an audit that refused everything reports that") {
+TEST_CASE("an audit that refused all messages reports that") {
   AuditTotals totals;
   totals.refused = 7;
   CHECK(verdict_line(totals) == "not judged: all 7 messages come from processes with other rules");
 }
 
-TEST_CASE("an audit that covers enough and finds nothing passes") {
+TEST_CASE("an audit with enough coverage and no findings passes") {
   AuditTotals totals = covered();
   CHECK(totals.verdict() == AuditVerdict::kPassed);
   totals.coverage.messages = 0.997;
@@ -39,7 +39,7 @@ TEST_CASE("an audit that covers enough and finds nothing passes") {
   CHECK(totals.verdict() == AuditVerdict::kPassed);
 }
 
-TEST_CASE("an audit that covers 95 % judges, one that covers 94.9 % does not") {
+TEST_CASE("an audit that covers 95 % judges and one that covers 94.9 % does not") {
   for (double Coverage::*part :
        {&Coverage::messages, &Coverage::versions, &Coverage::pairs, &Coverage::time, &Coverage::reference}) {
     AuditTotals totals = covered();
@@ -50,52 +50,52 @@ TEST_CASE("an audit that covers 95 % judges, one that covers 94.9 % does not") {
   }
 }
 
-TEST_CASE("a run is not judged, with the reason, if any share of its coverage is below the minimum") {
+TEST_CASE("a run is not judged if any coverage share is below the minimum, and the reason is given") {
   AuditTotals totals = covered();
   std::string reason;
-  SECTION("messages") {
+  SECTION("messages are missing") {
     totals.coverage.messages = 0.66;
     reason = "34.0 % of the messages were missed";
   }
-  SECTION("versions") {
+  SECTION("versions are missing") {
     totals.coverage.versions = 0.9;
     reason = "10.0 % of the executed versions lack a proposal, a grant or a command";
   }
-  SECTION("pairs") {
+  SECTION("pairs are undecided") {
     totals.coverage.pairs = 0.9;
     reason = "10.0 % of the compared pairs of versions are undecided";
   }
-  SECTION("time") {
+  SECTION("time is not covered") {
     totals.coverage.time = 0.5;
     reason = "50.0 % of the time passed with at least one robot silent";
   }
-  SECTION("reference") {
+  SECTION("the reference is incomplete") {
     totals.coverage.reference = 0.5;
     reason = "50.0 % of the time passed without ground truth or vision";
   }
-  SECTION("no reference at all") {
+  SECTION("there is no reference") {
     totals.reference = AuditReference::kNone;
     totals.coverage.reference = 0;
     reason = "neither ground truth nor vision was received";
   }
-  SECTION("contacts of unknown robots") {
+  SECTION("several contacts involve unknown robots") {
     totals.unidentified_contacts = 3;
     reason = "the robots of 3 contacts are unknown";
   }
-  SECTION("one contact of unknown robots") {
+  SECTION("one contact involves unknown robots") {
     totals.unidentified_contacts = 1;
     reason = "the robots of 1 contacts are unknown";
   }
-  SECTION("one contact that a disturbance may excuse") {
+  SECTION("a disturbance may excuse one contact") {
     totals.undecided_contacts = 1;
     reason = "1 contacts and crashes are undecided because of missed messages";
   }
-  SECTION("contacts that a disturbance may excuse") {
+  SECTION("a disturbance may excuse several contacts") {
     totals.undecided_contacts = 2;
     totals.undecided_crashes = 1;
     reason = "3 contacts and crashes are undecided because of missed messages";
   }
-  SECTION("a recording without its end") {
+  SECTION("the end of the recording is missing") {
     totals.is_cut_off = true;
     reason = "the recording is damaged, so its end is missing";
   }
@@ -105,7 +105,7 @@ TEST_CASE("a run is not judged, with the reason, if any share of its coverage is
   }
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
   CHECK(verdict_line(totals) == "not judged: " + reason);
-  // Violations that were found count, however little was covered.
+  // Violations that were found count, however low the coverage.
   totals.violations = 1;
   CHECK(totals.verdict() == AuditVerdict::kFailed);
 }
@@ -132,7 +132,7 @@ TEST_CASE("a share of zero expected items counts as complete") {
   CHECK(share_of(3, 4) == 0.75);
 }
 
-TEST_CASE("verdicts have their own exit codes, and 2 remains for wrong usage") {
+TEST_CASE("verdicts have their own exit codes, and 2 remains for invalid usage") {
   CHECK(exit_code(AuditVerdict::kPassed) == 0);
   CHECK(exit_code(AuditVerdict::kFailed) == 1);
   CHECK(exit_code(AuditVerdict::kNotJudged) == 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounded memory of an audited robot, compared with slow and simple ones.
+// The bounded memories of an audited robot, compared with slow and simple ones.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -10,7 +10,7 @@
 
 namespace sidestep::audited_robot_memory_test {
 
-TEST_CASE("an epoch memory agrees with a set of all epochs about the sixteen highest ones") {
+TEST_CASE("an epoch memory agrees with a complete set of epochs about the sixteen highest epochs") {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -50,7 +50,7 @@ TEST_CASE("an own stop belongs to the epoch whose ledger listed it, whatever was
   }
 }
 
-/// A slow reference for the memory of versions, which copies and sorts at every step.
+/// A slow reference for the version memory, which copies and sorts at every step.
 struct SlowVersions {
   struct Entry {
     bool is_excluded = false;
@@ -93,7 +93,7 @@ struct SlowVersions {
   VersionNumber max_evicted = 0;
 };
 
-TEST_CASE("a robot's versions agree with a slow reference") {
+TEST_CASE("the version memory agrees with a slow reference") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -141,24 +141,24 @@ TEST_CASE("a robot's versions agree with a slow reference") {
   }
 }
 
-/// A proposal with candidates number to number + 2 of an agent.
+/// Adds an agent's proposal with candidates `number` to `number` + 2.
 void propose(AuditedRobot& robot, std::uint64_t number, std::int64_t stamp_ns, Incarnation incarnation) {
   ProposalRecord& record = robot.add_proposal();
   record.number = number;
   record.stamp_ns = stamp_ns;
   record.count = 3;
   for (std::size_t i = 0; i < 4; ++i) {
-    // The fourth one belongs to an earlier proposal.
+    // The fourth candidate is left over from an earlier proposal.
     record.candidates[i].version_number(number + i);
     record.candidates[i].incarnation(incarnation);
   }
 }
 
-TEST_CASE("the newest of the last sixteen proposals that matches is found") {
+TEST_CASE("the newest matching proposal of the last sixteen is found") {
   AuditedRobot robot;
   CHECK(robot.find_proposal(0) == nullptr);
   for (std::uint64_t i = 1; i <= 40; ++i) {
-    // Every number is used twice, by two agents.
+    // Two agents use every number.
     const std::uint64_t number = 10 * ((i + 1) / 2);
     propose(robot, number, static_cast<std::int64_t>(1000 + i), i % 2);
     const std::uint64_t evicted = i > 16 ? i - 16 : 0;
@@ -194,7 +194,7 @@ TEST_CASE("the newest of the last sixteen proposals that matches is found") {
   CHECK(robot.max_evicted_proposal == 200);
 }
 
-/// The versions that a fact rules out, by applying one rule after the other.
+/// Why a robot report excludes a version, found by applying one rule after the other.
 Exclusion slow_exclusion(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& v) {
   const bool begins_later = v.has_content && v.path.start_ns() > robot_report.at_ns;
   if (robot_report.is_lifted && robot_report.executing == 0) {
@@ -211,7 +211,7 @@ Exclusion slow_exclusion(const AuditedRobot::ReceivedReport& robot_report, const
   return Exclusion::kNone;
 }
 
-TEST_CASE("a fact excludes the versions that its robot no longer executes") {
+TEST_CASE("a robot report excludes the versions that the robot no longer executes") {
   std::map<Exclusion, int> found;
   for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
     CAPTURE(seed);
@@ -245,7 +245,7 @@ TEST_CASE("a fact excludes the versions that its robot no longer executes") {
     CHECK(found[e] > 100);
 }
 
-TEST_CASE("live versions are the recent ones with content, and their disc contains all of them") {
+TEST_CASE("live versions are the recent ones with known content, and their disc contains all of them") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -283,7 +283,7 @@ TEST_CASE("live versions are the recent ones with content, and their disc contai
       CHECK(found.start_ns == known.version.start_ns());
       CHECK(found.executed_until_ns == known.executed_until_ns);
       CHECK(found.granted_by_ns == (known.granted_in == 0 ? kAlways : known.granted_by_ns));
-      // The disc is around the first one.
+      // The disc's centre is the first version.
       const double from_first_m = std::hypot(found.x - live.front().x, found.y - live.front().y);
       reach_m = std::max(reach_m, from_first_m + found.reach_m);
     }

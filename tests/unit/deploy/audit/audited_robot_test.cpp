@@ -31,7 +31,7 @@ TEST_CASE("versions excluded long ago are skipped until new evidence arrives") {
   CHECK(first_recent(robot) == 2);
 }
 
-TEST_CASE("a robot's recent versions stay recent when older ones are evicted or arrive late") {
+TEST_CASE("recent versions stay recent when older ones are evicted or arrive late") {
   AuditedRobot robot = robot_with(AuditedRobot::kMaxVersions, 40);
   robot.advance_recent(11);
   REQUIRE(first_recent(robot) == 41);
@@ -47,7 +47,7 @@ TEST_CASE("a robot's recent versions stay recent when older ones are evicted or 
   CHECK(first_recent(robot) == 7);
 }
 
-TEST_CASE("a version that arrives late is recent, even if later ones were excluded long ago") {
+TEST_CASE("a late version is recent even if higher ones were excluded long ago") {
   AuditedRobot robot;
   for (const VersionNumber number : {2u, 4u, 6u}) {
     KnownVersion& known = robot.find_or_insert(number);
@@ -61,7 +61,7 @@ TEST_CASE("a version that arrives late is recent, even if later ones were exclud
   CHECK(first_recent(robot) == 3);
 }
 
-TEST_CASE("a version that was neither granted nor registered is in no epoch") {
+TEST_CASE("a version that was neither granted nor registered belongs to no epoch") {
   KnownVersion known;
   CHECK_FALSE(known.is_in(0));
   CHECK_FALSE(known.is_in(1));
@@ -80,13 +80,14 @@ void add_content(AuditedRobot& robot, VersionNumber number, VersionNumber base, 
   known.path = AuditPath(known.version);
 }
 
-TEST_CASE("after a robot is lifted, only versions that were granted to it for later remain possible") {
+TEST_CASE(
+    "after a robot is lifted, only its new place and versions that continue from there remain possible") {
   AuditedRobot robot;
   AuditedRobot::ReceivedReport lifted;
   lifted.at_ns = 100;
   lifted.is_lifted = true;
   lifted.last_executed = 7;
-  add_content(robot, 0, 0, 101);  // its initial rest
+  add_content(robot, 0, 0, 101);  // the initial rest
   add_content(robot, 8, 0, 101);
   add_content(robot, 9, 8, 101);
   add_content(robot, 10, 0, 100);
@@ -98,7 +99,7 @@ TEST_CASE("after a robot is lifted, only versions that were granted to it for la
   CHECK(exclusion_by(lifted, *robot.find(11)) == Exclusion::kLifted);
 }
 
-TEST_CASE("a version that was too late by a clock that has been set back is possible again") {
+TEST_CASE("a version that was late by a clock that has been set back is possible again") {
   AuditedRobot robot = robot_with(5, 3);
   robot.last_report.emplace().at_ns = 1000;
   robot.find(4)->exclusion = Exclusion::kLate;
@@ -112,7 +113,7 @@ TEST_CASE("a version that was too late by a clock that has been set back is poss
   CHECK(first_recent(robot) <= 4);
 }
 
-TEST_CASE("the versions that a robot executed between two others are known if every base is known") {
+TEST_CASE("the versions executed between two others are known if every base is known") {
   AuditedRobot robot;
   for (const VersionNumber number : {3u, 5u, 6u, 9u})
     add_content(robot, number, number == 9 ? 6 : number - 1, 0);
@@ -127,7 +128,7 @@ TEST_CASE("the versions that a robot executed between two others are known if ev
   CHECK_FALSE(robot.continues(3, 8));
 }
 
-TEST_CASE("executed versions are counted by what was received of them, even after they are forgotten") {
+TEST_CASE("executed versions stay counted even after they are forgotten") {
   AuditedRobot robot;
   robot.traceable_from_ns = 100;
   for (VersionNumber number = 1; number <= 10; ++number) {
@@ -158,7 +159,7 @@ TEST_CASE("executed versions are counted by what was received of them, even afte
   CHECK(robot.forgotten_in == 7);
 }
 
-TEST_CASE("a robot's initial rest does not count as an agent's version, version 1 does") {
+TEST_CASE("a robot's initial rest does not count as an agent's version, but version 1 does") {
   for (const VersionNumber number : {0u, 1u}) {
     AuditedRobot robot;
     robot.traceable_from_ns = 100;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts, crashes and counters in single messages of ground truth.
+// Contacts, crashes and counters in single ground-truth messages.
 #include <algorithm>
 
 #include "tests/catch.hpp"
@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-TEST_CASE("contacts are reported one by one, in the order in which ground truth lists them") {
+TEST_CASE("contacts are reported one by one in the order of the ground truth") {
   Shown shown;
   shown.run(50ms);
   shown.touch(0, 1);
@@ -29,7 +29,7 @@ TEST_CASE("contacts are reported one by one, in the order in which ground truth 
   CHECK(shown.auditor.totals().unidentified_contacts == 0);
 }
 
-TEST_CASE("the last eight of many simultaneous contacts are known") {
+TEST_CASE("the robots of the last eight simultaneous contacts are known") {
   const auto [added, unidentified] = GENERATE(table<int, std::uint64_t>({{8, 0}, {9, 1}, {20, 12}}));
   Shown shown;
   shown.run(50ms);
@@ -39,28 +39,28 @@ TEST_CASE("the last eight of many simultaneous contacts are known") {
   CHECK(shown.auditor.totals().unidentified_contacts == unidentified);
 }
 
-TEST_CASE("crashes of moving robots are reported, and those beyond the list are reported together") {
+TEST_CASE("crashes of moving robots are reported, and crashes beyond the list are reported together") {
   Shown shown;
   shown.run(50ms);
-  SECTION("one") {
+  SECTION("one crash") {
     shown.crash(1);
     shown.run(20ms);
     REQUIRE(shown.count(AuditRule::kCrash) == 1);
     CHECK(shown.violations.front().robot == 1);
   }
-  SECTION("eight") {
+  SECTION("eight crashes") {
     for (int i = 0; i < 8; ++i) shown.crash(1);
     shown.run(20ms);
     CHECK(shown.count(AuditRule::kCrash) == 8);
   }
-  SECTION("nine and more") {
+  SECTION("nine crashes or more") {
     const int more = GENERATE(1, 5);
     for (int i = 0; i < 8 + more; ++i) shown.crash(1);
     shown.run(20ms);
     CHECK(shown.count(AuditRule::kCrash) == 9);
     CHECK(shown.violations.front().robot == 0);
   }
-  SECTION("one of a robot that was pushed") {
+  SECTION("a pushed robot crashes") {
     shown.push(1);
     shown.run(20ms);
     shown.crash(1);
@@ -70,7 +70,7 @@ TEST_CASE("crashes of moving robots are reported, and those beyond the list are 
     REQUIRE(shown.count(AuditRule::kCrash) == 1);
     CHECK(shown.violations.front().robot == 0);
   }
-  SECTION("one of a robot that is not on the roster") {
+  SECTION("a robot that is not on the roster crashes") {
     shown.crash(77);
     shown.run(20ms);
     CHECK(shown.count(AuditRule::kCrash) == 1);
@@ -106,7 +106,7 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
     (void)shown.header("truth", 30'000, shown.incarnation);
   }
   SECTION("nothing was missed") { undecided = 0; }
-  SECTION("a message of an agent was missed, which cannot announce a disturbance") {
+  SECTION("an agent's message was missed, which cannot announce a disturbance") {
     (void)shown.header("registration", 0, Stage::kAgent);
     shown.register_versions(0, {shown.rest(0)});
     REQUIRE(shown.auditor.totals().missed == 1);
@@ -119,8 +119,7 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
   CHECK(shown.count(AuditRule::kContact) == 1 - undecided);
 }
 
-TEST_CASE(
-    "robots in contact may appear up to a millimetre apart, and no longer push each other beyond that") {
+TEST_CASE("robots up to a millimetre apart may be in contact and push each other") {
   const double apart_m = GENERATE(0.1805, 0.1815);
   Shown shown;
   shown.run(50ms);
@@ -154,14 +153,14 @@ TEST_CASE("every simulator's counters start at zero") {
     shown.run(50ms);
     CHECK(shown.count(AuditRule::kFirmwareMonitor) == 2);
   }
-  SECTION("lower counts are not") {
+  SECTION("lower counts of the same simulator are not new events") {
     shown.truth.contacts(0);
     shown.truth.crashes_while_moving(0);
     shown.truth.firmware_violations(0);
     shown.run(50ms);
     CHECK(shown.violations.size() == 3);
   }
-  SECTION("of more than sixteen simulators the first is forgotten") {
+  SECTION("the first of more than sixteen simulators is forgotten") {
     for (int i = 1; i < 16; ++i) {
       ++shown.incarnation;
       shown.truth.contacts(0), shown.truth.crashes_while_moving(0), shown.truth.firmware_violations(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The content of granted versions, compared with what many samples of their motion show.
+// The content of granted versions, compared with dense samples of their motion.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +22,7 @@ void each_sample(const msg::Version& version, const std::function<void(const Aud
   use(path.at_s(path.duration_s()));
 }
 
-/// The largest acceleration relative to the limit, which is an ellipse with a longer half against the
+/// The largest acceleration relative to the limit, which is an ellipse with its longer half against the
 /// velocity.
 double effort(const AuditPath::Node& n, const MotionLimits& limits) {
   const Vec2 v(n.vx, n.vy), a(n.ax, n.ay);
@@ -33,7 +33,7 @@ double effort(const AuditPath::Node& n, const MotionLimits& limits) {
   return Vec2(along / most_along, across / limits.acceleration_mps2).norm();
 }
 
-/// Ends at rest: the last phase brakes.
+/// Appends a braking phase, so that the version ends at rest.
 void brake(msg::Version& version, double deceleration_mps2) {
   const AuditPath::Node end = AuditPath(version).last();
   const double speed = std::hypot(end.vx, end.vy);
@@ -56,7 +56,7 @@ void append(msg::Version& version, double seconds, const Vec2& acceleration_mps2
 
 Vec2 random_direction(Rng& rng) { return rotated({1, 0}, rng.uniform(0, 2 * std::numbers::pi)); }
 
-/// Motion of up to three phases that is about as fast as the limits allow.
+/// Appends up to three phases of motion that are about as fast as the limits allow.
 void add_motion(msg::Version& version, Rng& rng, const MotionLimits& limits) {
   for (std::uint64_t left = 1 + rng.below(3); left > 0; --left) {
     append(version, rng.uniform(0.05, 0.5),
@@ -65,7 +65,7 @@ void add_motion(msg::Version& version, Rng& rng, const MotionLimits& limits) {
   brake(version, rng.uniform(0.85, 1.1) * limits.deceleration_mps2);
 }
 
-TEST_CASE("versions beyond the limits are reported, and no others") {
+TEST_CASE("only versions beyond the limits are reported") {
   int beyond = 0, within = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -94,7 +94,7 @@ TEST_CASE("versions beyond the limits are reported, and no others") {
   CHECK(within > 50);
 }
 
-TEST_CASE("braking at D, driving at F and the speed limit are allowed, a little more is not") {
+TEST_CASE("driving at F, braking at D and the speed limit are allowed and slightly more is not") {
   const double more = GENERATE(0.0, 0.0015, 0.0025);
   CAPTURE(more);
   Stage stage;
@@ -109,7 +109,7 @@ TEST_CASE("braking at D, driving at F and the speed limit are allowed, a little 
     append(version, 0.2, {0, 0.9 * limits.acceleration_mps2});
     brake(version, limits.deceleration_mps2 * (1 + more));
   }
-  SECTION("the speed limit") {
+  SECTION("driving at the speed limit") {
     const double speed_mps = limits.speed_mps + (more < 0.001 ? 8e-6 : 1.2e-5);
     append(version, speed_mps / limits.acceleration_mps2 / 0.9, {0.9 * limits.acceleration_mps2, 0});
     brake(version, 0.9 * limits.deceleration_mps2);
@@ -132,7 +132,7 @@ TEST_CASE("a version that does not end at rest is reported") {
   CHECK(stage.count(AuditRule::kRest) == (speed_mps > 1e-5 ? 1 : 0));
 }
 
-TEST_CASE("versions that leave the field are reported, and no others") {
+TEST_CASE("only versions that leave the field are reported") {
   int outside = 0, inside = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -159,7 +159,7 @@ TEST_CASE("versions that leave the field are reported, and no others") {
   CHECK(inside > 50);
 }
 
-TEST_CASE("a robot outside the field may return in steps, but not leave farther") {
+TEST_CASE("a robot outside the field may return in steps but not leave farther") {
   const auto [to_m, is_reported] = GENERATE(table<double, bool>({{3.04, false}, {3.06, true}}));
   CAPTURE(to_m);
   Scenario scenario = stage_scenario();
@@ -167,7 +167,7 @@ TEST_CASE("a robot outside the field may return in steps, but not leave farther"
   Stage stage(scenario);
   stage.begin();
   msg::Version version = stage.next(stage.rest(0), 1);
-  // Accelerates over half of the way and brakes over the other half, half a second each.
+  // Accelerates over half of the distance and brakes over the other half, half a second each.
   const double a_mps2 = (to_m - 3.05) / 0.25;
   append(version, 0.5, {a_mps2, 0});
   append(version, 0.5, {-a_mps2, 0});
@@ -176,10 +176,10 @@ TEST_CASE("a robot outside the field may return in steps, but not leave farther"
   CHECK(stage.count(AuditRule::kRest) == 0);
 }
 
-/// The distance that the robot must keep from edges.
+/// The distance that the robot's centre must keep from edges.
 double separation_m(const Scenario& scenario) { return scenario.radius_m + scenario.margin_m; }
 
-TEST_CASE("versions that come too near an obstacle are reported, unless their base was as near") {
+TEST_CASE("a version that comes too near an obstacle is reported unless its base was as near") {
   int near = 0, clear = 0, excused = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -213,9 +213,8 @@ TEST_CASE("versions that come too near an obstacle are reported, unless their ba
   CHECK(excused > 5);
 }
 
-TEST_CASE(
-    "a robot keeps its inflation and the margin from obstacles, and may use up the inflation of its base") {
-  // Distance in metres by which the radius and the margin are violated.
+TEST_CASE("a version keeps its inflation and the margin from obstacles but may use up its base's inflation") {
+  // `closer_m`: distance by which the radius and the margin are violated.
   const auto [closer_m, inflation_m, is_reported] = GENERATE(table<double, double, bool>(
       {{-0.001, 0, false}, {0.001, 0, true}, {-0.021, 0.01, false}, {0.0001, 0.01, true}}));
   CAPTURE(closer_m, inflation_m);
@@ -240,7 +239,7 @@ TEST_CASE("an obstacle at the end of a fast straight path is found") {
   scenario.obstacles.push_back(Circle{{-1, 1.5}, 0.2});
   Stage stage(scenario);
   stage.begin();
-  // Starts at full speed, although that is not continuous, so that the path is as long as possible.
+  // Starts at full speed, so that the path is as long as possible, although that is not continuous.
   msg::Version version = stage.next(stage.rest(0), 1);
   version.vy_mps(1);
   append(version, 1.3 - separation_m(scenario) + closer_m - 0.125, {0, 0});
@@ -255,7 +254,7 @@ TEST_CASE("a base of unknown content excuses nothing") {
   scenario.robots[0].start_m = {-0.41, 0};
   Stage stage(scenario);
   stage.begin();
-  stage.decide(0, 1, 1);  // that was not proposed
+  stage.decide(0, 1, 1);  // was not proposed
   stage.violations.clear();
   msg::Version version = stage.next(stage.rest(0), 2);
   append(version, 1, {0.05, 0});
@@ -267,7 +266,7 @@ TEST_CASE("a base of unknown content excuses nothing") {
   CHECK(stage.count(AuditRule::kInflation) == 0);
 }
 
-TEST_CASE("blocked cells of a map are obstacles") {
+TEST_CASE("blocked map cells are obstacles") {
   const double closer_m = GENERATE(-0.001, 0.001);
   Scenario scenario = stage_scenario();
   MapGrid grid;
@@ -293,7 +292,7 @@ TEST_CASE("blocked cells of a map are obstacles") {
   CHECK(stage.count(AuditRule::kObstacle) == (closer_m > 0 ? 1 : 0));
 }
 
-TEST_CASE("a version that jumps from its base in place or speed, or starts before it, is reported") {
+TEST_CASE("a version whose position or speed jumps from its base is reported") {
   const auto [by, is_reported] = GENERATE(table<double, bool>({{0, false}, {9e-8, false}, {1.1e-7, true}}));
   CAPTURE(by);
   const double sign = GENERATE(1.0, -1.0);
@@ -319,7 +318,7 @@ TEST_CASE("a version that jumps from its base in place or speed, or starts befor
     CHECK_THAT(stage.violations.front().detail, ContainsSubstring("0.250000 s after its base's start"));
 }
 
-TEST_CASE("a version that starts when its base does, or before, is reported") {
+TEST_CASE("a version that does not start after its base is reported") {
   const Duration after = GENERATE(-1ns, 0ns, 1ns);
   Stage stage;
   stage.begin();
@@ -330,7 +329,7 @@ TEST_CASE("a version that starts when its base does, or before, is reported") {
   CHECK(stage.violations.size() == stage.count(AuditRule::kContinuity));
 }
 
-TEST_CASE("a version has the inflation of its base, or begins at rest without one") {
+TEST_CASE("a version has the inflation of its base, or none if it begins at rest") {
   Stage stage;
   stage.robot_reports[0].executing().inflation_m(0.01);
   stage.begin();
@@ -342,28 +341,28 @@ TEST_CASE("a version has the inflation of its base, or begins at rest without on
     stage.grant(version);
     return stage.count(AuditRule::kInflation);
   };
-  SECTION("the same") { CHECK(grant(0.01, 0) == 0); }
-  SECTION("another one") { CHECK(grant(0.009, 0) == 1); }
-  SECTION("none at rest") { CHECK(grant(0, 0) == 0); }
-  SECTION("none in motion") { CHECK(grant(0, 0.5) == 1); }
+  SECTION("the same inflation") { CHECK(grant(0.01, 0) == 0); }
+  SECTION("another inflation") { CHECK(grant(0.009, 0) == 1); }
+  SECTION("no inflation at rest") { CHECK(grant(0, 0) == 0); }
+  SECTION("no inflation in motion") { CHECK(grant(0, 0.5) == 1); }
 }
 
-TEST_CASE("the base of a granted version was registered or granted in the epoch") {
+TEST_CASE("the base of a granted version must have been registered or granted in the epoch") {
   Stage stage;
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1);
-  SECTION("registered") { stage.grant(first); }
-  SECTION("granted") {
+  SECTION("the base was registered") { stage.grant(first); }
+  SECTION("the base was granted") {
     stage.grant(first);
     stage.grant(stage.next(first, 2, 100ms));
   }
-  SECTION("proposed only") {
+  SECTION("the base was only proposed") {
     stage.propose({first});
     stage.grant(stage.next(first, 2, 100ms));
     CHECK(stage.count(AuditRule::kBase) == 1);
     return;
   }
-  SECTION("granted in a former epoch, and not registered") {
+  SECTION("the base was granted in an earlier epoch and not registered") {
     stage.drive(first);
     ++stage.epoch;
     stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
@@ -372,7 +371,7 @@ TEST_CASE("the base of a granted version was registered or granted in the epoch"
     CHECK(stage.count(AuditRule::kBase) == 1);
     return;
   }
-  SECTION("a stop that the robot made itself") {
+  SECTION("the base is the robot's own stop") {
     msg::Version stop = stage.next(stage.rest(0), 9, 0ms);
     stage.robot_reports[0].executing(stop);
     stage.robot_reports[0].is_off_reference(true);
@@ -384,7 +383,7 @@ TEST_CASE("the base of a granted version was registered or granted in the epoch"
   CHECK(stage.violations.empty());
 }
 
-TEST_CASE("a version whose base has its own number or a higher one is reported") {
+TEST_CASE("a version whose base does not have a lower number is reported") {
   const VersionNumber base = GENERATE(1u, 2u, 3u);
   Stage stage;
   stage.begin();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a run an audit covered, and what follows for its verdict.
+// How much of a run an audit covered, and its verdict as a result.
 #include "common/config/shared_rules.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
@@ -28,13 +28,13 @@ TEST_CASE("an audit that hears everything covers everything") {
   CHECK(totals.excused_time_share() == 0);
 }
 
-TEST_CASE("an audit that loses nothing judges a run, even if it joins late") {
+TEST_CASE("an audit that loses no messages judges a run even if it joins late") {
   const Duration joined_after = GENERATE(Duration{0}, Duration{1'700'000'000});
   CAPTURE(to_seconds(joined_after));
   require_covered(audit_of(degraded(crossing(), 1, 0, joined_after), {}));
 }
 
-TEST_CASE("an audit that hears 60 % does not pass") {
+TEST_CASE("an audit that hears 60 % of the messages does not pass") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   const AuditTotals totals = audit_of(degraded(crossing(), seed, 0.4, Duration{0}), {});
   INFO(verdict_line(totals));
@@ -52,7 +52,7 @@ TEST_CASE("an audit that finds a violation fails the run, however little it hear
   CHECK(totals.verdict() == AuditVerdict::kFailed);
 }
 
-/// The crossing without the messages of one type in the second half of it.
+/// Audits the crossing without the messages of one type in its second half.
 template <typename Message>
 AuditTotals audit_without(const AuditInput& input) {
   History history = crossing();
@@ -63,10 +63,10 @@ AuditTotals audit_without(const AuditInput& input) {
   return audit_of(history, input);
 }
 
-TEST_CASE("an audit that no longer hears one kind of message does not pass, although there is no gap") {
+TEST_CASE("an audit that stops hearing one kind of message does not pass, although there is no gap") {
   const AuditInput input;
   AuditTotals totals;
-  SECTION("facts") {
+  SECTION("robot reports") {
     totals = audit_without<msg::Feedback>(input);
     CHECK(totals.coverage.time < 0.7);
   }
@@ -88,7 +88,7 @@ TEST_CASE("an audit that no longer hears one kind of message does not pass, alth
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE("pairs whose possible excuse is not known lower the coverage") {
+TEST_CASE("undecided pairs lower the coverage") {
   History history = crossing();
   // A history in which all versions were granted with 5 cm too little margin, on unknown bases.
   history.scenario.margin_m += 0.05;
@@ -119,8 +119,7 @@ TEST_CASE("an audit that hears no coordinator does not pass") {
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE(
-    "agents' messages without any effect need not be heard, for example those of a host that is cut off") {
+TEST_CASE("agent messages without effect, such as those of a disconnected host, may be missed") {
   History history = crossing();
   history.remove_if<msg::Command>([](const msg::Command& command) { return !command.has_version(); });
   const AuditTotals totals = audit_of(history, {});
@@ -128,7 +127,7 @@ TEST_CASE(
   require_covered(totals);
 }
 
-TEST_CASE("a robot that sends nothing is covered, but a robot whose facts are missed is not") {
+TEST_CASE("a silent robot is covered but a robot whose reports are missed is not") {
   History history = crossing();
   const Time begin = history.messages.front().at, from = begin + 1500ms, until = begin + 2500ms;
   const bool were_sent = GENERATE(false, true);
@@ -145,7 +144,7 @@ TEST_CASE("a robot that sends nothing is covered, but a robot whose facts are mi
     // Closes the gap in the message numbers, as if the robot had not sent the removed messages.
     if (is_of_robot && !were_sent)
       feedback->header().message_number(feedback->header().message_number() - removed);
-    // It remains unknown what the robot executed in the meantime.
+    // Removes the messages that would tell what the robot executed meanwhile.
     const auto* command = std::get_if<msg::Command>(&received.message);
     if (command && command->robot() == 2 && received.at >= from - 100ms && received.at < until) continue;
     const auto* proposal = std::get_if<msg::Proposal>(&received.message);
@@ -162,7 +161,8 @@ TEST_CASE("a robot that sends nothing is covered, but a robot whose facts are mi
   CHECK(totals.coverage.time == (were_sent ? Approx(1 - 1 / totals.run_s).margin(0.03) : Approx(1)));
 }
 
-TEST_CASE("missed facts leave no doubt if all versions that the robot executed meanwhile are known") {
+TEST_CASE(
+    "missed robot reports do not lower the time coverage if all versions executed meanwhile are known") {
   History history = crossing();
   const Time from = history.messages.front().at + 1500ms;
   history.remove_if<msg::Feedback>([&](const msg::Feedback& f) {

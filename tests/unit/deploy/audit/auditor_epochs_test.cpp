@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single facts prove about epochs, registrations, and a robot's lives.
+// What single robot reports prove about epochs, registrations and incarnations of robots.
 #include "common/motion/safety_budget.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-TEST_CASE("a robot executes no version that was sent under an epoch older than the one it obeyed before") {
+TEST_CASE("a robot must not execute a version sent under an older epoch than it already obeyed") {
   Stage stage;
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1, 50ms);
@@ -22,23 +22,23 @@ TEST_CASE("a robot executes no version that was sent under an epoch older than t
     stage.report(0);
     stage.advance(1ms);
   };
-  SECTION("sent before it obeyed") {
+  SECTION("the version was sent before the robot obeyed the newer epoch") {
     stage.command(first);
     obey();
   }
-  SECTION("sent at the time of its first fact with the epoch") {
+  SECTION("the version was sent at the time of the first report with the newer epoch") {
     stage.advance(1ms);
     stage.robot_reports[0].obeyed_epoch(stage.epoch + 1);
     stage.report(0);
     stage.command(first);
   }
-  SECTION("sent afterwards") {
+  SECTION("the version was sent after that report") {
     obey();
     stage.report(0);
     stage.command(first);
     is_stale = true;
   }
-  SECTION("sent afterwards, under the new epoch") {
+  SECTION("the version was sent after that report under the newer epoch") {
     obey();
     ++stage.epoch;
     stage.command(first);
@@ -51,39 +51,40 @@ TEST_CASE("a robot executes no version that was sent under an epoch older than t
   if (is_stale) CHECK(stage.violations.front().epoch == stage.epoch);
 }
 
-TEST_CASE("a robot that still obeys an older epoch than that of a grant is reported once") {
+TEST_CASE("a robot that obeys an epoch older than that of a grant is reported once") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.robot_reports[1].obeyed_epoch(stage.epoch - 1);
   stage.register_versions(0, {stage.rest(0)}), stage.register_versions(1, {stage.rest(1)});
   stage.report(0);
   bool is_excused = false;
-  SECTION("without an excuse") { stage.report(1); }
-  SECTION("although it is attested to be absent") {
+  SECTION("the robot has no excuse") { stage.report(1); }
+  SECTION("the robot was attested absent") {
     msg::AbsenceAttestation attestation;
     attestation.robot(1);
     stage.auditor.on_attestation(attestation, stage.now);
     is_excused = true;
   }
-  SECTION("although another one is attested to be absent") {
+  SECTION("another robot was attested absent") {
     msg::AbsenceAttestation attestation;
     attestation.robot(0);
     stage.auditor.on_attestation(attestation, stage.now);
   }
-  SECTION("while it is lifted") {
+  SECTION("the robot is lifted") {
     stage.robot_reports[1].is_lifted(true);
     is_excused = true;
   }
   const msg::Version first = stage.next(stage.rest(0), 1);
   stage.grant(first);
   stage.report(1);
-  CHECK(stage.violations.empty());  // it may have been sent before the grant
+  CHECK(stage.violations.empty());  // the report may have been sent before the grant
   stage.advance(1ms);
   for (int i = 0; i < 3; ++i) stage.report(1);
   CHECK(stage.count(AuditRule::kAllRegistered) == (is_complete && !is_excused ? 1 : 0));
 }
 
-TEST_CASE("a robot that executes a version of an epoch obeys that epoch, even if messages may be missed") {
+TEST_CASE(
+    "a robot that executes a version of an epoch must obey that epoch, even if messages may be missed") {
   Stage stage(stage_scenario(), kIncomplete);
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1);
@@ -101,7 +102,7 @@ TEST_CASE("a robot that executes a version of an epoch obeys that epoch, even if
   CHECK(stage.count(AuditRule::kAllRegistered) == (is_proposed && !is_obeyed ? 1 : 0));
 }
 
-/// Robot 0 executes version 1 of the last epoch when its agent registers in the next one.
+/// Robot 0 executes version 1 of the previous epoch when its agent registers in the next one.
 struct Registering : Stage {
   explicit Registering(const AuditInput& input) : Stage(stage_scenario(), input) {
     begin();
@@ -112,7 +113,7 @@ struct Registering : Stage {
     report(0);
     advance(1ms);
   }
-  /// The robot repeats the time of a command that was sent after the registration.
+  /// The robot reports the time of a command that was sent after the registration.
   void report_later() {
     advance(1ms);
     robot_reports[0].command_stamp_ns(to_ns(now));
@@ -123,16 +124,17 @@ struct Registering : Stage {
   msg::Version first;
 };
 
-TEST_CASE("an agent registers what its robot executes, after the robot has acknowledged it and the epoch") {
+TEST_CASE(
+    "an agent must register what its robot executes, after the robot has acknowledged agent and epoch") {
   const bool is_complete = GENERATE(true, false);
   Registering stage(is_complete ? kComplete : kIncomplete);
   std::uint64_t missing = 0, early = 0;
-  SECTION("it registers the version") { stage.register_versions(0, {stage.rest(0), stage.first}); }
-  SECTION("it does not") {
+  SECTION("the agent registers the version") { stage.register_versions(0, {stage.rest(0), stage.first}); }
+  SECTION("the agent does not register the version") {
     stage.register_versions(0, {stage.rest(0)});
     missing = 1;
   }
-  SECTION("it does not, but the robot executes a version of the new epoch since") {
+  SECTION("the unregistered version was replaced by one of the new epoch") {
     stage.register_versions(0, {stage.rest(0)});
     stage.register_versions(1, {stage.rest(1)});
     stage.robot_reports[1].obeyed_epoch(stage.epoch);
@@ -141,7 +143,7 @@ TEST_CASE("an agent registers what its robot executes, after the robot has ackno
     stage.command(second);
     stage.now = time_from_ns(second.start_ns());
     stage.robot_reports[0].executing(second);
-    stage.violations.clear();  // its base is not in the ledger
+    stage.violations.clear();  // the version's base is not in the ledger
   }
   SECTION("the robot does not obey the epoch yet") {
     ++stage.epoch;
@@ -176,27 +178,31 @@ TEST_CASE("a robot that obeys an older agent has not acknowledged the one that r
   registration.versions()[0] = stage.first;
   stage.auditor.on_registration(registration, stage.now);
   stage.report(0);
-  CHECK(stage.violations.empty());  // it may have been sent before the registration
+  CHECK(stage.violations.empty());  // the report may have been sent before the registration
   stage.report_later();
   CHECK(stage.count(AuditRule::kAcknowledged) == 1);
 }
 
-TEST_CASE("if messages may be missed, only a command sent after a registration proves that a fact is later") {
+TEST_CASE("if messages may be missed, only a command's time proves that a report followed a registration") {
   Registering stage(kIncomplete);
   stage.register_versions(0, {stage.rest(0)});
   const std::int64_t registered_ns = to_ns(stage.now);
   std::uint64_t expected = 0;
-  SECTION("of a command before") { stage.robot_reports[0].command_stamp_ns(registered_ns - 1); }
-  SECTION("of a command at that time") { stage.robot_reports[0].command_stamp_ns(registered_ns); }
-  SECTION("of a later command") {
+  SECTION("the command was sent before the registration") {
+    stage.robot_reports[0].command_stamp_ns(registered_ns - 1);
+  }
+  SECTION("the command was sent at the time of the registration") {
+    stage.robot_reports[0].command_stamp_ns(registered_ns);
+  }
+  SECTION("the command was sent after the registration") {
     stage.robot_reports[0].command_stamp_ns(registered_ns + 1);
     expected = 1;
   }
-  SECTION("of a later command of another agent") {
+  SECTION("another agent sent the command after the registration") {
     stage.robot_reports[0].command_stamp_ns(registered_ns + 1);
     stage.robot_reports[0].obeyed_incarnation(Stage::kAgent + 1);
   }
-  SECTION("of a clock that was set back") {
+  SECTION("the agent's clock was set back") {
     stage.now -= 5ms;
     stage.register_versions(0, {stage.rest(0)});
     stage.robot_reports[0].command_stamp_ns(registered_ns + 1);
@@ -207,7 +213,8 @@ TEST_CASE("if messages may be missed, only a command sent after a registration p
   check_only(stage, AuditRule::kRegistration, expected);
 }
 
-TEST_CASE("facts of a robot's earlier incarnation are ignored, until it has been silent for a second") {
+TEST_CASE(
+    "reports of a robot's earlier incarnation are ignored until the robot has been silent for a second") {
   const bool is_near = GENERATE(true, false);
   const bool was_silent = GENERATE(true, false);
   CAPTURE(is_near, was_silent);
@@ -222,7 +229,7 @@ TEST_CASE("facts of a robot's earlier incarnation are ignored, until it has been
   };
   report(Stage::kLife + 1'000'000, -1);
   stage.advance(was_silent ? 1s : 999ms);
-  // If the fact is used, a robot at rest elsewhere is on another floor.
+  // If the report counts, a robot at rest elsewhere must be on another floor.
   report(before, -2);
   CHECK(stage.violations.empty());
   report(before, -2.5);
@@ -230,7 +237,7 @@ TEST_CASE("facts of a robot's earlier incarnation are ignored, until it has been
   CHECK(stage.count(AuditRule::kUniqueVersion) == (counts ? 1 : 0));
 }
 
-TEST_CASE("a robot of a later simulator is on a new floor, one whose firmware has restarted is not") {
+TEST_CASE("a robot of a later simulator is on a new floor, but a robot with restarted firmware is not") {
   const auto [later, is_new_floor] =
       GENERATE(table<Incarnation, bool>({{1, false}, {100'000, false}, {100'001, true}}));
   CAPTURE(later);
@@ -252,7 +259,7 @@ TEST_CASE("a robot of a later simulator is on a new floor, one whose firmware ha
   CHECK(stage.count(AuditRule::kLedgerPage) == 2);
 }
 
-TEST_CASE("a version that was executed without a command is reported once") {
+TEST_CASE("a version executed without a command is reported once") {
   Stage stage;
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1);

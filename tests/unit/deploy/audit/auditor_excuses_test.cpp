@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts in ground truth, and which of them disturbances excuse.
+// Contacts in ground truth that disturbances may excuse.
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -9,7 +9,7 @@ namespace sidestep::auditor_excuses_test {
 
 using namespace std::chrono_literals;
 
-/// When all robots of the history have arrived and rest.
+/// The time when all robots of the history have arrived and rest.
 Time rest_begin(History& history) {
   Time begin = history.messages.front().at;
   history.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
@@ -20,7 +20,7 @@ Time rest_begin(History& history) {
   return begin;
 }
 
-TEST_CASE("a contact soon after a push is excused, one long after it is not, although nobody moved since") {
+TEST_CASE("a contact soon after a push is excused, but one long after is not") {
   const bool is_complete = GENERATE(true, false);
   const auto [after, is_excused] = GENERATE(table<Duration, bool>({{50ms, true}, {400ms, false}}));
   CAPTURE(is_complete, to_seconds(after));
@@ -35,7 +35,7 @@ TEST_CASE("a contact soon after a push is excused, one long after it is not, alt
   CHECK((totals.excused_contacts == 1) == is_excused);
 }
 
-TEST_CASE("a contact of neighbours is not excused by a push of another robot") {
+TEST_CASE("a push does not excuse a contact of the pushed robot's neighbours") {
   History history = crossing();
   const Time push = history.messages.front().at + 1500ms;
   history.push(2, push);
@@ -64,7 +64,7 @@ TEST_CASE("excused contacts are listed by cause and pair, with the share of excu
   CHECK(totals.excused_contacts == 3);
   CHECK(totals.violations == 0);
   CHECK(totals.excused_time_share() > 0);
-  // 2 and 5 are disturbed, which concerns 13 of 28 pairs, for at most two of four seconds.
+  // Robots 2 and 5 are disturbed, which concerns 13 of 28 pairs, for at most two of four seconds.
   CHECK(totals.excused_time_share() < 13.0 / 28 / 2);
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("a run without disturbances excuses nothing") {
   CHECK(totals.excused_pair_s == 0);
 }
 
-TEST_CASE("more contacts at once than ground truth lists are neither excused nor violations") {
+TEST_CASE("contacts that ground truth counts but does not list are neither excused nor violations") {
   History history = crossing();
   const Time push = history.messages.front().at + 1500ms;
   history.push(2, push);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Grants and pages of the ledger, message by message.
+// Grants and ledger pages, message by message.
 #include <algorithm>
 
 #include "tests/catch.hpp"
@@ -40,7 +40,7 @@ TEST_CASE("a correct run breaks no rule") {
   CHECK(totals.received == 199 * 6 + 4);
 }
 
-TEST_CASE("a command with a candidate that was denied for good is reported, whichever came first") {
+TEST_CASE("a command with a permanently denied candidate is reported, whatever the message order") {
   using msg::Reason;
   const auto [reason, is_final] = GENERATE(table<Reason, bool>({{Reason::REASON_NOT_CONTINUOUS, true},
                                                                 {Reason::REASON_BEYOND_LIMITS, true},
@@ -76,7 +76,7 @@ TEST_CASE("a command with a candidate that was denied for good is reported, whic
   CHECK(stage.violations.size() == stage.count(AuditRule::kForwarded));
 }
 
-TEST_CASE("a verdict decides its own proposal only") {
+TEST_CASE("a verdict decides only its own proposal") {
   Stage stage(stage_scenario(), kIncomplete);
   stage.begin();
   const msg::Version version = stage.next(stage.rest(0), 3);
@@ -89,11 +89,11 @@ TEST_CASE("a verdict decides its own proposal only") {
   SECTION("this candidate was granted") { stage.decide(0, 3, 3); }
   SECTION("another proposal was denied") { stage.decide(0, 2, 0); }
   SECTION("another robot's proposal was denied") { stage.decide(1, 3, 0); }
-  SECTION("another agent's proposal with the number was denied") {
+  SECTION("another agent's proposal with the same number was denied") {
     stage.now += 1ms;
     stage.decide(0, 3, 0);
   }
-  SECTION("it was denied in another epoch") {
+  SECTION("the proposal was denied in another epoch") {
     ++stage.epoch;
     stage.decide(0, 3, 0);
     --stage.epoch;
@@ -102,7 +102,7 @@ TEST_CASE("a verdict decides its own proposal only") {
   CHECK(stage.count(AuditRule::kForwarded) == (is_denied ? 1 : 0));
 }
 
-TEST_CASE("a command with a version that nobody granted is reported once if every message is received") {
+TEST_CASE("a command with a version that was never granted is reported once if every message is received") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();
@@ -113,16 +113,16 @@ TEST_CASE("a command with a version that nobody granted is reported once if ever
   CHECK(stage.count(AuditRule::kForwarded) == (is_complete ? 1 : 0));
 }
 
-TEST_CASE("a version is granted once, except that its coordinator may repeat itself") {
+TEST_CASE("a version is granted only once, but its coordinator may repeat the verdict") {
   Stage stage;
   stage.begin();
   const msg::Version version = stage.next(stage.rest(0), 3);
   stage.grant(version);
-  SECTION("in the same epoch") {
+  SECTION("the verdict is repeated in the same epoch") {
     stage.decide(0, 3, 3);
     CHECK(stage.violations.empty());
   }
-  SECTION("in another epoch") {
+  SECTION("the verdict is repeated in another epoch") {
     ++stage.epoch;
     stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
     stage.begin();
@@ -131,7 +131,7 @@ TEST_CASE("a version is granted once, except that its coordinator may repeat its
   }
 }
 
-TEST_CASE("versions are granted in increasing order in each epoch") {
+TEST_CASE("versions are granted in increasing order within each epoch") {
   Stage stage;
   stage.begin();
   stage.grant(stage.next(stage.rest(0), 10));
@@ -145,13 +145,13 @@ TEST_CASE("versions are granted in increasing order in each epoch") {
   }
   SECTION("a higher number") { stage.grant(stage.next(stage.rest(0), 11)); }
   SECTION("a lower number of another robot") { stage.grant(stage.next(stage.rest(1), 4)); }
-  SECTION("a lower number in a new epoch, and a higher one in the former epoch") {
+  SECTION("a lower number in a new epoch and a higher number in the former epoch") {
     ++stage.epoch;
     stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
     stage.begin();
     stage.grant(stage.next(stage.rest(0), 4));
     CHECK(stage.violations.empty());
-    // A coordinator that does not know yet that it was superseded.
+    // This coordinator does not know yet that it was superseded.
     --stage.epoch;
     stage.grant(stage.next(stage.rest(0), 8));
     ++stage.epoch;
@@ -162,28 +162,28 @@ TEST_CASE("versions are granted in increasing order in each epoch") {
   }
 }
 
-TEST_CASE("only candidates of the proposal that is answered are granted, in its epoch") {
+TEST_CASE("only candidates of the answered proposal may be granted, and only in its epoch") {
   Stage stage;
   stage.begin();
   const msg::Version version = stage.next(stage.rest(0), 3), other = stage.next(stage.rest(0), 4);
   std::uint64_t expected = 1;
-  SECTION("a candidate") {
+  SECTION("a candidate is granted") {
     stage.propose({version, other});
     stage.decide(0, 3, GENERATE(3u, 4u));
     expected = 0;
   }
-  SECTION("no candidate") {
+  SECTION("a version that is not a candidate is granted") {
     stage.propose({version});
     stage.decide(0, 3, 4);
   }
-  SECTION("an unknown proposal") { stage.decide(0, 3, 3); }
-  SECTION("a proposal in another epoch") {
+  SECTION("the proposal is unknown") { stage.decide(0, 3, 3); }
+  SECTION("the proposal was made in another epoch") {
     stage.propose({version});
     ++stage.epoch;
     stage.register_versions(0, {stage.rest(0)}), stage.register_versions(1, {stage.rest(1)});
     stage.decide(0, 3, 3);
   }
-  SECTION("a proposal that was forgotten because of many others") {
+  SECTION("the proposal was forgotten because of many others") {
     for (VersionNumber number = 3; number < 20; ++number) stage.propose({stage.next(stage.rest(0), number)});
     stage.decide(0, 3, 3);
     expected = 0;
@@ -191,18 +191,18 @@ TEST_CASE("only candidates of the proposal that is answered are granted, in its 
   CHECK(stage.count(AuditRule::kProposed) == expected);
 }
 
-TEST_CASE("a grant before a robot has registered is reported once for each such robot") {
+TEST_CASE("a grant before a robot has registered is reported once for each unregistered robot") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   for (RobotId robot = 0; robot < 2; ++robot) stage.report(robot);
   std::uint64_t expected = 1;
-  SECTION("it registered in another epoch") {
+  SECTION("the robot registered in another epoch") {
     --stage.epoch;
     stage.register_versions(1, {stage.rest(1)});
     ++stage.epoch;
   }
-  SECTION("it registered nothing") { stage.register_versions(1, {}); }
-  SECTION("it registered") {
+  SECTION("the robot registered no versions") { stage.register_versions(1, {}); }
+  SECTION("the robot registered") {
     stage.register_versions(1, {stage.rest(1)});
     expected = 0;
   }
@@ -215,16 +215,16 @@ TEST_CASE("a grant before a robot has registered is reported once for each such 
   CHECK(stage.violations.size() == stage.count(AuditRule::kAllRegistered));
 }
 
-TEST_CASE("only one run of one coordinator grants in an epoch") {
+TEST_CASE("only one run of one coordinator may grant in an epoch") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();
   stage.grant(stage.next(stage.rest(0), 1));
-  SECTION("the same one") {
+  SECTION("the same coordinator grants again") {
     stage.grant(stage.next(stage.rest(1), 2));
     CHECK(stage.count(AuditRule::kSingleCoordinator) == 0);
   }
-  SECTION("another one") {
+  SECTION("another coordinator grants") {
     ++stage.coordinator;
     stage.grant(stage.next(stage.rest(1), 2));
     CHECK(stage.count(AuditRule::kSingleCoordinator) == 1);
@@ -232,12 +232,12 @@ TEST_CASE("only one run of one coordinator grants in an epoch") {
     CHECK(stage.violations.front().version == 2);
     CHECK(stage.violations.front().epoch == stage.epoch);
   }
-  SECTION("the same one after a restart") {
+  SECTION("the same coordinator grants after a restart") {
     ++stage.coordinator_incarnation;
     stage.grant(stage.next(stage.rest(1), 2));
     CHECK(stage.count(AuditRule::kSingleCoordinator) == 1);
   }
-  SECTION("another one in another epoch") {
+  SECTION("another coordinator grants in another epoch") {
     ++stage.epoch;
     ++stage.coordinator;
     stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
@@ -248,46 +248,46 @@ TEST_CASE("only one run of one coordinator grants in an epoch") {
   CHECK(stage.violations.size() == stage.count(AuditRule::kSingleCoordinator));
 }
 
-TEST_CASE("a page lists what its robots may execute, and nothing else") {
+TEST_CASE("a ledger page must list exactly what its robots may execute") {
   Stage stage;
   stage.begin();
   const msg::Version granted = stage.next(stage.rest(0), 1), rest = stage.rest(0), other = stage.rest(1);
   stage.grant(granted);
   std::uint64_t expected = 1;
-  SECTION("all versions") {
+  SECTION("the page lists all versions") {
     stage.show_page({rest, granted, other});
     expected = 0;
   }
-  SECTION("of some robots only") {
+  SECTION("each page lists some of the robots") {
     stage.show_page({other});
     stage.show_page({rest, granted});
     expected = 0;
   }
-  SECTION("not the last one") { stage.show_page({rest, other}); }
-  SECTION("not the first one") { stage.show_page({granted, other}); }
-  SECTION("not the last one of the last robot") { stage.show_page({other, rest}); }
-  SECTION("one that was proposed") {
+  SECTION("a robot's last version is missing") { stage.show_page({rest, other}); }
+  SECTION("a robot's first version is missing") { stage.show_page({granted, other}); }
+  SECTION("the last version of the last robot is missing") { stage.show_page({other, rest}); }
+  SECTION("the page lists a version that was only proposed") {
     const msg::Version proposed = stage.next(rest, 2);
     stage.propose({proposed});
     stage.show_page({rest, granted, proposed, other});
   }
-  SECTION("one that nobody knows") { stage.show_page({other, stage.next(other, 9)}); }
-  SECTION("none that a fact has excluded") {
+  SECTION("the page lists an unknown version") { stage.show_page({other, stage.next(other, 9)}); }
+  SECTION("a version that a robot report has excluded is missing") {
     stage.command(granted);
     stage.advance(50ms);
     stage.robot_reports[0].executing(granted);
     stage.report(0);
     stage.show_page({granted, other});
-    // It may be behind.
+    // The coordinator may not have received the report yet.
     stage.show_page({rest, granted, other});
     expected = 0;
   }
-  SECTION("a page of a coordinator that does not grant in the epoch") {
+  SECTION("the coordinator of the page does not grant in the epoch") {
     ++stage.coordinator_incarnation;
     stage.show_page({rest, other});
     expected = 0;
   }
-  SECTION("versions of no robot") {
+  SECTION("the page lists versions of an unknown robot") {
     msg::Version stranger = other;
     stranger.robot(GENERATE(2u, 4'000'000'000u));
     stage.show_page({rest, granted, stranger, other});
@@ -299,7 +299,7 @@ TEST_CASE("a page lists what its robots may execute, and nothing else") {
   CHECK(stage.violations.size() == stage.count(AuditRule::kLedgerPage));
 }
 
-TEST_CASE("a page is invalid without an epoch, or with more versions than a page has") {
+TEST_CASE("a page without an epoch or with too many versions is invalid") {
   Stage stage;
   stage.begin();
   const auto invalid = [&] { return stage.auditor.totals().invalid; };
@@ -312,22 +312,22 @@ TEST_CASE("a page is invalid without an epoch, or with more versions than a page
   CHECK(invalid() == 2);
 }
 
-TEST_CASE("a version whose verdict was missed is judged if a page of the epoch of its proposal lists it") {
+TEST_CASE("a version whose verdict was missed is judged if a page of its proposal's epoch lists it") {
   Stage stage(stage_scenario(), kIncomplete);
   stage.begin();
   const msg::Version fast = moving(stage.next(stage.rest(0), 1), 100);
   bool is_certain = false;
-  SECTION("proposed") {
+  SECTION("the version was proposed in the page's epoch") {
     stage.propose({fast});
     is_certain = true;
   }
-  SECTION("proposed in another epoch, so that it may have been registered") {
+  SECTION("the version was proposed in another epoch, so it may have been registered") {
     --stage.epoch;
     stage.propose({fast});
     ++stage.epoch;
   }
-  SECTION("not proposed") {}
-  SECTION("registered") {
+  SECTION("the version was not proposed") {}
+  SECTION("the version was registered") {
     stage.propose({fast});
     stage.register_versions(0, {fast});
   }
@@ -336,13 +336,13 @@ TEST_CASE("a version whose verdict was missed is judged if a page of the epoch o
   CHECK((stage.count(AuditRule::kLimits) > 0) == is_certain);
   if (is_certain) CHECK(stage.violations.front().epoch == stage.epoch);
   const std::size_t found = stage.violations.size();
-  // The verdict is not another grant.
+  // The late verdict is not a second grant.
   stage.decide(0, 1, 1);
   CHECK(stage.count(AuditRule::kVersionOrder) == 0);
   if (is_certain) CHECK(stage.violations.size() == found);
 }
 
-TEST_CASE("nothing is granted to a held robot, except the place where it is put down") {
+TEST_CASE("nothing is granted to a held robot except the place where it is put down") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();
@@ -364,10 +364,10 @@ TEST_CASE("nothing is granted to a held robot, except the place where it is put 
   const std::int64_t told_ns = to_ns(stage.now) - 1'000'000;
   bool is_place = false, is_late = true;
   msg::Version version = stage.next(stage.rest(0), 1, 2001ms);
-  SECTION("a version that moves") { version = moving(version, 0.1); }
-  SECTION("a place") { is_place = true; }
-  SECTION("a rest on another base") { version.base(9); }
-  SECTION("a version that starts so soon that it may have been granted before the hold") {
+  SECTION("the version moves") { version = moving(version, 0.1); }
+  SECTION("the version is the robot's new place") { is_place = true; }
+  SECTION("the version rests on another base") { version.base(9); }
+  SECTION("the version starts so soon that it may have been granted before the hold") {
     version = moving(version, 0.1);
     version.start_ns(told_ns + 2'000'000'000);
     is_late = false;

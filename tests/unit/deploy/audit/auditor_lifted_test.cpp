@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the ledger must keep of a robot that is off the floor.
+// Which versions of a lifted robot the ledger must keep.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
 
@@ -8,7 +8,7 @@ namespace sidestep::auditor_lifted_test {
 using namespace std::chrono_literals;
 
 /// Robot 0 executes version 1 and is lifted. It has also been granted version 2, which continues version 1,
-/// the place 3 at which it is to be put down, and version 4, which continues from there.
+/// version 3, the place where it will be put down, and version 4, which continues version 3.
 struct Lifted : Stage {
   Lifted() {
     begin();
@@ -35,23 +35,23 @@ struct Lifted : Stage {
   msg::Version second, place, later;
 };
 
-TEST_CASE("the ledger may forget what a lifted robot was to do, but not what it may do once it is put down") {
+TEST_CASE("the ledger may drop a lifted robot's old versions but not its new place and what continues it") {
   Lifted lifted;
   const msg::Version other = lifted.rest(1);
-  SECTION("all of it is kept") {
+  SECTION("all versions are kept") {
     lifted.show_page({lifted.second, lifted.place, lifted.later, other});
     CHECK(lifted.violations.empty());
   }
-  SECTION("what continues the version that it executed last is forgotten") {
+  SECTION("the version that continues the last executed one is dropped") {
     lifted.show_page({lifted.place, lifted.later, other});
     CHECK(lifted.violations.empty());
   }
-  SECTION("its place is forgotten") {
+  SECTION("the new place is dropped") {
     lifted.show_page({lifted.later, other});
     check_only(lifted, AuditRule::kLedgerPage, 1);
     CHECK(lifted.violations.front().version == 3);
   }
-  SECTION("what continues its place is forgotten") {
+  SECTION("the version that continues the new place is dropped") {
     lifted.show_page({lifted.place, other});
     check_only(lifted, AuditRule::kLedgerPage, 1);
     CHECK(lifted.violations.front().version == 4);

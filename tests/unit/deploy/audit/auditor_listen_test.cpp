@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An auditor on a bus hears all that it audits.
+// An auditor on a bus hears everything that it audits.
 #include <map>
 
 #include "tests/catch.hpp"
@@ -9,7 +9,7 @@ namespace sidestep::auditor_listen_test {
 
 using namespace std::chrono_literals;
 
-/// A bus that immediately delivers what a test gives it.
+/// A bus that immediately delivers the messages that a test passes to it.
 class ManualBus : public Bus {
  public:
   Time now() const override { return now_; }
@@ -57,7 +57,7 @@ struct Listening {
   ManualBus bus;
 };
 
-TEST_CASE("an auditor on a bus hears every topic, of every robot of the roster") {
+TEST_CASE("an auditor on a bus hears every topic from every robot on the roster") {
   // Each of these messages is invalid.
   Listening run;
   run.bus.deliver(topics::kProposal, msg::Proposal());
@@ -171,19 +171,19 @@ struct Succession : Listening {
   std::uint64_t number = 0;
 };
 
-TEST_CASE("an auditor on a bus hears orders, and who remembers them") {
+TEST_CASE("an auditor on a bus hears orders and which processes remember them") {
   Succession run;
   std::uint64_t expected = 1;
-  SECTION("of an agent that reports being held") {
+  SECTION("an agent reports being held") {
     run.report(false);
     run.confirm();
     run.report(true);
   }
-  SECTION("of an agent that announces the order") {
+  SECTION("an agent announces the order") {
     run.confirm();
     run.tell();
   }
-  SECTION("of nobody") {
+  SECTION("no agent remembers the order") {
     run.confirm();
     expected = 0;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of agents and coordinators, one by one: which are invalid, and what they prove.
+// Single messages of agents and coordinators: which ones are invalid, and what they prove.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
 
@@ -9,25 +9,25 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-TEST_CASE("invalid messages are counted one by one, and change nothing") {
+TEST_CASE("invalid messages are counted one by one and change nothing") {
   Stage stage;
   stage.begin();
   const msg::Version version = stage.next(stage.rest(0), 1);
   msg::Version of_other = version;
   of_other.robot(1);
-  SECTION("a proposal without candidates, or with too many") {
+  SECTION("a proposal has no or too many candidates") {
     msg::Proposal proposal;
     proposal.candidate_count(GENERATE(std::uint8_t{0}, std::uint8_t{msg::MAX_CANDIDATES + 1}));
     proposal.header(stage.header("proposal", 0));
     stage.auditor.on_proposal(proposal, stage.now);
   }
-  SECTION("a proposal of another robot's agent") {
+  SECTION("another robot's agent sends a proposal") {
     msg::Proposal proposal;
     proposal.candidate_count(1);
     proposal.header(stage.header("proposal", 1));
     stage.auditor.on_proposal(proposal, stage.now);
   }
-  SECTION("a proposal of a robot that is not on the roster") {
+  SECTION("a proposal names a robot that is not on the roster") {
     const std::uint32_t robot = GENERATE(2u, 1023u, 1024u, 4'000'000'000u);
     msg::Proposal proposal;
     proposal.robot(robot);
@@ -35,7 +35,7 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
     proposal.header(stage.header("proposal", robot));
     stage.auditor.on_proposal(proposal, stage.now);
   }
-  SECTION("a registration without an epoch, or with too many versions") {
+  SECTION("a registration has no epoch or too many versions") {
     msg::Registration registration;
     const bool has_epoch = GENERATE(false, true);
     registration.epoch(has_epoch ? 5 : 0);
@@ -43,32 +43,32 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
     registration.header(stage.header("registration", 0));
     stage.auditor.on_registration(registration, stage.now);
   }
-  SECTION("a registration of another robot's version") { stage.register_versions(0, {of_other}); }
-  SECTION("a registration of another robot's agent") {
+  SECTION("a registration lists another robot's version") { stage.register_versions(0, {of_other}); }
+  SECTION("another robot's agent sends a registration") {
     msg::Registration registration;
     registration.epoch(5);
     registration.header(stage.header("registration", 1));
     stage.auditor.on_registration(registration, stage.now);
   }
-  SECTION("a command of another robot's agent") {
+  SECTION("another robot's agent sends a command") {
     msg::Command command;
     command.header(stage.header("command", 1));
     stage.auditor.on_command(command, stage.now);
   }
-  SECTION("a command with another robot's version") {
+  SECTION("a command contains another robot's version") {
     msg::Command command;
     command.header(stage.header("command", 0));
     command.has_version(true);
     command.version(of_other);
     stage.auditor.on_command(command, stage.now);
   }
-  SECTION("a verdict for no robot") { stage.decide(GENERATE(2u, 4'000'000'000u), 1, 1); }
-  SECTION("an attestation of no robot") {
+  SECTION("a verdict names an unknown robot") { stage.decide(GENERATE(2u, 4'000'000'000u), 1, 1); }
+  SECTION("an attestation names an unknown robot") {
     msg::AbsenceAttestation attestation;
     attestation.robot(GENERATE(2u, 4'000'000'000u));
     stage.auditor.on_attestation(attestation, stage.now);
   }
-  SECTION("a disturbance of no robot, or of no kind") {
+  SECTION("a disturbance names an unknown robot or has an unknown kind") {
     msg::Disturbance disturbance;
     const bool is_known = GENERATE(true, false);
     disturbance.robot(is_known ? 0 : 2);
@@ -76,7 +76,7 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
                                           : msg::DisturbanceKind::DISTURBANCE_PUSH);
     stage.auditor.on_disturbance(disturbance, stage.now);
   }
-  SECTION("facts with impossible numbers") {
+  SECTION("a robot report contains impossible numbers") {
     msg::Feedback robot_report = stage.robot_reports[0];
     SECTION("x") { robot_report.x_m(INFINITY); }
     SECTION("y") { robot_report.y_m(NAN); }
@@ -88,17 +88,17 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
     }
     stage.report(robot_report);
   }
-  SECTION("facts with another robot's version") {
+  SECTION("a robot report contains another robot's version") {
     msg::Feedback robot_report = stage.robot_reports[0];
     robot_report.executing(of_other);
     stage.report(robot_report);
   }
-  SECTION("facts of another robot") {
+  SECTION("another robot sends a robot report") {
     msg::Feedback robot_report = stage.robot_reports[0];
     robot_report.header(stage.header("feedback", 1));
     stage.auditor.on_robot_report(robot_report, stage.now);
   }
-  SECTION("world states and ground truth of no time, or with too many robots") {
+  SECTION("world states and ground truth have an invalid time or too many robots") {
     const bool has_time = GENERATE(true, false);
     msg::WorldState world;
     world.valid_at_ns(has_time ? 1 : -1);
@@ -120,7 +120,7 @@ TEST_CASE("invalid messages are counted one by one, and change nothing") {
   CHECK(stage.violations.empty());
 }
 
-TEST_CASE("robots may have every number up to 1023") {
+TEST_CASE("robot ids up to 1023 are valid") {
   const RobotId robot = GENERATE(2u, 820u, 1023u);
   Scenario scenario = stage_scenario();
   scenario.robots[1].id = robot;
@@ -148,11 +148,11 @@ TEST_CASE("a version number identifies one version of one agent") {
   const msg::Version version = stage.next(stage.rest(0), 1);
   stage.grant(version);
   msg::Version other = version;
-  SECTION("the same again") {
+  SECTION("the same version again") {
     stage.command(other);
     CHECK(stage.violations.empty());
   }
-  SECTION("another one of the agent") {
+  SECTION("a different version from the same agent") {
     other.y_m(0.1);
     stage.command(other);
     CHECK(stage.count(AuditRule::kUniqueVersion) == 1);
@@ -160,12 +160,12 @@ TEST_CASE("a version number identifies one version of one agent") {
     CHECK(stage.violations.front().version == 1);
     CHECK(stage.violations.front().epoch == 0);
   }
-  SECTION("one of another agent, whose predecessor may not have been heard granted") {
+  SECTION("a different version from another agent, whose grant may have been missed") {
     other.incarnation(other.incarnation() + 1);
     stage.command(other);
     CHECK(stage.count(AuditRule::kUniqueVersion) == (is_complete ? 1 : 0));
   }
-  SECTION("the rest of the robot on another floor") {
+  SECTION("a robot's initial rest on another floor") {
     msg::Version rest = stage.rest(1);
     rest.x_m(1.5);
     stage.register_versions(1, {rest});
@@ -173,7 +173,7 @@ TEST_CASE("a version number identifies one version of one agent") {
   }
 }
 
-/// A heartbeat, with these robots missing.
+/// A heartbeat that reports these robots as missing.
 msg::CoordinatorState state(Stage& stage, msg::CoordinatorMode mode,
                             const std::vector<RobotId>& missing = {}) {
   msg::CoordinatorState state;
@@ -187,41 +187,41 @@ msg::CoordinatorState state(Stage& stage, msg::CoordinatorMode mode,
   return state;
 }
 
-TEST_CASE("a coordinator that still misses registrations after it has granted is reported once") {
+TEST_CASE("a coordinator that reports missing registrations after it has granted is reported once") {
   constexpr auto kMode = msg::CoordinatorMode::COORDINATOR_REGISTERING;
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();
   std::uint64_t expected = 0;
-  SECTION("before the grant") {
+  SECTION("the coordinator reports before the grant") {
     stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
     stage.advance(1ms);
     stage.grant(stage.next(stage.rest(0), 1));
   }
-  SECTION("at the time of the grant") {
+  SECTION("the coordinator reports at the time of the grant") {
     stage.grant(stage.next(stage.rest(0), 1));
     stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
   }
-  SECTION("after the grant") {
+  SECTION("the coordinator reports after the grant") {
     stage.grant(stage.next(stage.rest(0), 1));
     stage.advance(1ns);
-    SECTION("none is missing") { stage.auditor.on_coordinator(state(stage, kMode), stage.now); }
-    SECTION("one is missing") {
+    SECTION("no registration is missing") { stage.auditor.on_coordinator(state(stage, kMode), stage.now); }
+    SECTION("a registration is missing") {
       stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
       stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
       expected = 1;
       CHECK(stage.violations.front().robot == 1);
       CHECK(stage.violations.front().epoch == stage.epoch);
     }
-    SECTION("in another epoch") {
+    SECTION("a registration is missing in another epoch") {
       ++stage.epoch;
       stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
     }
-    SECTION("of another run of the coordinator") {
+    SECTION("a registration is missing in another run of the coordinator") {
       ++stage.coordinator_incarnation;
       stage.auditor.on_coordinator(state(stage, kMode, {1}), stage.now);
     }
-    SECTION("by a clock that was set back") {
+    SECTION("the coordinator's clock was set back") {
       stage.advance(1ns);
       stage.auditor.on_coordinator(state(stage, kMode), stage.now);
       msg::CoordinatorState late = state(stage, kMode, {1});
@@ -250,17 +250,17 @@ TEST_CASE("an agent never returns to a lower epoch") {
   command(stage, 5);
   command(stage, 6);
   std::uint64_t expected = 0;
-  SECTION("the same epoch, and higher ones") {
+  SECTION("the same epoch and higher ones") {
     for (const Epoch epoch : {6u, 7u, 7u, 9u}) command(stage, epoch);
   }
-  SECTION("a lower one") {
+  SECTION("a lower epoch") {
     command(stage, 5);
     command(stage, 6);
     command(stage, 5);
     expected = 2;
     CHECK(stage.violations.front().epoch == 5);
   }
-  SECTION("another agent begins with a lower one") {
+  SECTION("another agent begins with a lower epoch") {
     command(stage, 4, Stage::kAgent + 1);
     command(stage, 5, Stage::kAgent + 1);
     command(stage, 6);
@@ -275,7 +275,7 @@ TEST_CASE("an agent never returns to a lower epoch") {
     stage.auditor.on_command(late, stage.now);
     command(stage, 6);
   }
-  SECTION("of many agents only the latest are remembered") {
+  SECTION("only the latest of many agents are remembered") {
     for (Incarnation other = 1; other <= 7; ++other) command(stage, 5, Stage::kAgent + other);
     command(stage, 5);
     CHECK(stage.count(AuditRule::kEpochRegression) == 1);
@@ -288,7 +288,7 @@ TEST_CASE("an agent never returns to a lower epoch") {
   CHECK(stage.violations.size() == expected);
 }
 
-TEST_CASE("the run begins when all robots are heard and something is granted, at the latest a second later") {
+TEST_CASE("a run begins when all robots are heard and may move, or a second after they may move") {
   Stage stage(stage_scenario(), kIncomplete);
   const auto run_s = [&] {
     stage.auditor.advance(stage.now);
@@ -319,7 +319,7 @@ TEST_CASE("the run begins when all robots are heard and something is granted, at
     stage.advance(2s);
     CHECK(run_s() == Approx(2));
   }
-  SECTION("a robot is not heard") {
+  SECTION("one robot is never heard") {
     granting();
     stage.advance(999ms);
     granting();

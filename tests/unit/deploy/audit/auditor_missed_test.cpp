@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that an auditor misses, or hears late, explain what it hears. Each of these is no violation.
+// Messages that an auditor misses or receives late. None of these cases is a violation.
 #include <algorithm>
 
 #include "tests/catch.hpp"
@@ -26,7 +26,7 @@ void require_no_violation(const AuditTotals& totals) {
   REQUIRE(totals.violations == 0);
 }
 
-TEST_CASE("an auditor that is so overloaded that all facts reach it late raises no false alarm") {
+TEST_CASE("an overloaded auditor that receives all robot reports late raises no false alarm") {
   const Duration delay = GENERATE(Duration{8ms}, Duration{40ms}, Duration{150ms});
   CAPTURE(to_seconds(delay));
   require_no_violation(audit_delayed<msg::Feedback>(crossing(), delay));
@@ -34,7 +34,7 @@ TEST_CASE("an auditor that is so overloaded that all facts reach it late raises 
 
 TEST_CASE("an auditor that receives all messages of one kind late raises no false alarm") {
   SECTION("verdicts") { require_no_violation(audit_delayed<msg::Verdict>(crossing(), 150ms)); }
-  SECTION("pages of the ledger") { require_no_violation(audit_delayed<msg::LedgerPage>(crossing(), 150ms)); }
+  SECTION("ledger pages") { require_no_violation(audit_delayed<msg::LedgerPage>(crossing(), 150ms)); }
   SECTION("proposals") { require_no_violation(audit_delayed<msg::Proposal>(crossing(), 150ms)); }
   SECTION("commands") { require_no_violation(audit_delayed<msg::Command>(crossing(), 150ms)); }
   SECTION("registrations") { require_no_violation(audit_delayed<msg::Registration>(crossing(), 150ms)); }
@@ -42,8 +42,7 @@ TEST_CASE("an auditor that receives all messages of one kind late raises no fals
 }
 
 TEST_CASE(
-    "a robot that comes back after an attested absence has not registered, which an auditor that missed the "
-    "attestation cannot tell") {
+    "an auditor that missed an attestation of absence does not demand the absent robot's registration") {
   History history = crossing();
   const Time back = history.messages.front().at + 2s;
   const auto is_of_absent = [](const auto& message) { return message.robot() == 3; };
@@ -73,7 +72,7 @@ TEST_CASE(
   CHECK(count(totals, AuditRule::kAllRegistered) == 0);
 }
 
-TEST_CASE("two agents may use the same proposal number, and an auditor may hear only one of them") {
+TEST_CASE("two agents may use the same proposal number, even if an auditor hears only one of them") {
   History history = crossing();
   const Switch s = example_switch(history);
   // Adds a restarted agent that proposes the same number and is granted its second candidate.
@@ -92,10 +91,9 @@ TEST_CASE("two agents may use the same proposal number, and an auditor may hear 
   require_no_violation(audit_of(history, {}));
 }
 
-TEST_CASE(
-    "a robot that starts beside an obstacle may drive away, even if its earlier versions were not received") {
+TEST_CASE("a robot that starts beside an obstacle may drive away, even if its earlier versions were missed") {
   History history = crossing();
-  // Until the first of the others passes there.
+  // Ends before the first of the other robots passes there.
   const Time end = history.messages.front().at + 1500ms;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) { return received.at > end; });
   std::optional<Vec2> start_m;
@@ -128,8 +126,7 @@ History takeover() {
   return history;
 }
 
-TEST_CASE(
-    "what was registered in an epoch may have been granted in an earlier one, whose grants were missed") {
+TEST_CASE("a registered version may have been granted in an earlier epoch whose grants were missed") {
   History history = takeover();
   require_no_violation(audit_of(history, kComplete));
   Epoch last = 0;
@@ -140,7 +137,7 @@ TEST_CASE(
   require_no_violation(audit_of(history, {}));
 }
 
-/// The crossing in which a robot is lifted, and put down again elsewhere.
+/// The crossing in which a robot is lifted and put down elsewhere.
 History lift_and_place() {
   History history{crossing().scenario, {}};
   SimSystem system(history.scenario, 6);
@@ -161,26 +158,24 @@ History lift_and_place() {
   return history;
 }
 
-TEST_CASE(
-    "a robot that is put down elsewhere does not continue what it executed, although nobody heard it "
-    "lifted") {
+TEST_CASE("a robot that is put down elsewhere raises no false alarm if its lifting was missed") {
   History history = lift_and_place();
   require_no_violation(audit_of(history, kComplete));
   std::uint64_t lifted = 0;
   history.each<msg::Feedback>([&](msg::Feedback& robot_report, Time) { lifted += robot_report.is_lifted(); });
   REQUIRE(lifted > 10);
-  SECTION("all facts of the lifted robot are missed") {
+  SECTION("all reports of the lifted robot are missed") {
     history.remove_if<msg::Feedback>(
         [](const msg::Feedback& robot_report) { return robot_report.is_lifted(); });
     require_no_violation(audit_of(history, {}));
   }
-  SECTION("all of its facts from then until it drives are missed") {
+  SECTION("all but one report from its lifting until it drives are missed") {
     bool was_lifted = false;
     std::erase_if(history.messages, [&](const ReceivedMessage& received) {
       const auto* robot_report = std::get_if<msg::Feedback>(&received.message);
       if (!robot_report || robot_report->robot() != 2) return false;
       was_lifted |= robot_report->is_lifted();
-      // One fact of the lifted robot is heard.
+      // One report of the lifted robot is received.
       return was_lifted &&
              (robot_report->executing().version_number() == 0 || robot_report->executing().base() == 0) &&
              lifted-- > 1;
@@ -201,7 +196,7 @@ TEST_CASE("a contact before an auditor joined is not judged") {
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE("a contact of a disturbed robot is not judged if messages were missed since, another contact is") {
+TEST_CASE("a contact of a disturbed robot is not judged if messages were missed, but other contacts are") {
   const bool is_of_disturbed = GENERATE(true, false);
   CAPTURE(is_of_disturbed);
   History history = crossing();
@@ -219,7 +214,7 @@ TEST_CASE("a contact of a disturbed robot is not judged if messages were missed 
   CHECK(totals.undecided_contacts == (is_of_disturbed ? 1 : 0));
 }
 
-TEST_CASE("an auditor that hears no page of the ledger does not judge") {
+TEST_CASE("an auditor that hears no ledger pages does not judge") {
   History history = crossing();
   history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
   const AuditTotals totals = audit_of(history, {});

@@ -11,15 +11,15 @@
 
 namespace sidestep::auditor_pairs_test {
 
-/// Two versions, of the robot with the lower id first.
+/// Two versions, with the lower robot id first.
 using Pair = std::array<std::pair<RobotId, VersionNumber>, 2>;
 
-/// The facts about one version in a history. Times are those of the messages.
+/// What a history states about one version. Times are those of the messages.
 struct Past {
   Version version;
   bool is_registered = false;
-  std::int64_t granted_ns = kAlways;  ///< kAlways: by no verdict
-  std::int64_t excluded_ns = kNever;  ///< the first fact after which its robot cannot execute it any more
+  std::int64_t granted_ns = kAlways;  ///< kAlways: not granted by a verdict
+  std::int64_t excluded_ns = kNever;  ///< the first report after which its robot cannot execute it any more
   std::int64_t executed_until_ns = kAlways;
 };
 using Pasts = std::map<std::pair<RobotId, VersionNumber>, Past>;
@@ -77,7 +77,7 @@ Pasts pasts_of(History& history) {
   return pasts;
 }
 
-/// What remains of a trajectory from a time on.
+/// The part of a trajectory from a time on.
 Trajectory remainder(const Trajectory& whole, Time from) {
   if (from <= whole.start()) return whole;
   Trajectory rest(from, whole.state_at(from));
@@ -90,7 +90,7 @@ Trajectory remainder(const Trajectory& whole, Time from) {
   return rest;
 }
 
-/// The judgement of a pair; rounding decides whether a borderline pair is reported.
+/// The judgement of a pair; for a borderline pair, rounding decides whether it is reported.
 enum class Judgement : std::uint8_t { kClear, kTooClose, kBorderline };
 
 class SlowJudge {
@@ -110,7 +110,7 @@ class SlowJudge {
   }
 
  private:
-  /// Whether the base of `later` was already too close, and `later` comes no closer.
+  /// Whether the base of `later` was already too close and `later` comes no closer.
   Judgement excuse(const Past& later, const Past& other) const {
     if (later.version.number == 0) return Judgement::kTooClose;
     const Version& base = pasts_.at({later.version.robot, later.version.base}).version;
@@ -164,15 +164,15 @@ int count(const std::map<Pair, Judgement>& pairs, Judgement judgement) {
       std::ranges::count_if(pairs, [=](const auto& pair) { return pair.second == judgement; }));
 }
 
-/// Whether some ledger held both versions at one time: no fact had excluded the earlier one before the later
-/// one was granted. Registered versions were in the ledger before.
+/// Whether some ledger held both versions at one time: no report had excluded the earlier one before the
+/// later one was granted. Registered versions were in the ledger before.
 bool were_in_ledger(const Past& a, const Past& b) {
   const bool is_granted = a.granted_ns != kAlways || b.granted_ns != kAlways;
   const std::int64_t both_ns = std::max(a.granted_ns, b.granted_ns);
   return is_granted && a.excluded_ns >= both_ns && b.excluded_ns >= both_ns;
 }
 
-/// Whether facts prove, in spite of the errors of both clocks, that both were executed at one time.
+/// Whether reports prove, despite the errors of both clocks, that both were executed at one time.
 bool were_executed(const Past& a, const Past& b, std::int64_t clock_bound_ns) {
   const Time from = std::max(a.version.trajectory.start(), b.version.trajectory.start());
   const std::int64_t until_ns = std::min(a.executed_until_ns, b.executed_until_ns);
@@ -187,7 +187,7 @@ History too_close(double less_m) {
   return history;
 }
 
-/// Each pair that is too close is reported once, and no other pair is.
+/// Checks that each pair that is too close is reported once, and no other pair is.
 void check_reported(const std::map<Pair, Judgement>& expected, const std::map<Pair, int>& reported) {
   for (const auto& [pair, judgement] : expected) {
     CAPTURE(pair[0].first, pair[0].second, pair[1].first, pair[1].second);
@@ -202,7 +202,7 @@ void check_reported(const std::map<Pair, Judgement>& expected, const std::map<Pa
   CHECK(count(expected, Judgement::kBorderline) < count(expected, Judgement::kTooClose) / 5);
 }
 
-TEST_CASE("an audit reports exactly the pairs in the ledger at one time that are too close, each once") {
+TEST_CASE("each pair of versions that are in the ledger together and too close is reported exactly once") {
   const double less_m = GENERATE(0.05, 0.15);
   CAPTURE(less_m);
   History history = too_close(less_m);
@@ -210,7 +210,7 @@ TEST_CASE("an audit reports exactly the pairs in the ledger at one time that are
                  reported_pairs(history, kComplete));
 }
 
-TEST_CASE("an audit that hears of no grant reports exactly the pairs that were executed too close") {
+TEST_CASE("an audit that hears no grants reports exactly the pairs that were executed too close together") {
   const double less_m = GENERATE(0.05, 0.15), clock_bound_s = GENERATE(0.001, 0.004);
   CAPTURE(less_m, clock_bound_s);
   History history = too_close(less_m);
@@ -223,7 +223,7 @@ TEST_CASE("an audit that hears of no grant reports exactly the pairs that were e
   check_reported(expected, reported_pairs(history, kComplete));
 }
 
-TEST_CASE("facts of a robot whose clock is out of bounds prove no pair") {
+TEST_CASE("reports of a robot whose clock is out of bounds prove no pair") {
   const std::size_t place = GENERATE(0u, 1u);
   History history = too_close(0.15);
   history.remove_if<msg::Verdict>([](const msg::Verdict&) { return true; });
@@ -243,7 +243,7 @@ TEST_CASE("facts of a robot whose clock is out of bounds prove no pair") {
         static_cast<std::ptrdiff_t>(before.size()) - std::ranges::count_if(before, involves));
 }
 
-TEST_CASE("an audit that may miss messages reports most pairs that are too close, and no other") {
+TEST_CASE("an audit that may miss messages reports most pairs that are too close and no others") {
   const double less_m = GENERATE(0.05, 0.15);
   const bool has_pages = GENERATE(true, false);
   CAPTURE(less_m, has_pages);
@@ -252,7 +252,7 @@ TEST_CASE("an audit that may miss messages reports most pairs that are too close
   const auto expected = judged_pairs(history.scenario, pasts_of(history), [&](const Past& a, const Past& b) {
     return has_pages ? were_in_ledger(a, b) : were_executed(a, b, clock_bound_ns);
   });
-  // Without pages it is not known what the ledger held.
+  // Without pages the content of the ledger is unknown.
   if (!has_pages) history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
   const auto reported = reported_pairs(history, {});
   int found = 0;

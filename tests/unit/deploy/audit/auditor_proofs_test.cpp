@@ -34,12 +34,12 @@ struct Narrow : Stage {
   msg::Version closer;
 };
 
-TEST_CASE("a version that comes too close to what is registered is reported when it is granted") {
+TEST_CASE("a version that comes too close to a registered one is reported when it is granted") {
   const bool is_other_first = GENERATE(true, false);
   Narrow narrow(kComplete);
   if (is_other_first) narrow.report(1);
   narrow.grant(narrow.closer);
-  REQUIRE(narrow.too_close() == 0);  // no fact after the grant shows that it was still possible
+  REQUIRE(narrow.too_close() == 0);  // no later report proves an overlap
   narrow.advance(1ms);
   narrow.report(0);
   narrow.report(1);
@@ -70,7 +70,7 @@ TEST_CASE("repeating a verdict does not change the time of the grant") {
   CHECK(narrow.too_close() == 1);
 }
 
-TEST_CASE("a version is compared for a while after a fact has excluded it, because other facts come later") {
+TEST_CASE("an excluded version is still compared for a while, because other reports may arrive later") {
   Narrow narrow(kComplete);
   narrow.grant(narrow.closer);
   narrow.report(0);
@@ -91,11 +91,11 @@ TEST_CASE("a robot's own stop is compared only with versions granted after a pag
   narrow.robot_reports[0].executing(stop);
   narrow.robot_reports[0].is_off_reference(true);
   narrow.report(0);
-  narrow.violations.clear();  // it does not brake
+  narrow.violations.clear();  // the stop does not brake
   const msg::Version version = moving(narrow.next(narrow.rest(1), 2), -0.01);
   if (!is_listed) narrow.grant(version);
   narrow.page({stop, narrow.rest(1)});
-  narrow.violations.clear();  // without the version
+  narrow.violations.clear();  // the page lacks the version
   if (is_listed) narrow.grant(version);
   for (int i = 0; i < 3; ++i) {
     narrow.advance(5ms);
@@ -119,7 +119,7 @@ TEST_CASE("a robot's own stop that comes too close is not a violation") {
   CHECK(narrow.too_close() == 0);
 }
 
-TEST_CASE("versions with large inflations conflict even far apart") {
+TEST_CASE("versions with large inflations conflict even if they are far apart") {
   Stage stage;
   for (msg::Feedback& robot_report : stage.robot_reports) robot_report.executing().inflation_m(0.4);
   stage.begin();
@@ -132,7 +132,7 @@ TEST_CASE("versions with large inflations conflict even far apart") {
   CHECK(stage.count(AuditRule::kClearance) == 1);
 }
 
-TEST_CASE("versions that were forgotten because of many others break no rule") {
+TEST_CASE("forgotten versions break no rule") {
   Stage stage;
   stage.begin();
   const VersionNumber first = 10, count = 70;
@@ -141,19 +141,19 @@ TEST_CASE("versions that were forgotten because of many others break no rule") {
   REQUIRE(stage.violations.empty());
   // The rest and the first versions are forgotten: 64 remain.
   const VersionNumber forgotten = first + count - 64 - 1;
-  SECTION("a command with the last one that is forgotten") {
+  SECTION("a command contains the last forgotten version") {
     stage.command(stage.next(stage.rest(0), forgotten, 1s));
   }
-  SECTION("a command with the first one that is not") {
+  SECTION("a command contains the first version that is not forgotten") {
     stage.command(stage.next(stage.rest(0), forgotten + 1, 1s));
   }
-  SECTION("a command with one that was never granted") {
+  SECTION("a command contains a version that was never granted") {
     stage.command(stage.next(stage.rest(0), first + count, 1s));
     CHECK(stage.count(AuditRule::kForwarded) == 1);
     return;
   }
-  SECTION("a repeated verdict") { stage.decide(0, forgotten, forgotten); }
-  SECTION("a page") {
+  SECTION("a verdict is repeated") { stage.decide(0, forgotten, forgotten); }
+  SECTION("a page lists a forgotten version") {
     stage.show_page({stage.next(stage.rest(0), forgotten, 1s)});
     stage.violations.clear();
   }
@@ -165,7 +165,7 @@ TEST_CASE("the first twenty of many violations are kept, and all are counted") {
   Stage stage;
   stage.begin();
   for (VersionNumber number = 1; number <= 30; ++number) {
-    stage.decide(0, number, number);  // that was not proposed
+    stage.decide(0, number, number);  // was not proposed
   }
   CHECK(stage.violations.size() >= 30);
   const AuditTotals totals = stage.auditor.totals();
@@ -173,7 +173,7 @@ TEST_CASE("the first twenty of many violations are kept, and all are counted") {
   CHECK(totals.violations == stage.violations.size());
 }
 
-TEST_CASE("two granted versions that are too close together are reported, though neither was executed yet") {
+TEST_CASE("two granted versions that are too close together are reported even before they are executed") {
   Narrow narrow(kComplete);
   narrow.grant(moving(narrow.next(narrow.rest(0), 1), 0.01));
   narrow.grant(moving(narrow.next(narrow.rest(1), 2), -0.01));
@@ -184,7 +184,7 @@ TEST_CASE("two granted versions that are too close together are reported, though
   CHECK(narrow.violations.size() == 1);
 }
 
-TEST_CASE("times of two robots are compared only while both clocks are sound") {
+TEST_CASE("times of two robots are compared only while both clocks are within bounds") {
   const bool is_sound = GENERATE(true, false);
   const RobotId first = GENERATE(RobotId{0}, RobotId{1});
   CAPTURE(is_sound, first);
@@ -206,18 +206,18 @@ TEST_CASE("times of two robots are compared only while both clocks are sound") {
   CHECK(narrow.too_close() == (is_sound ? 1 : 0));
 }
 
-TEST_CASE("pages prove that the ledger held a registered version before it granted another one") {
+TEST_CASE("pages prove that the ledger held a registered version when it granted another one") {
   Narrow narrow(kIncomplete);
   const std::vector<msg::Version> before{narrow.rest(0), narrow.rest(1)},
       after{narrow.rest(0), narrow.closer, narrow.rest(1)};
   std::uint64_t expected = 0;
-  SECTION("both pages") {
+  SECTION("both pages are received") {
     narrow.page(before);
     narrow.grant(narrow.closer);
     narrow.page(after);
     expected = 1;
   }
-  SECTION("both pages, verdict last") {
+  SECTION("both pages are received before the verdict") {
     narrow.page(before);
     narrow.propose({narrow.closer});
     const Time proposed_at = narrow.now;
@@ -234,22 +234,22 @@ TEST_CASE("pages prove that the ledger held a registered version before it grant
     narrow.auditor.on_verdict(verdict, narrow.now);
     expected = 1;
   }
-  SECTION("no page before the grant") {
+  SECTION("no page before the grant is received") {
     narrow.grant(narrow.closer);
     narrow.page(after);
     narrow.page(after);
   }
-  SECTION("the page before does not list the registered version") {
+  SECTION("the page before the grant does not list the registered version") {
     narrow.page({narrow.rest(0)});
     narrow.grant(narrow.closer);
     narrow.page(after);
   }
-  SECTION("the page before does not list the other robot") {
+  SECTION("the page before the grant does not list the other robot") {
     narrow.page({narrow.rest(1)});
     narrow.grant(narrow.closer);
     narrow.page(after);
   }
-  SECTION("the page before lists a robot that is not on the roster instead of the other robot") {
+  SECTION("the page before the grant lists an unknown robot instead of the other robot") {
     msg::Version stranger = narrow.rest(1);
     stranger.robot(77);
     narrow.page({narrow.rest(1), stranger});
@@ -257,29 +257,29 @@ TEST_CASE("pages prove that the ledger held a registered version before it grant
     narrow.grant(narrow.closer);
     narrow.page(after);
   }
-  SECTION("the page before is of another epoch") {
+  SECTION("the page before the grant belongs to another epoch") {
     --narrow.epoch;
     narrow.page(before);
     ++narrow.epoch;
     narrow.grant(narrow.closer);
     narrow.page(after);
   }
-  SECTION("no page after the grant") {
+  SECTION("no page after the grant is received") {
     narrow.page(before);
     narrow.grant(narrow.closer);
   }
-  SECTION("the page after does not list the registered version") {
+  SECTION("the page after the grant does not list the registered version") {
     narrow.page(before);
     narrow.grant(narrow.closer);
     narrow.page({narrow.rest(0), narrow.closer});
   }
-  SECTION("the page after is of another run of the coordinator") {
+  SECTION("the page after the grant belongs to another run of the coordinator") {
     narrow.page(before);
     narrow.grant(narrow.closer);
     ++narrow.coordinator_incarnation;
     narrow.page(after);
   }
-  SECTION("the pages are of another run than the grant") {
+  SECTION("the pages belong to a different run of the coordinator than the grant") {
     ++narrow.coordinator_incarnation;
     narrow.page(before);
     --narrow.coordinator_incarnation;
@@ -294,7 +294,7 @@ TEST_CASE("pages prove that the ledger held a registered version before it grant
     narrow.grant(narrow.closer);
     narrow.page(after);
   }
-  SECTION("the pages were made in the other order") {
+  SECTION("the pages were made in reverse order") {
     narrow.grant(narrow.closer);
     narrow.advance(10ms);
     narrow.page(after);
@@ -322,20 +322,20 @@ TEST_CASE("two granted versions that are too close together are reported, whiche
   narrow.grant(version);
   narrow.grant(other);
   std::uint64_t expected = 1;
-  SECTION("on one page") { narrow.page({rest, version, other_rest, other}); }
-  SECTION("on two pages") {
+  SECTION("both are on one page") { narrow.page({rest, version, other_rest, other}); }
+  SECTION("they are on two pages") {
     narrow.page({rest, version});
     narrow.page({other_rest, other});
   }
-  SECTION("on two pages in the other order") {
+  SECTION("they are on two pages in reverse order") {
     narrow.page({other_rest, other});
     narrow.page({rest, version});
   }
-  SECTION("only one of them") {
+  SECTION("only one of them is on a page") {
     narrow.page({rest, other_rest, other});
     expected = 0;
   }
-  SECTION("one of them in another epoch") {
+  SECTION("one of them is on a page of another epoch") {
     narrow.page({rest, version});
     ++narrow.epoch;
     narrow.page({other_rest, other});

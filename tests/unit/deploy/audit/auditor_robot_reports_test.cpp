@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots' reports and ground truth with one modified detail at a time.
+// Robot reports and ground truth with one detail modified at a time.
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +10,8 @@ namespace sidestep::auditor_robot_reports_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("every breach by the firmware is reported under its rule") {
-  SECTION("a version that was never sent") {
+TEST_CASE("each firmware breach is reported under its rule") {
+  SECTION("the robot executes a version that was never sent") {
     require_violation(AuditRule::kSent, [](History& h) {
       const Switch s = example_switch(h);
       h.remove_if<msg::Command>([&](const msg::Command& c) {
@@ -19,13 +19,13 @@ TEST_CASE("every breach by the firmware is reported under its rule") {
       });
     });
   }
-  SECTION("a switch from a version other than the base") {
+  SECTION("the robot switches from a version other than the base") {
     require_violation(AuditRule::kSwitch, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
     });
   }
-  SECTION("a switch after the start had passed") {
+  SECTION("the robot switches after the start has passed") {
     require_violation(AuditRule::kLateSwitch, [](History& h) {
       const Switch s = example_switch(h);
       msg::Feedback* last = nullptr;
@@ -35,7 +35,7 @@ TEST_CASE("every breach by the firmware is reported under its rule") {
       last->valid_at_ns(s.start_ns);
     });
   }
-  SECTION("a version of a superseded agent") {
+  SECTION("the robot executes a version of a superseded agent") {
     require_violation(AuditRule::kStaleIncarnation, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
@@ -44,7 +44,7 @@ TEST_CASE("every breach by the firmware is reported under its rule") {
       });
     });
   }
-  SECTION("a version of a superseded epoch") {
+  SECTION("the robot executes a version of a superseded epoch") {
     require_violation(AuditRule::kStaleEpoch, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
@@ -52,7 +52,7 @@ TEST_CASE("every breach by the firmware is reported under its rule") {
       });
     });
   }
-  SECTION("facts that contradict earlier ones") {
+  SECTION("the robot's reports contradict earlier ones") {
     const auto tamper = GENERATE(
         std::function<void(msg::Feedback&, const msg::Feedback&)>(
             [](msg::Feedback& f, const msg::Feedback& old) { f.executing(old.executing()); }),
@@ -72,7 +72,7 @@ TEST_CASE("every breach by the firmware is reported under its rule") {
       });
     });
   }
-  SECTION("an own stop that does not end at rest") {
+  SECTION("the robot's own stop does not end at rest") {
     require_violation(AuditRule::kOffReference, [](History& h) {
       const Switch s = example_switch(h);
       bool is_done = false;
@@ -115,7 +115,7 @@ TEST_CASE("an own stop that takes longer than braking needs is reported") {
   CHECK((count(totals, AuditRule::kOffReference) > 0) == is_reported);
 }
 
-TEST_CASE("a robot that reports a distance from its reference beyond the budget is reported") {
+TEST_CASE("a robot whose distance from its reference exceeds the budget is reported") {
   // The default bounds are 5 mm, and 3 mm for more than 25 ms. Robots report at least every 17 ms.
   const auto [error_m, duration, is_reported] =
       GENERATE(table<double, Duration, bool>({{0.0033, 1s, false},
@@ -136,7 +136,7 @@ TEST_CASE("a robot that reports a distance from its reference beyond the budget 
   CHECK((count(totals, AuditRule::kTracking) > 0) == is_reported);
 }
 
-TEST_CASE("in a live run, too, ground truth shows robots beyond the tracking bound") {
+TEST_CASE("ground truth also shows robots beyond the tracking bound in a live run") {
   const auto [error_m, is_reported] = GENERATE(table<double, bool>({{0.0045, false}, {0.0055, true}}));
   CAPTURE(error_m);
   History history = crossing();
@@ -161,7 +161,7 @@ TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule
   CHECK(count(totals, AuditRule::kTracking) == 0);
 }
 
-TEST_CASE("a late fact of a robot's former incarnation changes nothing") {
+TEST_CASE("a late report of a robot's former incarnation changes nothing") {
   const auto totals_with = [](bool is_delivered_late) {
     History history = crossing();
     const Time set_back = history.messages.front().at + 1500ms;
@@ -192,7 +192,7 @@ TEST_CASE("a late fact of a robot's former incarnation changes nothing") {
 }
 
 TEST_CASE("ground truth that contradicts the guarantee is reported under its rule") {
-  SECTION("a displaced robot") {
+  SECTION("a robot is displaced") {
     const double shift_m = GENERATE(0.007, 0.02);
     CAPTURE(shift_m);
     require_violation(AuditRule::kPosition, [shift_m](History& h) {
@@ -204,7 +204,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
       });
     });
   }
-  SECTION("displacements that a push excuses, and others") {
+  SECTION("a push excuses only its own robot's displacement for a while") {
     // The pushed robot (-1: none; 2 is the displaced one), and the time from the push to the displacement.
     const auto [pushed, late, is_reported] = GENERATE(
         table<int, Duration, bool>({{-1, 0ms, true}, {2, 0ms, false}, {2, 1200ms, true}, {3, 0ms, true}}));
@@ -224,7 +224,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     CHECK((count(totals, AuditRule::kPosition) > 0) == is_reported);
     CHECK((totals.excused_displacements > 0) == !is_reported);
   }
-  SECTION("a contact long after a push, also in an incomplete history") {
+  SECTION("a contact occurs long after a push, also in an incomplete history") {
     const bool is_complete = GENERATE(true, false);
     CAPTURE(is_complete);
     History history = crossing();
@@ -239,7 +239,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     const AuditTotals totals = audit_of(history, is_complete ? kComplete : AuditInput{});
     CHECK(count(totals, AuditRule::kContact) > 0);
   }
-  SECTION("contacts of a pushed robot, and of robots that it pushes in turn") {
+  SECTION("a pushed robot and robots that it pushes in turn have contacts") {
     // The last pair, and the numbers of excused and reported contacts.
     const auto [first, second, excused, reported] =
         GENERATE(table<RobotId, RobotId, std::uint64_t, std::uint64_t>(
@@ -262,22 +262,22 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     CHECK(totals.excused_contacts == excused);
     CHECK(count(totals, AuditRule::kContact) == reported);
   }
-  SECTION("a contact") {
+  SECTION("a contact occurs") {
     require_violation(AuditRule::kContact, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.contacts(1); });
     });
   }
-  SECTION("a moving robot that something touches") {
+  SECTION("something touches a moving robot") {
     require_violation(AuditRule::kCrash, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.crashes_while_moving(1); });
     });
   }
-  SECTION("more moving robots than ground truth lists") {
+  SECTION("more moving robots are touched than ground truth lists") {
     require_violation(AuditRule::kCrash, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.crashes_while_moving(100); });
     });
   }
-  SECTION("a violation found by the simulator's firmware monitor") {
+  SECTION("the simulator's firmware monitor finds a violation") {
     require_violation(AuditRule::kFirmwareMonitor, [](History& h) {
       h.each<msg::GroundTruth>([](msg::GroundTruth& truth, Time) { truth.firmware_violations(2); });
     });

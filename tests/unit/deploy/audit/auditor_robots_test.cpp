@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single facts of robots prove.
+// What single robot reports prove.
 #include "common/motion/safety_budget.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-TEST_CASE("facts that contradict the fact before are reported, one violation each") {
+TEST_CASE("a report that contradicts the previous report is counted as one violation per contradiction") {
   Stage stage;
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1);
@@ -18,39 +18,39 @@ TEST_CASE("facts that contradict the fact before are reported, one violation eac
   REQUIRE(stage.violations.empty());
   msg::Feedback& robot_report = stage.robot_reports[0];
   std::uint64_t expected = 0;
-  SECTION("at the same time") { robot_report.valid_at_ns(to_ns(stage.now)); }
-  SECTION("of an earlier time") {
+  SECTION("it has the same time") { robot_report.valid_at_ns(to_ns(stage.now)); }
+  SECTION("it has an earlier time") {
     robot_report.valid_at_ns(to_ns(stage.now) - 1);
-    // Its version starts later, too.
+    // The version starts later, too.
     expected = 2;
   }
-  SECTION("of an older agent") {
+  SECTION("it obeys an older agent") {
     robot_report.obeyed_incarnation(Stage::kAgent - 1);
-    // It has not acknowledged the agent that registered, either.
+    // The robot has not acknowledged the agent that registered, either.
     stage.report(0);
     CHECK(stage.count(AuditRule::kFacts) == 1);
     return;
   }
-  SECTION("of a newer agent") { robot_report.obeyed_incarnation(Stage::kAgent + 1); }
-  SECTION("of an older epoch") {
+  SECTION("it obeys a newer agent") { robot_report.obeyed_incarnation(Stage::kAgent + 1); }
+  SECTION("it obeys an older epoch") {
     robot_report.obeyed_epoch(stage.epoch - 1);
-    // It cannot have registered in the epoch of the grant, either.
+    // The robot cannot have registered in the epoch of the grant, either.
     stage.report(0);
     CHECK(stage.count(AuditRule::kFacts) == 1);
     return;
   }
-  SECTION("of a newer epoch") { robot_report.obeyed_epoch(stage.epoch + 1); }
-  SECTION("of the initial rest") {
+  SECTION("it obeys a newer epoch") { robot_report.obeyed_epoch(stage.epoch + 1); }
+  SECTION("it executes the initial rest") {
     stage.advance(1ms);
     robot_report.executing(stage.rest(0));
-    // The rest was excluded by the version.
+    // Executing the version has excluded the rest.
     expected = 2;
   }
   stage.report(0);
   check_only(stage, AuditRule::kFacts, expected);
 }
 
-TEST_CASE("a version is not executed before its start") {
+TEST_CASE("a robot must not execute a version before its start") {
   const Duration early = GENERATE(0ns, 1ns);
   Stage stage;
   stage.begin();
@@ -63,7 +63,7 @@ TEST_CASE("a version is not executed before its start") {
   check_only(stage, AuditRule::kFacts, early == 0ns ? 0 : 1);
 }
 
-TEST_CASE("a fact of an earlier time is reported only if no clock was set back in between") {
+TEST_CASE("a report with an earlier time is a violation only if no clock was set back in between") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();
@@ -71,12 +71,12 @@ TEST_CASE("a fact of an earlier time is reported only if no clock was set back i
   stage.report(0);
   const std::int64_t early_ns = to_ns(stage.now) - 100'000;
   std::uint64_t expected = 0;
-  SECTION("the next fact") { expected = 1; }
-  SECTION("a fact was missed") {
+  SECTION("it follows directly") { expected = 1; }
+  SECTION("a report was missed") {
     (void)stage.header("feedback", 0);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("the last fact was of a clock that is out of bounds") {
+  SECTION("the last report was made by a clock out of bounds") {
     stage.robot_reports[0].valid_at_ns(to_ns(stage.now) + 100'000'000);
     stage.report(0);
   }
@@ -85,7 +85,7 @@ TEST_CASE("a fact of an earlier time is reported only if no clock was set back i
   check_only(stage, AuditRule::kFacts, expected);
 }
 
-TEST_CASE("a robot switches only along bases") {
+TEST_CASE("a robot may switch only from a version's base to the version") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();
@@ -101,20 +101,22 @@ TEST_CASE("a robot switches only along bases") {
   stage.report(0);
   stage.advance(55ms);
   std::uint64_t expected = 0;
-  SECTION("to the next version") { stage.robot_reports[0].executing(second); }
-  SECTION("across several versions that no fact reported") { stage.robot_reports[0].executing(third); }
-  SECTION("from another one") {
-    // A version at rest on base 0: if facts may have been missed, the robot may have been lifted and put
+  SECTION("the robot switches to the next version") { stage.robot_reports[0].executing(second); }
+  SECTION("the robot switches across several unreported versions") {
+    stage.robot_reports[0].executing(third);
+  }
+  SECTION("the robot switches to a version at rest that does not continue the executed one") {
+    // A version at rest on base 0: if reports may have been missed, the robot may have been lifted and put
     // down.
     stage.robot_reports[0].executing(other);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("from an unrelated version into motion, which a robot that is put down never does") {
+  SECTION("the robot switches to a moving version that does not continue the executed one") {
     stage.advance(10ms);
     stage.robot_reports[0].executing(moved);
     expected = 1;
   }
-  SECTION("from the base of the one that it executes, at rest") {
+  SECTION("the new version's base is no longer executed") {
     stage.robot_reports[0].executing(second);
     stage.report(0);
     stage.advance(20ms);
@@ -125,7 +127,7 @@ TEST_CASE("a robot switches only along bases") {
     CHECK(stage.count(AuditRule::kSwitch) == 1);
     return;
   }
-  SECTION("along versions that are not known") {
+  SECTION("the robot switches along unknown versions") {
     msg::Version stranger = stage.next(first, 9, -10ms);
     stranger.base(8);
     stage.command(stranger);
@@ -148,23 +150,23 @@ TEST_CASE("each reason that excludes a version is checked by its own rule") {
     stage.command(version);
   }
   AuditRule rule = AuditRule::kFacts;
-  SECTION("late") {
+  SECTION("the version was late") {
     stage.advance(50ms);
     stage.report(0);
     rule = AuditRule::kLateSwitch;
   }
-  SECTION("fenced") {
+  SECTION("the version was fenced") {
     stage.robot_reports[0].obeyed_incarnation(Stage::kAgent + 1);
     stage.report(0);
     rule = AuditRule::kStaleIncarnation;
     stage.advance(50ms);
   }
-  SECTION("older") {
+  SECTION("the version was older") {
     stage.advance(60ms);
     stage.robot_reports[0].executing(second);
     stage.report(0);
   }
-  SECTION("lifted") {
+  SECTION("the robot was lifted") {
     stage.advance(50ms);
     msg::Version nothing;
     nothing.base(1);
@@ -180,7 +182,7 @@ TEST_CASE("each reason that excludes a version is checked by its own rule") {
   CHECK(stage.violations.front().epoch == 0);
 }
 
-TEST_CASE("a robot that is off its reference stops by itself, and what it executed before is over") {
+TEST_CASE("the own stop of a robot off its reference must be numbered above the version it replaces") {
   Stage stage;
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 5);
@@ -188,8 +190,8 @@ TEST_CASE("a robot that is off its reference stops by itself, and what it execut
   stage.robot_reports[0].is_off_reference(true);
   std::uint64_t expected = 0;
   VersionNumber number = 6;
-  SECTION("numbered above the version") {}
-  SECTION("numbered below the version") { number = 4, expected = 1; }
+  SECTION("the stop is numbered above the version") {}
+  SECTION("the stop is numbered below the version") { number = 4, expected = 1; }
   msg::Version stop = stage.next(first, number, 0ms);
   stop.start_ns(to_ns(stage.now));
   stage.robot_reports[0].executing(stop);
@@ -198,7 +200,7 @@ TEST_CASE("a robot that is off its reference stops by itself, and what it execut
   check_only(stage, AuditRule::kOffReference, expected);
 }
 
-TEST_CASE("a robot's own stop brakes at D after the motion that its motors have under way") {
+TEST_CASE("a robot's own stop must brake at D after the motion already under way") {
   const auto [lead, excess, is_reported] = GENERATE(table<Duration, double, bool>({{0ms, 1.0, false},
                                                                                    {0ms, 1.02, true},
                                                                                    {100ms, 1.0, false},
@@ -227,7 +229,7 @@ TEST_CASE("a robot's own stop brakes at D after the motion that its motors have 
   check_only(stage, AuditRule::kOffReference, is_reported ? 1 : 0);
 }
 
-TEST_CASE("a robot's own stop ends at rest") {
+TEST_CASE("a robot's own stop must end at rest") {
   const auto [left_mps, is_reported] = GENERATE(table<double, bool>({{9e-6, false}, {1.2e-5, true}}));
   Stage stage;
   stage.begin();
@@ -267,57 +269,54 @@ std::vector<double> repeated(double error_m, int times) {
 }
 
 TEST_CASE(
-    "a robot beyond the drift bound recovers within 25 ms, and within a millisecond beyond the tracking "
-    "bound") {
+    "a robot must recover within 25 ms beyond the drift bound and within 1 ms beyond the tracking bound") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   const double drift_m = drift_bound_m(stage.scenario.tracking_bound_m) + 0.0005,
                tracking_m = stage.scenario.tracking_bound_m + 0.0005;
   stage.begin();
   bool is_reported = false;
-  SECTION("drifting no further than allowed, for long") {
-    report_errors(stage, repeated(drift_m - 1e-6, 100));
-  }
-  SECTION("drifting for 26 ms") { report_errors(stage, repeated(drift_m + 1e-6, 27)); }
-  SECTION("drifting for 27 ms") {
+  SECTION("it is within the drift bound for long") { report_errors(stage, repeated(drift_m - 1e-6, 100)); }
+  SECTION("it is beyond the drift bound for 26 ms") { report_errors(stage, repeated(drift_m + 1e-6, 27)); }
+  SECTION("it is beyond the drift bound for 27 ms") {
     report_errors(stage, repeated(drift_m + 1e-6, 28));
     is_reported = true;
   }
-  SECTION("drifting twice for 26 ms") {
+  SECTION("it is beyond the drift bound twice for 26 ms") {
     report_errors(stage, repeated(drift_m + 1e-6, 27));
     report_errors(stage, {0});
     report_errors(stage, repeated(drift_m + 1e-6, 27));
   }
-  SECTION("no further than the tracking bound, for 26 ms") {
+  SECTION("it is within the tracking bound for 26 ms") {
     report_errors(stage, repeated(tracking_m - 1e-6, 27));
   }
-  SECTION("beyond the tracking bound for a millisecond") {
+  SECTION("it is beyond the tracking bound for a millisecond") {
     report_errors(stage, repeated(tracking_m + 1e-6, 2));
   }
-  SECTION("beyond the tracking bound for longer") {
+  SECTION("it is beyond the tracking bound for longer") {
     report_errors(stage, repeated(tracking_m + 1e-6, 3));
     is_reported = true;
   }
-  SECTION("beyond the tracking bound again and again") {
+  SECTION("it is beyond the tracking bound repeatedly") {
     for (int i = 0; i < 10; ++i) report_errors(stage, {tracking_m + 1e-6, tracking_m + 1e-6, 0});
   }
-  SECTION("beyond the tracking bound, but facts were missed in between") {
+  SECTION("it is beyond the tracking bound, but reports were missed in between") {
     report_errors(stage, repeated(tracking_m + 1e-6, 2));
     (void)stage.header("feedback", 0);
     report_errors(stage, repeated(tracking_m + 1e-6, 2));
   }
-  SECTION("beyond the tracking bound while it is off its reference, or lifted") {
+  SECTION("it is beyond the tracking bound while off its reference or lifted") {
     const bool is_lifted = GENERATE(true, false);
     stage.robot_reports[0].is_off_reference(!is_lifted);
     stage.robot_reports[0].is_lifted(is_lifted);
     report_errors(stage, repeated(1, 50));
   }
-  SECTION("with inflation, farther") {
+  SECTION("it is within the drift bound plus its inflation") {
     stage.robot_reports[0].executing().inflation_m(0.02);
     report_errors(stage, repeated(0.02 + drift_m - 1e-6, 100));
-    stage.violations.clear();  // the inflation came from nowhere
+    stage.violations.clear();  // the inflation has no base
   }
-  SECTION("with inflation, too far") {
+  SECTION("it is beyond the tracking bound plus its inflation") {
     Stage inflated(stage_scenario(), is_complete ? kComplete : kIncomplete);
     inflated.robot_reports[0].executing().inflation_m(0.02);
     inflated.begin();
@@ -326,7 +325,7 @@ TEST_CASE(
     report_errors(inflated, repeated(0.02 + tracking_m + 1e-6, 3));
     CHECK(inflated.count(AuditRule::kTracking) > 0);
   }
-  SECTION("by a clock that is out of bounds") {
+  SECTION("its clock is out of bounds") {
     for (int i = 0; i < 50; ++i) {
       stage.advance(1ms);
       stage.robot_reports[0].tracking_error_m(1);
@@ -339,7 +338,7 @@ TEST_CASE(
   CHECK(stage.violations.size() == stage.count(AuditRule::kTracking));
 }
 
-TEST_CASE("a clock is sound up to its bound, ahead and behind") {
+TEST_CASE("a clock counts as sound up to its bound, ahead and behind") {
   const auto [ahead, is_sound] = GENERATE(table<Duration, bool>(
       {{1ms + 1us, true}, {1ms + 1001ns, false}, {-1ms - 1us, true}, {-1ms - 1001ns, false}}));
   CAPTURE(ahead.count());
@@ -347,7 +346,7 @@ TEST_CASE("a clock is sound up to its bound, ahead and behind") {
   scenario.clock_bound_s = 0.001;
   Stage stage(scenario);
   stage.begin();
-  // Only facts of sound clocks show that a robot is beyond the tracking bound.
+  // Only reports made by sound clocks show that a robot is beyond the tracking bound.
   for (int i = 0; i < 5; ++i) {
     stage.advance(1ms);
     stage.robot_reports[0].tracking_error_m(1);

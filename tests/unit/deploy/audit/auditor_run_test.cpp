@@ -7,7 +7,7 @@ namespace sidestep::auditor_run_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a run lasts until the latest message, of whatever kind and however invalid") {
+TEST_CASE("a run lasts until its latest message of any kind, even an invalid one") {
   Stage stage;
   stage.begin();
   stage.drive(stage.next(stage.rest(0), 1));
@@ -26,14 +26,14 @@ TEST_CASE("a run lasts until the latest message, of whatever kind and however in
   SECTION("disturbance") { auditor.on_disturbance({}, stage.now); }
   SECTION("attestation") { auditor.on_attestation({}, stage.now); }
   SECTION("order") { auditor.on_order({}, stage.now); }
-  SECTION("order's answer") { auditor.on_order_answer({}, stage.now); }
+  SECTION("answer to an order") { auditor.on_order_answer({}, stage.now); }
   SECTION("order memory") { auditor.on_order_memory({}, stage.now); }
   SECTION("order status") { auditor.on_order_status({}, stage.now); }
   SECTION("no message") { auditor.advance(stage.now); }
   CHECK(auditor.totals().run_s == Approx(before_s + 2));
 }
 
-TEST_CASE("message coverage is zero without messages, and complete after a first one that follows no gap") {
+TEST_CASE("message coverage is zero without messages and complete after a first message without a gap") {
   Stage stage;
   CHECK(stage.auditor.totals().coverage.messages == 0);
   stage.report(0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single world states of vision prove if no ground truth is received.
+// What single world states from vision prove if no ground truth is received.
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-/// A stage whose cameras show both robots in place, unless a test changes that.
+/// A stage whose cameras show both robots in place unless a test changes that.
 struct Seen : Stage {
   explicit Seen(const AuditInput& input = kComplete, double inflation_m = 0)
       : Seen(stage_scenario(), input, inflation_m) {}
@@ -70,7 +70,7 @@ struct Seen : Stage {
   msg::WorldState world;
 };
 
-TEST_CASE("vision becomes the reference when it has shown robots for a second") {
+TEST_CASE("vision becomes the reference after it has shown robots for a second") {
   Seen seen;
   seen.world.robots().clear();
   seen.run(2s);
@@ -103,13 +103,13 @@ TEST_CASE("a robot that vision shows out of place for longer than 300 ms is repo
   CHECK(seen.position() == (is_reported ? 1 : 0));
   CHECK(seen.violations.size() == seen.position());
   CHECK(seen.auditor.totals().max_position_error_m == Approx(bound_m + excess_m));
-  // Another time is another displacement.
+  // A later displacement counts separately.
   seen.place(0, home + Vec2(0.2, 0.2));
   seen.run(400ms);
   CHECK(seen.position() == (is_reported ? 2 : 1));
 }
 
-TEST_CASE("only uninterrupted displacements count") {
+TEST_CASE("only uninterrupted displacements are reported") {
   const bool is_complete = GENERATE(true, false);
   Seen seen(is_complete ? kComplete : kIncomplete);
   seen.run(2s);
@@ -117,28 +117,28 @@ TEST_CASE("only uninterrupted displacements count") {
   seen.place(0, away);
   seen.run(250ms);
   std::uint64_t expected = 0;
-  SECTION("interrupted by one sight in place") {
+  SECTION("one observation in place interrupts it") {
     seen.place(0, home);
     seen.run(17ms);
     seen.place(0, away);
   }
-  SECTION("interrupted by a report that it is off its reference") {
+  SECTION("a report of being off its reference interrupts it") {
     seen.robot_reports[0].is_off_reference(true);
     seen.run(17ms);
     seen.robot_reports[0].is_off_reference(false);
   }
-  SECTION("interrupted by a missed fact") {
+  SECTION("a missed report interrupts it") {
     (void)seen.header("feedback", 0);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("interrupted by a clock that is out of bounds") {
+  SECTION("a clock out of bounds interrupts it") {
     seen.advance(16ms);
     seen.show();
     seen.robot_reports[0].valid_at_ns(to_ns(seen.now + 50ms));
     seen.report(0);
     seen.robot_reports[0].valid_at_ns(0);
   }
-  SECTION("uninterrupted") { expected = 1; }
+  SECTION("nothing interrupts it") { expected = 1; }
   seen.run(150ms);
   CHECK(seen.position() == expected);
 }
@@ -151,7 +151,8 @@ TEST_CASE("an auditor that joins a run does not know what displaced a robot earl
   CHECK(seen.position() == (is_complete ? 1 : 0));
 }
 
-TEST_CASE("an announced disturbance excuses displacements while it lasts and until the robot is back") {
+TEST_CASE(
+    "an announced disturbance excuses displacements until it has ended and the robot is back in place") {
   Seen seen;
   seen.run(2s);
   std::uint64_t expected = 0;
@@ -160,31 +161,31 @@ TEST_CASE("an announced disturbance excuses displacements while it lasts and unt
     seen.disturb(1, msg::DisturbanceKind::DISTURBANCE_PUSH);
     expected = 1;
   }
-  SECTION("a camera that mistakes it for another robot") {
+  SECTION("a camera mistakes the robot for another") {
     seen.disturb(0, msg::DisturbanceKind::DISTURBANCE_SEEN_AS, 5s, 1);
   }
-  SECTION("a long slip that is over for the most part") {
+  SECTION("a long slip that is mostly over") {
     seen.disturb(0, msg::DisturbanceKind::DISTURBANCE_SLIP, 10s);
     seen.run(9s);
   }
-  SECTION("a short slip, long ago") {
+  SECTION("a short slip long ago") {
     seen.disturb(0, msg::DisturbanceKind::DISTURBANCE_SLIP, 1s);
     seen.run(9s);
     expected = 1;
   }
-  SECTION("one of negative length, long ago") {
+  SECTION("a slip of negative length long ago") {
     seen.disturb(0, msg::DisturbanceKind::DISTURBANCE_SLIP, -5s);
     seen.run(3s);
     expected = 1;
   }
-  SECTION("none") { expected = 1; }
+  SECTION("no disturbance") { expected = 1; }
   seen.place(0, {-1.3, 0.2});
   seen.run(500ms);
   CHECK(seen.position() == expected);
   CHECK((seen.auditor.totals().excused_displacements > 0) == (expected == 0));
 }
 
-TEST_CASE("with ground truth the simulator states whether a robot is disturbed, not the operator's message") {
+TEST_CASE("if there is ground truth, it decides whether a robot is disturbed, not the operator's message") {
   Seen seen;
   msg::GroundTruth truth;
   truth.robots().resize(1);
@@ -232,7 +233,7 @@ TEST_CASE("once ground truth has replaced vision, vision is no longer used") {
   CHECK(seen.position() > 1);
 }
 
-TEST_CASE("a robot that is switched off is silent, which leaves no gap") {
+TEST_CASE("the silence of a robot that is switched off does not lower the coverage") {
   const auto kind =
       GENERATE(msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF, msg::DisturbanceKind::DISTURBANCE_PUSH);
   Seen seen(kIncomplete);
@@ -246,10 +247,10 @@ TEST_CASE("a robot that is switched off is silent, which leaves no gap") {
   CHECK(seen.auditor.totals().coverage.time == Approx(is_off ? 1 : 0.5).margin(0.02));
 }
 
-TEST_CASE("robots that vision shows in contact are reported with both numbers, obstacles with one") {
+TEST_CASE("a contact seen by vision is reported unless a disturbance excuses it") {
   Seen seen;
   seen.run(2s);
-  SECTION("two robots") {
+  SECTION("two robots touch") {
     seen.place(0, {1 - 0.17, 0});
     seen.run(100ms);
     REQUIRE(seen.contact() == 1);
@@ -257,7 +258,7 @@ TEST_CASE("robots that vision shows in contact are reported with both numbers, o
     CHECK(seen.violations.front().epoch == 0);
     CHECK_THAT(seen.violations.front().detail, ContainsSubstring("touches robot 1"));
   }
-  SECTION("after a push") {
+  SECTION("two robots touch after a push") {
     seen.disturb(1, msg::DisturbanceKind::DISTURBANCE_PUSH);
     seen.place(0, {1 - 0.17, 0});
     seen.run(100ms);
@@ -266,24 +267,24 @@ TEST_CASE("robots that vision shows in contact are reported with both numbers, o
   }
 }
 
-TEST_CASE("robots that touch since one of them was out of place are undecided if messages may be missed") {
+TEST_CASE("a contact of a robot that was out of place before is undecided if messages may be missed") {
   const bool is_complete = GENERATE(true, false);
   const bool were_apart = GENERATE(true, false);
   CAPTURE(is_complete, were_apart);
   Scenario scenario = stage_scenario();
-  // Where both are in place they touch.
+  // The robots touch if both are in place.
   scenario.robots[0].start_m = {1 - 0.17, 0};
   Seen seen(scenario, is_complete ? kComplete : kIncomplete);
   if (were_apart) seen.place(0, {-1, 0});
   seen.run(2s);
   seen.place(0, {1 - 0.17, 0});
   seen.run(100ms);
-  // It came back into place while the two touched, or before it was observed.
+  // The robot may have come back while the two touched, or before it was observed.
   CHECK(seen.contact() == (is_complete ? 1 : 0));
   CHECK(seen.auditor.totals().undecided_contacts == (is_complete ? 0 : 1));
 }
 
-TEST_CASE("a contact of two world states counts only if none was missed in between") {
+TEST_CASE("a contact in two world states counts only if no world state was missed in between") {
   const bool is_complete = GENERATE(true, false);
   Seen seen(is_complete ? kComplete : kIncomplete);
   seen.run(2s);
@@ -295,7 +296,7 @@ TEST_CASE("a contact of two world states counts only if none was missed in betwe
   CHECK(seen.contact() + seen.auditor.totals().undecided_contacts == (is_missed && !is_complete ? 0 : 1));
 }
 
-TEST_CASE("an observation with NaN or infinity, or of an unknown robot, is not used but counted as invalid") {
+TEST_CASE("an observation with NaN, infinity or an unknown robot is counted as invalid and not used") {
   Seen seen;
   seen.run(2s);
   msg::TrackedRobot& robot = seen.world.robots()[0];
@@ -305,7 +306,7 @@ TEST_CASE("an observation with NaN or infinity, or of an unknown robot, is not u
   SECTION("speed along y") { robot.vy_mps(NAN); }
   SECTION("observed x") { robot.observed_x_m(NAN); }
   SECTION("observed y") { robot.observed_y_m(NAN); }
-  SECTION("no robot") { robot.robot(GENERATE(2u, 4'000'000'000u)); }
+  SECTION("unknown robot") { robot.robot(GENERATE(2u, 4'000'000'000u)); }
   CHECK(seen.auditor.totals().invalid == 0);
   seen.advance(16ms);
   seen.show();

@@ -45,13 +45,13 @@ TEST_CASE("versions too close to each other are found even in an incomplete hist
   const bool is_degraded = GENERATE(false, true);
   CAPTURE(is_degraded);
   History history = is_degraded ? degraded(crossing(), 5, 0.2, Duration{0}) : crossing();
-  // As if all versions had been granted with 5 mm too little margin.
+  // Equivalent to granting all versions with 5 mm too little margin.
   history.scenario.margin_m += 0.005;
   const AuditTotals totals = audit_of(history, is_degraded ? AuditInput{} : kComplete);
   CHECK(count(totals, AuditRule::kClearance) > 0);
 }
 
-TEST_CASE("the inflations of both robots add to the distance that versions must keep") {
+TEST_CASE("the inflations of both robots add to the distance that their versions must keep") {
   const auto is_too_close = [](double more_m, double inflation_m) {
     History history = crossing();
     history.scenario.margin_m += more_m;
@@ -67,14 +67,14 @@ TEST_CASE("the inflations of both robots add to the distance that versions must 
     (is_too_close(middle_m, 0) ? too_much_m : slack_m) = middle_m;
   }
   CAPTURE(slack_m);
-  // Together they exceed the slack of 1 mm, but neither does alone.
+  // Only together do they exceed the slack of 1 mm.
   const double more_m = slack_m - 0.001;
   CHECK_FALSE(is_too_close(more_m, 0.00045));
   CHECK(is_too_close(more_m, 0.00055));
 }
 
-TEST_CASE("every wrong grant is reported under its rule") {
-  SECTION("one version number with two trajectories") {
+TEST_CASE("each wrong grant is reported under its rule") {
+  SECTION("one version number has two trajectories") {
     require_violation(AuditRule::kUniqueVersion, [](History& h) {
       const Switch s = example_switch(h);
       bool is_done = false;
@@ -87,19 +87,19 @@ TEST_CASE("every wrong grant is reported under its rule") {
       });
     });
   }
-  SECTION("an unknown base") {
+  SECTION("the base is unknown") {
     require_violation(AuditRule::kBase, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
     });
   }
-  SECTION("a discontinuity from the base") {
+  SECTION("the version does not continue its base") {
     require_violation(AuditRule::kContinuity, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(v.x_m() + 1e-5); });
     });
   }
-  SECTION("too much acceleration") {
+  SECTION("the acceleration is too high") {
     require_violation(AuditRule::kLimits, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [](msg::Version& v) {
@@ -107,7 +107,7 @@ TEST_CASE("every wrong grant is reported under its rule") {
       });
     });
   }
-  SECTION("acceleration at D once the velocity has reversed") {
+  SECTION("the version accelerates at D once its velocity has reversed") {
     require_violation(AuditRule::kLimits, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [](msg::Version& v) {
@@ -129,27 +129,27 @@ TEST_CASE("every wrong grant is reported under its rule") {
       });
     });
   }
-  SECTION("no braking at the end") {
+  SECTION("the version does not brake at the end") {
     require_violation(AuditRule::kRest, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number,
                      [](msg::Version& v) { v.phase_count(static_cast<std::uint8_t>(v.phase_count() - 1)); });
     });
   }
-  SECTION("outside the field") {
+  SECTION("the version leaves the field") {
     require_violation(AuditRule::kField, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(h.scenario.field.length_m / 2); });
     });
   }
-  SECTION("through an obstacle") {
+  SECTION("the version leads through an obstacle") {
     require_violation(AuditRule::kObstacle, [](History& h) {
       const Switch s = example_switch(h);
       const Vec2 centre_m = sidestep::centre_m(h.scenario.obstacles.front());
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(centre_m.x()), v.y_m(centre_m.y()); });
     });
   }
-  SECTION("through a blocked cell of the map") {
+  SECTION("the version leads through a blocked map cell") {
     require_violation(AuditRule::kObstacle, [](History& h) {
       const Switch s = example_switch(h);
       const Vec2 at_m(h.scenario.field.length_m / 4, h.scenario.field.width_m / 4);
@@ -163,19 +163,19 @@ TEST_CASE("every wrong grant is reported under its rule") {
       h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(at_m.x()), v.y_m(at_m.y()); });
     });
   }
-  SECTION("inflation that the base does not have") {
+  SECTION("the version has an inflation that its base does not have") {
     require_violation(AuditRule::kInflation, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [](msg::Version& v) { v.inflation_m(0.001); });
     });
   }
-  SECTION("a base with a higher number than the version") {
+  SECTION("the base has a higher number than the version") {
     require_violation(AuditRule::kVersionOrder, [](History& h) {
       const Switch s = example_switch(h);
       h.each_mention(s.robot, s.number, [](msg::Version& v) { v.base(v.version_number() + 1); });
     });
   }
-  SECTION("a version that was not proposed") {
+  SECTION("the version was not proposed") {
     require_violation(AuditRule::kProposed, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::Verdict>([&](msg::Verdict& v, Time) {
@@ -183,18 +183,18 @@ TEST_CASE("every wrong grant is reported under its rule") {
       });
     });
   }
-  SECTION("before a robot has registered") {
+  SECTION("a robot has not registered yet") {
     require_violation(AuditRule::kAllRegistered, [](History& h) {
       h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
     });
   }
-  SECTION("before a robot has registered whose absence was attested too late") {
+  SECTION("an unregistered robot was attested absent too late") {
     require_violation(AuditRule::kAllRegistered, [](History& h) {
       h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
       h.messages.push_back({h.messages.back().at, attestation_of(3)});
     });
   }
-  SECTION("while a robot obeys an older epoch") {
+  SECTION("a robot obeys an older epoch") {
     const AuditTotals totals = [] {
       History history = crossing();
       history.each<msg::Feedback>([](msg::Feedback& f, Time) {
@@ -204,7 +204,7 @@ TEST_CASE("every wrong grant is reported under its rule") {
     }();
     CHECK(count(totals, AuditRule::kAllRegistered) == 1);
   }
-  SECTION("by two coordinators in one epoch") {
+  SECTION("two coordinators grant in one epoch") {
     require_violation(AuditRule::kSingleCoordinator, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::Verdict>([&](msg::Verdict& v, Time) {
@@ -213,7 +213,7 @@ TEST_CASE("every wrong grant is reported under its rule") {
       });
     });
   }
-  SECTION("a ledger that forgets a version without a fact") {
+  SECTION("the ledger drops a version that no robot report has excluded") {
     require_violation(AuditRule::kLedgerPage, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
@@ -223,7 +223,7 @@ TEST_CASE("every wrong grant is reported under its rule") {
       });
     });
   }
-  SECTION("a ledger with a version that was not granted") {
+  SECTION("the ledger lists a version that was not granted") {
     require_violation(AuditRule::kLedgerPage, [](History& h) {
       bool is_done = false;
       h.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
@@ -236,22 +236,22 @@ TEST_CASE("every wrong grant is reported under its rule") {
   }
 }
 
-TEST_CASE("every breach by an agent is reported under its rule") {
-  SECTION("a registration without the version that the robot executes") {
+TEST_CASE("each breach by an agent is reported under its rule") {
+  SECTION("the registration lacks the version that the robot executes") {
     require_violation(AuditRule::kRegistration, [](History& h) {
       h.each<msg::Registration>([](msg::Registration& r, Time) {
         if (r.robot() == 1) r.versions()[0].version_number(5);
       });
     });
   }
-  SECTION("a registration before the robot has acknowledged the agent") {
+  SECTION("the agent registers before the robot has acknowledged it") {
     require_violation(AuditRule::kAcknowledged, [](History& h) {
       h.each<msg::Registration>([](msg::Registration& r, Time) {
         if (r.robot() == 1) r.header().incarnation(r.header().incarnation() + 1);
       });
     });
   }
-  SECTION("a command that was not granted") {
+  SECTION("the agent sends a command that was not granted") {
     require_violation(AuditRule::kForwarded, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::Command>([&](msg::Command& c, Time) {
@@ -260,7 +260,7 @@ TEST_CASE("every breach by an agent is reported under its rule") {
       });
     });
   }
-  SECTION("a command although the verdict granted another candidate, in an incomplete history") {
+  SECTION("the agent sends another candidate than the granted one, in an incomplete history") {
     History history = crossing();
     const Switch s = example_switch(history);
     history.each<msg::Verdict>([&](msg::Verdict& v, Time) {
@@ -270,7 +270,7 @@ TEST_CASE("every breach by an agent is reported under its rule") {
     INFO(lines(totals));
     CHECK(count(totals, AuditRule::kForwarded) == 1);
   }
-  SECTION("commands under a lower epoch") {
+  SECTION("the agent sends commands under a lower epoch") {
     require_violation(AuditRule::kEpochRegression, [](History& h) {
       const Switch s = example_switch(h);
       h.each<msg::Command>([&](msg::Command& c, Time at) {
@@ -297,8 +297,8 @@ TEST_CASE("a verdict that is repeated much later breaks no rule") {
   CHECK(totals.violations == 0);
 }
 
-TEST_CASE("a version that was granted stays granted if a later agent proposes its number in vain") {
-  // A restarted agent may number its versions like those that its predecessor sent last.
+TEST_CASE("a granted version stays granted even if a later agent's proposal with its number is denied") {
+  // A restarted agent may reuse the last numbers of its predecessor.
   const std::uint64_t numbers_before = GENERATE(0u, 2u);
   const AuditTotals totals = audit_of_tampered([&](History& h) {
     const Switch s = example_switch(h);
@@ -343,7 +343,7 @@ TEST_CASE("an operator's attestation of absence replaces a robot's registration"
   CHECK(count(totals, AuditRule::kAllRegistered) == 0);
 }
 
-TEST_CASE("an attested absence stays valid in its epoch, even if the agent registers in an older one") {
+TEST_CASE("an attested absence stays valid in its epoch even if the agent registers in an older epoch") {
   const bool is_in_time = GENERATE(true, false);
   CAPTURE(is_in_time);
   const AuditTotals totals = audit_of_tampered([&](History& h) {
@@ -356,7 +356,7 @@ TEST_CASE("an attested absence stays valid in its epoch, even if the agent regis
     late->epoch(epoch - 1);
     h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
     h.remove_if<msg::Feedback>([](const msg::Feedback& f) { return f.robot() == 3; });
-    // When the epoch has begun, or before.
+    // Inserts the attestation after the epoch has begun, or before.
     auto at = h.messages.begin();
     if (is_in_time) {
       at = std::ranges::find_if(h.messages, [&](const ReceivedMessage& received) {
@@ -373,9 +373,9 @@ TEST_CASE("an attested absence stays valid in its epoch, even if the agent regis
   CHECK(count(totals, AuditRule::kAllRegistered) == (is_in_time ? 0 : 1));
 }
 
-TEST_CASE("a coordinator that resumes after many epochs keeps what was registered with it") {
+TEST_CASE("a coordinator that resumes after many epochs still knows what was registered with it") {
   const AuditTotals totals = audit_of_tampered([](History& h) {
-    // Adds forty coordinators that succeed each other, with all of which every agent registers.
+    // Adds forty successive coordinators with which every agent registers.
     std::vector<ReceivedMessage> messages;
     for (const ReceivedMessage& received : h.messages) {
       messages.push_back(received);

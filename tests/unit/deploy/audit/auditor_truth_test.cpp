@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single messages of ground truth prove.
+// What single ground-truth messages prove.
 #include <algorithm>
 
 #include "tests/catch.hpp"
@@ -11,8 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr AuditInput kIncomplete{};
 
-TEST_CASE(
-    "a robot beyond the tracking bound and its inflation is reported, in ground truth and by its own facts") {
+TEST_CASE("a robot farther from its reference than the tracking bound plus its inflation is reported") {
   const bool is_complete = GENERATE(true, false);
   const double inflation_m = GENERATE(0.0, 0.02);
   const auto [excess_m, is_reported] =
@@ -32,7 +31,7 @@ TEST_CASE(
   CHECK(shown.auditor.totals().max_position_error_m == Approx(error_m));
 }
 
-TEST_CASE("a robot is not compared with its reference while it has none, or may have had none") {
+TEST_CASE("a robot is compared with its reference only if it certainly had one throughout") {
   const bool is_complete = GENERATE(true, false);
   Shown shown(is_complete ? kComplete : kIncomplete);
   shown.run(50ms);
@@ -41,23 +40,23 @@ TEST_CASE("a robot is not compared with its reference while it has none, or may 
   shown.truth.robots()[0].reference_error_m(0.5);
   std::uint64_t expected = 0;
   bool is_off_before = false, is_off_after = false;
-  SECTION("off its reference before") { is_off_before = true; }
-  SECTION("off its reference afterwards") { is_off_after = true; }
-  SECTION("lifted before") {
+  SECTION("it was off its reference before") { is_off_before = true; }
+  SECTION("it is off its reference afterwards") { is_off_after = true; }
+  SECTION("it was lifted before") {
     shown.robot_reports[0].is_lifted(true);
     shown.report(0);
     shown.robot_reports[0].is_lifted(false);
     shown.advance(1ms);
   }
-  SECTION("lifted afterwards") {
+  SECTION("it is lifted afterwards") {
     shown.show();
     shown.robot_reports[0].is_lifted(true);
     shown.report(0);
     CHECK(shown.violations.empty());
     return;
   }
-  SECTION("always on it") { expected = 1; }
-  SECTION("a fact was missed in between") {
+  SECTION("it was always on its reference") { expected = 1; }
+  SECTION("a report was missed in between") {
     (void)shown.header("feedback", 0);
     expected = is_complete ? 1 : 0;
   }
@@ -77,7 +76,7 @@ TEST_CASE("a robot is not compared with its reference while it has none, or may 
   CHECK(shown.violations.size() == expected);
 }
 
-TEST_CASE("a fact is not compared with ground truth of a later time") {
+TEST_CASE("a robot report is not compared with later ground truth") {
   Shown shown;
   shown.run(50ms);
   shown.truth.robots()[0].x_m(-1.5);
@@ -90,7 +89,7 @@ TEST_CASE("a fact is not compared with ground truth of a later time") {
   CHECK(shown.position() == 1);
 }
 
-TEST_CASE("the position of a moving robot is compared with its version at that time, by its own clock") {
+TEST_CASE("a moving robot's position is compared with its version at that time by its own clock") {
   const Duration clock_ahead = GENERATE(0ms, 400ms, -400ms);
   CAPTURE(to_seconds(clock_ahead));
   Shown shown;
@@ -134,8 +133,7 @@ TEST_CASE("a robot whose clock jumps is not compared at that moment") {
   CHECK(shown.position() == 0);
 }
 
-TEST_CASE(
-    "a robot whose reference the simulator does not know may be out of place for 300 ms, as by vision") {
+TEST_CASE("a robot without a reference in the simulator may be out of place for 300 ms, as with vision") {
   const double unknown = GENERATE(-1.0, -0.01);
   Shown shown;
   for (msg::TrueRobotState& robot : shown.truth.robots()) robot.reference_error_m(unknown);
@@ -148,7 +146,7 @@ TEST_CASE(
   check_only(shown, AuditRule::kPosition, 1);
 }
 
-TEST_CASE("a displaced robot is excused, one that nobody disturbed is not") {
+TEST_CASE("only the displacement of a disturbed robot is excused") {
   const bool is_disturbed = GENERATE(true, false);
   Shown shown;
   shown.run(50ms);
@@ -167,7 +165,7 @@ TEST_CASE("a robot that a coordinator names as displaced is excused if it was ev
   Shown shown;
   shown.run(50ms);
   if (was_disturbed) shown.push(0);
-  // It is back in place, and moved a second time without any disturbance.
+  // The robot is back in place, and moved a second time without any disturbance.
   shown.run(2s);
   REQUIRE(shown.violations.empty());
   msg::CoordinatorState state;
@@ -184,15 +182,13 @@ TEST_CASE("a robot that a coordinator names as displaced is excused if it was ev
   CHECK((shown.position() == 0) == is_excused);
 }
 
-TEST_CASE(
-    "a moving robot is excused until it could have braked, 0.2 s after it could have heard of a "
-    "disturbance") {
+TEST_CASE("a moving robot is excused until it has had time to hear of a disturbance and brake") {
   const auto is_excused_after = [](Duration duration) {
     Shown shown;
     shown.truth.robots()[1].vx_mps(1);
     shown.run(50ms);
     shown.push(0);
-    shown.run(110ms);  // in place, and at rest
+    shown.run(110ms);  // back in place and at rest
     shown.run(duration);
     shown.touch(0, 1);
     shown.run(20ms);
@@ -204,22 +200,21 @@ TEST_CASE(
   CHECK_FALSE(is_excused_after(braking + 60ms));
 }
 
-TEST_CASE("positions that are not finite, or of unknown robots, are not used") {
+TEST_CASE("positions that are not finite or belong to unknown robots are not used") {
   Shown shown;
   shown.run(50ms);
   msg::TrueRobotState& robot = shown.truth.robots()[0];
   robot.x_m(-1.5);
   SECTION("x") { robot.x_m(NAN); }
   SECTION("y") { robot.y_m(NAN); }
-  SECTION("error") { robot.reference_error_m(NAN); }
-  SECTION("no robot") { robot.robot(GENERATE(2u, 4'000'000'000u)); }
+  SECTION("reference error") { robot.reference_error_m(NAN); }
+  SECTION("unknown robot") { robot.robot(GENERATE(2u, 4'000'000'000u)); }
   shown.run(50ms);
   CHECK(shown.violations.empty());
 }
 
-TEST_CASE(
-    "a robot is in place up to the tracking bound and its inflation, if a ledger has held its version") {
-  // Robots that are back in place are no longer excused.
+TEST_CASE("a robot is back in place only within the tracking bound of a version that a ledger has held") {
+  // Contacts of robots that are back in place are no longer excused.
   const auto [off_m, is_in_place] = GENERATE(table<double, bool>({{0.004, true}, {0.006, false}}));
   CAPTURE(off_m);
   Shown shown;
@@ -228,21 +223,21 @@ TEST_CASE(
   shown.truth.robots()[0].x_m(-1 + off_m);
   shown.truth.robots()[0].reference_error_m(off_m);
   bool expected = is_in_place;
-  SECTION("in its version") {}
-  SECTION("in a stop of its own") {
+  SECTION("it executes its version") {}
+  SECTION("it executes its own stop") {
     msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
     shown.robot_reports[0].executing(stop);
     shown.robot_reports[0].is_off_reference(true);
     expected = false;
   }
-  SECTION("in a stop of its own that the ledger has held") {
+  SECTION("it executes its own stop, which the ledger has held") {
     msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
     shown.robot_reports[0].executing(stop);
     shown.robot_reports[0].is_off_reference(true);
     shown.run(10ms);
     shown.show_page({stop, shown.rest(1)});
   }
-  SECTION("off the floor") {
+  SECTION("it is off the floor") {
     shown.robot_reports[0].is_lifted(true);
     expected = false;
   }

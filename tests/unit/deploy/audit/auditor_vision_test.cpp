@@ -14,7 +14,7 @@ History seen_crossing() {
   return history;
 }
 
-/// Changes what vision shows of one robot from `from` until `until`, since the beginning.
+/// Changes what vision shows of one robot between `from` and `until` after the beginning.
 void change_sight(History& history, RobotId robot, Duration from, Duration until,
                   const std::function<void(msg::TrackedRobot&, const msg::WorldState&)>& change) {
   const Time begin = history.messages.front().at;
@@ -31,7 +31,7 @@ void shift(msg::TrackedRobot& robot, double x_m) {
   robot.observed_x_m(robot.observed_x_m() + x_m);
 }
 
-/// Shows a robot beside another one, this far away.
+/// Shows a robot beside another one at this distance.
 void put_beside(msg::TrackedRobot& robot, const msg::WorldState& world, RobotId other, double distance_m) {
   for (const msg::TrackedRobot& tracked : world.robots()) {
     if (tracked.robot() != other) continue;
@@ -41,7 +41,7 @@ void put_beside(msg::TrackedRobot& robot, const msg::WorldState& world, RobotId 
   }
 }
 
-TEST_CASE("without ground truth vision is the reference, and the report says so") {
+TEST_CASE("without ground truth, vision is the reference and the report says so") {
   const AuditTotals totals = audit_of(seen_crossing(), kComplete);
   INFO(verdict_line(totals) << "\n" << lines(totals));
   CHECK(totals.reference == AuditReference::kVision);
@@ -62,7 +62,7 @@ TEST_CASE("an incomplete history without ground truth raises no false alarm") {
   CHECK((totals.verdict() == AuditVerdict::kPassed) == (loss == 0));
 }
 
-TEST_CASE("with ground truth vision is not used, whatever it shows") {
+TEST_CASE("with ground truth, vision is not used, whatever it shows") {
   History history = crossing();
   change_sight(history, 2, 1500ms, 2500ms,
                [](msg::TrackedRobot& robot, const msg::WorldState&) { shift(robot, 0.5); });
@@ -83,7 +83,7 @@ TEST_CASE("ground truth that arrives late replaces vision, and the report says s
   CHECK(totals.violations == 0);
 }
 
-TEST_CASE("a displacement that vision shows is reported if it lasts, once") {
+TEST_CASE("a displacement shown by vision is reported once if it lasts") {
   const auto [duration, reported] = GENERATE(table<Duration, std::uint64_t>({{100ms, 0}, {800ms, 1}}));
   const bool is_complete = GENERATE(true, false);
   CAPTURE(to_seconds(duration), is_complete);
@@ -95,7 +95,7 @@ TEST_CASE("a displacement that vision shows is reported if it lasts, once") {
   CHECK(count(totals, AuditRule::kPosition) == reported);
 }
 
-TEST_CASE("robots that vision shows in contact are reported") {
+TEST_CASE("contacts shown by vision are reported") {
   const double distance_m = GENERATE(0.178, 0.186);
   const bool is_complete = GENERATE(true, false);
   CAPTURE(distance_m, is_complete);
@@ -108,7 +108,7 @@ TEST_CASE("robots that vision shows in contact are reported") {
   CHECK(count(totals, AuditRule::kContact) == (distance_m < 0.18 ? 1 : 0));
 }
 
-TEST_CASE("a contact that vision shows is excused by a disturbance that an operator announced") {
+TEST_CASE("a disturbance announced by an operator excuses a contact shown by vision") {
   const RobotId pushed = GENERATE(RobotId{2}, RobotId{5});
   CAPTURE(pushed);
   History history = seen_crossing();

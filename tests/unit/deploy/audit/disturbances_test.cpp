@@ -44,7 +44,7 @@ struct Floor {
   Time now = kBegin;
 };
 
-TEST_CASE("only contacts of a disturbed robot are excused, and they carry the cause") {
+TEST_CASE("only contacts of a disturbed robot are excused, and they state the cause") {
   Floor floor;
   CHECK_FALSE(floor.contact(0, 1));
   floor.push(0, 1s);
@@ -56,7 +56,7 @@ TEST_CASE("only contacts of a disturbed robot are excused, and they carry the ca
   CHECK(floor.contact(std::nullopt, 0) == Cause("push"));
 }
 
-TEST_CASE("a robot rests where a disturbance has left it until it moves or is back in place") {
+TEST_CASE("a robot counts as resting where a disturbance left it until it moves or is back in place") {
   Floor floor;
   floor.robots[0]->is_in_place = floor.robots[1]->is_in_place = false;
   floor.push(0);
@@ -64,12 +64,12 @@ TEST_CASE("a robot rests where a disturbance has left it until it moves or is ba
   CHECK_FALSE(floor.disturbances.is_displaced(0));
   CHECK(floor.disturbances.rests_where_left(0));
   CHECK_FALSE(floor.disturbances.rests_where_left(1));
-  SECTION("it moves") {
+  SECTION("the robot moves") {
     floor.robots[0]->speed_mps = 0.2;
     floor.run(20ms);
     floor.robots[0]->speed_mps = 0;
   }
-  SECTION("it is back in place") { floor.robots[0]->is_in_place = true; }
+  SECTION("the robot is back in place") { floor.robots[0]->is_in_place = true; }
   floor.run(20ms);
   floor.robots[0]->is_in_place = false;
   floor.run(20ms);
@@ -100,27 +100,28 @@ TEST_CASE("the excuse of a pair ends when both robots have rested since the dist
   CHECK_FALSE(floor.contact(0, std::nullopt));
 }
 
-TEST_CASE("a contact with a robot that is still moving is excused until it has stopped") {
+TEST_CASE(
+    "a contact of a disturbed robot with a still moving robot is excused until that could have stopped") {
   Floor floor;
   floor.robots[1]->speed_mps = 1;
   floor.push(0);
   floor.run(300ms);
-  SECTION("a robot that was at rest") { CHECK_FALSE(floor.contact(0, 2)); }
-  SECTION("the moving robot") { CHECK(floor.contact(0, 1) == Cause("push")); }
-  SECTION("the moving robot after it has rested") {
+  SECTION("the other robot was at rest") { CHECK_FALSE(floor.contact(0, 2)); }
+  SECTION("the other robot is still moving") { CHECK(floor.contact(0, 1) == Cause("push")); }
+  SECTION("the other robot has rested and moves again") {
     floor.robots[1]->speed_mps = 0;
     floor.run(150ms);
     floor.robots[1]->speed_mps = 1;
     floor.run(20ms);
     CHECK_FALSE(floor.contact(0, 1));
   }
-  SECTION("a moving robot that could have braked by now moves with knowledge of the disturbed one") {
+  SECTION("the other robot has had time to brake") {
     floor.run(600ms);
     CHECK_FALSE(floor.contact(0, 1));
   }
 }
 
-TEST_CASE("a disturbed robot that drives on is back when it is in place a while after the disturbance") {
+TEST_CASE("a disturbed robot that drives on is back once it is in place a while after the disturbance") {
   Floor floor;
   floor.robots[0]->speed_mps = 1;
   floor.push(0);
@@ -143,10 +144,8 @@ TEST_CASE("no excuse lasts for ever") {
     floor.robots[0].reset();
   else
     floor.robots[0]->is_in_place = false;
-  SECTION("of a robot that never returns to its place") { floor.push(0); }
-  SECTION("of a disturbance whose end is not known") {
-    floor.disturbances.disturb(0, Time::max(), floor.now);
-  }
+  SECTION("the robot never returns to its place") { floor.push(0); }
+  SECTION("the disturbance has no known end") { floor.disturbances.disturb(0, Time::max(), floor.now); }
   floor.run(19s);
   CHECK(floor.contact(0, 1));
   floor.run(21s);
@@ -157,20 +156,20 @@ TEST_CASE("no excuse lasts for ever") {
 TEST_CASE("an excuse never lasts much longer than a minute, whatever end or clock is reported") {
   Floor floor;
   floor.push(0, 1h);
-  SECTION("an end in an hour") {}
-  SECTION("a clock that is set back") { floor.now -= 50s; }
+  SECTION("the reported end is in an hour") {}
+  SECTION("the clock is set back") { floor.now -= 50s; }
   floor.run(62s);
   CHECK_FALSE(floor.contact(0, 1));
 }
 
-TEST_CASE("the excuse of a pair in conflict lasts until it is apart again") {
+TEST_CASE("the excuse of a pair in conflict lasts until the two are apart again") {
   Floor floor;
   floor.robots[1]->position_m = {0.185, 0};
   floor.push(0);
   floor.run(3s);
   CHECK_FALSE(floor.contact(0, 2));
   SECTION("too close for the margin") { CHECK(floor.contact(0, 1) == Cause("push")); }
-  SECTION("too close for the inflation of one of them") {
+  SECTION("too close for one robot's inflation") {
     floor.robots[1]->position_m = {0.195, 0};
     floor.robots[0]->inflation_m = 0.01;
     floor.run(1s);
@@ -210,18 +209,18 @@ TEST_CASE("two robots in contact do not keep each other disturbed") {
   CHECK_FALSE(floor.contact(1, 2));
 }
 
-TEST_CASE("a cause is named by the message before or after the report, and unknown without one") {
+TEST_CASE("an operator's message names the cause of a disturbance, otherwise it is unknown") {
   Floor floor;
-  SECTION("no message") {
+  SECTION("no message names the cause") {
     floor.disturbances.disturb(0, floor.now, floor.now);
     CHECK(floor.contact(0, 1) == Cause(Disturbances::kUnknownCause));
   }
-  SECTION("a message after the report") {
+  SECTION("a message after the report names the cause") {
     floor.disturbances.disturb(0, floor.now, floor.now);
     floor.disturbances.announce(0, "slip");
     CHECK(floor.contact(0, 1) == Cause("slip"));
   }
-  SECTION("a message names one disturbance only") {
+  SECTION("a message names only one disturbance") {
     floor.push(0);
     floor.run(1s);
     floor.disturbances.disturb(0, floor.now, floor.now);
@@ -234,7 +233,7 @@ TEST_CASE("a cause is named by the message before or after the report, and unkno
   CHECK_FALSE(floor.contact(2, 3));
 }
 
-TEST_CASE("a repeated report of one disturbance counts once") {
+TEST_CASE("a disturbance that is reported repeatedly counts once") {
   Floor floor;
   const Time end = floor.now;
   for (int i = 0; i < 100; ++i) {
@@ -277,7 +276,7 @@ TEST_CASE("the excused time is the time in which a contact would have been excus
   }
 }
 
-TEST_CASE("without a disturbance nothing is excused at any time") {
+TEST_CASE("without a disturbance nothing is ever excused") {
   Floor floor;
   for (auto& robot : floor.robots) robot->is_in_place = false;
   floor.run(10s);

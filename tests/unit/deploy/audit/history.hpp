@@ -22,7 +22,7 @@ struct ReceivedMessage {
   AuditedMessage message;
 };
 
-/// The messages of a run, for auditing with or without modifications.
+/// The messages of a run, to be audited with or without modifications.
 struct History {
   Scenario scenario;
   std::vector<ReceivedMessage> messages;
@@ -41,18 +41,18 @@ struct History {
       return message && is_removed(*message);
     });
   }
-  /// An operator announces a push of this robot at `at`, and ground truth from then on reports it.
+  /// Announces an operator's push of this robot at `at`; ground truth reports it from then on.
   void push(RobotId robot, Time at);
-  /// From `at` onwards, ground truth reports one more contact; without a second robot, it is one with an
-  /// obstacle.
+  /// From `at` onwards, ground truth reports one more contact; without a second robot, it is a contact with
+  /// an obstacle.
   void touch(RobotId first, std::optional<RobotId> second, Time at);
-  /// Visits every copy of the version in any message.
+  /// Visits every copy of this version in any message.
   void each_mention(RobotId robot, VersionNumber number, const std::function<void(msg::Version&)>& use);
   /// Visits every version in any message.
   void each_version(const std::function<void(msg::Version&)>& use);
 };
 
-/// Collects all messages that an auditor hears in a system, in memory, until the system ends.
+/// Collects in memory all messages that an auditor would hear in a system, until the system ends.
 class HistoryRecorder {
  public:
   /// `history` must outlive the recorder, and the recorder must not outlive the system.
@@ -72,7 +72,7 @@ AuditTotals audit_of(const History& history, const AuditInput& input);
 AuditTotals audit_of(const History& history, const AuditInput& input,
                      const std::function<void(const Violation&)>& on_violation);
 
-/// One message of a history, and when it reaches the auditor.
+/// One message of a history and the time at which it reaches the auditor.
 struct Delivery {
   Time at;
   const AuditedMessage* message = nullptr;
@@ -80,8 +80,8 @@ struct Delivery {
 AuditTotals audit_of(const Scenario& scenario, const std::vector<Delivery>& deliveries,
                      const AuditInput& input);
 
-/// The history as received by a late joiner over a network that loses, duplicates and delays messages by up
-/// to 20 ms.
+/// The history as received by an auditor that joins late, over a network that loses, duplicates and delays
+/// messages by up to 20 ms.
 History degraded(const History& history, std::uint64_t seed, double loss, Duration joined_after);
 
 /// The recorded violations, one per line.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Histories with orders, of which one detail is modified.
+// Histories with orders, in which one detail is modified.
 #include <algorithm>
 #include <set>
 
@@ -31,7 +31,7 @@ void add(msg::OrderMemory& page, const msg::RememberedOrder& order) {
   page.order_count(static_cast<std::uint8_t>(page.order_count() + 1));
 }
 
-/// Adds memories of the coordinator that contain these orders all the time.
+/// Adds these orders to all memories of the coordinator.
 void remember(History& h, const std::vector<msg::RememberedOrder>& orders) {
   h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time) {
     if (page.process() < kCoordinator || page.page_count() == 0) return;
@@ -66,7 +66,7 @@ std::uint64_t violations(AuditRule rule, const std::function<void(History&)>& ta
   return count(totals, rule);
 }
 
-TEST_CASE("a grant while the coordinator remembers a hold of the robot, or of all, breaks a rule") {
+TEST_CASE("a grant to a robot while its coordinator remembers a hold of it breaks a rule") {
   const auto hold = [](std::uint32_t robot) {
     return remembered(msg::OrderKind::ORDER_HOLD, robot, kClient, 1000);
   };
@@ -84,7 +84,7 @@ TEST_CASE("a grant while the coordinator remembers a hold of the robot, or of al
   CHECK(held({}) == 0);
   CHECK(held({hold(kHeldRobot)}) == 1);
   CHECK(held({hold(msg::ALL_ROBOTS)}) == crossing().scenario.robots.size());
-  // A robot of all that was resumed by the owner or an operator may drive.
+  // A robot that its owner or an operator has resumed from a hold of all robots may drive.
   CHECK(held({hold(msg::ALL_ROBOTS), resume(kHeldRobot, kClient, 1001)}) ==
         crossing().scenario.robots.size() - 1);
   CHECK(held({hold(msg::ALL_ROBOTS), resume(kHeldRobot, kOperator, 1001)}) ==
@@ -94,7 +94,7 @@ TEST_CASE("a grant while the coordinator remembers a hold of the robot, or of al
   CHECK(held({hold(msg::ALL_ROBOTS), resume(kHeldRobot, kClient, 999)}) == crossing().scenario.robots.size());
 }
 
-TEST_CASE("a grant between two holds, of which the first was lifted, breaks no rule") {
+TEST_CASE("a grant between two holds breaks no rule if the first hold was lifted") {
   std::uint64_t number = 1000;
   CHECK(violations(AuditRule::kHeld, [&](History& h) {
           h.each<msg::OrderMemory>([&](msg::OrderMemory& page, Time) {
@@ -104,8 +104,7 @@ TEST_CASE("a grant between two holds, of which the first was lifted, breaks no r
         }) == 0);
 }
 
-TEST_CASE(
-    "a grant that a coordinator stamped later than a hold, because its clock was set back, breaks no rule") {
+TEST_CASE("a grant that seems later than a hold only because a clock was set back breaks no rule") {
   // The hold begins after the last grant, while the clock is behind for a second.
   const auto held = [](Duration set_back) {
     return violations(AuditRule::kHeld, [&](History& h) {
@@ -133,7 +132,7 @@ TEST_CASE(
   CHECK(held(10s) == 0);
 }
 
-TEST_CASE("a coordinator that no longer remembers a confirmed order, without a later one, breaks a rule") {
+TEST_CASE("a coordinator that forgets a confirmed order breaks a rule unless a later order replaces it") {
   const auto forgotten = [](const msg::RememberedOrder& order, std::vector<msg::RememberedOrder> kept) {
     return violations(AuditRule::kForgottenOrder, [&](History& h) {
       confirm(h, order);
@@ -177,7 +176,7 @@ TEST_CASE("a coordinator that no longer remembers a confirmed order, without a l
   CHECK(forgotten(zone, {other_zone}) == 1);
 }
 
-TEST_CASE("a memory of which a page is missing is not judged") {
+TEST_CASE("an order memory with a missing page is not judged") {
   CHECK(violations(AuditRule::kForgottenOrder, [](History& h) {
           confirm(h, remembered(msg::OrderKind::ORDER_HOLD, 99, kClient, 1000));
           h.each<msg::OrderMemory>([](msg::OrderMemory& page, Time) {
@@ -186,7 +185,7 @@ TEST_CASE("a memory of which a page is missing is not judged") {
         }) == 0);
 }
 
-/// Robot kHeldRobot is held, and robots are sent somewhere, before the active of two coordinators dies.
+/// Robot kHeldRobot is held and a robot is sent to a goal before the active of two coordinators dies.
 const History& taken_over() {
   static const History history = [] {
     Scenario scenario = load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml");
@@ -230,7 +229,7 @@ void forget(History& h, msg::OrderKind kind) {
   });
 }
 
-TEST_CASE("a new coordinator that does not remember an order which an agent remembers breaks a rule") {
+TEST_CASE("a new coordinator that does not remember an order that an agent remembers breaks a rule") {
   CHECK(violations_after_takeover([](History&) {}) == 0);
   for (const auto kind : {msg::OrderKind::ORDER_HOLD, msg::OrderKind::ORDER_GO}) {
     CAPTURE(static_cast<int>(kind));
@@ -245,7 +244,7 @@ TEST_CASE("a new coordinator that does not remember an order which an agent reme
   }
 }
 
-TEST_CASE("a history with orders that is received incompletely raises no false alarm") {
+TEST_CASE("an incompletely received history with orders raises no false alarm") {
   const std::uint64_t seed = GENERATE(range(std::uint64_t{1}, std::uint64_t{13}));
   const double loss = GENERATE(0.0, 0.1, 0.3, 0.7);
   CAPTURE(seed, loss);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What memories of coordinators prove, message by message.
+// What the order memories of coordinators prove, message by message.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/order_run.hpp"
 
 namespace sidestep::order_memory_test {
 
-TEST_CASE("a grant between two memories with one hold of its robot is reported once") {
+TEST_CASE("a grant between two memories with the same hold of its robot is reported once") {
   Run run;
   run.remember(kFirst, {hold(4, 100)});
   run.grant(kFirst, 4, 31);
@@ -22,7 +22,7 @@ TEST_CASE("a grant between two memories with one hold of its robot is reported o
 }
 
 TEST_CASE(
-    "a single message announces a hold, too, but only a complete memory shows that it is still in force") {
+    "a single message can announce a hold, but only a complete memory shows that it is still in force") {
   Run run;
   run.audit.on_memory(run.page(kFirst, {hold(4, 100)}, 0, 0));
   run.grant(kFirst, 4, 31);
@@ -32,38 +32,38 @@ TEST_CASE(
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
-TEST_CASE("a version that was not granted while the hold was in force breaks no rule") {
+TEST_CASE("a grant breaks no rule unless it was certainly made while the hold was in force") {
   Run run;
-  SECTION("a grant before the hold was announced") {
+  SECTION("the grant was made before the hold was announced") {
     run.grant(kFirst, 4, 31);
     run.remember(kFirst, {hold(4, 100)});
   }
-  SECTION("a grant at the time of the first memory") {
+  SECTION("the grant was made at the time of the first memory") {
     run.remember(kFirst, {hold(4, 100)});
     run.now_ns -= 1'000'000;
     run.grant(kFirst, 4, 31);
   }
-  SECTION("a grant that may repeat one before the hold") {
+  SECTION("the verdict may repeat a grant from before the hold") {
     const std::int64_t before_ns = run.now_ns;
     run.remember(kFirst, {hold(4, 100)});
     run.grant(kFirst, 4, 31, 7, before_ns);
   }
-  SECTION("a grant of another coordinator") {
+  SECTION("another coordinator made the grant") {
     run.remember(kFirst, {hold(4, 100)});
     run.grant(kSecond, 4, 31);
   }
-  SECTION("a grant of an earlier run of the coordinator") {
+  SECTION("an earlier run of the coordinator made the grant") {
     run.remember(kFirst, {hold(4, 100)});
     run.grant(kFirst, 4, 31);
     ++run.incarnations[kFirst];
   }
-  SECTION("a late grant of an earlier run of the coordinator") {
+  SECTION("an earlier run of the coordinator made the grant, whose verdict arrives late") {
     run.remember(kFirst, {hold(4, 100)});
     --run.incarnations[kFirst];
     run.grant(kFirst, 4, 31);
     ++run.incarnations[kFirst];
   }
-  SECTION("a grant while another memory shows the hold lifted") {
+  SECTION("another memory shows that the hold was lifted at the time of the grant") {
     run.remember(kFirst, {hold(4, 100)});
     run.remember(kFirst, {});
     run.grant(kFirst, 4, 31);
@@ -72,7 +72,7 @@ TEST_CASE("a version that was not granted while the hold was in force breaks no 
   CHECK(run.found.empty());
 }
 
-TEST_CASE("a grant at the time of the second memory may follow it") {
+TEST_CASE("a grant at the time of the second memory may have followed it") {
   Run run;
   run.remember(kFirst, {hold(4, 100)});
   run.grant(kFirst, 4, 31);
@@ -83,8 +83,7 @@ TEST_CASE("a grant at the time of the second memory may follow it") {
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
-TEST_CASE(
-    "a hold that was announced after a memory without it is in force, even if the memory arrives last") {
+TEST_CASE("a hold announced after a memory without it is in force, even if that memory arrives last") {
   Run run;
   const msg::OrderMemory first = run.page(kFirst, {}, 0, 2), second = run.page(kFirst, {}, 1, 2),
                          told = run.page(kFirst, {hold(4, 100)}, 0, 0);
@@ -96,7 +95,7 @@ TEST_CASE(
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
-TEST_CASE("a grant that may repeat an earlier one was not made before the given time") {
+TEST_CASE("a verdict breaks the rule if any earlier verdict that it may repeat also came after the hold") {
   Run run;
   run.remember(kFirst, {hold(4, 100)});
   const std::int64_t after_ns = run.now_ns + 1;
@@ -121,7 +120,7 @@ TEST_CASE("a memory counts only if all of its pages were received in one sequenc
   run.remember(kFirst, holds);
   run.grant(kFirst, 4, 31);
   bool is_whole = false;
-  SECTION("whole") {
+  SECTION("all pages arrive") {
     run.audit.on_memory(run.page(kFirst, holds, 0, 3));
     CHECK(run.found.empty());
     run.audit.on_memory(run.page(kFirst, {}, 1, 3));
@@ -129,7 +128,7 @@ TEST_CASE("a memory counts only if all of its pages were received in one sequenc
     run.audit.on_memory(run.page(kFirst, {}, 2, 3));
     is_whole = true;
   }
-  SECTION("started over") {
+  SECTION("the sequence starts over") {
     run.audit.on_memory(run.page(kFirst, {}, 0, 2));
     run.audit.on_memory(run.page(kFirst, holds, 0, 2));
     run.audit.on_memory(run.page(kFirst, {}, 1, 2));
@@ -139,7 +138,7 @@ TEST_CASE("a memory counts only if all of its pages were received in one sequenc
     run.audit.on_memory(run.page(kFirst, holds, 0, 3));
     run.audit.on_memory(run.page(kFirst, {}, 2, 3));
   }
-  SECTION("a page is of a later memory") {
+  SECTION("a page belongs to a later memory") {
     run.audit.on_memory(run.page(kFirst, holds, 0, 2));
     (void)run.page(kFirst, {}, 1, 2);
     (void)run.page(kFirst, {}, 0, 2);
@@ -150,7 +149,7 @@ TEST_CASE("a memory counts only if all of its pages were received in one sequenc
   CHECK(run.count(AuditRule::kHeld) == (is_whole ? 1 : 0));
 }
 
-TEST_CASE("a coordinator that forgets what it has confirmed is reported once, with the robot of the order") {
+TEST_CASE("a coordinator that forgets a confirmed order is reported once, with the order's robot") {
   const std::uint32_t robot = GENERATE(5u, std::uint32_t{msg::ALL_ROBOTS});
   Run run;
   run.grant(kFirst, 5, 1, 9);
@@ -160,21 +159,21 @@ TEST_CASE("a coordinator that forgets what it has confirmed is reported once, wi
   CHECK(run.found == std::vector<Found>{{AuditRule::kForgottenOrder, robot == 5 ? 5u : 3u, 0, 9}});
 }
 
-TEST_CASE("a coordinator may forget orders that it has not confirmed, or not yet") {
+TEST_CASE("a coordinator may forget an order that it has not certainly confirmed") {
   Run run;
-  SECTION("not answered") { run.send(hold(4, 100)); }
-  SECTION("answered otherwise") {
+  SECTION("it did not answer the order") { run.send(hold(4, 100)); }
+  SECTION("it answered that the order was replaced") {
     run.send(hold(4, 100));
     run.answer(kFirst, hold(4, 100), msg::OrderResult::RESULT_REPLACED);
   }
-  SECTION("nobody heard the order") { run.answer(kFirst, hold(4, 100)); }
-  SECTION("a resume") { run.confirm(kFirst, resume(4, 100)); }
-  SECTION("confirmed at the time of the memory") {
+  SECTION("no process sent the order") { run.answer(kFirst, hold(4, 100)); }
+  SECTION("the order is a resume") { run.confirm(kFirst, resume(4, 100)); }
+  SECTION("it confirmed the order at the time of the memory") {
     run.confirm(kFirst, hold(4, 100));
     run.now_ns -= 1'000'000;
   }
-  SECTION("confirmed by another coordinator") { run.confirm(kSecond, hold(4, 100)); }
-  SECTION("confirmed by an earlier run of it") {
+  SECTION("another coordinator confirmed the order") { run.confirm(kSecond, hold(4, 100)); }
+  SECTION("an earlier run of the coordinator confirmed the order") {
     run.confirm(kFirst, hold(4, 100));
     ++run.incarnations[kFirst];
   }
@@ -182,8 +181,7 @@ TEST_CASE("a coordinator may forget orders that it has not confirmed, or not yet
   CHECK(run.found.empty());
 }
 
-TEST_CASE(
-    "of two confirmed orders on the same subject, the later one must be remembered, whichever came first") {
+TEST_CASE("of two confirmed orders on the same subject, the one with the higher number must be remembered") {
   const bool is_in_order = GENERATE(true, false);
   const bool is_kept = GENERATE(true, false);
   CAPTURE(is_in_order, is_kept);
@@ -194,7 +192,7 @@ TEST_CASE(
   CHECK(run.count(AuditRule::kForgottenOrder) == (is_kept ? 0 : 1));
 }
 
-TEST_CASE("orders to drive share one place, but operator, referee and scenario have their own") {
+TEST_CASE("all clients' drive orders share one place, but operator, referee and scenario have their own") {
   const auto go = [](std::uint32_t client, std::uint64_t number) {
     return order(msg::OrderKind::ORDER_GO, 4, client, number);
   };
@@ -214,7 +212,8 @@ TEST_CASE("orders to drive share one place, but operator, referee and scenario h
   }
 }
 
-TEST_CASE("of two orders with the same number, the one of the client with the higher id replaces the other") {
+TEST_CASE(
+    "of two orders with the same number, the one from the client with the higher id replaces the other") {
   const auto go = [](std::uint32_t client) { return order(msg::OrderKind::ORDER_GO, 4, client, 100); };
   Run run;
   run.confirm(kFirst, go(kClient));
@@ -225,9 +224,7 @@ TEST_CASE("of two orders with the same number, the one of the client with the hi
   CHECK(run.count(AuditRule::kForgottenOrder) == 1);
 }
 
-TEST_CASE(
-    "a coordinator that remembers many resumes may have dropped holds, and one with many zone removals, "
-    "zones") {
+TEST_CASE("a coordinator that remembers many resumes or zone removals may have dropped holds or zones") {
   const bool are_many = GENERATE(true, false);
   CAPTURE(are_many);
   Run run;
@@ -240,16 +237,16 @@ TEST_CASE(
     memory.push_back(is_hold ? resume(i, 1, kOtherClient)
                              : order(msg::OrderKind::ORDER_REMOVE_ZONE, msg::ALL_ROBOTS, kOtherClient, 1, i));
   }
-  // These are not of the kind that is dropped.
+  // Resumes and removals of another kind do not cause orders to be dropped.
   for (std::uint32_t i = 0; i < 300; ++i) memory.push_back(is_hold ? resume(i, 1, kOperator) : resume(i, 1));
   run.confirm(kFirst, lost);
   run.remember(kFirst, memory);
   CHECK(run.count(AuditRule::kForgottenOrder) == (are_many ? 0 : 1));
-  // It remains possible: the orders that were dropped are gone.
+  // The same holds for later memories, because dropped orders do not return.
   run.confirm(kFirst, lost);
   run.remember(kFirst, {});
   CHECK(run.count(AuditRule::kForgottenOrder) == (are_many ? 0 : 2));
-  // Other orders are judged.
+  // Orders of other kinds are judged.
   const auto go = order(msg::OrderKind::ORDER_GO, 4, kClient, 100);
   const auto other = is_hold ? zone : hold(5, 100);
   run.found.clear();
@@ -271,22 +268,22 @@ TEST_CASE("a grant during a hold of all robots is not judged once resumes may ha
   CHECK(run.count(AuditRule::kHeld) == (robot == 4 ? 1 : 0));
 }
 
-TEST_CASE("the latest of very many orders are judged") {
+TEST_CASE("only the latest of very many orders are judged") {
   Run run;
-  SECTION("confirmed ones") {
+  SECTION("confirmed orders") {
     for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.confirm(kFirst, hold(i, 100 + i));
     run.remember(kFirst, {});
     CHECK(run.found.size() == kMaxKept);
     CHECK(std::ranges::count(run.found, RobotId{9}, &Found::robot) == 0);
     CHECK(std::ranges::count(run.found, RobotId{10}, &Found::robot) == 1);
   }
-  SECTION("sent ones") {
+  SECTION("sent orders") {
     for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.send(hold(i, 100 + i));
     for (const std::uint32_t i : {9u, 10u}) run.answer(kFirst, hold(i, 100 + i));
     run.remember(kFirst, {});
     CHECK(run.found == std::vector<Found>{{AuditRule::kForgottenOrder, 10, 0, 0}});
   }
-  SECTION("those that agents have heard of") {
+  SECTION("orders that agents announced") {
     for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.audit.on_memory(run.page(4, {hold(i, 100 + i)}));
     run.confirm(kFirst, hold(9, 109));
     run.confirm(kFirst, hold(10, 110));

@@ -45,7 +45,7 @@ inline msg::RememberedOrder resume(std::uint32_t robot, std::uint64_t number,
   return order(msg::OrderKind::ORDER_RESUME, robot, client, number);
 }
 
-/// Robots 3, 4 and 5, and two coordinators. Each call is one message, sent a millisecond later than the last.
+/// Robots 3, 4 and 5, and two coordinators. Each call is one message, a millisecond after the previous one.
 struct Run {
   explicit Run(bool is_complete = true)
       : audit({3, 4, 5}, is_complete, stamps,

@@ -5,8 +5,8 @@
 
 namespace sidestep::order_memory_test {
 
-/// An order that the first coordinator has confirmed, that an agent has announced to the second one, and that
-/// the second one does not remember.
+/// An order that the first coordinator has confirmed and an agent has announced to the second one, which does
+/// not remember it.
 struct Succession : Run {
   using Run::Run;
   void begin() { confirm(kFirst, lost); }
@@ -41,7 +41,7 @@ TEST_CASE("a new coordinator is reported only if an agent has certainly announce
   run.begin();
   std::size_t expected = 0;
   SECTION("no agent knows the order") { run.succeed(); }
-  SECTION("not all messages are received, so the agent may have learned something else") {
+  SECTION("messages may be missed, so the agent may have learned something else") {
     run.learn();
     run.succeed();
     expected = is_complete ? 1 : 0;
@@ -55,13 +55,13 @@ TEST_CASE("a new coordinator is reported only if an agent has certainly announce
     run.learn();
     run.succeed();
   }
-  SECTION("the agent learns it between registrations in two epochs") {
+  SECTION("the agent learns the order between registrations in two epochs") {
     run.register_agent(4, 7);
     run.learn();
     run.succeed();
     expected = is_complete ? 1 : 0;
   }
-  SECTION("an agent that has restarted since registers") {
+  SECTION("the agent has restarted before it registers") {
     run.learn();
     ++run.incarnations[4];
     run.succeed();
@@ -82,7 +82,7 @@ TEST_CASE("a new coordinator is reported only if an agent has certainly announce
     run.register_agent(99, 8);
     run.grant(kSecond, 5, 31, 8);
   }
-  SECTION("somebody else speaks for the agent") {
+  SECTION("another process speaks for the agent") {
     msg::OrderMemory forged = run.page(4, {run.lost});
     forged.header().sender(5);
     run.audit.on_memory(forged);
@@ -92,12 +92,12 @@ TEST_CASE("a new coordinator is reported only if an agent has certainly announce
     run.learn();
     run.register_agent(4, 8);
   }
-  SECTION("the coordinator has granted only after the first page of its memory") {
+  SECTION("the coordinator granted only after the first page of its memory") {
     run.learn();
     run.register_agent(4, 8);
     run.audit.on_memory(run.page(kSecond, {}, 0, 2));
     run.grant(kSecond, 5, 31, 8);
-    // A grant is no message of this topic.
+    // A grant is not part of this topic, so it leaves no gap in the message numbers.
     run.audit.on_memory(run.page(kSecond, {}, 1, 2));
     CHECK(run.found.empty());
     return;
@@ -121,17 +121,17 @@ TEST_CASE("a new coordinator is reported only if an agent has certainly announce
   CHECK(run.forgotten() == expected);
 }
 
-TEST_CASE("an agent that follows an order to drive remembers it") {
+TEST_CASE("an agent that follows a drive order remembers it") {
   const bool is_complete = GENERATE(true, false);
   Succession run(is_complete);
   run.lost = order(msg::OrderKind::ORDER_GO, 4, kClient, 100);
   run.begin();
-  SECTION("it names the order") {
+  SECTION("the agent names the order") {
     run.status(4, false, 100, kClient);
     run.succeed();
     CHECK(run.forgotten() == (is_complete ? 1 : 0));
   }
-  SECTION("it names another one") {
+  SECTION("the agent names another order") {
     run.status(4, false, 99, kClient);
     run.status(4, false, 100, kOtherClient);
     run.status(4, false);
@@ -140,50 +140,48 @@ TEST_CASE("an agent that follows an order to drive remembers it") {
   }
 }
 
-TEST_CASE(
-    "an agent that reports being held remembers the only hold that was sent to it since it was last not "
-    "held") {
+TEST_CASE("an agent that reports being held remembers the only hold sent to it since it was last free") {
   const bool is_complete = GENERATE(true, false);
   Succession run(is_complete);
   run.status(4, false);
   bool is_known = true;
-  SECTION("the only one") { run.begin(); }
-  SECTION("the only one, repeated") {
+  SECTION("only this hold was sent") { run.begin(); }
+  SECTION("only this hold was sent, and it was repeated") {
     run.begin();
     run.send(run.lost);
   }
-  SECTION("one for all robots") {
+  SECTION("only this hold was sent, for all robots") {
     run.lost = hold(msg::ALL_ROBOTS, 100);
     run.begin();
   }
-  SECTION("besides one of another robot") {
+  SECTION("another robot's hold was sent too") {
     run.begin();
     run.send(hold(5, 90));
   }
-  SECTION("besides another order") {
+  SECTION("an order of another kind was sent too") {
     run.begin();
     run.send(order(msg::OrderKind::ORDER_GO, 4, kClient, 90));
   }
-  SECTION("of two, which were not the cause of one earlier report") {
+  SECTION("two earlier holds ended before this hold was sent") {
     run.send(hold(4, 70));
     run.send(hold(4, 71));
     run.status(4, true);
     run.status(4, false);
     run.begin();
   }
-  SECTION("one of two") {
+  SECTION("two holds were sent") {
     run.send(hold(4, 90, kOtherClient));
     run.begin();
     is_known = false;
   }
-  SECTION("one that was sent when the robot was held already") {
+  SECTION("the robot was already held when this hold was sent") {
     run.send(hold(4, 90));
     run.status(4, true);
     run.begin();
     run.status(4, true);
     is_known = false;
   }
-  SECTION("one that was sent before an earlier report of being held ended") {
+  SECTION("this hold was sent during an earlier hold") {
     run.send(hold(4, 90));
     run.status(4, true);
     run.begin();
@@ -195,7 +193,7 @@ TEST_CASE(
   CHECK(run.forgotten() == (is_known && is_complete ? 1 : 0));
 }
 
-TEST_CASE("reports of robots that are late, or not from their agents, prove nothing") {
+TEST_CASE("a status report that is late or not from the robot's agent proves nothing") {
   Succession run;
   run.status(4, false);
   SECTION("an earlier report arrives late") {
@@ -219,7 +217,7 @@ TEST_CASE("reports of robots that are late, or not from their agents, prove noth
   CHECK(run.forgotten() == 0);
 }
 
-TEST_CASE("the time at which a restarted agent learned an order counts") {
+TEST_CASE("what counts is the time at which the restarted agent learned an order") {
   Succession run;
   run.begin();
   run.learn();

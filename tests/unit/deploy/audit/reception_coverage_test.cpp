@@ -29,7 +29,7 @@ TEST_CASE("a source that is heard often counts as heard all the time") {
 
 TEST_CASE("if a source is never heard, nothing is covered") { CHECK(one_second(2).share(at(1s), true) == 0); }
 
-TEST_CASE("a time that has not begun or is empty is not covered") {
+TEST_CASE("time that has not begun or is empty is not covered") {
   ReceptionCoverage time(1);
   time.hear(0, at(1s), kEverything);
   CHECK(time.share(at(2s), true) == 0);
@@ -37,25 +37,25 @@ TEST_CASE("a time that has not begun or is empty is not covered") {
   CHECK(time.share(at(2s), true) == 0);
 }
 
-TEST_CASE("only silence during which messages were missed counts") {
+TEST_CASE("only silence during which messages were missed lowers the coverage") {
   ReceptionCoverage time = one_second(1);
-  SECTION("nothing was missed") {
+  SECTION("no messages were missed") {
     time.hear(0, at(2s), Duration{0});
     CHECK(time.share(at(2s), true) == 1);
   }
-  SECTION("messages of the last half second") {
+  SECTION("messages of the last half second were missed") {
     time.hear(0, at(2s), 500ms);
     CHECK(time.share(at(2s), true) == Approx(0.75));
   }
-  SECTION("more than the silence") {
+  SECTION("messages of more than the silence were missed") {
     time.hear(0, at(2s), 5s);
     CHECK(time.share(at(2s), true) == Approx(0.5));
   }
-  SECTION("a silence that has not ended") {
+  SECTION("the silence has not ended") {
     CHECK(time.share(at(2s), true) == Approx(0.5));
     CHECK(time.share(at(2s), false) == 1);
   }
-  SECTION("an expected silence") {
+  SECTION("the silence was expected") {
     time.expect_silence(0);
     CHECK(time.share(at(2s), true) == 1);
     time.hear(0, at(2s), kEverything);
@@ -73,7 +73,7 @@ TEST_CASE("messages heard before the beginning do not count") {
   CHECK(time.share(at(2s), false) == Approx(0.5));
 }
 
-/// For each millisecond, whether every source was heard in it.
+/// The share of milliseconds in which every source counted as heard.
 double slow_share(const std::vector<std::vector<Duration>>& heard_at, Duration end) {
   int covered = 0;
   const auto count = static_cast<int>(end / 1ms);
@@ -91,7 +91,7 @@ double slow_share(const std::vector<std::vector<Duration>>& heard_at, Duration e
   return covered / static_cast<double>(count);
 }
 
-TEST_CASE("the share of several sources agrees with counting milliseconds") {
+TEST_CASE("the covered share of several sources agrees with counting milliseconds") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -112,7 +112,7 @@ TEST_CASE("the share of several sources agrees with counting milliseconds") {
   }
 }
 
-TEST_CASE("no silence is left out, however many there are") {
+TEST_CASE("every silence counts, however many there are") {
   ReceptionCoverage time(1);
   time.begin(kBegin);
   for (int i = 1; i <= 1000; ++i) {
@@ -120,7 +120,7 @@ TEST_CASE("no silence is left out, however many there are") {
     time.hear(0, at(i * 1s - 200ms), kEverything);
     time.hear(0, at(i * 1s), kEverything);
   }
-  // 700 ms of each second.
+  // 700 ms of each second are silent.
   CHECK(time.share(at(1000s), true) == Approx(0.3));
 }
 

@@ -41,7 +41,7 @@ TEST_CASE("robots that overlap in two observations count as one contact until th
   CHECK(frames.show_apart(0.179) == 1);
 }
 
-TEST_CASE("a contact states when the two were last seen apart, if ever") {
+TEST_CASE("a contact states when the robots were last seen apart, if ever") {
   Frames frames;
   const auto touch = [&](const Vec2& second_m) {
     std::vector<SeenContact> began;
@@ -77,7 +77,7 @@ TEST_CASE("a robot that touches an obstacle is found") {
   CHECK(frames.show(Vec2(0, 2.82), Vec2(2, 2)) == 1);
 }
 
-TEST_CASE("a robot that touches a blocked cell of the map is found") {
+TEST_CASE("a robot that touches a blocked map cell is found") {
   Scenario s;
   s.vision.position_noise_m = 0.0005;
   MapGrid grid;
@@ -115,7 +115,7 @@ TEST_CASE("positions more than 20 ms apart in time are not compared") {
   CHECK(found == begins);
 }
 
-TEST_CASE("a contact that was observed once before world states were missed must be observed twice again") {
+TEST_CASE("after missed world states, a contact observed once must be observed twice again") {
   Frames frames;
   CHECK(frames.show_apart(0.17) == 0);
   frames.contacts.on_missed();
@@ -127,7 +127,7 @@ TEST_CASE("a contact that was observed once before world states were missed must
   CHECK(frames.show_apart(0.17) == 0);
 }
 
-TEST_CASE("positions of different times are compared at one time") {
+TEST_CASE("positions observed at different times are extrapolated to one time") {
   SeenContacts contacts(scenario(0.0005));
   // The second robot follows the first one at 2 m/s, 0.21 m behind, and is observed 19 ms later.
   for (std::int64_t i = 1; i <= 5; ++i) {
@@ -143,7 +143,7 @@ TEST_CASE("positions of different times are compared at one time") {
   CHECK(0.21 - 2 * 0.019 < 0.18);
 }
 
-TEST_CASE("robots that keep the guaranteed distance are never in contact, those that touch are found soon") {
+TEST_CASE("robots at the guaranteed distance are never in contact, and robots that touch are found soon") {
   for (const double noise_m : {0.0005, 0.001, 0.002}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       CAPTURE(noise_m, seed);

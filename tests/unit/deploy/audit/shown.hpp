@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// A stage whose simulator shows both robots in place, unless a test changes that.
+/// A stage whose simulator shows both robots in place unless a test changes that.
 struct Shown : Stage {
   explicit Shown(const AuditInput& input = kComplete, double inflation_m = 0)
       : Stage(stage_scenario(), input) {
@@ -25,7 +25,7 @@ struct Shown : Stage {
     message.valid_at_ns(to_ns(valid_at));
     auditor.on_truth(message, now);
   }
-  /// Ground truth, and then facts of both robots, which are compared with it.
+  /// Sends ground truth and then both robots' reports, which are compared with it.
   void run(Duration duration) {
     for (const Time end = now + duration; now < end;) {
       advance(std::chrono::milliseconds(10));

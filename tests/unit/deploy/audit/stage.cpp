@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-// Rules that concern no epoch.
+// These rules do not concern an epoch.
 constexpr AuditRule kWithoutEpoch[] = {AuditRule::kUniqueVersion,   AuditRule::kSent,
                                        AuditRule::kSwitch,          AuditRule::kLateSwitch,
                                        AuditRule::kOffReference,    AuditRule::kTracking,

@@ -13,23 +13,23 @@ namespace sidestep {
 /// Robots 0 and 1 at rest on an empty floor of 6 m by 4 m, 2 m apart.
 Scenario stage_scenario();
 
-/// A run that a test composes message by message, with its audit. Each call is one message, which the auditor
-/// receives immediately. By default everything follows the protocol.
+/// A run that a test composes message by message, with its audit. Each call sends one message, which the
+/// auditor receives immediately. By default everything follows the protocol.
 class Stage {
  public:
   static constexpr std::uint32_t kCoordinator = 10'000;  ///< the sender's id
-  static constexpr Incarnation kLife = 500;              ///< of every process but the agents
+  static constexpr Incarnation kLife = 500;              ///< of every process except the agents
   static constexpr Incarnation kAgent = 700;
 
   explicit Stage(Scenario staged = stage_scenario(), const AuditInput& input = kComplete);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  /// Every robot reports its rest, and its agent registers that.
+  /// Every robot reports its rest, and its agent registers it.
   void begin();
   /// A robot's initial rest, version 0.
   msg::Version rest(RobotId robot) const;
-  /// A version at rest where `base` is, with this number, that starts after `in`.
+  /// A version with this number that rests where `base` is and starts after `in`.
   msg::Version next(const msg::Version& base, VersionNumber number,
                     Duration in = std::chrono::milliseconds(50)) const;
 
@@ -55,7 +55,7 @@ class Stage {
 
   Scenario scenario;
   Time now{std::chrono::seconds(1000)};
-  Epoch epoch = 5;  ///< of all messages but facts
+  Epoch epoch = 5;  ///< of all messages except robot reports
   std::uint32_t coordinator = kCoordinator;
   Incarnation coordinator_incarnation = kLife;
   std::array<msg::Feedback, 2> robot_reports;  ///< what each robot reports next
@@ -66,10 +66,10 @@ class Stage {
   std::map<std::tuple<std::string_view, std::uint32_t, Incarnation>, std::uint64_t> sent_;
 };
 
-/// Checks that only this rule was broken, and how often.
+/// Checks that only this rule was broken, this often.
 void check_only(const Stage& stage, AuditRule rule, std::uint64_t expected);
 
-/// Changes the version so that it reaches this speed along x within a second, and brakes in another second.
+/// Changes the version so that it reaches this speed along x within one second and brakes for another second.
 msg::Version moving(msg::Version version, double speed_mps);
 
 }  // namespace sidestep

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// An unmodified history of crossing.yaml, the same at each call.
+/// An unmodified history of crossing.yaml, identical for each call.
 const History& crossing();
 
 inline constexpr AuditInput kComplete{true, {}};

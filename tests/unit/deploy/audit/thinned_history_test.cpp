@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever an auditor misses, it finds nothing that one that hears everything does not find.
+// Whatever an auditor misses, it finds no violation that a complete audit does not find.
 #include <cstdlib>
 #include <fmt/format.h>
 #include <iostream>
@@ -15,7 +15,7 @@ namespace sidestep::thinned_history_test {
 using namespace std::chrono_literals;
 
 /// All messages of a trial of the random campaign, with deaths, partitions, second agents, pushes, lifted
-/// robots, clocks that are set, and so on. nullopt if the campaign does not judge the trial by its audit,
+/// robots, clocks that are set, and so on. nullopt if the campaign does not judge the trial by its audit
 /// because some process believed a second simulator.
 std::optional<History> history_of_trial(std::uint64_t seed) {
   const Trial trial = sample_trial(seed, 12s, std::nullopt);
@@ -86,7 +86,7 @@ TEST_CASE("whatever an audit of a campaign's run misses, it raises no false alar
 
 TEST_CASE("whatever an audit of a campaign's run misses, it raises no false alarm, in a thousand runs",
           "[.long][slow]") {
-  // SIDESTEP_FIRST_SEED and SIDESTEP_SEEDS choose a part of them.
+  // SIDESTEP_FIRST_SEED and SIDESTEP_SEEDS choose a subset of the runs.
   const Counts counts = audit_thinned(number("SIDESTEP_FIRST_SEED", 1), number("SIDESTEP_SEEDS", 1000), 10);
   std::cout << text_of(counts) << "\n";
   CHECK(counts.audits > 0);

@@ -12,11 +12,11 @@ namespace sidestep {
 /// What an auditor on a bad network hears of a history.
 struct Thinned {
   std::vector<Delivery> deliveries;  ///< in order of arrival; they point into the history
-  std::string losses;                ///< description of the losses
+  std::string losses;                ///< a description of the losses
 };
 
-/// Loses messages of a history for a random mixture of causes: independently, in bursts, by topic, by sender,
-/// by robot, all messages for whole seconds, or all before a late start. Also delays them, so that topics
+/// Loses messages of a history for a random mixture of causes: independently, in bursts, by topic, sender or
+/// robot, all messages for whole seconds, or all before a late start. Also delays messages so that topics
 /// overtake each other. Without ground truth, operators' announcements of disturbances are not lost.
 Thinned thinned(const History& history, std::uint64_t seed);
 

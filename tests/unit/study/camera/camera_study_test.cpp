@@ -27,18 +27,18 @@ TEST_CASE("the quick study guides the robot by camera without contacts or false 
   CHECK(folder.has_png("camera"));
 }
 
-TEST_CASE("a robot that is pushed or whose target moves gets another plan, and otherwise keeps its plan") {
+TEST_CASE("only a robot that is pushed or whose target moves gets a new plan") {
   const std::uint64_t seed = GENERATE(5u, 6u);
   CAPTURE(seed);
   CHECK(drive(DriveEvent::kNone, PixelPlanner::kCells, seed).replans == 0);
-  // Two for the target; its new place may lie where the moving robot cannot turn at once.
+  // Two new plans for the target; its new place may lie where the moving robot cannot turn at once.
   const int replans = drive(DriveEvent::kTargetMoves, PixelPlanner::kCells, seed).replans;
   CHECK(replans >= 2);
   CHECK(replans <= 6);
   CHECK(drive(DriveEvent::kRobotPushed, PixelPlanner::kDiamonds, seed).replans >= 1);
 }
 
-TEST_CASE("a robot stops at the first image of a bumped camera, and drives on when it is back") {
+TEST_CASE("a robot stops at the first image of a bumped camera and drives on once the camera is back") {
   const DriveResult result = drive(DriveEvent::kCameraBumped, PixelPlanner::kDiamonds, 7);
   CHECK(result.noticed_after_frames == 1);
   CHECK(result.blind_m < 0.2);

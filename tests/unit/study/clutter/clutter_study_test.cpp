@@ -58,7 +58,7 @@ TEST_CASE("the summary of the clutter study counts the runs of each planner and 
   CHECK(plot.lines[1].points[0].median == 1);
 }
 
-TEST_CASE("a scene of the clutter study depends on the seed, and not on the planner") {
+TEST_CASE("a scene of the clutter study depends on the seed and not on the planner") {
   ClutterSettings settings;
   settings.is_building = GENERATE(false, true);
   settings.robots = 4;

@@ -9,7 +9,7 @@
 
 namespace sidestep::corner_study_test {
 
-TEST_CASE("the quick study of corners finds no robot that moves when it is touched") {
+TEST_CASE("in the quick study of corners no robot moves when it is touched") {
   StudyFolder folder;
   StudyOptions options;
   options.folder = folder.path();
@@ -28,7 +28,7 @@ TEST_CASE("the quick study of corners finds no robot that moves when it is touch
   CHECK(folder.has_png("corners"));
 }
 
-TEST_CASE("the quick study of doorways finds no robot that moves when it is touched") {
+TEST_CASE("in the quick study of doorways no robot moves when it is touched") {
   StudyFolder folder;
   StudyOptions options;
   options.folder = folder.path();
@@ -40,7 +40,7 @@ TEST_CASE("the quick study of doorways finds no robot that moves when it is touc
   for (const StudyRow& row : rows) CHECK(row.at("crashes_in_motion") == "0");
 }
 
-TEST_CASE("in scenes of doorways people walk through no wall, many hardly fit, and all step out") {
+TEST_CASE("in doorway scenes people walk through no wall, many hardly fit, and all step out") {
   int tight = 0, people = 0;
   for (std::size_t kind = 0; kind < kDoorwayKinds.size(); ++kind) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -57,7 +57,7 @@ TEST_CASE("in scenes of doorways people walk through no wall, many hardly fit, a
           nearest_m = std::min(nearest_m, map.distance_m(person.path_m[i], 1));
         }
         tight += nearest_m < person.radius_m + 0.03;
-        // It ends in the corridor.
+        // The walk ends in the corridor.
         CHECK(person.path_m.back().y() < person.path_m.front().y() - 0.1);
       }
     }
@@ -66,7 +66,7 @@ TEST_CASE("in scenes of doorways people walk through no wall, many hardly fit, a
   CHECK(tight > people / 4);
 }
 
-TEST_CASE("in scenes of corners people walk through no obstacle, and the robot does not see its goal") {
+TEST_CASE("in corner scenes people walk through no obstacle, and the robot does not see its goal") {
   for (std::size_t kind = 0; kind < kCornerKinds.size(); ++kind) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       CAPTURE(kCornerKinds[kind], seed);

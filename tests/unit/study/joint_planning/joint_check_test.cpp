@@ -6,7 +6,7 @@
 
 namespace sidestep::joint_check_test {
 
-/// Two robots that drive past each other, 0.3 m apart, and a circle beside them.
+/// Two robots that drive past each other, 0.3 m apart, with a circle beside them.
 struct Passing {
   Passing() {
     problem.field = {4, 2};

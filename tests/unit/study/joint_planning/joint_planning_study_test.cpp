@@ -7,7 +7,7 @@
 
 namespace sidestep::joint_planning_study_test {
 
-TEST_CASE("the quick study of joint planning solves its scenes without faults by every method") {
+TEST_CASE("every method solves the scenes of the quick joint-planning study without faults") {
   StudyFolder folder;
   StudyOptions options;
   options.folder = folder.path();

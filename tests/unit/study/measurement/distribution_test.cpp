@@ -6,7 +6,7 @@
 
 namespace sidestep::distribution_test {
 
-TEST_CASE("the quantiles of a distribution do not depend on the order in which its values are added") {
+TEST_CASE("the quantiles of a distribution do not depend on the order of its values") {
   Rng rng(3);
   Distribution one, parts[2];
   std::vector<double> sorted;

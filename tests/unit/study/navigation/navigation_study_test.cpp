@@ -6,7 +6,7 @@
 
 namespace sidestep::navigation_study_test {
 
-TEST_CASE("the quick study of navigation functions shows what grids and costs do") {
+TEST_CASE("the quick study of navigation functions shows the effects of grids and costs") {
   StudyFolder folder;
   StudyOptions options;
   options.folder = folder.path();

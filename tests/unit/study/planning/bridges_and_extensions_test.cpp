@@ -6,7 +6,7 @@
 
 namespace sidestep::bridges_and_extensions_test {
 
-TEST_CASE("the experiment on bridges and extensions depends on its seed alone") {
+TEST_CASE("the experiment on bridges and extensions depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return bridges_and_extensions({{1, 8}, {1, 4}, 2, 4}, seed, advance);
   });

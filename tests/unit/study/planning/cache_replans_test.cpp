@@ -6,13 +6,13 @@
 
 namespace sidestep::cache_replans_test {
 
-TEST_CASE("the experiment on caches depends on its seed alone") {
+TEST_CASE("the experiment on caches depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return cache_replans({.replans = 40}, seed, advance);
   });
 }
 
-TEST_CASE("with a cache replans keep fewer nodes and paths are shorter") {
+TEST_CASE("with a cache, replans keep fewer nodes and paths are shorter") {
   const auto seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   const auto rows = rows_of(cache_replans({.replans = 800}, seed, [](auto, auto) {}));

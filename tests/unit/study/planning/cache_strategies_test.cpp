@@ -6,13 +6,13 @@
 
 namespace sidestep::cache_strategies_test {
 
-TEST_CASE("the experiment on cache strategies depends on its seed alone") {
+TEST_CASE("the experiment on cache strategies depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return cache_strategies({{0, 0.5}, 2, 20}, seed, advance);
   });
 }
 
-TEST_CASE("with each strategy replans keep fewer nodes the more often they grow towards waypoints") {
+TEST_CASE("with each strategy, replans keep fewer nodes the more often they grow towards waypoints") {
   const auto seed = GENERATE(1u, 4u);
   CAPTURE(seed);
   const auto rows = rows_of(cache_strategies({{0, 0.2, 0.7}, 2, 200}, seed, [](auto, auto) {}));

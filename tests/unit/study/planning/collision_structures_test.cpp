@@ -11,13 +11,13 @@
 
 namespace sidestep::collision_structures_test {
 
-TEST_CASE("the experiment on collision structures depends on its seed alone") {
+TEST_CASE("the experiment on collision structures depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return collision_structures({{4, 64}, 500, 2}, seed, advance);
   });
 }
 
-TEST_CASE("the experiment on domains depends on its seed alone") {
+TEST_CASE("the experiment on domains depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return collision_domains({.obstacles = 64, .queries = 200, .repetitions = 2, .rounds = 2}, seed, advance);
   });

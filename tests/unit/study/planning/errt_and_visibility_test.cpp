@@ -6,7 +6,7 @@
 
 namespace sidestep::errt_and_visibility_test {
 
-TEST_CASE("the experiment on trees and visibility graphs depends on its seed alone") {
+TEST_CASE("the experiment on trees and visibility graphs depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return errt_and_visibility({{4, 32}, 2, 4}, seed, advance);
   });

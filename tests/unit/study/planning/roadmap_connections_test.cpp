@@ -17,13 +17,13 @@ RoadmapConnections sizes(std::size_t worlds, std::size_t queries) {
   return settings;
 }
 
-TEST_CASE("the experiment on roadmap connections depends on its seed alone") {
+TEST_CASE("the experiment on roadmap connections depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return roadmap_connections(sizes(2, 3), seed, advance);
   });
 }
 
-TEST_CASE("roadmaps with more edges solve more queries, and fewer after obstacles have moved") {
+TEST_CASE("roadmaps solve more queries with more edges and fewer after obstacles have moved") {
   const auto seed = GENERATE(1u, 20u);
   CAPTURE(seed);
   const auto rows = rows_of(roadmap_connections(sizes(4, 20), seed, [](auto, auto) {}));

@@ -6,13 +6,13 @@
 
 namespace sidestep::terrain_structures_test {
 
-TEST_CASE("the experiment on terrain structures depends on its seed alone") {
+TEST_CASE("the experiment on terrain structures depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& progress) {
     return terrain_structures({{4, 8}, 100, 2, 8192}, seed, progress);
   });
 }
 
-TEST_CASE("all terrain structures agree with a comparison of all triangles") {
+TEST_CASE("all terrain structures agree with a search over all triangles") {
   const auto seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   const auto rows = rows_of(terrain_structures({{4, 16}, 300, 1, 8192}, seed, [](auto, auto) {}));
@@ -25,7 +25,7 @@ TEST_CASE("all terrain structures agree with a comparison of all triangles") {
   }
 }
 
-TEST_CASE("large terrains are not timed with the linear list") {
+TEST_CASE("the linear list is not timed on large terrains") {
   const auto rows = rows_of(terrain_structures({{8, 16}, 50, 1, 200}, 1, [](auto, auto) {}));
   for (const StudyRow& row : rows) CHECK((row.at("structure") != "linear" || row.at("triangles") == "128"));
 }

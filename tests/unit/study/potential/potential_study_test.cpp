@@ -58,7 +58,7 @@ TEST_CASE("a drive ends at the goal, at a contact, in a local minimum or at the 
   const FieldDrive arrives = drive_by(straight, open, nothing);
   CHECK(arrives.end == DriveEnd::kArrived);
   CHECK(arrives.reversals == 0);
-  // At 0.5 m/s, and at most a second more for speeding up and slowing down.
+  // At 0.5 m/s, plus at most a second for speeding up and slowing down.
   CHECK(arrives.seconds > arrives.length_m / 0.5);
   CHECK(arrives.seconds < arrives.length_m / 0.5 + 1);
   for (std::size_t i = 1; i < arrives.path_m.size(); ++i)

@@ -23,13 +23,13 @@ int counted(const std::vector<double>& headings_rad) {
   return counter.reversals();
 }
 
-/// By definition: the longest sequence of headings, in order, in which each differs from the one before by
-/// more than the threshold, alternately to the left and to the right, has one turn more than there are
+/// By definition: take the longest sequence of headings, in order, in which each differs from the one before
+/// by more than the threshold, alternately to the left and to the right. It has one turn more than there are
 /// reversals.
 int slowly_counted(const std::vector<double>& headings_rad) {
   int most = 0;
   std::vector<int> left(headings_rad.size(), 0),
-      right(headings_rad.size(), 0);  // turns, the last one left or right
+      right(headings_rad.size(), 0);  // turns; the last one is left or right
   for (std::size_t i = 0; i < headings_rad.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double turn = headings_rad[i] - headings_rad[j];
@@ -40,7 +40,7 @@ int slowly_counted(const std::vector<double>& headings_rad) {
   return std::max(0, most - 1);
 }
 
-TEST_CASE("reversals of random paths are counted as by their definition") {
+TEST_CASE("reversals of random paths are counted as defined") {
   int reversals = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
@@ -56,7 +56,7 @@ TEST_CASE("reversals of random paths are counted as by their definition") {
   CHECK(reversals > 200);
 }
 
-TEST_CASE("a wave has two reversals per period, a circle and a straight line have none") {
+TEST_CASE("a wave has two reversals per period, and a circle and a straight line have none") {
   std::vector<double> wave, circle, flat;
   for (int i = 0; i < 1000; ++i) {
     wave.push_back(0.3 * std::sin(2 * std::numbers::pi * (i + 0.5) / 100));

@@ -50,7 +50,7 @@ TEST_CASE("a replan course finds a path that touches a circle") {
   CHECK(crossed > 0);
 }
 
-TEST_CASE("the same seed gives the same replan course, and a different seed a different one") {
+TEST_CASE("the same seed gives the same replan course and a different seed a different one") {
   ReplanCourse a(100, 3), b(100, 3), c(100, 4);
   for (int cycle = 0; cycle < 100; ++cycle)
     for (ReplanCourse* course : {&a, &b, &c}) course->step();

@@ -59,7 +59,7 @@ TEST_CASE("robots without safety search traverse as fast as their limits allow")
   }
 }
 
-TEST_CASE("the same seed gives the same floor, and a different seed a different one") {
+TEST_CASE("the same seed gives the same floor and a different seed a different one") {
   const Scenario a = traversal_scenario({}, 5), b = traversal_scenario({}, 5), c = traversal_scenario({}, 6);
   REQUIRE(a.robots.size() == 8);
   std::size_t moved = 0;

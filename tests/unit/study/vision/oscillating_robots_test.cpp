@@ -37,7 +37,7 @@ TEST_CASE("oscillating robots stay on the field and apart, and their velocities 
   }
 }
 
-TEST_CASE("a field without space for the robots is refused") {
+TEST_CASE("a field without space for the robots is rejected") {
   Rng rng(1);
   CHECK_THROWS_AS(OscillatingRobots({1, 1}, 11, rng), std::invalid_argument);
   CHECK_THROWS_AS(OscillatingRobots({60, 40}, 17, rng), std::invalid_argument);

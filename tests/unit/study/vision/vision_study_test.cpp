@@ -26,7 +26,7 @@ TEST_CASE("robots in frames are identified and located correctly") {
   REQUIRE(rows.size() == 8);
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("colours"), row.at("light"), row.at("robots"));
-    // Dark and tinted light needs its own thresholds.
+    // Dark and tinted light need their own thresholds.
     const bool is_hard = row.at("colours") == "default" && row.at("light") == "both";
     CHECK(std::stod(row.at("found_percent")) >= (is_hard                                ? 85
                                                  : row.at("light") == "one dot covered" ? 99

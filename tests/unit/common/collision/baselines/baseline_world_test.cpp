@@ -25,8 +25,8 @@ void each_structure(const Call& call) {
   call("BSP tree", baselines::BspTree(none));
 }
 
-/// The distance from a path to the nearest obstacle, and the free fraction of the path, by comparison with
-/// all obstacles.
+/// The distance from a path to the nearest obstacle, and the free fraction of the path, by checking all
+/// obstacles.
 template <typename World>
 std::pair<double, double> reference(const World& world, const Vec2& from, const Vec2& to, double radius) {
   double distance2 = kInfinite, fraction = kInfinite;
@@ -38,7 +38,7 @@ std::pair<double, double> reference(const World& world, const Vec2& from, const 
   return {std::sqrt(distance2), fraction};
 }
 
-/// Compares random queries with the reference and with the linear set, and returns how many touch.
+/// Compares random queries with the reference and with the linear search, and returns how many touch.
 template <typename World>
 int check_queries(const World& world, Rng& rng, double half_m, double max_length_m, int queries) {
   std::vector<Shape> shapes;
@@ -48,7 +48,7 @@ int check_queries(const World& world, Rng& rng, double half_m, double max_length
   for (int i = 0; i < queries; ++i) {
     const Vec2 from = random_position(rng, 1.2 * half_m);
     const Vec2 to = from + random_displacement(rng, rng.chance(0.1) ? 4 * half_m : max_length_m);
-    // Many radii are near the value at which the answer changes.
+    // Many radii are close to the value at which the answer changes.
     const double distance = reference(world, from, to, 0).first;
     double radius = rng.chance(0.1) ? 0 : rng.uniform(0, 0.5 * max_length_m);
     if (rng.chance(0.5) && distance < half_m) radius = std::max(0.0, distance + rng.uniform(-1e-6, 1e-6));
@@ -69,7 +69,7 @@ int check_queries(const World& world, Rng& rng, double half_m, double max_length
   return touching;
 }
 
-TEST_CASE("answers with a textbook structure equal those of the linear set") {
+TEST_CASE("textbook collision structures give the same answers as a linear search") {
   const std::size_t count = GENERATE(1, 2, 15, 64, 300, 1500);
   const std::uint64_t seed = GENERATE(1, 2, 3);
   const double half_m = 5, spacing_m = 2 * half_m / std::sqrt(static_cast<double>(count));
@@ -88,14 +88,14 @@ TEST_CASE("answers with a textbook structure equal those of the linear set") {
   });
 }
 
-TEST_CASE("a textbook structure follows obstacles that are added, moved and removed") {
+TEST_CASE("textbook structures stay correct as obstacles are added, moved and removed") {
   const std::uint64_t seed = GENERATE(range(1, 4));
   const std::size_t count = GENERATE(0, 20, 400);
   each_structure([&]<typename Set>(const char* structure, const Set&) {
     CAPTURE(structure, seed, count);
     Rng rng(seed);
     baselines::BaselineWorld<Set> world(random_shapes(rng, count, 2));
-    // Initially more obstacles are added than removed, later more are removed.
+    // At first more obstacles are added than removed, later more are removed.
     for (int round = 0; round < 60; ++round) {
       const double add_probability = round < 30 ? 0.3 : 0.05;
       for (int change = 0; change < 15; ++change) {
@@ -115,12 +115,12 @@ TEST_CASE("a textbook structure follows obstacles that are added, moved and remo
   });
 }
 
-TEST_CASE("a textbook structure finds every obstacle that is only just touched") {
+TEST_CASE("textbook structures find every obstacle that is barely touched") {
   const std::uint64_t seed = GENERATE(range(1, 4));
   each_structure([&]<typename Set>(const char* structure, const Set&) {
     CAPTURE(structure, seed);
     Rng rng(seed);
-    // Boxes side by side on a grid, with common edges and corners: all coordinates are exact.
+    // Boxes side by side on a grid, sharing edges and corners: all coordinates are exact.
     const auto integer = [&] { return static_cast<double>(rng.below(9)) - 4; };
     std::vector<Shape> shapes;
     for (int i = 0; i < 20; ++i) {
@@ -143,7 +143,7 @@ TEST_CASE("a textbook structure finds every obstacle that is only just touched")
   });
 }
 
-TEST_CASE("a textbook structure compares few of many obstacles") {
+TEST_CASE("textbook structures examine only a few of many obstacles") {
   Rng rng(1);
   constexpr std::size_t kCount = 2000;
   const ShapeStore store(random_shapes(rng, kCount, 5));
@@ -163,7 +163,7 @@ TEST_CASE("a textbook structure compares few of many obstacles") {
       });
       for (const Slot slot : store.slots())
         if (store.touches(slot, sweep)) REQUIRE(candidates.count(slot) == 1);
-      // It ends with the first one that satisfies the predicate.
+      // The search ends at the first obstacle that satisfies the predicate.
       std::size_t first = 0;
       const bool found = set.any_candidate(sweep, [&](Slot) { return ++first > 0; });
       REQUIRE(found == !candidates.empty());
@@ -173,7 +173,7 @@ TEST_CASE("a textbook structure compares few of many obstacles") {
   });
 }
 
-TEST_CASE("nothing touches in an empty world of a textbook structure") {
+TEST_CASE("nothing touches in an empty textbook structure") {
   each_structure([&]<typename Set>(const char* structure, const Set&) {
     CAPTURE(structure);
     baselines::BaselineWorld<Set> world;
@@ -190,7 +190,7 @@ TEST_CASE("nothing touches in an empty world of a textbook structure") {
   });
 }
 
-TEST_CASE("a world of a textbook structure rejects invalid shapes, queries and ids") {
+TEST_CASE("textbook structures reject invalid shapes, queries and ids") {
   each_structure([&]<typename Set>(const char* structure, const Set&) {
     CAPTURE(structure);
     using World = baselines::BaselineWorld<Set>;

@@ -82,7 +82,7 @@ void check_queries(const WorldPair& pair, Rng& rng, int queries) {
   }
 }
 
-TEST_CASE("every structure agrees with FCL") {
+TEST_CASE("every collision structure agrees with FCL") {
   const std::uint64_t seed = GENERATE(range(1, 5));
   const Structure structure = GENERATE(Structure::kLinear, Structure::kMasks, Structure::kTree);
   const std::size_t count = GENERATE(5, 60, 200);
@@ -102,7 +102,7 @@ TEST_CASE("every structure agrees with FCL") {
   check_queries(pair, rng, 60);
 }
 
-TEST_CASE("sweeps by FCL's distances agree with exact sweeps") {
+TEST_CASE("sweeps based on FCL's distances agree with exact sweeps") {
   const std::uint64_t seed = GENERATE(range(1, 6));
   CAPTURE(seed);
   Rng rng(seed);

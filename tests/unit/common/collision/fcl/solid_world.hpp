@@ -14,13 +14,13 @@
 
 namespace sidestep {
 
-/// A surface of triangles, given by indices into `corners_m`. The inside of a closed surface is free space.
-/// Throws std::invalid_argument if there are no triangles, or a corner does not exist or is not finite.
+/// A triangle mesh, given by indices into `corners_m`. The inside of a closed mesh is free space. Throws
+/// std::invalid_argument if there are no triangles, or if a corner does not exist or is not finite.
 [[nodiscard]] Solid mesh(std::span<const Eigen::Vector3d> corners_m,
                          std::span<const std::array<std::size_t, 3>> triangles);
 
 /// Three-dimensional obstacles with distances computed by FCL: the independent reference for ObstacleWorld
-/// and TerrainTree, and a source of distances for SweepByDistance.
+/// and TerrainTree, and a distance source for SweepByDistance.
 class SolidWorld {
  public:
   using Id = std::uint32_t;
@@ -30,15 +30,15 @@ class SolidWorld {
   SolidWorld& operator=(const SolidWorld&) = delete;
 
   Id add(Solid solid, const Eigen::Isometry3d& pose);
-  /// Throws std::invalid_argument, like remove, if there is no such obstacle.
+  /// Throws std::invalid_argument if there is no such obstacle, like remove().
   void move(Id id, const Eigen::Isometry3d& pose);
   void remove(Id id);
 
-  /// The distance between a body at a pose and the nearest obstacle: 0 in contact, infinite without
+  /// The distance between a body at a pose and the nearest obstacle; 0 in contact, infinite without
   /// obstacles.
   [[nodiscard]] double clearance_m(const Solid& body, const Eigen::Isometry3d& pose) const;
 
-  /// Swept queries for a body that translates without rotating. The world must outlive the result.
+  /// Swept queries for a body that translates without rotating. The world must outlive the returned object.
   auto sweep(const Solid& body, const Eigen::Isometry3d& from, const Eigen::Vector3d& to_m,
              double margin_m = 0) const {
     const auto clearance = [this, body, from](const Eigen::Vector3d& at_m) {

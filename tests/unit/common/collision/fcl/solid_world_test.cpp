@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 Isometry3d at(double x, double y, double z) { return Isometry3d(Eigen::Translation3d(x, y, z)); }
 
-/// A wall of triangles in the plane x = 0, with a window of 2 m by 2 m around the origin.
+/// A triangle mesh of a wall in the plane x = 0, with a 2 m by 2 m window around the origin.
 Solid wall_with_window() {
   std::vector<Vector3d> corners;
   for (const double half : {1.0, 10.0})
@@ -29,7 +29,7 @@ Solid wall_with_window() {
   return mesh(corners, triangles);
 }
 
-TEST_CASE("a body passes through the window of a mesh but not through the wall") {
+TEST_CASE("a body passes through the window of a mesh but not through its wall") {
   SolidWorld world;
   world.add(wall_with_window(), Isometry3d::Identity());
   const Solid body = std::make_shared<fcl::Boxd>(0.4, 1.0, 1.0);
@@ -44,7 +44,7 @@ TEST_CASE("a body passes through the window of a mesh but not through the wall")
   CHECK(into_wall.free_path_m() == Approx(4.8).margin(1e-4));
 }
 
-TEST_CASE("a swept body touches if the body at any position along its path does") {
+TEST_CASE("sweeping a body finds contact anywhere along its path") {
   const std::uint64_t seed = GENERATE(range(1, 6));
   CAPTURE(seed);
   Rng rng(seed);
@@ -77,7 +77,7 @@ TEST_CASE("a swept body touches if the body at any position along its path does"
   }
 }
 
-TEST_CASE("solids are moved and removed by their ids") {
+TEST_CASE("solids are moved and removed by id") {
   SolidWorld world;
   const Solid ball = std::make_shared<fcl::Sphered>(1);
   CHECK(world.clearance_m(ball, at(0, 0, 0)) == std::numeric_limits<double>::infinity());

@@ -7,7 +7,7 @@
 
 namespace sidestep::terrain_test {
 
-TEST_CASE("distances to terrain agree with FCL's distances to a mesh") {
+TEST_CASE("distances to terrain agree with FCL's distances to the same mesh") {
   const std::uint64_t seed = GENERATE(range(1, 4));
   CAPTURE(seed);
   Rng rng(seed);

@@ -39,7 +39,7 @@ struct Fixture {
     keys[certificate.serial()] = key;
     return certificate;
   }
-  /// What the owner of the certificate's key announces. A signature is made once for each id.
+  /// The announcement that the owner of the certificate's key makes. It is signed once for each id.
   const std::vector<std::uint8_t>& announced(const ParticipantId& id, const Certificate& certificate,
                                              const std::string& version = kVersion,
                                              std::optional<Time> given_start = std::nullopt) {
@@ -64,7 +64,7 @@ struct Fixture {
   Admission admission{identity("coordinator 0"), authority.certificate(), kVersion};
 };
 
-TEST_CASE("a participant with a valid certificate is admitted, and its identity is known") {
+TEST_CASE("a participant with a valid certificate is admitted and identified") {
   Fixture f;
   const Certificate agent = f.issue("agent 3");
   const ParticipantId id = id_with(agent);
@@ -97,7 +97,7 @@ TEST_CASE("participants without a valid certificate of this network are refused"
   CHECK(f.announce(id, agent, "2.14.0") == Refusal::kNone);
 }
 
-TEST_CASE("announcements of random bytes, or with a changed bit, are refused") {
+TEST_CASE("an announcement with one flipped bit is refused") {
   Fixture f;
   const Certificate agent = f.issue("agent 3");
   const std::vector<std::uint8_t> genuine = f.announced(id_with(agent), agent);
@@ -105,9 +105,9 @@ TEST_CASE("announcements of random bytes, or with a changed bit, are refused") {
   CAPTURE(seed);
   Rng rng(seed);
   for (int i = 0; i < 500; ++i) {
-    f.now += 1s;  // so that the limit on signature checks is not reached
+    f.now += 1s;  // stays below the limit on signature checks
     std::vector<std::uint8_t> changed = genuine;
-    // The text of the version is not signed.
+    // The version text is not signed.
     const std::size_t bit = 8 * 10 + rng.below(8 * (genuine.size() - 10));
     CAPTURE(bit);
     changed[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
@@ -135,7 +135,7 @@ TEST_CASE("an announcement is valid for one participant only") {
   CHECK(refusal(id, f.announced(id, agent)) == Refusal::kNone);
 }
 
-TEST_CASE("a flood of made-up participants delays a genuine one, and does not keep it out") {
+TEST_CASE("a flood of made-up participants delays a genuine one but does not keep it out") {
   Fixture f;
   const Certificate robot = f.issue("agent 3"), idle = f.issue("agent 4");
   const bool is_known = GENERATE(true, false);
@@ -178,7 +178,7 @@ TEST_CASE("a certificate is accepted only while it is valid") {
   CHECK(f.announce(id, agent) == Refusal::kNotValidNow);
 }
 
-TEST_CASE("a revoked key is refused, even that of a participant that was already admitted") {
+TEST_CASE("a revoked key is refused, even for a participant that was already admitted") {
   Fixture f;
   const Certificate agent = f.issue("agent 3"), newer = f.issue("agent 3");
   const ParticipantId id = id_with(agent);
@@ -201,10 +201,10 @@ TEST_CASE("participants that exchange no messages do not authenticate each other
   };
   CHECK(refusal("agent 2") == Refusal::kNotNeeded);
   CHECK(refusal("coordinator 0") == Refusal::kNone);
-  CHECK(refusal("agent 1") == Refusal::kNone);  // itself, or its twin
+  CHECK(refusal("agent 1") == Refusal::kNone);  // itself, or a second process with the same identity
 }
 
-TEST_CASE("silent participants are forgotten, others are not") {
+TEST_CASE("only silent participants are forgotten") {
   Fixture f;
   const Certificate silent = f.issue("agent 3"), other = f.issue("agent 4");
   CHECK(f.announce(id_with(silent), silent) == Refusal::kNone);
@@ -216,7 +216,7 @@ TEST_CASE("silent participants are forgotten, others are not") {
   CHECK(f.admission.newly_refused(f.now) == std::vector{id_with(silent)});
 }
 
-TEST_CASE("one certificate cannot take the places of all others") {
+TEST_CASE("participants that share a certificate cannot take the places of all others") {
   Fixture f;
   const Certificate thief = f.issue("agent 3"), other = f.issue("agent 4");
   for (std::uint16_t i = 0; i < 2000; ++i, f.now += 3ms)
@@ -225,7 +225,7 @@ TEST_CASE("one certificate cannot take the places of all others") {
   CHECK(f.announce(id_with(other), other) == Refusal::kNone);
 }
 
-TEST_CASE("unauthenticated participants are admitted at a low rate, and genuine ones at any rate") {
+TEST_CASE("unauthenticated participants are admitted at a low rate and genuine ones at any rate") {
   Fixture f;
   const Certificate thief = f.issue("agent 3"), other = f.issue("agent 4");
   std::uint16_t strangers = 0, admitted = 0, genuine = 0;
@@ -233,7 +233,7 @@ TEST_CASE("unauthenticated participants are admitted at a low rate, and genuine 
   for (int second = 0; second < 60 * kMinutes; ++second) {
     f.now += 1s;
     for (int i = 0; i < 10; ++i) admitted += f.announce(id_with(thief, strangers++), thief) == Refusal::kNone;
-    // For example an operator's commands, each of which ends soon.
+    // A genuine process may start often, like an operator's commands, each of which ends soon.
     const ParticipantId command = id_with(other, genuine++);
     REQUIRE(f.announce(command, other) == Refusal::kNone);
     f.admission.on_authenticated(command);
@@ -244,7 +244,7 @@ TEST_CASE("unauthenticated participants are admitted at a low rate, and genuine 
   CHECK(admitted <= Admission::kMaxPerCertificate + 60 * kMinutes / 5 + 2);
 }
 
-TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
+TEST_CASE("replayed announcements delay a genuine restart by a bounded time") {
   Fixture f;
   const Certificate robot = f.issue("agent 3"), idle = f.issue("agent 4");
   const int strangers = GENERATE(24, 40, 400), attacked_for_s = GENERATE(0, 600);
@@ -266,7 +266,7 @@ TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
   f.now += 30min;
   for (int second = 0; second <= attacked_for_s; ++second, f.now += 1s) {
     REQUIRE(f.admission.admits(twin, f.now));
-    // One may be displaced after it was heard.
+    // A stranger that has been heard may still be displaced.
     REQUIRE(strangers_announce() <= static_cast<int>(Admission::kMaxPerCertificate) + 1);
     static_cast<void>(f.admission.newly_refused(f.now));
   }
@@ -283,7 +283,7 @@ TEST_CASE("repeated announcements delay a genuine restart by a bounded time") {
   CHECK(waited_s <= (is_clock_right ? 0 : strangers <= 40 ? 20 : 5 * strangers));
 }
 
-TEST_CASE("a process that was not heard for a while does not wait behind replayed announcements") {
+TEST_CASE("a process that was silent for a while does not wait behind replayed announcements") {
   Fixture f;
   const Certificate robot = f.issue("agent 3", 24h);
   const ParticipantId genuine = id_with(robot, 50'000);
@@ -303,7 +303,7 @@ TEST_CASE("a process that was not heard for a while does not wait behind replaye
   CHECK(f.announce(genuine, robot, kVersion, started) == Refusal::kNone);
 }
 
-TEST_CASE("when many processes with one key start at once, the latest ones have places") {
+TEST_CASE("when many processes with one key start at once, the latest ones keep their places") {
   Fixture f;
   const Certificate op = f.issue("operator");
   const auto start = [&](std::uint16_t i) { return kBegin + i * Duration(10ms); };
@@ -317,7 +317,7 @@ TEST_CASE("when many processes with one key start at once, the latest ones have 
   }
 }
 
-TEST_CASE("a start time that a wrong clock puts far ahead does not count as the latest") {
+TEST_CASE("a start time far in the future does not count as the latest") {
   Fixture f;
   const Certificate robot = f.issue("agent 3", 24h);
   REQUIRE(f.announce(id_with(robot, 1), robot, kVersion, kBegin + 365 * 24h) == Refusal::kNone);
@@ -329,7 +329,7 @@ TEST_CASE("a start time that a wrong clock puts far ahead does not count as the 
     CHECK(f.announce(id_with(robot, 300), robot, kVersion, time_from_ns(ns)) == Refusal::kTooMany);
 }
 
-TEST_CASE("places taken with many certificates are freed for a genuine one of another") {
+TEST_CASE("places taken with many stolen certificates are freed for a genuine participant") {
   Fixture f;
   std::vector<Certificate> stolen;
   for (std::size_t i = 0; i * Admission::kMaxPerCertificate < Admission::kMaxParticipants; ++i)
@@ -348,7 +348,7 @@ TEST_CASE("places taken with many certificates are freed for a genuine one of an
   CHECK(f.admission.newly_refused(f.now).size() == 1);
 }
 
-TEST_CASE("a displaced participant waits longer each time, but not after it has proved to be genuine") {
+TEST_CASE("a displaced participant waits longer each time, until it has proved genuine") {
   Fixture f;
   const Certificate robot = f.issue("agent 3", 24h);
   const ParticipantId slow = id_with(robot, 60'000);
@@ -381,7 +381,7 @@ TEST_CASE("a displaced participant waits longer each time, but not after it has 
   }
 }
 
-TEST_CASE("signature checks are limited, and known certificates need none") {
+TEST_CASE("signature checks are limited in number, and known certificates need none") {
   Fixture f;
   const Certificate known = f.issue("agent 3");
   CHECK(f.announce(id_with(known), known) == Refusal::kNone);
@@ -392,7 +392,7 @@ TEST_CASE("signature checks are limited, and known certificates need none") {
     checked +=
         f.admission.on_announcement(id_with(known), announced, f.now).refusal == Refusal::kOtherAuthority;
   }
-  // The certificate and the announcement of the first were checked.
+  // Two checks went to the known participant's certificate and announcement.
   CHECK(checked == Admission::kMaxChecks - 2);
   CHECK(f.announce(id_with(known), known) == Refusal::kNone);
   const Certificate fresh = f.issue("agent 4");
@@ -401,7 +401,7 @@ TEST_CASE("signature checks are limited, and known certificates need none") {
   CHECK(f.announce(id_with(fresh), fresh) == Refusal::kNone);
 }
 
-TEST_CASE("certificates that nobody uses any more are dropped in favour of later ones") {
+TEST_CASE("unused certificates are dropped to make room for later ones") {
   Fixture f;
   const Certificate first = f.issue("agent 3", 24h);
   CHECK(f.announce(id_with(first), first) == Refusal::kNone);
@@ -418,7 +418,7 @@ TEST_CASE("certificates that nobody uses any more are dropped in favour of later
   CHECK(to_text(*f.admission.identity_of(id_with(first))) == "agent 3");
 }
 
-TEST_CASE("a participant that announces a genuine certificate without proving it is reported once") {
+TEST_CASE("a participant that cannot prove that its certificate is its own is reported once") {
   Fixture f;
   const Certificate genuine = f.issue("agent 3"), impostor = f.issue("agent 4"),
                     self = f.issue("coordinator 0");

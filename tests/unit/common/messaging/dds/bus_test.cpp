@@ -13,7 +13,7 @@
 
 namespace sidestep::bus_test {
 
-/// Publishes a random message until it has arrived on the other bus, and compares.
+/// Publishes a random message until it arrives on the other bus, and compares the two.
 template <typename Message>
 void check_round_trip(const Topic<Message>& topic, DdsBus& from, DdsBus& to, std::uint64_t seed) {
   INFO("topic " << topic.name << " seed " << seed);
@@ -58,7 +58,7 @@ TEST_CASE("every message type arrives over DDS unchanged") {
   CHECK(drops_of(to).total(DropReason::kUnreadable) == 0);
 }
 
-TEST_CASE("a robot's channel reaches that robot only") {
+TEST_CASE("a message on a robot's channel reaches only that robot") {
   DdsBus coordinator(test_settings());
   DdsBus agents(test_settings());
   std::vector<int> right(3, 0);
@@ -83,7 +83,7 @@ TEST_CASE("a robot's channel reaches that robot only") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("a world state of a thousand robots arrives") {
+TEST_CASE("a world state with a thousand robots arrives") {
   DdsBus vision(test_settings());
   DdsBus agent(test_settings());
   Rng rng(5);
@@ -100,7 +100,7 @@ TEST_CASE("a world state of a thousand robots arrives") {
   CHECK(run_until(has_arrived, agent));
 }
 
-TEST_CASE("a shared topic carries the state of hundreds of robots") {
+TEST_CASE("one shared topic carries the states of hundreds of robots") {
   constexpr std::uint32_t kRobots = 300;
   DdsBus agents(test_settings());
   DdsBus coordinator(test_settings());
@@ -120,7 +120,7 @@ TEST_CASE("a shared topic carries the state of hundreds of robots") {
   CHECK(run_until(all_are_received, coordinator));
 }
 
-TEST_CASE("a reader gets the latest of the waiting states, or all of them if it keeps them") {
+TEST_CASE("a reader gets only the latest of several waiting states, unless it keeps them all") {
   constexpr std::uint64_t kStates = 20;
   DdsSettings settings = test_settings("keeper");
   settings.keeps_all = true;
@@ -138,7 +138,7 @@ TEST_CASE("a reader gets the latest of the waiting states, or all of them if it 
     return !kept.empty() && !acted_on.empty();
   };
   REQUIRE(run_until(are_connected, keeper, actor));
-  // States replace each other while the readers' bus does not run, which a busy machine may prevent.
+  // States replace each other only while the readers' bus does not run, which a busy machine may prevent.
   std::uint64_t frames = 0;
   bool has_replaced = false;
   const auto have_replaced = [&] {
@@ -162,7 +162,7 @@ TEST_CASE("a reader gets the latest of the waiting states, or all of them if it 
   CHECK(has_replaced);
 }
 
-TEST_CASE("all events arrive, in order") {
+TEST_CASE("all events arrive in order") {
   constexpr std::uint64_t kEvents = 300;
   constexpr Topic<msg::Verdict> kEvent{{"test/event",
                                         Role::kCoordinator,
@@ -178,7 +178,7 @@ TEST_CASE("all events arrive, in order") {
   auto writer = from.advertise(kEvent);
   msg::Verdict event;
   event.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
-  // Volatile: messages sent before discovery may be missing, but none after the first one received.
+  // Volatile: messages sent before discovery may be missing, but none after the first received one.
   const auto is_matched = [&] {
     writer.publish(event, from.now());
     return !numbers.empty();
@@ -222,7 +222,7 @@ TEST_CASE("a writer may outlive its bus") {
   CHECK(verdict.header().message_number() == 1);
 }
 
-TEST_CASE("wrong DDS settings are refused with a reason") {
+TEST_CASE("invalid DDS settings are rejected with the reason") {
   DdsSettings settings = test_settings();
   settings.domain = 233;
   CHECK_THROWS_WITH(DdsBus(settings), ContainsSubstring("domain: expected 0..232, got 233"));
@@ -235,7 +235,7 @@ TEST_CASE("wrong DDS settings are refused with a reason") {
   }
 }
 
-TEST_CASE("a bus reports the loopback address on which it listens") {
+TEST_CASE("a bus reports the loopback address that it listens on") {
   DdsBus bus(test_settings());
   bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {});
   CHECK_THAT(bus.locators(), ContainsSubstring("UDPv4:[127.0.0.1]:"));

@@ -13,7 +13,7 @@ namespace sidestep::datagram_check_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Little-endian numbers of 2 and 4 bytes, and zeros.
+/// Little-endian 2-byte and 4-byte numbers, and zeros.
 struct Body {
   Bytes bytes;
   Body& u16(std::uint32_t value) { return append(value, 2); }
@@ -23,7 +23,7 @@ struct Body {
     return *this;
   }
   Body& sequence_number(std::uint32_t value, std::uint32_t high = 0) { return u32(high).u32(value); }
-  /// Any reader, and the writer that announces endpoints unless another is given.
+  /// Any reader, and the writer that announces endpoints unless another one is given.
   Body& entities(const Bytes& writer = {0, 0, 3, 0xc2}, const Bytes& reader = {0, 0, 0, 0}) {
     for (const Bytes* entity : {&reader, &writer}) bytes.insert(bytes.end(), entity->begin(), entity->end());
     return *this;
@@ -36,7 +36,7 @@ struct Body {
   }
 };
 
-/// A submessage, or several that belong together.
+/// One submessage, or several that belong together.
 Bytes submessage(std::uint8_t kind, const Body& body, std::uint8_t flags = 1) {
   Bytes result{kind, flags};
   const Body size = Body().u16(static_cast<std::uint32_t>(body.bytes.size()));
@@ -72,7 +72,7 @@ Bytes gap(std::uint32_t start, std::uint32_t bits, std::size_t words) {
 Bytes heartbeat(std::uint32_t first, std::uint32_t last) {
   return submessage(0x07, Body().entities().sequence_number(first).sequence_number(last).u32(1));
 }
-/// A message of discovery with this number, by this writer for this reader.
+/// A discovery message with this number from this writer to this reader.
 Bytes numbered(std::uint8_t kind, std::uint32_t low, std::uint32_t high,
                const Bytes& writer = {0, 0, 3, 0xc2}, const Bytes& reader = {0, 0, 0, 0}) {
   const Body number = Body().entities(writer, reader).sequence_number(low, high);
@@ -125,7 +125,7 @@ std::vector<Bytes> valid_submessages() {
 
 bool passes(const Bytes& bytes) { return !checked_datagram(bytes).empty(); }
 
-TEST_CASE("everything that processes with keys send passes, without the statistics at its end") {
+TEST_CASE("everything that processes with keys send passes, except the statistics at its end") {
   const std::vector<Bytes> all = valid_submessages();
   for (const Bytes& one : all) {
     CAPTURE(int{one[0]});
@@ -135,7 +135,7 @@ TEST_CASE("everything that processes with keys send passes, without the statisti
   CHECK(checked_datagram(datagram({joined(all), statistics()})).size() == 20 + joined(all).size());
 }
 
-TEST_CASE("a datagram that is cut anywhere except between submessages is dropped") {
+TEST_CASE("a truncated datagram is dropped unless it ends between submessages") {
   for (const Bytes& one : valid_submessages()) {
     const Bytes whole = datagram({one, one});
     for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -146,7 +146,7 @@ TEST_CASE("a datagram that is cut anywhere except between submessages is dropped
   }
 }
 
-TEST_CASE("statistics that are not at the end, occur twice, are alone or have another size are dropped") {
+TEST_CASE("statistics that are misplaced, repeated, alone or of the wrong size are dropped") {
   CHECK_FALSE(passes(datagram({statistics()})));
   CHECK_FALSE(passes(datagram({statistics(), data()})));
   CHECK_FALSE(passes(datagram({data(), statistics(), statistics()})));
@@ -154,7 +154,7 @@ TEST_CASE("statistics that are not at the end, occur twice, are alone or have an
   for (const std::size_t size : {0u, 52u, 60u}) CHECK_FALSE(passes(datagram({data(), statistics(size)})));
 }
 
-TEST_CASE("submessages whose numbers contradict each other are dropped") {
+TEST_CASE("submessages with contradictory numbers are dropped") {
   const std::vector<std::pair<const char*, Bytes>> bad{
       {"an unknown kind", submessage(0x20, Body().zeros(8))},
       {"one that fills up", submessage(0x01, Body().zeros(8))},
@@ -224,20 +224,20 @@ TEST_CASE("only discovery messages may be unencrypted") {
   for (const std::uint8_t kind : {0x06, 0x07, 0x08, 0x15}) {
     CAPTURE(int{kind});
     CHECK(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 3, 0xc7})})));
-    // Announcements of participants to those that have shown their keys.
+    // Announcements of participants to participants that have proved their keys.
     CHECK(passes(datagram({numbered(kind, 5, 0, {0xff, 1, 1, 0xc2}, {0xff, 1, 1, 0xc7})})) == is_version_3);
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02}, {0, 0, 1, 0x07})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 1, 0x07})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 4, 0xc7})})));
-    // Keys for messages, liveliness and discovery that are to be encrypted.
+    // Key exchange, liveliness and discovery messages that must be encrypted.
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 2, 2, 0xc3}, {0xff, 2, 2, 0xc4})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0xff, 2, 0, 0xc2}, {0xff, 2, 0, 0xc7})})));
     CHECK(passes(datagram({numbered(kind, 5, 0, {0xff, 0, 3, 0xc2})})) == is_version_3);
   }
 }
 
-TEST_CASE("after random changes, what passes is a prefix of the datagram and passes again") {
+TEST_CASE("whatever passes after random changes is a prefix of the datagram and passes again") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -262,7 +262,7 @@ TEST_CASE("after random changes, what passes is a prefix of the datagram and pas
   CHECK(passed < 90'000);
 }
 
-TEST_CASE("without keys only statistics are removed or dropped, and other software is heard") {
+TEST_CASE("without keys, statistics are removed or dropped and other software is heard") {
   const auto rest = [](const std::vector<Bytes>& parts) {
     return without_statistics(datagram(parts)).size();
   };
@@ -273,7 +273,7 @@ TEST_CASE("without keys only statistics are removed or dropped, and other softwa
   CHECK(rest({statistics(), data()}) == 0);
   CHECK(rest({data(), statistics(), data(), statistics()}) == 0);
   CHECK(rest({data(), statistics(60)}) == 0);
-  // The last submessage may leave out its size.
+  // The last submessage may omit its size.
   Bytes last = data();
   last[2] = last[3] = 0;
   CHECK(rest({last, statistics()}) == datagram({last, statistics()}).size());

@@ -16,7 +16,7 @@ std::vector<PresenceNotice> some_notices() {
           {kSender, PresenceNotice::Kind::kAgreed, 1}};
 }
 
-TEST_CASE("notices survive a presence announcement, and its sender is recognised") {
+TEST_CASE("a presence announcement keeps its notices and identifies its sender") {
   for (const auto& notices :
        {std::vector<PresenceNotice>(), some_notices(), std::vector<PresenceNotice>(Presence::kMaxNotices)}) {
     const Datagram datagram = presence_datagram(kSender, notices);
@@ -26,7 +26,7 @@ TEST_CASE("notices survive a presence announcement, and its sender is recognised
   CHECK(sender_of(departure_of(kOther)) == kOther);
 }
 
-TEST_CASE("a presence announcement of another length, kind or size is refused") {
+TEST_CASE("a presence announcement of the wrong length, kind or size is refused") {
   const Datagram valid = presence_datagram(kSender, some_notices());
   for (std::size_t size = 0; size < valid.size(); ++size) {
     CAPTURE(size);
@@ -36,7 +36,7 @@ TEST_CASE("a presence announcement of another length, kind or size is refused") 
   longer.push_back(0);
   CHECK_FALSE(presence_notices(longer));
   for (const std::size_t at :
-       {20u, 21u, 22u, 24u, 40u}) {  // kind, flags, length, mark, kind of the first notice
+       {20u, 21u, 22u, 24u, 40u}) {  // kind, flags, length, mark and first kind of notice
     CAPTURE(at);
     Datagram changed = valid;
     changed[at] ^= 0x40;
@@ -59,21 +59,21 @@ TEST_CASE("random bytes are not a presence announcement") {
   }
 }
 
-TEST_CASE("a departure is an announcement of its sender only") {
+TEST_CASE("a process can announce only its own departure") {
   bool is_plain = false;
   const auto own = participant_announcement(departure_of(kSender), is_plain);
   CHECK(is_plain);
   REQUIRE(own);
   CHECK(own->is_departure);
-  // Another participant's departure in the sender's name.
+  // announces another participant's departure
   Datagram forged = departure_of(kOther);
   std::copy(kSender.begin(), kSender.end(), forged.begin() + 8);
   CHECK_FALSE(participant_announcement(forged, is_plain));
   CHECK_FALSE(is_plain);
 }
 
-TEST_CASE("announcements to processes that have shown their keys are recognised as announcements") {
-  // The reader and the writer follow the headers and the first two fields of the only submessage.
+TEST_CASE("announcements to processes that have proved their keys are recognised as announcements") {
+  // The reader and writer ids follow the headers and the first two fields of the only submessage.
   constexpr std::size_t kReader = 20 + 4 + 4, kWriter = kReader + 4;
   Datagram departure = departure_of(kSender);
   bool is_plain = false;
@@ -86,7 +86,7 @@ TEST_CASE("announcements to processes that have shown their keys are recognised 
   CHECK_FALSE(participant_announcement(departure, is_plain));
 }
 
-TEST_CASE("an announcement that changes its source, or is truncated, is refused") {
+TEST_CASE("an announcement that changes its source or is truncated is refused") {
   const Datagram valid = departure_of(kSender);
   bool is_plain = false;
   for (std::size_t size = 0; size < valid.size(); ++size) {
@@ -102,7 +102,7 @@ TEST_CASE("an announcement that changes its source, or is truncated, is refused"
   CHECK_FALSE(is_plain);
 }
 
-TEST_CASE("random and corrupted datagrams are read without going beyond their ends") {
+TEST_CASE("random and corrupted datagrams are never read beyond their ends") {
   const std::uint64_t seed = 42;
   CAPTURE(seed);
   Rng rng(seed);
@@ -111,7 +111,7 @@ TEST_CASE("random and corrupted datagrams are read without going beyond their en
     if (i % 2 == 0) bytes.resize(20 + rng.below(120));
     for (std::size_t at = 20; at < bytes.size(); ++at)
       if (rng.below(6) == 0) bytes[at] = static_cast<std::uint8_t>(rng.bits());
-    // A copy of its own, so that a sanitizer sees every byte too many.
+    // A separate copy, so that a sanitizer detects every read beyond the end.
     const std::unique_ptr<std::uint8_t[]> own(new std::uint8_t[bytes.size()]);
     std::copy(bytes.begin(), bytes.end(), own.get());
     const std::span<const std::uint8_t> datagram(own.get(), bytes.size());
@@ -130,7 +130,7 @@ void append_submessage(Datagram& datagram, std::uint8_t kind, std::uint8_t size,
   datagram.insert(datagram.end(), size, content);
 }
 
-TEST_CASE("only an encrypted time stamp before an encrypted message is left out") {
+TEST_CASE("a time stamp is skipped only if it is encrypted and precedes an encrypted message") {
   constexpr std::uint8_t kDestination = 0x0e, kPrefix = 0x31, kBody = 0x30, kPostfix = 0x32;
   const Datagram departure = departure_of(kSender);
   for (const bool has_destination : {false, true}) {
@@ -149,7 +149,7 @@ TEST_CASE("only an encrypted time stamp before an encrypted message is left out"
       datagram.insert(datagram.end(), after.begin(), after.end());
       expected.insert(expected.end(), after.begin(), after.end());
       Datagram copy;
-      // A time stamp has 12 bytes, and its size before it.
+      // A time stamp has 12 bytes, preceded by its size.
       const bool has_timestamp = first_size == 16;
       CHECK(copy_without_timestamp(datagram, copy) == has_timestamp);
       if (has_timestamp) CHECK(copy == expected);

@@ -44,7 +44,7 @@ EventLoop* signalled = nullptr;
 
 }  // namespace
 
-TEST_CASE("timers fire in order of time, and of scheduling at equal times") {
+TEST_CASE("timers fire in order of time, and at equal times in the order of scheduling") {
   EventLoop loop;
   std::vector<int> fired;
   const Time begin = loop.now();
@@ -106,7 +106,7 @@ TEST_CASE("a source that never runs dry does not starve timers") {
   CHECK(fired);
 }
 
-TEST_CASE("calls posted by other threads wake the loop, and are made in its thread and in order") {
+TEST_CASE("calls posted by other threads wake the loop and run in order in its thread") {
   EventLoop loop;
   std::vector<int> made;
   std::vector<std::thread::id> threads;
@@ -127,7 +127,7 @@ TEST_CASE("calls posted by other threads wake the loop, and are made in its thre
   CHECK(std::ranges::count(threads, std::this_thread::get_id()) == kCalls);
 }
 
-TEST_CASE("a call that is always posted again does not starve timers") {
+TEST_CASE("a call that always posts itself again does not starve timers") {
   EventLoop loop;
   std::function<void()> again = [&] { loop.post(again); };
   loop.post(again);
@@ -140,7 +140,7 @@ TEST_CASE("a call that is always posted again does not starve timers") {
   CHECK(fired);
 }
 
-TEST_CASE("every report from another thread is drained") {
+TEST_CASE("every report from another thread is processed") {
   EventLoop loop;
   constexpr int kReports = 20000;
   std::atomic<int> pending{0};
@@ -162,7 +162,7 @@ TEST_CASE("every report from another thread is drained") {
   CHECK(taken == kReports);
 }
 
-TEST_CASE("a watched descriptor calls back while it is readable, and does not starve timers and sources") {
+TEST_CASE("a readable descriptor calls back without starving timers and sources") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   EventLoop loop;
@@ -189,7 +189,7 @@ TEST_CASE("a watched descriptor calls back while it is readable, and does not st
   close(ends[1]);
 }
 
-TEST_CASE("a watched descriptor wakes a sleeping loop, and a closed one does not keep it awake") {
+TEST_CASE("a readable descriptor wakes a sleeping loop, and a closed one does not keep it awake") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   EventLoop loop;
@@ -259,7 +259,7 @@ TEST_CASE("setting the host's clock does not affect a running process") {
   CHECK(end < begin + kLong);
 }
 
-TEST_CASE("a process notices that its host's clock is set, and adopts it only when told to") {
+TEST_CASE("a process notices a step of its host's clock but adopts it only on request") {
   const long step_s = GENERATE(-86400, -1, 1, 86400);
   CAPTURE(step_s);
   const Duration step = std::chrono::seconds(step_s);
@@ -298,7 +298,7 @@ TEST_CASE("the process's clock never runs backwards, across threads and loops") 
   CHECK(backwards == 0);
 }
 
-TEST_CASE("the process's clock agrees with the host's while that is not set") {
+TEST_CASE("the process's clock agrees with the host's clock until that is set") {
   const auto host = [] { return Time{std::chrono::system_clock::now().time_since_epoch()}; };
   // The two can differ only by the slewing of a time daemon.
   const Duration slewed = std::chrono::seconds(1);

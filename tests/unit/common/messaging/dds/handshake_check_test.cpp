@@ -42,7 +42,7 @@ struct Property {
   Bytes value;
 };
 
-/// In network order: one parameter of four bytes, and the end.
+/// In network byte order: one parameter of four bytes, and the end marker.
 const Bytes kParticipantData{0, 0x15, 0, 4, 2, 3, 0, 0, 0, 1, 0, 0};
 
 std::vector<Property> request() {
@@ -65,7 +65,7 @@ Bytes message(const std::vector<Property>& properties, Payload payload = head())
 TEST_CASE("handshake messages pass in either byte order") {
   CHECK(is_handshake_message(message(request())));
   CHECK(is_handshake_message(message({{"hash_c2", Bytes(32)}, {"signature", Bytes(71)}})));
-  // Without properties in the other order: all numbers are swapped by hand.
+  // A message without properties in the other byte order: all numbers are swapped by hand.
   Bytes big{0, 0, 0, 0};
   big.resize(4 + 96);
   const auto number = [&big](std::uint32_t value) {
@@ -109,7 +109,7 @@ TEST_CASE("a handshake message with other tokens, names or sizes is refused") {
   CHECK_FALSE(is_handshake_message(message(std::vector<Property>(14, {"dh1", Bytes(4)}))));
 }
 
-TEST_CASE("a handshake message never passes if it states a size beyond its end") {
+TEST_CASE("a handshake message that states a size beyond its end never passes") {
   const Bytes whole = message(request());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     CAPTURE(size);
@@ -132,7 +132,7 @@ TEST_CASE("a handshake message never passes if it states a size beyond its end")
       passed += is_handshake_message(changed);
     }
   }
-  // What passes has changed the content of a document, a hash or a number, and no size.
+  // A changed message that passes differs in the content of a document, hash or number, but in no size.
   CHECK(passed > 0);
   CHECK(passed < static_cast<int>(5 * whole.size() / 4));
 }

@@ -23,7 +23,7 @@ constexpr std::size_t kUsualBytes = 780 * 580 * 2;
 // Without shared memory, a reader built with a sanitizer is too slow for larger bursts of datagrams.
 constexpr std::size_t kLargestBytes = kIsSanitized ? 2 * kUsualBytes : 2448 * 2048 * 3;
 
-/// An image in which every byte depends on its number.
+/// An image in which every byte depends on the image's number.
 msg::CameraImage numbered_image(std::uint32_t camera, int number, std::size_t bytes) {
   msg::CameraImage image;
   image.camera(camera);
@@ -34,7 +34,7 @@ msg::CameraImage numbered_image(std::uint32_t camera, int number, std::size_t by
   return image;
 }
 
-/// Receives images, and counts those that differ from what was sent.
+/// Receives images, and counts those that differ from the sent ones.
 struct Watcher {
   Watcher(const DdsSettings& settings, std::size_t bytes) : bus(settings), expected_bytes(bytes) {
     bus.subscribe<msg::CameraImage>(topics::kImages, [this](const msg::CameraImage& image) {
@@ -56,7 +56,7 @@ DdsSettings settings_of(const std::string& name, bool faults) {
   return settings;
 }
 
-/// Sends images of two cameras for ever, at 100 Hz.
+/// Sends images of two cameras at 100 Hz for ever.
 void send(DdsBus& bus, Writer<msg::CameraImage>& writer, std::size_t bytes, int number) {
   msg::CameraImage image = numbered_image(static_cast<std::uint32_t>(number % 2), number, bytes);
   writer.publish(image, bus.now());
@@ -91,7 +91,7 @@ TEST_CASE("camera process", "[.camera][slow]") {
   while (getppid() == parent) bus.run_until(bus.now() + kStep);
 }
 
-/// Runs the camera process until destruction.
+/// Runs the camera process until it is destroyed.
 class Camera {
  public:
   explicit Camera(bool has_own_memory) {
@@ -113,7 +113,7 @@ class Camera {
   pid_t process_;
 };
 
-TEST_CASE("images arrive at a reader whose shared memory is not the writer's") {
+TEST_CASE("images arrive at a reader that does not share memory with the writer") {
   SIDESTEP_NEEDS_ROOT();
   Watcher watcher(test_settings("watcher"), kUsualBytes);
   const Camera camera(true);
@@ -146,7 +146,7 @@ TEST_CASE("only the shared memory of killed processes is removed") {
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("after a camera process is killed, the next one is received") {
+TEST_CASE("after a camera process is killed, its successor's images arrive") {
   Watcher watcher(test_settings("watcher"), kUsualBytes);
   for (int run = 0; run < 3; ++run) {
     CAPTURE(run);

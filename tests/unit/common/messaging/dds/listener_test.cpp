@@ -24,7 +24,7 @@ const DiscoveredEndpoint* find(const std::vector<DiscoveredEndpoint>& endpoints,
   return found == endpoints.end() ? nullptr : &*found;
 }
 
-TEST_CASE("a listener lists writers and readers, and detects when they leave") {
+TEST_CASE("a listener lists writers and readers, and notices when they leave") {
   constexpr Topic<msg::Verdict> kEvent{{"test/event",
                                         {},
                                         {},
@@ -53,7 +53,7 @@ TEST_CASE("a listener lists writers and readers, and detects when they leave") {
   CHECK(run_until([&] { return listener.endpoints().empty(); }, listener));
 }
 
-TEST_CASE("a listener receives the bytes of a topic of unknown type") {
+TEST_CASE("a listener receives the raw bytes of a topic of unknown type") {
   DdsBus bus(test_settings("vision"));
   auto writer = bus.advertise(topics::kWorld);
   msg::WorldState world;
@@ -79,7 +79,7 @@ TEST_CASE("a listener receives the bytes of a topic of unknown type") {
   CHECK(received <= bus.now());
 }
 
-TEST_CASE("a writer that offers more than the reader requests has no mismatch") {
+TEST_CASE("a writer that offers more than the reader requests causes no mismatch") {
   DiscoveredEndpoint writer = endpoint(true);
   DiscoveredEndpoint reader = endpoint(false);
   CHECK(qos_mismatches(writer, reader).empty());
@@ -91,7 +91,7 @@ TEST_CASE("a writer that offers more than the reader requests has no mismatch") 
   CHECK(qos_mismatches(writer, reader).empty());
 }
 
-TEST_CASE("each policy that prevents a match is named in plain words") {
+TEST_CASE("each QoS policy that prevents a match is named in plain words") {
   const DiscoveredEndpoint writer = endpoint(true);
   const auto words_for = [&](auto change) {
     DiscoveredEndpoint reader = endpoint(false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the filter lets through and logs. Its decisions are tested with Admission.
+// Which messages the filter passes and logs. admission_test.cpp tests its decisions.
 #include "common/messaging/dds/participant_filter.hpp"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ TEST_CASE("messages from participants that have not announced themselves are not
   CHECK(f.filter.unknown() == 1);
 }
 
-TEST_CASE("a process may send what its keys permit, and anything else is logged once") {
+TEST_CASE("a process may send only what its keys permit, and each violation is logged once") {
   Fixture f;
   const CaptureStderr log;
   const ParticipantId agent = f.announce("agent 3"), viewer = f.announce("viewer"),
@@ -77,7 +77,7 @@ TEST_CASE("a process may send what its keys permit, and anything else is logged 
   CHECK(text.find(line, text.find(line) + 1) == std::string::npos);
 }
 
-TEST_CASE("the list of revoked keys is read again when it changes, and a broken list changes nothing") {
+TEST_CASE("the revocation list is reread when it changes, and a broken list changes nothing") {
   Fixture f;
   const CaptureStderr log;
   const ParticipantId agent = f.announce("agent 3"), viewer = f.announce("viewer");
@@ -86,7 +86,7 @@ TEST_CASE("the list of revoked keys is read again when it changes, and a broken 
   const auto change = [&](const auto& how) {
     const auto before = std::filesystem::last_write_time(file);
     how();
-    // File systems have coarse clocks.
+    // File systems have coarse time stamps.
     std::filesystem::last_write_time(file, before + std::chrono::seconds(1));
   };
   change([&] { f.keys.revoke({Role::kAgent, 3, 3}); });
@@ -98,7 +98,7 @@ TEST_CASE("the list of revoked keys is read again when it changes, and a broken 
   CHECK(f.filter.passes(viewer, Datagram{'R', 'T', 'P', 'S'}, false, kAddress));
 }
 
-TEST_CASE("a list that is older than the last one undoes no revocation, and a pipe does not block") {
+TEST_CASE("an older revocation list does not undo a revocation, and a pipe in its place does not block") {
   Fixture f;
   const CaptureStderr log;
   const ParticipantId agent = f.announce("agent 3");
@@ -117,7 +117,7 @@ TEST_CASE("a list that is older than the last one undoes no revocation, and a pi
   CHECK(log.has("the previous list remains in force"));
 }
 
-TEST_CASE("a participant that the library refuses is named") {
+TEST_CASE("a participant that Fast DDS refuses is named") {
   Fixture f;
   const CaptureStderr log;
   f.filter.on_authentication(f.announce("agent 3"), false);

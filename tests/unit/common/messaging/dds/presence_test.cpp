@@ -21,7 +21,7 @@ PresenceNotice forgotten(const ParticipantId& whom, std::uint64_t number) {
   return {whom, Kind::kForgotten, number};
 }
 
-/// A presence that checks twice a second, as over DDS.
+/// A presence that is checked twice a second, as over DDS.
 struct Clocked {
   void run_until(Time when) {
     for (; now < when; now += 500ms) {
@@ -37,7 +37,7 @@ struct Clocked {
   std::multiset<ParticipantId> removed;
 };
 
-TEST_CASE("a participant that announces no presence is never refused and never forgotten") {
+TEST_CASE("a participant that announces no presence is never refused or forgotten") {
   Clocked a;
   CHECK(a.presence.accept(kOther, a.now));
   a.run_until(a.now + 1h);
@@ -46,7 +46,7 @@ TEST_CASE("a participant that announces no presence is never refused and never f
   CHECK(a.presence.notices(a.now).empty());
 }
 
-TEST_CASE("a silent participant is removed once, and refused until it has forgotten us too") {
+TEST_CASE("a silent participant is removed once and refused until it has forgotten us too") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   a.run_until(a.now + kSilenceLimit - 1s);
@@ -55,7 +55,7 @@ TEST_CASE("a silent participant is removed once, and refused until it has forgot
   CHECK(a.removed.empty());
   a.run_until(a.now + 1min);
   CHECK(a.removed.count(kOther) == 1);
-  CHECK(a.presence.notices(a.now).empty());  // it may be dead
+  CHECK(a.presence.notices(a.now).empty());  // it may be dead, so it gets no notice
 
   CHECK_FALSE(a.presence.accept(kOther, a.now));
   const auto notices = a.presence.notices(a.now);
@@ -71,11 +71,11 @@ TEST_CASE("a silent participant is removed once, and refused until it has forgot
   CHECK(a.presence.accept(kOther, a.now));
 }
 
-TEST_CASE("a participant that is told that it was forgotten removes the other side once, and confirms that") {
+TEST_CASE("a participant that learns it was forgotten removes the other side once and confirms this") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   CHECK(a.hears(std::array{forgotten(kSelf, 7)}));
-  CHECK_FALSE(a.presence.accept(kOther, a.now));  // it may be older than the notice
+  CHECK_FALSE(a.presence.accept(kOther, a.now));  // the datagram may be older than the notice
   CHECK(a.presence.notices(a.now).empty());
   a.run_until(a.now + 500ms);
   CHECK_FALSE(a.hears(std::array{forgotten(kSelf, 7)}));  // repeated, because our answer was lost
@@ -87,7 +87,7 @@ TEST_CASE("a participant that is told that it was forgotten removes the other si
   CHECK(a.hears(std::array{forgotten(kSelf, 9), forgotten(kSelf, 9)}));
 }
 
-TEST_CASE("a process that was itself stopped forgets nobody") {
+TEST_CASE("a process that was itself stopped forgets no other process") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   a.run_until(a.now + 1s);
@@ -97,7 +97,7 @@ TEST_CASE("a process that was itself stopped forgets nobody") {
   CHECK(a.presence.accept(kOther, a.now));
 }
 
-TEST_CASE("forgotten participants are remembered up to a bound, and the oldest are dropped first") {
+TEST_CASE("the memory for forgotten participants is bounded, and the oldest are dropped first") {
   Clocked a;
   const auto id = [](std::size_t i) {
     return ParticipantId{9, static_cast<std::uint8_t>(i >> 8), static_cast<std::uint8_t>(i)};
@@ -128,23 +128,23 @@ TEST_CASE("an announcement names a bounded number of participants") {
   CHECK(count >= Presence::kMaxNotices / 2);
 }
 
-/// Two participants and a model of what Fast DDS knows: each side counts how often it has removed the other
-/// one. Both are matched if each learned of the other after the other one had last removed it; if only one
-/// side removes the other, they stay unmatched. Each side also acknowledges what it knows, and the
-/// acknowledgement arrives late. If an acknowledgement from before a removal is mistaken for a newer one, it
-/// misleads permanently.
+/// Two participants and a model of what Fast DDS knows. Each side counts how often it has removed the other
+/// side. They are matched if each has discovered the other since the other last removed it; if only one side
+/// removes the other, they stay unmatched. Each side also acknowledges its knowledge, and the acknowledgement
+/// arrives late. A side that mistakes an acknowledgement from before a removal for a newer one is misled
+/// permanently.
 struct Pair {
   struct Side {
     Presence presence;
     ParticipantId id{};
-    bool knows = false;       ///< the other side
+    bool knows = false;       ///< whether it knows the other side
     int generation = 0;       ///< how often it has removed the other side
-    int seen_generation = 0;  ///< the other side's generation when it learned of it
+    int seen_generation = 0;  ///< the other side's generation when this side discovered it
     bool is_misled = false;   ///< misled by an outdated acknowledgement
     bool is_stopped = false, was_stopped = false;
     Time next_announcement{};
     std::multimap<Time, std::function<void()>> late;
-    std::deque<std::function<void()>> arrived;  ///< while it is stopped
+    std::deque<std::function<void()>> arrived;  ///< messages that arrived while it was stopped
   };
 
   explicit Pair(std::uint64_t seed) : rng(seed) {
@@ -198,7 +198,7 @@ struct Pair {
       }
       for (; !side.arrived.empty(); side.arrived.pop_front()) side.arrived.front()();
       if (std::exchange(side.was_stopped, false)) {
-        // It soon reads what is waiting in its sockets, but not in the order of sending.
+        // It soon reads the messages waiting in its sockets, but not in the order of sending.
         for (auto& [when, what] : std::exchange(side.late, {})) side.late.emplace(soon(), std::move(what));
       }
       for (; !side.late.empty() && side.late.begin()->first <= now; side.late.erase(side.late.begin()))
@@ -227,7 +227,7 @@ struct Pair {
   Time now = time_from_ns(0) + 1h;
 };
 
-TEST_CASE("whatever is stopped or cut off for however long, both sides find each other again") {
+TEST_CASE("two participants find each other again after any stops and cuts of any duration") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);
   Pair pair(seed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Failures between processes: mismatched endpoints, invalid payloads, processes that are stopped or die.
+// Failures between processes: mismatched endpoints, invalid payloads, stopped and dying processes.
 #include <algorithm>
 #include <arpa/inet.h>
 #include <cstdlib>
@@ -38,7 +38,7 @@ std::set<std::string> shared_memory_of(pid_t process) {
     if (const auto at = line.find("/dev/shm/"); at != std::string::npos) result.insert(line.substr(at));
   }
   for (const auto& file : std::filesystem::directory_iterator(folder / "fd")) {
-    std::error_code ignored;  // the file may have been closed
+    std::error_code ignored;  // the file may have been closed in the meantime
     const std::string target = std::filesystem::read_symlink(file, ignored);
     if (target.starts_with("/dev/shm/")) result.insert(target);
   }
@@ -64,7 +64,7 @@ TEST_CASE("a reader that requests more than the writer offers is reported on bot
   CHECK(reported);
 }
 
-TEST_CASE("an endpoint that uses our topic with another type is reported") {
+TEST_CASE("an endpoint that uses one of our topics with another type is reported") {
   DdsBus reader(test_settings());
   DdsBus writer(test_settings());
   const CaptureStderr captured;
@@ -80,7 +80,7 @@ TEST_CASE("an endpoint that uses our topic with another type is reported") {
   CHECK(reported);
 }
 
-TEST_CASE("invalid payloads are counted, reported once and dropped, and valid ones still arrive") {
+TEST_CASE("invalid payloads are counted, reported once and dropped while valid ones still arrive") {
   DdsBus bus(test_settings());
   int received = 0;
   bus.subscribe<msg::WorldState>(topics::kWorld, [&](const msg::WorldState&) { ++received; });
@@ -92,7 +92,7 @@ TEST_CASE("invalid payloads are counted, reported once and dropped, and valid on
   const std::size_t fixed = fast_dds::cdr_size(msg::WorldState());
   std::vector<std::uint8_t> huge(4 + fixed, 0);
   huge[1] = 1;
-  std::fill(huge.end() - 4, huge.end(), 0xff);  // a count of 2^32 - 1 robots
+  std::fill(huge.end() - 4, huge.end(), 0xff);  // states 2^32 - 1 robots
   const std::uint64_t seed = 11;
   CAPTURE(seed);
   Rng rng(seed);
@@ -125,7 +125,7 @@ TEST_CASE("invalid payloads are counted, reported once and dropped, and valid on
   hostile.delete_writer(writer);
 }
 
-/// Sends a datagram to the port on which a bus of this machine hears messages.
+/// Sends a datagram to the port on which a bus on this machine receives messages.
 void send_to(const DdsBus& bus, const std::vector<std::uint8_t>& datagram) {
   const std::string locators = bus.locators(), address = "UDPv4:[127.0.0.1]:";
   const auto found = locators.find(address);
@@ -140,10 +140,10 @@ void send_to(const DdsBus& bus, const std::vector<std::uint8_t>& datagram) {
   close(sender);
 }
 
-TEST_CASE("a datagram that would end Fast DDS by an assertion is dropped and counted") {
+TEST_CASE("a datagram that would make Fast DDS abort is dropped and counted") {
   DdsBus bus(test_settings());
   bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {});
-  // Statistics of Fast DDS, which must be last, and another submessage behind them.
+  // Statistics of Fast DDS, which must come last, followed by another submessage.
   std::vector<std::uint8_t> datagram{'R', 'T', 'P', 'S', 2, 2, 1, 15, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
   for (int i = 0; i < 2; ++i) {
     datagram.insert(datagram.end(), {0x80, 1, 56, 0});
@@ -157,7 +157,7 @@ TEST_CASE("a datagram that would end Fast DDS by an assertion is dropped and cou
       bus));
 }
 
-/// Adds so many readers that announcing them takes several messages.
+/// Adds enough readers that announcing them takes several messages.
 void subscribe_to_many(DdsBus& bus) {
   for (std::uint32_t robot = 2; robot < 30; ++robot)
     bus.subscribe<msg::Verdict>(topics::kVerdict, robot, [](const msg::Verdict&) {});
@@ -169,9 +169,9 @@ bool is_known(const DdsListener& listener, const std::string& participant) {
                              [&](const DiscoveredEndpoint& e) { return e.participant == participant; });
 }
 
-TEST_CASE("publishes until it is asked to end", "[.victim][slow]") {
-  // Catch2 handles SIGTERM too, and allocates memory in the handler. That corrupts the heap if the signal
-  // comes during an allocation.
+TEST_CASE("publishes until asked to end", "[.victim][slow]") {
+  // Catch2 handles SIGTERM too, and its handler allocates memory. That corrupts the heap if the signal
+  // arrives during an allocation.
   REQUIRE(signal(SIGTERM, SIG_DFL) != SIG_ERR);
   const auto robot = static_cast<std::uint32_t>(std::atoi(std::getenv("SIDESTEP_TEST_ROBOT")));
   DdsSettings settings = test_settings("victim-" + std::to_string(robot));
@@ -196,7 +196,7 @@ TEST_CASE("publishes until it is asked to end", "[.victim][slow]") {
   bus.run();
 }
 
-/// A child process that publishes verdicts for a robot, with the number of the last world it has received,
+/// A child process that publishes verdicts for a robot, numbered like the last world state that it received,
 /// until it is killed.
 struct Victim {
   explicit Victim(std::uint32_t robot = 1) : name("victim-" + std::to_string(robot)) {
@@ -212,9 +212,9 @@ struct Victim {
   ~Victim() { kill_now(); }
   Victim(const Victim&) = delete;
   Victim& operator=(const Victim&) = delete;
-  /// kill -9; true if the process was alive until then.
+  /// Sends kill -9. Returns true if the process was alive until then.
   bool kill_now() { return WIFSIGNALED(end(SIGKILL)); }
-  /// Asks it to end. True if it does so without an error, or was not listening yet.
+  /// Asks the process to end. Returns true if it ends without an error, or was not listening yet.
   bool leave() {
     const int status = end(SIGTERM);
     return status == 0 || (WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
@@ -239,25 +239,25 @@ TEST_CASE("a process killed with kill -9 leaves no shared memory behind") {
     const std::string path = "/dev/shm/sidestep-test-" + std::to_string(getpid());
     const std::ofstream file(path);
     std::filesystem::remove(path);
-    REQUIRE_FALSE(shared_memory_of(getpid()).empty());  // such a file would be found
+    REQUIRE_FALSE(shared_memory_of(getpid()).empty());  // shows that such a file would be found
   }
   DdsBus bus(test_settings());
   int received = 0;
   bus.subscribe<msg::Verdict>(topics::kVerdict, 1, [&](const msg::Verdict&) { ++received; });
   Victim victim;
   CHECK(run_until([&] { return received > 5; }, bus));
-  CHECK(shared_memory_of(victim.pid).empty());  // nothing to leave behind
+  CHECK(shared_memory_of(victim.pid).empty());  // shows that the victim leaves nothing behind
   CHECK(victim.kill_now());
 }
 
-/// Stops `count` processes at once, for a random time of up to twice the limit, and requires that each one is
-/// heard again and hears us; `rounds` times.
+/// Stops `count` processes at once for a random time of up to twice the silence limit, and requires that each
+/// one is heard again and hears us. Repeats this `rounds` times.
 void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
   CAPTURE(seed);
   Rng rng(seed);
   DdsListener listener(test_settings("listener"));
   DdsBus bus(test_settings());
-  std::map<std::uint32_t, std::uint64_t> answered;  // indexed by victim
+  std::map<std::uint32_t, std::uint64_t> answered;  // by victim
   for (std::uint32_t robot = 1; robot <= count; ++robot) {
     bus.subscribe<msg::Verdict>(topics::kVerdict, robot, [&answered, robot](const msg::Verdict& verdict) {
       answered[robot] = verdict.proposal_number();
@@ -287,12 +287,11 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
     std::vector<Time> until;
     for (std::size_t i = 0; i < count; ++i) {
       REQUIRE(kill(victims[i]->pid, SIGSTOP) == 0);
-      // The first one sleeps long enough to be certainly forgotten; the others may only be close to that.
+      // The first victim sleeps long enough to be forgotten for certain; the others may only come close.
       until.push_back(bus.now() + kSilenceLimit +
                       (i == 0 ? from_seconds(2) : from_seconds(rng.uniform(-1, 4))));
     }
-    // When victims announce their readers to these participants, the victims send heartbeats to all
-    // participants.
+    // When victims announce their readers to these participants, they send heartbeats to all participants.
     std::vector<std::unique_ptr<DdsBus>> others;
     for (int i = 0; i < 5; ++i)
       subscribe_to_many(*others.emplace_back(std::make_unique<DdsBus>(test_settings("other"))));
@@ -312,18 +311,17 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
   }
 }
 
-TEST_CASE("a process that is stopped until it is forgotten reconnects, even if others have joined meanwhile",
+TEST_CASE("a process that was stopped and forgotten reconnects, even if others joined in the meantime",
           "[slow]") {
   stop_and_continue(2, 3, 1);
 }
 
-TEST_CASE("a process that is stopped until it is forgotten reconnects after two hundred pauses",
-          "[.long][slow]") {
+TEST_CASE("a process that was stopped and forgotten reconnects after two hundred pauses", "[.long][slow]") {
   stop_and_continue(10, 20, 2);
 }
 
-/// Starts neighbours one after another and ends each after a random time, half of them by kill -9; requires
-/// that nobody else aborts or loses contact.
+/// Starts neighbours one after another and ends each after a random time, half of them by kill -9. Requires
+/// that no other process aborts or loses contact.
 void let_neighbours_leave(int times, std::uint64_t seed) {
   CAPTURE(seed);
   Rng rng(seed);
@@ -364,13 +362,15 @@ void let_neighbours_leave(int times, std::uint64_t seed) {
   CHECK(witness.kill_now());
 }
 
-TEST_CASE("neighbours that leave at any moment disturb nobody") { let_neighbours_leave(10, 3); }
+TEST_CASE("neighbours that leave at any moment do not disturb other processes") {
+  let_neighbours_leave(10, 3);
+}
 
-TEST_CASE("two hundred neighbours that leave at any moment disturb nobody", "[.long][slow]") {
+TEST_CASE("two hundred neighbours that leave at any moment do not disturb other processes", "[.long][slow]") {
   let_neighbours_leave(200, 4);
 }
 
-TEST_CASE("a process is known while it is alive, and forgotten some seconds after it is killed") {
+TEST_CASE("a process is known while it is alive and forgotten some seconds after it is killed") {
   DdsListener listener(test_settings("listener"));
   Victim victim;
   REQUIRE(run_until([&] { return is_known(listener, victim.name); }, listener));

@@ -16,7 +16,7 @@
 
 namespace sidestep {
 
-/// Enough for a machine that is busy with other tests. Only a failing test waits this long.
+/// Long enough for a machine that is busy with other tests. Only a failing test waits this long.
 inline constexpr Duration kDeadline{30'000'000'000};
 inline constexpr Duration kStep{2'000'000};
 
@@ -26,7 +26,7 @@ inline DdsSettings test_settings(const std::string& participant = "test") {
   return domain.settings(participant);
 }
 
-/// Runs the buses in turn until the condition holds; false if it does not before the deadline.
+/// Runs the buses in turn until the condition holds. Returns false if it does not before the deadline.
 template <typename Condition, typename... Buses>
 bool run_until(Condition condition, Buses&... buses) {
   const Time deadline = EventLoop::now() + kDeadline;

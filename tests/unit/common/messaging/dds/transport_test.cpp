@@ -26,7 +26,7 @@ struct Connection {
                     }));
     writer = here.advertise(topics::kVerdict, kRobot);
   }
-  /// Sends until the condition holds; false if it never does.
+  /// Sends until the condition holds. Returns false if it never does.
   template <typename Condition>
   bool send_until(Condition condition) {
     return run_until(
@@ -58,7 +58,7 @@ msg::NetworkFault cut_fault() {
   return fault;
 }
 
-TEST_CASE("a cut blocks all messages except an operator's, until it is ended") {
+TEST_CASE("a cut blocks all messages except an operator's until it ends") {
   Connection connection;
   int faults_received = 0;
   connection.there.subscribe(topics::kNetworkFault, std::function([&](const msg::NetworkFault& fault) {
@@ -91,12 +91,12 @@ TEST_CASE("a cut blocks all messages except an operator's, until it is ended") {
   CHECK(faults_received == 2);
 }
 
-TEST_CASE("messages are delayed, duplicated and reordered, and delayed ones are dropped with their reader") {
+TEST_CASE("messages are delayed, duplicated and reordered, and delayed ones disappear with their reader") {
   Connection connection;
   REQUIRE(connection.send_until([&] { return !connection.numbers.empty(); }));
   const Duration min_delay{2'000'000};
   connection.there.impair({0.2, 1, 0.5, min_delay, Duration{20'000'000}, Duration{100'000'000}, false}, 7);
-  // When a later message has arrived, none sent without delay is still on its way.
+  // Once a later message has arrived, no undelayed one is still on its way.
   const std::uint64_t before = connection.last_sent;
   REQUIRE(connection.send_until([&] { return connection.numbers.back() > before + 1; }));
   connection.numbers.clear();

@@ -76,7 +76,7 @@ TEST_CASE("random bytes are refused without harm") {
       if (rng.chance(0.5) && bytes.size() >= 4) bytes[0] = 0, bytes[1] = bytes[1] & 1;
       accepted += decoder.accepts(bytes);
     }
-    // Only a type without sequences and booleans accepts any bytes of its length.
+    // Only a type without sequences and booleans accepts arbitrary bytes of its length.
     CHECK(accepted < 10000);
     if (topic.type.max_elements > 0) CHECK(accepted == 0);
   }
@@ -97,7 +97,7 @@ TEST_CASE("a sequence longer than the type's bound is refused before memory is a
   }
 }
 
-TEST_CASE("a sequence as long as the type's bound is accepted, in either byte order") {
+TEST_CASE("a sequence of exactly the type's maximum length is accepted in either byte order") {
   Rng rng(8);
   Decoder decoder(topics::kWorld);
   msg::WorldState world = random_message<msg::WorldState>(
@@ -108,11 +108,11 @@ TEST_CASE("a sequence as long as the type's bound is accepted, in either byte or
   CHECK(decoder.accepts(big_endian_bytes_of(world)));
   CHECK(decoder.message<msg::WorldState>() == world);
   std::vector<std::uint8_t> too_long = big_endian_bytes_of(random_message<msg::WorldState>(rng, true, 0));
-  too_long[too_long.size() - 4] = 1;  // 2^24 robots
+  too_long[too_long.size() - 4] = 1;  // states 2^24 robots
   CHECK_FALSE(decoder.accepts(too_long));
 }
 
-TEST_CASE("a payload that is too short is refused at every length") {
+TEST_CASE("a payload that is too short is refused, whatever its length") {
   Rng rng(9);
   msg::Command command = random_message<msg::Command>(rng, false, 0);
   msg::WorldState world = random_message<msg::WorldState>(rng, true, 3);

@@ -41,8 +41,7 @@ TEST_CASE("a twist has the bytes that ROS 2 writes") {
   CHECK(bytes[47] == 0x40);
 }
 
-TEST_CASE(
-    "odometry survives encoding and decoding in both byte orders, and no part of it is taken for a message") {
+TEST_CASE("odometry survives encoding and decoding in both byte orders, and truncated odometry is refused") {
   Rng rng(3);
   for (int i = 0; i < 200; ++i) {
     const Odometry sent = random_odometry(rng);
@@ -73,7 +72,7 @@ TEST_CASE(
   CHECK(received.linear[0] == 1);
 }
 
-TEST_CASE("odometry with hostile lengths of texts is refused") {
+TEST_CASE("odometry with false text lengths is refused") {
   Rng rng(4);
   const Odometry sent = random_odometry(rng);
   const std::vector<std::uint8_t> valid = bytes_of(kOdometry, &sent);

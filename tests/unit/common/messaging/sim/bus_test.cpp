@@ -58,7 +58,7 @@ Received send_through(const NetworkSpec& network, std::uint64_t seed, std::uint6
   return received;
 }
 
-TEST_CASE("timers fire in order of time, and in order of creation at equal times") {
+TEST_CASE("timers fire in order of time, and at equal times in order of creation") {
   SimNetwork net(1, kBegin, {});
   SimBus bus(net);
   std::vector<int> order;
@@ -73,7 +73,7 @@ TEST_CASE("timers fire in order of time, and in order of creation at equal times
   CHECK(order == std::vector<int>{0, 1, 2, 3});
 }
 
-TEST_CASE("delays lie between their bounds and messages overtake each other") {
+TEST_CASE("delays lie within their bounds and messages overtake each other") {
   const auto received = send_through(delays(0.01, 0.05), 2, 2000);
   REQUIRE(received.numbers.size() == 2000);
   const auto [min, max] = std::ranges::minmax(received.delays_s);
@@ -84,14 +84,14 @@ TEST_CASE("delays lie between their bounds and messages overtake each other") {
   CHECK_FALSE(std::ranges::is_sorted(received.numbers));
 }
 
-TEST_CASE("loss and duplicates have the specified probabilities") {
+TEST_CASE("losses and duplicates have the specified probabilities") {
   const auto received = send_through(delays(0, 0.001, 0.3, 0.2), 3, 20'000);
   const std::set<std::uint64_t> distinct(received.numbers.begin(), received.numbers.end());
   CHECK(static_cast<double>(distinct.size()) == Approx(20'000 * 0.7).epsilon(0.02));
   CHECK(static_cast<double>(received.numbers.size()) == Approx(20'000 * 0.7 * 1.2).epsilon(0.02));
 }
 
-TEST_CASE("all events arrive, once and in order, on a network that loses and duplicates states") {
+TEST_CASE("all events arrive once and in order on a network that loses and duplicates states") {
   const auto seed = GENERATE(range(1u, 101u));
   CAPTURE(seed);
   const auto received = send_through(delays(0, 0.1, 0.5, 0.5), seed, kEventDepth, kReliable);
@@ -99,7 +99,7 @@ TEST_CASE("all events arrive, once and in order, on a network that loses and dup
   CHECK(std::ranges::is_sorted(received.numbers));
 }
 
-TEST_CASE("the same seed gives the same run, another seed a different one") {
+TEST_CASE("the same seed gives the same run and a different seed a different one") {
   const auto spec = delays(0, 0.15, 0.3, 0.1);
   const auto first = send_through(spec, 5, 500), again = send_through(spec, 5, 500),
              other = send_through(spec, 6, 500);
@@ -108,7 +108,7 @@ TEST_CASE("the same seed gives the same run, another seed a different one") {
   CHECK(first.numbers != other.numbers);
 }
 
-TEST_CASE("a change to a message after sending does not reach the receiver") {
+TEST_CASE("changing a message after sending it does not affect the receiver") {
   SimNetwork net(7, kBegin, {});
   SimBus sender(net), receiver(net);
   auto writer = sender.advertise(topics::kCoordinator);
@@ -137,7 +137,7 @@ TEST_CASE("the channels of a per-robot topic are separate") {
   CHECK(four == 0);
 }
 
-TEST_CASE("a subscription gets no message from a sender that may not write the topic") {
+TEST_CASE("a subscription gets no messages from a sender that may not write the topic") {
   const auto of = [](Sender sender, std::uint32_t number = 0) {
     return static_cast<std::uint32_t>(sender) + number;
   };
@@ -212,7 +212,7 @@ TEST_CASE("a killed process receives nothing, but its earlier messages still arr
   CHECK(delivered == 0);
 }
 
-TEST_CASE("the readers of a message share its attachment, and another message has its own") {
+TEST_CASE("readers of the same message share its attachment, and readers of different messages do not") {
   SimNetwork net(10, kBegin, {});
   SimBus sender(net), first(net), second(net);
   int decoded = 0;

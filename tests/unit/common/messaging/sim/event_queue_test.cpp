@@ -8,18 +8,18 @@
 
 namespace sidestep::event_queue_test {
 
-TEST_CASE("events come in order of time, and of insertion at equal times, both near and far ahead") {
+TEST_CASE("near and far events come in order of time, and at equal times in order of insertion") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
   Rng rng(seed);
   EventQueue<int> queue;
-  std::multimap<Time, int> expected;  // keeps the order of insertion among equals
+  std::multimap<Time, int> expected;  // keeps the order of insertion for equal times
   Time now = time_from_ns(1'000'000'000'000);
   const Duration scales[] = {Duration{0},       Duration{3},          Duration{2'000},
                              Duration{600'000}, Duration{33'000'000}, Duration{60'000'000'000}};
   int next = 0;
   for (int step = 0; step < 100'000; ++step) {
-    // The queue grows and shrinks in turn.
+    // The queue alternately grows and shrinks.
     if (!expected.empty() && rng.chance(step / 1000 % 2 == 0 ? 0.4 : 0.6)) {
       REQUIRE(queue.next_time() == expected.begin()->first);
       now = expected.begin()->first;
@@ -38,7 +38,7 @@ TEST_CASE("events come in order of time, and of insertion at equal times, both n
   }
 }
 
-TEST_CASE("an event may be inserted before one whose time has already been requested") {
+TEST_CASE("an event may be inserted before one whose time was already requested") {
   EventQueue<int> queue;
   queue.push(time_from_ns(5'000'000'000), 1);
   CHECK(queue.next_time() == time_from_ns(5'000'000'000));

@@ -12,7 +12,7 @@ namespace sidestep::links_test {
 using namespace std::chrono_literals;
 const Time kBegin = time_from_ns(1'000'000'000);
 
-/// Three processes; the first sends numbered messages to the others, a millisecond apart.
+/// Three processes; the first one sends numbered messages to the others, a millisecond apart.
 struct Rig {
   SimNetwork network{1, kBegin, {}};
   ProcessId ids[3] = {network.new_process(), network.new_process(), network.new_process()};
@@ -69,7 +69,7 @@ TEST_CASE("a link has the specified loss and mean burst length") {
   CHECK(static_cast<double>(lost) / bursts == Approx(mean_burst).epsilon(0.05));
 }
 
-TEST_CASE("delays of a link are right-skewed, within their bounds, with about the specified mean") {
+TEST_CASE("link delays are right-skewed, within their bounds and have about the specified mean") {
   SimLinks links;
   LinkQuality quality{0, 1, 0.5, 1ms, 11ms, 150ms, false};
   links.set(2, 0, quality, kBegin);
@@ -92,7 +92,7 @@ TEST_CASE("delays of a link are right-skewed, within their bounds, with about th
   CHECK(static_cast<double>(above_mean) / count == Approx(0.368).epsilon(0.05));
 }
 
-TEST_CASE("a cut affects one direction of one link, and can be ended") {
+TEST_CASE("a cut affects one direction of one link and can be ended") {
   Rig rig;
   LinkQuality cut;
   cut.is_cut = true;
@@ -106,7 +106,7 @@ TEST_CASE("a cut affects one direction of one link, and can be ended") {
   CHECK(rig.far_received.size() == 50);
 }
 
-TEST_CASE("links can be set in any order and keep their qualities as more are added") {
+TEST_CASE("links can be set in any order and keep their qualities as links are added") {
   SimLinks links;
   CHECK_FALSE(links.any());
   LinkQuality slow;
@@ -121,7 +121,7 @@ TEST_CASE("links can be set in any order and keep their qualities as more are ad
   CHECK_FALSE(links.find(3, 20));
 }
 
-TEST_CASE("a paused process does nothing, then handles everything at once and in order") {
+TEST_CASE("a paused process does nothing and then handles everything at once and in order") {
   Rig rig;
   int fired = 0;
   rig.far.at(kBegin + 100ms, [&] { ++fired; });
@@ -138,7 +138,7 @@ TEST_CASE("a paused process does nothing, then handles everything at once and in
   CHECK(rig.near_received.size() == 50);
 }
 
-TEST_CASE("a pause within another neither ends it nor changes the order of messages") {
+TEST_CASE("a pause inside another pause neither ends it nor reorders messages") {
   const bool is_longer = GENERATE(false, true);
   CAPTURE(is_longer);
   Rig rig;
@@ -180,7 +180,7 @@ TEST_CASE("a process has its own clock, and its timers follow that clock") {
   CHECK(behind_fired == kBegin + 130ms);
 }
 
-TEST_CASE("an observer receives every message without delay on a bad network") {
+TEST_CASE("an observer receives every message without delay even on a bad network") {
   SimNetwork network(1, kBegin, {0.9, 0, 100ms, 200ms});
   SimBus sender(network), observer(network);
   observer.become_observer();
@@ -256,7 +256,7 @@ TEST_CASE("processes forget each other after a silence of six seconds in one dir
   pair.send(2);  // b has forgotten a, so a receives nothing either
   pair.run_for(100ms);
   pair.set_cut(false);
-  pair.send(3);  // they have not found each other again
+  pair.send(3);  // they have not discovered each other again
   pair.run_for(3s);
   pair.send(4);
   pair.run_for(1s);
@@ -264,7 +264,7 @@ TEST_CASE("processes forget each other after a silence of six seconds in one dir
   CHECK(pair.at_b == std::vector<std::uint64_t>{4});
 }
 
-TEST_CASE("a short cut right after a start delays discovery, a later one does not") {
+TEST_CASE("a short cut right after a start delays discovery, but a later one does not") {
   ReliablePair pair;
   pair.run_for(10s);
   SimBus late(pair.network, {pair.network.new_process()});
@@ -297,7 +297,7 @@ TEST_CASE("reliable messages do not change the losses and delays of other messag
     receiver.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
       received.emplace_back(state.epoch(), network.now());
     });
-    // Both draw one delay for each message.
+    // Both topics draw one delay for each message.
     const auto& topic = topics::kAttestation;
     receiver.subscribe(topic, [](const msg::AbsenceAttestation&) {});
     auto writer = sender.advertise(topics::kCoordinator);
@@ -319,7 +319,7 @@ TEST_CASE("reliable messages do not change the losses and delays of other messag
     std::ranges::sort(numbers);
     return numbers;
   };
-  // Because of the time in between, heartbeats and resent messages occur between the states.
+  // With the pauses, heartbeats and resent messages occur between the states.
   CHECK(run(true) == run(false));
 }
 

@@ -11,7 +11,7 @@ namespace sidestep::progress_test {
 
 const Scenario kFive = parse_scenario("circle: {count: 5, spacing_m: 0.5}\n", "five.yaml");
 
-TEST_CASE("a progress line shows \"starting\", later the time since the first grant") {
+TEST_CASE("a progress line shows \"starting\" and later the time since the first grant") {
   RunMetrics metrics(kFive);
   CHECK_THAT(progress_line(metrics, time_from_ns(0)), StartsWith("starting  0 of 5 arrived"));
   msg::CoordinatorState state;
@@ -50,7 +50,7 @@ TEST_CASE("a progress line shows the largest measured clock offset") {
   CHECK(metrics.report().max_clock_offset_s == 0.0001);
 }
 
-TEST_CASE("a progress table has one line per robot and counts those that do not fit") {
+TEST_CASE("a progress table has one line per robot and counts the robots that do not fit") {
   RunMetrics metrics(kFive);
   msg::AgentStatus status;
   status.robot(2);

@@ -31,7 +31,7 @@ Report example() {
   return report;
 }
 
-TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order") {
+TEST_CASE("a report's JSON has the keys that readers rely on in a stable order") {
   const std::string text = to_json(example());
   const auto json = nlohmann::ordered_json::parse(text);
   std::vector<std::string> keys;
@@ -99,7 +99,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on, in a stable order"
   CHECK_FALSE(json["wall_clock"].contains("processes"));
 }
 
-TEST_CASE("the report of a run over DDS has its version, the time of startup and what processes used") {
+TEST_CASE("the report of a run over DDS contains its version, startup time and resource use of processes") {
   Report report = example();
   report.fast_dds = "3.1.2";
   report.processes["agent 3"] = {0.25, 21.5};
@@ -141,7 +141,7 @@ TEST_CASE("the failure reason lists everything that went wrong in one line, and 
   CHECK_THAT(summary(good), EndsWith("passed\n"));
 }
 
-TEST_CASE("writing a report creates its folder, or fails with the reason") {
+TEST_CASE("writing a report creates its folder or fails with the reason") {
   const auto folder = std::filesystem::temp_directory_path() / ("report-" + std::to_string(getpid()));
   const std::string path = (folder / "deep" / "r.json").string();
   write_report(example(), path);
@@ -157,7 +157,7 @@ TEST_CASE("a report is named after scenario and seed, or scenario and time") {
              Matches("reports/crossing-[0-9]{8}T[0-9]{6}\\.json"));
 }
 
-TEST_CASE("a crash of a moving robot fails a run, a crash of a robot at rest is only reported") {
+TEST_CASE("a crash of a moving robot fails a run, but a crash of a robot at rest is only reported") {
   Report report = example();
   report.arrived = 2;
   REQUIRE(report.failure_reason().empty());
@@ -205,7 +205,7 @@ AuditTotals covered() {
   return totals;
 }
 
-TEST_CASE("excused contacts do not fail a run, other contacts do") {
+TEST_CASE("excused contacts do not fail a run, but other contacts do") {
   Report report = example();
   report.arrived = report.robots;
   report.abort_reason.clear();
@@ -243,7 +243,7 @@ TEST_CASE("a run whose audit covered too little neither passes nor fails") {
   CHECK_THAT(summary(report), EndsWith("\nfailed: 1 of 2 arrived\n"));
 }
 
-TEST_CASE("a report states what the audit covered, by what reference, and what it excused and why") {
+TEST_CASE("a report states the audit's coverage and reference, and what it excused and why") {
   Report report = example();
   report.audit = covered();
   report.audit->coverage = {0.99, 0.98, 0.97, 0.96, 1};

@@ -170,7 +170,7 @@ TEST_CASE("counters are summed over the incarnations of agents, simulators and c
   metrics.on_status(agent(1, 2, 20));
   metrics.on_status(agent(2, 1, 5));
   metrics.on_status(agent(1, 3, 30));  // a late status of the first incarnation
-  metrics.on_status(agent(1, 2, 20));  // a repetition of an older one
+  metrics.on_status(agent(1, 2, 20));  // a repetition of an older status
   CHECK(metrics.dropped_messages() == 1);
 
   auto seen = truth(9, 1, {}, 1);
@@ -205,7 +205,7 @@ TEST_CASE("counters are summed over the incarnations of agents, simulators and c
              ContainsSubstring("5 contacts") && ContainsSubstring("1 firmware violations"));
 }
 
-TEST_CASE("the status of a dead incarnation with a clock ahead does not override its successor") {
+TEST_CASE("a dead incarnation whose clock was ahead does not override its successor's status") {
   RunMetrics metrics(kTwo);
   metrics.on_coordinator(state(1, 0, kGranting));
   metrics.on_truth(truth(1, 1, {body(3, 1, 0)}));
@@ -218,7 +218,7 @@ TEST_CASE("the status of a dead incarnation with a clock ahead does not override
   CHECK(metrics.arrived() == 1);
 }
 
-TEST_CASE("the status of an incarnation that is fencing counts only if no other incarnation reports") {
+TEST_CASE("the status of a fencing incarnation counts only if no other incarnation reports") {
   RunMetrics metrics(kTwo);
   metrics.on_coordinator(state(1, 0, kGranting));
   metrics.on_truth(truth(1, 1, {body(3, 1, 0)}));
@@ -239,7 +239,7 @@ TEST_CASE("the status of an incarnation that is fencing counts only if no other 
   CHECK(metrics.arrived() == 1);
 }
 
-TEST_CASE("the coordinator with the highest epoch counts") {
+TEST_CASE("the status of the coordinator with the highest epoch counts") {
   RunMetrics metrics(kTwo);
   const auto of = [](std::uint32_t number, Epoch epoch, std::uint64_t message_number, double at_s,
                      msg::CoordinatorMode mode) {
@@ -319,7 +319,7 @@ TEST_CASE("invalid messages are counted and dropped") {
   CHECK(metrics.report().failure_reason() == "0 of 2 arrived");
 }
 
-TEST_CASE("the number of incarnations is limited") {
+TEST_CASE("the number of remembered incarnations is limited") {
   RunMetrics metrics(kTwo);
   for (std::uint64_t incarnation = 1; incarnation <= 3000; ++incarnation) {
     metrics.on_truth(truth(1, 1, {}, incarnation));
@@ -394,15 +394,14 @@ msg::Counters counters(std::uint32_t process, Incarnation incarnation, std::uint
   return message;
 }
 
-TEST_CASE(
-    "counters of a process are summed over robots and incarnations, and only the latest of each count") {
+TEST_CASE("a process's latest counters are summed over robots and incarnations") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kLateVersion, 3, 4);
   drops.count(DropReason::kLateVersion, 7, 5);
   metrics.on_counters(counters(30000, 1, 2, drops));
   drops.count(DropReason::kOtherRules, std::nullopt, 100);
-  metrics.on_counters(counters(30000, 1, 1, drops));  // overtaken
+  metrics.on_counters(counters(30000, 1, 1, drops));  // overtaken by a later message
   metrics.on_counters(counters(30000, 2, 1, drops));
   metrics.on_counters(counters(3, 1, 1, {}));
   const Report report = metrics.report();
@@ -414,12 +413,12 @@ TEST_CASE(
   CHECK_THAT(summary(report), ContainsSubstring("refused: 100 other_rules by simulator\n"));
 }
 
-TEST_CASE("counters of ever more processes, incarnations and robots take a limited amount of memory") {
+TEST_CASE("memory for counters is bounded, however many processes, incarnations and robots appear") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);
   for (std::uint32_t i = 0; i < 5000; ++i) {
-    metrics.on_counters(counters(50'000 + i, 1, 1, drops));  // no such process
+    metrics.on_counters(counters(50'000 + i, 1, 1, drops));  // no process has this id
     metrics.on_counters(counters(20000, i + 1, 1, drops));
   }
   const Report report = metrics.report();
@@ -428,14 +427,14 @@ TEST_CASE("counters of ever more processes, incarnations and robots take a limit
   CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 5000);
 }
 
-TEST_CASE("a process that has been restarted very often is still counted, and nothing is counted twice") {
+TEST_CASE("a process that was restarted very often is still counted, and nothing is counted twice") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);
   for (Incarnation incarnation = 1; incarnation <= 100; ++incarnation) {
     metrics.on_counters(counters(20000, incarnation, 1, drops));
     metrics.on_counters(counters(20000, incarnation, 2, drops));
-    if (incarnation > 50) metrics.on_counters(counters(20000, incarnation - 50, 3, drops));  // late
+    if (incarnation > 50) metrics.on_counters(counters(20000, incarnation - 50, 3, drops));  // arrives late
   }
   CHECK(metrics.report().counters.at("vision").at(DropReason::kOtherRules) == 100);
 }
@@ -450,7 +449,7 @@ msg::WorldState world(double at_s, double x_m, double vx_mps) {
   return message;
 }
 
-TEST_CASE("without ground truth a robot has arrived when its agent says so and vision shows it at its goal") {
+TEST_CASE("without ground truth a robot has arrived if its agent says so and vision shows it at its goal") {
   RunMetrics metrics(kTwo);
   CHECK_FALSE(metrics.has_seen_robots());
   metrics.on_status(status(3, 1, msg::AgentState::AGENT_ARRIVED));
@@ -462,7 +461,7 @@ TEST_CASE("without ground truth a robot has arrived when its agent says so and v
   CHECK(metrics.seen_at() == after(1));
   metrics.on_world_state(world(3, 1.02, 0.2));
   CHECK(metrics.arrived() == 1);
-  metrics.on_world_state(world(2.5, 0, 0));  // late
+  metrics.on_world_state(world(2.5, 0, 0));  // arrives late
   CHECK(metrics.arrived() == 1);
   metrics.on_status(status(3, 2, msg::AgentState::AGENT_DRIVING));
   CHECK(metrics.arrived() == 0);

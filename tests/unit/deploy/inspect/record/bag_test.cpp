@@ -14,7 +14,7 @@ namespace sidestep::bag_test {
 
 constexpr const char* kScenario = "robots:\n  - {id: 0, start_m: [0, 0], goals_m: [[1, 0]]}\n";
 
-/// Records feedback of robots 0 and 1 and ground truth, every 10 ms in [from_ms, to_ms].
+/// Records feedback of robots 0 and 1 and ground truth every 10 ms in [from_ms, to_ms].
 void record(const std::string& file, int from_ms, int to_ms, const std::string& scenario = kScenario) {
   RecordingWriter writer(file, {"two", scenario, nullptr, true});
   msg::Feedback feedback;
@@ -71,8 +71,7 @@ TEST_CASE("bag info lists topics, attachments and metadata") {
   CHECK_THAT(text, Catch::Matchers::Matches("[^]*feedback/1 +sidestep::msg::Feedback +101 +100\\.0 [^]*"));
 }
 
-TEST_CASE(
-    "bag cut keeps the messages of an interval and of some topics, and marks the result as incomplete") {
+TEST_CASE("bag cut keeps the chosen interval and topics and marks the result as incomplete") {
   const TemporaryFolder folder;
   record(folder.file("a.mcap"), 1000, 2000);
   CHECK(PlaybackBus(folder.file("a.mcap")).header().is_complete);

@@ -90,7 +90,7 @@ std::vector<Message> write_file(const std::string& path, std::uint64_t seed, std
   return messages;
 }
 
-TEST_CASE("messages written to an MCAP file are read back from it") {
+TEST_CASE("messages written to an MCAP file are read back") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const bool is_compressed = GENERATE(false, true);
@@ -104,7 +104,7 @@ TEST_CASE("messages written to an MCAP file are read back from it") {
   CHECK(result.metadata == std::vector<std::string>{"begin:a=1", "begin:b="});
 }
 
-TEST_CASE("from an MCAP file that is cut anywhere, all complete messages before the cut are read") {
+TEST_CASE("all complete messages are read from an MCAP file that is truncated anywhere") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const auto written = write_file(file, 2, 60, {.max_chunk_ns = 100'000'000});
@@ -123,7 +123,7 @@ TEST_CASE("from an MCAP file that is cut anywhere, all complete messages before 
   CHECK(before == written.size());
 }
 
-TEST_CASE("a chunk is in the file after a second of messages, and after end_chunk()") {
+TEST_CASE("a chunk is written after a second of messages and on end_chunk()") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   McapWriter writer(file);
@@ -142,7 +142,7 @@ TEST_CASE("a chunk is in the file after a second of messages, and after end_chun
   CHECK(result.damage == "the file was not finished");
 }
 
-TEST_CASE("reading a damaged MCAP file ends without harm, and reports the damage") {
+TEST_CASE("reading a damaged MCAP file does no harm and reports the damage") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const bool is_compressed = GENERATE(false, true);
@@ -179,10 +179,10 @@ TEST_CASE("sizes that an MCAP file merely claims allocate no memory") {
   CHECK(read(file).damage == "a chunk claims to contain 209715200 bytes, more than the limit of 67108864");
 }
 
-TEST_CASE("schemas and channels fill no memory, however many and large they are") {
+TEST_CASE("schemas and channels cannot exhaust memory, however many and large they are") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
-  // One schema, again and again: number 7, without a name and an encoding, a text of a megabyte.
+  // The same schema again and again: number 7, without a name and encoding, with a megabyte of text.
   const std::string text(1 << 20, 'x');
   const std::string schema = std::string("\x03\x0e\x00\x10\x00\x00\x00\x00\x00", 9) +
                              std::string("\x07\x00", 2) + std::string(8, '\0') +
@@ -195,8 +195,7 @@ TEST_CASE("schemas and channels fill no memory, however many and large they are"
   CHECK_THAT(read(file).damage, ContainsSubstring("schemas and channels take more than"));
 }
 
-TEST_CASE(
-    "a record other than schemas, channels and messages damages its chunk: millions may be in a small one") {
+TEST_CASE("a chunk that contains anything but schemas, channels and messages counts as damaged") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const auto kind = GENERATE(McapRecordKind::kAttachment, McapRecordKind::kMetadata, McapRecordKind::kChunk,
@@ -244,7 +243,7 @@ TEST_CASE(
                                     static_cast<unsigned>(kind)));
 }
 
-TEST_CASE("a file that is not an MCAP file is refused with its name") {
+TEST_CASE("a file that is not an MCAP file is rejected with its name") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   write(file, "MCAP");

@@ -29,8 +29,8 @@ void write(const std::string& path, const std::vector<char>& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Records a scenario for this long; returns the findings of the live auditor. `prepare` may change the
-/// system before it runs.
+/// Records a scenario for this long and returns the live auditor's findings. `prepare` may change the system
+/// before it runs.
 AuditTotals record_run(
     const std::string& path, Duration duration,
     const std::function<void(SimSystem&)>& prepare = [](SimSystem&) {},
@@ -71,7 +71,7 @@ TEST_CASE("a recording plays back the messages of the run") {
   const AuditedPlayback again = play(file);
   CHECK(again.result.damage == "");
   CHECK(again.result.unreadable == 0);
-  CHECK(again.result.messages > live.received);  // detection frames and agent status, too
+  CHECK(again.result.messages > live.received);  // detection frames and agent status were recorded too
   CHECK(again.audit.compared_pairs == live.compared_pairs);
   CHECK(again.audit.violations == 0);
   CHECK(again.audit.refused == 0);
@@ -81,7 +81,7 @@ TEST_CASE("a recording plays back the messages of the run") {
   CHECK(again.audit.received + 20 > live.received);
 }
 
-TEST_CASE("the audit of a recording refuses messages of processes with other rules, and counts them") {
+TEST_CASE("the audit of a recording refuses and counts messages of processes with different rules") {
   const TemporaryFolder folder;
   const std::string file = folder.file("run.mcap");
   record_run(file, 500ms, [](SimSystem& system) {
@@ -95,7 +95,7 @@ TEST_CASE("the audit of a recording refuses messages of processes with other rul
   CHECK(played.audit.violations == 0);
 }
 
-TEST_CASE("a recording that was compressed plays back the same messages, and is smaller") {
+TEST_CASE("a compressed recording plays back the same messages and is smaller") {
   const TemporaryFolder folder;
   const std::string plain = folder.file("plain.mcap"), compressed = folder.file("compressed.mcap");
   record_run(plain, 1s);
@@ -134,7 +134,7 @@ TEST_CASE("a truncated recording is played up to the cut, and the truncation is 
     write(file, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
     const AuditedPlayback played = play(file);
     CHECK(played.result.messages > before);
-    // The file's size grows nearly evenly with the messages; less so in the middle of compressed blocks.
+    // The file grows nearly evenly with the messages; less so in the middle of compressed blocks.
     CHECK(played.result.messages > static_cast<double>(all * tenth) / 10 * (is_compressed ? 0.6 : 0.9));
     CHECK(played.result.messages < all);
     CHECK(played.result.damage != "");
@@ -143,7 +143,7 @@ TEST_CASE("a truncated recording is played up to the cut, and the truncation is 
   }
 }
 
-TEST_CASE("playing a corrupted recording ends without harm") {
+TEST_CASE("playing a corrupted recording does no harm") {
   const TemporaryFolder folder;
   const std::string file = folder.file("run.mcap");
   record_run(file, 300ms);
@@ -191,17 +191,17 @@ TEST_CASE("bytes that do not decode as a message of their topic are refused") {
   CHECK(read == 1);
 }
 
-TEST_CASE("a file that is not a recording is refused with its name") {
+TEST_CASE("a file that is not a recording is rejected with its name") {
   const TemporaryFolder folder;
   const std::string file = folder.file("run.mcap");
   write(file, {'n', 'o'});
-  CHECK_THROWS_AS(PlaybackBus(file), std::invalid_argument);  // as any invalid file, exit code 2
+  CHECK_THROWS_AS(PlaybackBus(file), std::invalid_argument);  // as for any invalid file, exit code 2
   CHECK_THROWS_WITH(PlaybackBus(file), ContainsSubstring(file) && ContainsSubstring("is not an MCAP file"));
   CHECK_THROWS_WITH(PlaybackBus("/nowhere/at/all"), ContainsSubstring("cannot be read"));
   CHECK_THROWS_WITH(RecordingWriter("/nowhere/at/all", {}), ContainsSubstring("cannot write "));
 }
 
-TEST_CASE("a recording shows the robots to 3-D panels of other programs") {
+TEST_CASE("a recording shows the robots in other programs' 3-D panels") {
   const TemporaryFolder folder;
   record_run(folder.file("a.mcap"), 2s);
   McapReader reader(folder.file("a.mcap"));
@@ -218,7 +218,7 @@ TEST_CASE("a recording shows the robots to 3-D panels of other programs") {
   CHECK(scenes >= 7);
 }
 
-TEST_CASE("events that no message describes are recorded, and played back in order") {
+TEST_CASE("events that no message describes are recorded and played back in order") {
   const TemporaryFolder folder;
   {
     RecordingWriter writer(folder.file("a.mcap"), {"one", "robots: []\n", nullptr, true});

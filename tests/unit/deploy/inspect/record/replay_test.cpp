@@ -55,7 +55,7 @@ int replay(std::vector<std::string> arguments) {
   return action();
 }
 
-/// Runs a replay in another thread, with a bus of the domain in this one. Returns the exit code.
+/// Runs a replay in another thread, with a bus of the same domain in this one. Returns the exit code.
 int replay_beside(DdsBus& bus, const std::vector<std::string>& arguments) {
   std::atomic<bool> is_over = false;
   int exit_code = -1;
@@ -69,7 +69,7 @@ int replay_beside(DdsBus& bus, const std::vector<std::string>& arguments) {
   return exit_code;
 }
 
-TEST_CASE("a replay writes each message as it was recorded, at its time") {
+TEST_CASE("a replay writes each message as recorded at its recorded time") {
   const RecordedFile file;
   DdsBus bus(test_settings());
   std::vector<msg::Header> headers;
@@ -88,11 +88,11 @@ TEST_CASE("a replay writes each message as it was recorded, at its time") {
     CHECK(headers[i].message_number() == i + 1);
     CHECK(headers[i].stamp_ns() == static_cast<std::int64_t>((i + 1) * 20'000'000));
   }
-  // 9 intervals of 20 ms at half the speed.
+  // 9 intervals of 20 ms at half speed.
   CHECK(to_seconds(received.back() - received.front()) > 0.3);
 }
 
-TEST_CASE("a replay writes no messages that command beside a process that drives or coordinates") {
+TEST_CASE("a replay writes no commanding messages while another process drives or coordinates") {
   const RecordedFile file;
   DdsBus bus(test_settings());
   auto writer = bus.advertise(topics::kVerdict, 3);
@@ -122,7 +122,7 @@ TEST_CASE("a replay ends when a process that drives or coordinates appears") {
   CHECK(feedbacks < 10);
 }
 
-TEST_CASE("messages that agents, coordinators, robots and operators write count as commands") {
+TEST_CASE("messages that agents, coordinators, robots and operators write count as commanding") {
   std::string names;
   for (const TopicInfo& topic : all_topics())
     if (is_commanding(topic)) names += std::string(topic.name) + " ";
@@ -131,7 +131,7 @@ TEST_CASE("messages that agents, coordinators, robots and operators write count 
         "agent_orders disturbance network_fault ");
 }
 
-TEST_CASE("a replay of unknown topics is refused") {
+TEST_CASE("a replay of unknown topics or at zero speed is rejected") {
   CHECK_THROWS_AS(replay({"file.mcap", "--topics", "nothing"}), UsageError);
   CHECK_THROWS_AS(replay({"file.mcap", "--speed", "0"}), UsageError);
 }

@@ -71,7 +71,7 @@ TEST_CASE("received and missed messages agree with sets of their numbers") {
   }
 }
 
-TEST_CASE("the sending time is bounded although the sender's clock has an unknown offset") {
+TEST_CASE("the sending time is bounded even if the sender's clock has an unknown offset") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Fails the test unless a message decoded by somebody else equals the output of describe(), which has words
+/// Fails the test unless an independently decoded message equals the output of describe(), which has words
 /// for enumerators, leaves out the unused elements of arrays, and sums up histograms.
 inline void require_same_fields(const nlohmann::ordered_json& described,
                                 const nlohmann::ordered_json& decoded) {

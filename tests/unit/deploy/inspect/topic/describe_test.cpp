@@ -120,8 +120,7 @@ constexpr const char* kSomeHeader =
     R"({"sender":1003,"incarnation":77,"rules":"0000000000c0ffee","message_number":4,)"
     R"("stamp_ns":1700000000123456789})";
 
-TEST_CASE(
-    "a description has the members of the message in IDL order, with the values of the generated code") {
+TEST_CASE("a description has the message's members in IDL order with the generated code's values") {
   msg::Feedback feedback;
   feedback.robot(3);
   fill_header(feedback);
@@ -178,7 +177,7 @@ TEST_CASE("a description has the used elements of arrays and all elements of seq
             R"({"robot":0,"x_m":0.0,"y_m":0.0,"heading_rad":-1.5,"confidence":0.0}]})");
 }
 
-TEST_CASE("arrays without a count are described whole") {
+TEST_CASE("arrays without a count are described completely") {
   msg::Verdict verdict;
   verdict.robot(3);
   fill_header(verdict);
@@ -208,7 +207,7 @@ TEST_CASE("a histogram is described by its quantiles") {
   CHECK(description["plan"] == Json{{"count", 0}, {"p50_us", 0.0}, {"p99_us", 0.0}, {"max_us", 0.0}});
 }
 
-TEST_CASE("text is described as text, and an image by its size") {
+TEST_CASE("text is described as text and an image by its size") {
   const std::string text = "radius_m: 0.09\n";
   msg::SharedRules rules;
   rules.text().assign(text.begin(), text.end());
@@ -224,14 +223,14 @@ TEST_CASE("text is described as text, and an image by its size") {
   CHECK(describe(topics::kImages, &image)["image_format"] == "rgb");
 }
 
-TEST_CASE("beams without a range are described in words") {
+TEST_CASE("laser beams without a range are described in words") {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   msg::LaserScan scan;
   scan.ranges_m() = {1.5F, kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN()};
   CHECK(describe(topics::kScan, &scan)["ranges_m"] == Json{1.5, "no hit", "too near", "lost"});
 }
 
-TEST_CASE("an enumerator is described by the words of its IDL name, an unknown one by its number") {
+TEST_CASE("an enumerator is described by the words of its IDL name, and an unknown one by its number") {
   const std::string idl = without_comments(idl_text());
   const auto check = [&](const char* name, const std::string& prefix, auto describe_value) {
     const std::vector<std::string> enumerators = idl_enumerators(idl, name);
@@ -295,7 +294,7 @@ TEST_CASE("an enumerator is described by the words of its IDL name, an unknown o
   });
 }
 
-TEST_CASE("logs and pages have the same words for enumerators as descriptions") {
+TEST_CASE("logs and pages use the same words for enumerators as descriptions") {
   const std::string idl = without_comments(idl_text());
   const auto check = [&](const char* name, const std::string& prefix, const auto& texts) {
     const std::vector<std::string> enumerators = idl_enumerators(idl, name);
@@ -306,7 +305,7 @@ TEST_CASE("logs and pages have the same words for enumerators as descriptions") 
   check("DisturbanceKind", "DISTURBANCE_", kDisturbanceTexts);
 }
 
-TEST_CASE("a counter is described by the name of its reason, an unknown reason by its number") {
+TEST_CASE("a counter is described by the name of its reason, and an unknown reason by its number") {
   msg::Counters message;
   for (std::size_t i = 0; i <= kDropReasonCount; ++i)
     message.counts().emplace_back().reason(static_cast<std::uint16_t>(i));
@@ -316,7 +315,7 @@ TEST_CASE("a counter is described by the name of its reason, an unknown reason b
   CHECK(description["counts"].back()["reason"] == "unknown " + std::to_string(kDropReasonCount));
 }
 
-TEST_CASE("the README of the monitor has the table of reasons") {
+TEST_CASE("the README of the audit lists every drop reason") {
   std::ifstream file(SIDESTEP_IDL_DIR "/../deploy/audit/README.md");
   const std::string readme{std::istreambuf_iterator<char>(file), {}};
   for (const DropReasonInfo& info : kDropReasons) {

@@ -36,13 +36,13 @@ TEST_CASE("messages are printed as JSON, one per line") {
   CHECK(print({}, false, 2).size() == 2);
 }
 
-TEST_CASE("CSV has a column for each member, and lists as JSON") {
+TEST_CASE("CSV has a column for each member, and lists are printed as JSON") {
   CHECK(print({}, true, 2) == Lines{"robot,header.sender,header.rules,name,positions",
                                     "3,7,00ff,\"a, \"\"b\"\"\",\"[{\"\"x_m\"\":0.5},{\"\"x_m\"\":1.5}]\"",
                                     "4,7,00ff,\"a, \"\"b\"\"\",\"[{\"\"x_m\"\":0.5},{\"\"x_m\"\":1.5}]\""});
 }
 
-TEST_CASE("only messages that meet all filters are printed") {
+TEST_CASE("only messages that match all filters are printed") {
   CHECK(print({"robot=4"}).size() == 1);
   CHECK(print({"robot=9"}).empty());
   CHECK(print({"header.sender=7"}).size() == 3);
@@ -53,7 +53,7 @@ TEST_CASE("only messages that meet all filters are printed") {
   CHECK(print({"name=a, \"b\""}).size() == 3);
 }
 
-TEST_CASE("a filter that fits no message is refused, with the members that there are") {
+TEST_CASE("a filter that fits no message is rejected with a list of the members") {
   CHECK_THROWS_WITH(print({"robto=3"}),
                     "there is no member 'robto', expected one of: robot, header, name, positions");
   CHECK_THROWS_WITH(print({"header.x=3"}), ContainsSubstring("expected one of: sender, rules"));

@@ -91,7 +91,7 @@ Outcome topic(std::vector<std::string> arguments) {
   return outcome;
 }
 
-/// Publishes world states in a thread of its own.
+/// Publishes world states in its own thread.
 class Publisher {
  public:
   Publisher() : bus_(test_settings("vision")), writer_(bus_.advertise(topics::kWorld)) {
@@ -117,7 +117,7 @@ class Publisher {
   std::thread thread_;
 };
 
-TEST_CASE("a rate is the number of gaps per second, with the shortest and longest gap") {
+TEST_CASE("a rate is the number of gaps per second, shown with the shortest and longest gap") {
   RateMeter meter;
   CHECK(meter.total().samples == 0);
   CHECK_FALSE(meter.total().min_gap.has_value());
@@ -149,7 +149,7 @@ TEST_CASE("a gap that spans two calls is not lost") {
   CHECK(meter.total().samples == 3);
 }
 
-TEST_CASE("samples of one instant have no rate") {
+TEST_CASE("simultaneous samples have no rate") {
   RateMeter meter;
   meter.add(at_ms(5), 10);
   meter.add(at_ms(5), 10);
@@ -157,7 +157,7 @@ TEST_CASE("samples of one instant have no rate") {
   CHECK(meter.total().bytes_per_second == 0);
 }
 
-TEST_CASE("the table names the first members of a fleet and counts all") {
+TEST_CASE("the table names the first members of a fleet and counts them all") {
   std::vector<DiscoveredEndpoint> endpoints{endpoint("vision", true, false)};
   for (int i = 0; i < 22; ++i) endpoints.push_back(endpoint("agent-" + std::to_string(i), false, false));
   const std::string table = topic_table(endpoints);
@@ -175,7 +175,7 @@ TEST_CASE("the table shows a mismatch with the affected endpoints") {
                         "(vision -> logger)"));
 }
 
-TEST_CASE("the graph shows processes by host, what they write and read, and mismatches") {
+TEST_CASE("the graph shows processes by host, the topics they write and read, and mismatches") {
   DiscoveredEndpoint writer, reader, other;
   writer.guid = "01.0f.aa.01.17.00";
   writer.participant = "agent-3 <&>";
@@ -224,7 +224,7 @@ TEST_CASE("topic info shows the type, every endpoint with its QoS, and mismatche
   CHECK(topic_details({endpoint("vision", true, false)}, "truth") == "");
 }
 
-TEST_CASE("topic info of a topic of ours shows its IDL") {
+TEST_CASE("topic info shows the IDL of our topics") {
   const Publisher publisher;
   const Outcome outcome = topic({"info", "world", "--seconds", "1.5"});
   CAPTURE(outcome.out, outcome.err);
@@ -235,7 +235,7 @@ TEST_CASE("topic info of a topic of ours shows its IDL") {
   CHECK(topic({"info", "nothing", "--seconds", "0.1"}).exit_code == kExitFailure);
 }
 
-TEST_CASE("the messages of a topic are counted by sender: lost, repeated, out of order, late") {
+TEST_CASE("lost, repeated, reordered and late messages of a topic are counted by sender") {
   SenderMeter meter;
   const auto add = [&](std::uint32_t sender, std::uint64_t incarnation, std::uint64_t number, int delay_ms) {
     msg::Header header;
@@ -258,7 +258,7 @@ TEST_CASE("the messages of a topic are counted by sender: lost, repeated, out of
   CHECK_THAT(table, Matches("[^]*\ncoordinator \\(2\\) +1 +0 +0 +0  0\\.000 [^]*"));
 }
 
-TEST_CASE("of very many senders of a topic, those heard last are shown") {
+TEST_CASE("of very many senders of a topic, the most recently heard are shown") {
   SenderMeter meter;
   for (std::uint32_t i = 0; i < SenderMeter::kMaxStreams + 5; ++i) {
     msg::Header header;
@@ -290,7 +290,7 @@ TEST_CASE("topic list finds the topics of a running process") {
                               ContainsSubstring("1: vision"));
 }
 
-TEST_CASE("topic hz measures a topic, and for a topic without a writer lists the available ones") {
+TEST_CASE("topic hz measures a topic, and lists available topics if it has no writer") {
   const Publisher publisher;
   const Outcome measured = topic({"hz", "world", "--seconds", "1"});
   CAPTURE(measured.out, measured.err);
@@ -317,7 +317,7 @@ TEST_CASE("topic echo prints the requested number of messages, each as a line of
   CHECK(count == 2);
 }
 
-TEST_CASE("topic echo prints topics of other programs by the IDL that the user names") {
+TEST_CASE("topic echo prints other programs' topics by a user-supplied IDL file") {
   const Publisher publisher;
   const TemporaryFolder folder;
   write_file(folder.file("world.idl"), kIdlText);
@@ -360,7 +360,7 @@ TEST_CASE("topic pub publishes messages of our topics") {
   CHECK(received[0].grip() == 0.25);
 }
 
-TEST_CASE("topic pub says what is wrong with a message, and when nobody reads it") {
+TEST_CASE("topic pub reports errors in a message and topics without a reader") {
   CHECK_THROWS_WITH(topic({"pub", "disturbance", "{"}), ContainsSubstring("is not valid JSON"));
   CHECK_THROWS_WITH(topic({"pub", "disturbance", R"({"robot": -1})"}),
                     ContainsSubstring("robot: expected a whole number"));
@@ -370,7 +370,7 @@ TEST_CASE("topic pub says what is wrong with a message, and when nobody reads it
   CHECK(outcome.err == "topic 'disturbance' has no reader that matches\n");
 }
 
-TEST_CASE("IDL that cannot be used is wrong usage of topic pub and topic echo") {
+TEST_CASE("unusable IDL is a usage error of topic pub and topic echo") {
   const std::string missing = "/missing.idl";
   CHECK_THROWS_AS(topic({"pub", "x", "{}", "--idl", missing, "--type", "A"}), std::invalid_argument);
   CHECK_THROWS_AS(topic({"echo", "x", "--idl", missing}), std::invalid_argument);
@@ -396,7 +396,7 @@ TEST_CASE("topic echo of an unknown topic lists the known ones") {
   }
 }
 
-TEST_CASE("wrong usage of sidestep topic exits with code 2") {
+TEST_CASE("usage errors of sidestep topic exit with code 2") {
   CHECK(topic({}).exit_code == kExitUsage);
   CHECK(topic({"hz"}).exit_code == kExitUsage);
   CHECK(topic({"echo", "world", "--count", "-3"}).exit_code == kExitUsage);

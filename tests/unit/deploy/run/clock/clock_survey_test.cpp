@@ -16,7 +16,7 @@ struct Scene {
   ClockSurvey survey{kClient};
   Time now = time_from_ns(1'700'000'000'000'000'000);
 
-  /// A probe and the answer from a clock that is this far ahead; both messages take `delay`.
+  /// A probe, and the answer from a clock that is ahead by this much; both messages take `delay`.
   void ask(std::uint32_t process, Duration ahead, Duration delay = 100us, Incarnation incarnation = 1) {
     ClockAnswer answer{process, incarnation, kClient, now,       now + delay + ahead, now + delay + ahead,
                        0s,      0.0005,      "host",  "scenario"};
@@ -33,7 +33,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a process's clock is compared with this machine's, or with that of another process") {
+TEST_CASE("a process's clock is compared with this machine's or another process's") {
   Scene scene;
   scene.ask(3, 10ms);
   scene.ask(kCoordinator, 9ms);
@@ -52,7 +52,7 @@ TEST_CASE("a process's clock is compared with this machine's, or with that of an
   CHECK(scene.row(3, 77).verdict == ClockVerdict::kNotMeasured);
 }
 
-TEST_CASE("a clock is within the bound, beyond it, or the interval is too wide to tell") {
+TEST_CASE("a clock is within the bound, beyond it, or its interval is too wide to tell") {
   Scene scene;
   scene.ask(0, 0s);
   scene.ask(1, 300us);
@@ -80,7 +80,7 @@ TEST_CASE("clocks agree if each is measured and none is proven to be beyond the 
   CHECK_FALSE(all_agree(scene.survey.rows(scene.now, {})));
 }
 
-TEST_CASE("answers to others, to probes that were never sent, and of earlier runs do not count") {
+TEST_CASE("answers to others, to probes that were never sent, and from earlier runs do not count") {
   Scene scene;
   const auto answer = [&](std::uint32_t client, Time sent) {
     return ClockAnswer{3, 1, client, sent, scene.now, scene.now, 0s, 0.0005, "host", "scenario"};
@@ -97,7 +97,7 @@ TEST_CASE("answers to others, to probes that were never sent, and of earlier run
   CHECK(scene.row(3).offset->high < Duration(1ms));
 }
 
-TEST_CASE("a process that has fallen silent is no longer measured, and then left out") {
+TEST_CASE("a process that falls silent is first marked as not measured and then left out") {
   Scene scene;
   scene.ask(3, 0s);
   scene.now += 3s;

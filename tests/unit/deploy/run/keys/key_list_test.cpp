@@ -14,7 +14,7 @@ std::vector<std::string> texts(const std::vector<std::string>& words) {
 }
 
 TEST_CASE(
-    "identities are listed one after another, and a range gives one key per process, except for robots") {
+    "identities are listed one after another, and a range gives one key per process except for robots") {
   using Texts = std::vector<std::string>;
   CHECK(texts({"agent", "3"}) == Texts{"agent 3"});
   CHECK(texts({"agent 3"}) == Texts{"agent 3"});
@@ -42,7 +42,7 @@ TEST_CASE("text that is not an identity is named in the error") {
                     ContainsSubstring("got 'agnet'") && ContainsSubstring("'agent 3', "));
 }
 
-TEST_CASE("a scenario needs keys for its processes, its robots, and those that judge, watch and operate it") {
+TEST_CASE("a scenario needs keys for its processes, robots, judges, viewers and operators") {
   const auto identities = identities_of(load_scenario(SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml"));
   std::vector<std::string> texts;
   for (const Identity& identity : identities) texts.push_back(to_text(identity));

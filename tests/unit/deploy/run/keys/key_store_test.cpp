@@ -24,7 +24,7 @@ namespace sidestep::key_store_test {
 namespace fs = std::filesystem;
 using std::chrono::hours;
 
-TEST_CASE("private keys are readable by their owner only") {
+TEST_CASE("private keys are readable only by their owner") {
   const TestKeys keys({"agent", "3", "judge"});
   int count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(keys.folder())) {
@@ -33,11 +33,11 @@ TEST_CASE("private keys are readable by their owner only") {
     CHECK(fs::status(entry.path()).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
     ++count;
   }
-  CHECK(count == 4);  // of both authorities and both identities
+  CHECK(count == 4);  // keys of both authorities and both identities
   CHECK(fs::status(keys.folder() + "/private").permissions() == fs::perms::owner_all);
 }
 
-TEST_CASE("the two authorities are different ones") {
+TEST_CASE("the two authorities are different") {
   const TestKeys keys({});
   const auto load = [&](const char* name) { return Certificate::load(keys.folder() + "/public/" + name); };
   const Certificate identities = load(key_files::kIdentityAuthority),
@@ -47,14 +47,14 @@ TEST_CASE("the two authorities are different ones") {
   CHECK_FALSE(identities.is_issued_by(permissions));
 }
 
-TEST_CASE("keys are never overwritten by new authorities") {
+TEST_CASE("new authorities never overwrite keys") {
   const TestKeys keys({});
   CHECK_THROWS_WITH(KeyStore::create(keys.folder(), keys.now(), keys.now() + hours(1)),
                     ContainsSubstring("keys are never overwritten"));
   CHECK_THROWS_WITH(KeyStore(keys.folder() + "/public"), ContainsSubstring("sidestep keys init"));
 }
 
-TEST_CASE("a new key replaces the former, which stays valid until it is revoked") {
+TEST_CASE("a new key replaces the former one, which stays valid until it is revoked") {
   TestKeys keys({"agent", "3"});
   const std::string first = Certificate::load(keys.folder_of("agent 3") + "/cert.pem").serial();
   keys.issue({Role::kAgent, 3, 3});
@@ -74,7 +74,7 @@ TEST_CASE("a new key replaces the former, which stays valid until it is revoked"
   CHECK(load_key_folder(keys.folder_of("agent 3"), keys.now()).identity.first == 3);
 }
 
-TEST_CASE("revoking one identity leaves all others as they are") {
+TEST_CASE("revoking one identity does not affect the others") {
   TestKeys keys({"agent", "3-4", "vision"});
   keys.revoke({Role::kAgent, 4, 4});
   CHECK_NOTHROW(load_key_folder(keys.folder_of("agent 3"), keys.now()));
@@ -82,7 +82,7 @@ TEST_CASE("revoking one identity leaves all others as they are") {
   CHECK_THROWS(keys.folder_of("agent 4"));
 }
 
-TEST_CASE("several identities are revoked at once, whether or not some of them are already") {
+TEST_CASE("several identities are revoked at once, whether or not some of them already are") {
   TestKeys keys({"agent", "0-3"});
   const std::vector<Identity> all{
       {Role::kAgent, 0, 0}, {Role::kAgent, 2, 2}, {Role::kAgent, 3, 3}, {Role::kVision}};
@@ -108,8 +108,8 @@ TEST_CASE("several identities are revoked at once, whether or not some of them a
   CHECK(unreadable == std::vector<std::string>{"77"});
 }
 
-/// Performs random operations on a folder of keys that several processes change concurrently. Reports the
-/// serial numbers of keys that it has revoked on a pipe.
+/// Performs random operations on a key folder that several processes change concurrently. Writes the serial
+/// numbers of keys that it has revoked to a pipe.
 void act_at_random(const std::string& folder, Time now, Rng& rng, int report) {
   KeyStore store(folder);
   const auto number = static_cast<RobotId>(rng.below(4));
@@ -135,8 +135,8 @@ void act_at_random(const std::string& folder, Time now, Rng& rng, int report) {
   }
 }
 
-/// Processes issue, revoke and list concurrently, and are killed at random. Keys reported as revoked stay
-/// revoked, and the folder can always be read.
+/// Processes issue, revoke and list keys concurrently and are killed at random. Keys reported as revoked must
+/// stay revoked, and the folder must always be readable.
 void interleave(int rounds, std::uint64_t seed) {
   constexpr int kAtOnce = 3;
   CAPTURE(seed);
@@ -147,7 +147,7 @@ void interleave(int rounds, std::uint64_t seed) {
   int killed = 0;
   for (int round = 0; round < rounds; ++round) {
     CAPTURE(round);
-    // A list of some hundred keys takes long to read.
+    // A list of several hundred keys takes long to read.
     if (round % 50 == 49) {
       keys = std::make_unique<TestKeys>(std::vector<std::string>{"agent", "0-3"});
       revoked.clear();
@@ -198,24 +198,22 @@ void interleave(int rounds, std::uint64_t seed) {
   CHECK(killed > rounds / 10);
 }
 
-TEST_CASE(
-    "a key reported as revoked stays revoked, whatever other processes issue, revoke or list, and however "
-    "they die") {
+TEST_CASE("a key reported as revoked stays revoked, whatever other processes do and however they die") {
   interleave(200, 71);
 }
 
-TEST_CASE("a key reported as revoked stays revoked, for ten thousand rounds", "[.long][slow]") {
+TEST_CASE("a key reported as revoked stays revoked for ten thousand rounds", "[.long][slow]") {
   interleave(10'000, 72);
 }
 
-TEST_CASE("a key for more robots than a handshake can carry is refused, and nothing is written") {
+TEST_CASE("a key for more robots than a handshake can carry is rejected, and nothing is written") {
   TestKeys keys({});
   keys.issue({Role::kRobot, 0, 399});
   CHECK_THROWS_WITH(keys.issue({Role::kRobot, 0, 1023}), ContainsSubstring("too many robots for one key"));
   CHECK_FALSE(fs::exists(keys.folder() + "/enclaves/robot-0-1023"));
 }
 
-TEST_CASE("no key outlives the authorities") {
+TEST_CASE("no key outlives its authorities") {
   TestKeys keys({});
   const std::string folder = keys.issue({Role::kVision}, hours(1000));
   CHECK(Certificate::load(folder + "/cert.pem").not_after() == keys.store().authorities_expire());

@@ -15,7 +15,7 @@ namespace sidestep::keys_command_test {
 
 namespace fs = std::filesystem;
 
-/// Runs `sidestep` with these arguments. Returns what is wrong; empty: nothing.
+/// Runs `sidestep` with these arguments. Returns the error, or an empty string.
 std::string run(const std::vector<std::string>& arguments) {
   CommandLine command_line("test", "sidestep");
   std::function<int()> action;
@@ -40,7 +40,7 @@ TEST_CASE("keys are made, replaced, revoked and shown") {
   CHECK(run({"keys", "issue", "agent", "3", "--again", "--days", "2", "--keys", keys}).empty());
   CHECK(Certificate::load(agent + "/cert.pem").serial() != first);
   const Certificate second = Certificate::load(agent + "/cert.pem");
-  // Hosts whose clocks are a little behind accept it, too.
+  // Hosts whose clocks are slightly behind accept it, too.
   CHECK(second.not_after() - second.not_before() == std::chrono::hours(48) + std::chrono::minutes(10));
   CHECK(run({"keys", "show", "--keys", keys}).empty());
   CHECK(run({"keys", "revoke", "agent", "3", "--keys", keys}).empty());
@@ -51,7 +51,7 @@ TEST_CASE("keys are made, replaced, revoked and shown") {
   CHECK_FALSE(fs::exists(keys + "/enclaves/vision"));
 }
 
-TEST_CASE("a scenario's keys are made at once, and those that exist stay") {
+TEST_CASE("all keys of a scenario are made at once, and existing ones stay") {
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys");
   const std::string scenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
@@ -81,7 +81,7 @@ TEST_CASE("usage errors are explained") {
   CHECK_FALSE(run({"keys"}).empty());
 }
 
-TEST_CASE("keys issued or revoked now count on hosts whose clocks are ten minutes behind") {
+TEST_CASE("new keys and revocations are valid even on hosts whose clocks are ten minutes behind") {
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys"), agent = keys + "/enclaves/agent-3";
   const Time behind = DdsBus::clock() - std::chrono::minutes(9);
@@ -91,7 +91,7 @@ TEST_CASE("keys issued or revoked now count on hosts whose clocks are ten minute
   CHECK_NOTHROW(load_key_folder(agent, behind));
 }
 
-TEST_CASE("a user without permission to read the authorities' keys gets an error that says this") {
+TEST_CASE("a user who may not read the authorities' keys gets an error that says so") {
   SIDESTEP_NEEDS_ROOT();
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys"), closed = keys + "/private";

@@ -24,7 +24,7 @@ std::string permissions_of(const char* identity) {
                           time_from_ns(1'800'000'000'000'000'000), time_from_ns(1'831'536'000'000'000'000));
 }
 
-TEST_CASE("permissions state their owner and how long they are valid, and deny everything else") {
+TEST_CASE("permissions state their owner and validity period, and deny everything else") {
   const std::string text = permissions_of("agent 3");
   CHECK_THAT(text, ContainsSubstring("<subject_name>CN=agent 3,O=Sidestep</subject_name>"));
   CHECK_THAT(text, ContainsSubstring("<not_before>2027-01-15T08:00:00</not_before>"));
@@ -32,7 +32,7 @@ TEST_CASE("permissions state their owner and how long they are valid, and deny e
   CHECK_THAT(text, ContainsSubstring("<default>DENY</default>"));
 }
 
-TEST_CASE("an agent's permissions have its own robot's channels") {
+TEST_CASE("an agent's permissions include its own robot's channels") {
   const std::string text = permissions_of("agent 3");
   CHECK(topics_in(text, "publish") == std::set<std::string>{"command/3", "registration", "proposal",
                                                             "agent_orders", "order_status", "status",
@@ -42,7 +42,7 @@ TEST_CASE("an agent's permissions have its own robot's channels") {
   CHECK(topics_in(text, "subscribe").count("truth") == 0);
 }
 
-TEST_CASE("permissions allow what the topic table says, and nothing else") {
+TEST_CASE("permissions allow exactly what the topic table says") {
   for (const char* name : {"agent 3", "coordinator 1", "vision", "simulator", "robot 2-4", "referee",
                            "client a", "operator", "viewer", "judge"}) {
     CAPTURE(name);
@@ -66,7 +66,7 @@ TEST_CASE("permissions allow what the topic table says, and nothing else") {
   }
 }
 
-TEST_CASE("all topics are encrypted and under access control, and datagrams as a whole are not protected") {
+TEST_CASE("all topics are encrypted and access-controlled, but datagrams as a whole are not protected") {
   const std::string text = governance_text();
   CHECK_THAT(text, ContainsSubstring("<allow_unauthenticated_participants>false<"));
   CHECK_THAT(text, ContainsSubstring("<enable_join_access_control>true<"));

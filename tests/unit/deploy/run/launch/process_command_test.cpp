@@ -55,14 +55,14 @@ struct Fixture {
     std::ifstream file(path(name));
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  /// Waits until a file exists, or until it does not.
+  /// Waits until a file exists, or until it no longer does.
   bool wait_for(ProcessGroup& group, const std::string& file, bool exists = true) const {
     const Time deadline = EventLoop::now() + std::chrono::seconds(30);
     while (fs::exists(file) != exists && EventLoop::now() < deadline)
       group.poll(std::chrono::milliseconds(5));
     return fs::exists(file) == exists;
   }
-  /// The folder on the remote host into which the scenario was copied.
+  /// The folder on the remote host to which the scenario was copied.
   std::string remote_folder() const { return fs::path(read("where")).parent_path().string(); }
 
   fs::path folder;
@@ -84,7 +84,7 @@ HostSpec host_of(HostTransport transport, const std::string& target) {
 
 }  // namespace
 
-TEST_CASE("a local process is started directly, one in a namespace by ip netns exec") {
+TEST_CASE("a local process is started directly, and a process in a namespace by ip netns exec") {
   const Fixture fixture;
   const std::vector<std::string> tail{"--scenario",  fixture.path("it's a scenario.yaml"),
                                       "--domain",    "17",
@@ -98,7 +98,7 @@ TEST_CASE("a local process is started directly, one in a namespace by ip netns e
         expected);
 }
 
-TEST_CASE("agents run at low priority where other processes run, but not on computers of robots") {
+TEST_CASE("agents run at low priority except on robots' own computers") {
   const Fixture fixture;
   ProcessSpec vision = agent_spec(fixture);
   vision.program = "sidestep-vision";
@@ -141,7 +141,7 @@ TEST_CASE("over ssh the scenario is copied, and the process ends when the launch
   CHECK_FALSE(fs::exists(fixture.remote_folder()));
 }
 
-TEST_CASE("over ssh the process gets its own keys, and nobody else can read them there") {
+TEST_CASE("over ssh the process gets its own keys, and no other user there can read them") {
   const Fixture fixture;
   HostSpec host = host_of(HostTransport::kSsh, "robot@far");
   host.programs = fs::relative(fixture.folder).string();  // relative to the initial folder of ssh
@@ -157,7 +157,7 @@ TEST_CASE("over ssh the process gets its own keys, and nobody else can read them
   CHECK(to_text(copied.identity) == "agent 3");
   for (const char* name : key_files::kAll) CHECK_FALSE(fs::is_symlink(copied.file(name)));
 
-  // Another list of revoked keys replaces the former.
+  // A new list of revoked keys replaces the former one.
   RevokedKeys revoked(process.keys);
   const Time now = EventLoop::now();
   CHECK_FALSE(revoked.changed(now));

@@ -28,7 +28,7 @@ using SteadyClock = std::chrono::steady_clock;
 
 constexpr auto kDeadline = 20s;
 
-/// A folder that is removed with the process.
+/// A folder that is removed when the process ends.
 struct Folder {
   std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("process-group-" + std::to_string(getpid()));
@@ -45,14 +45,14 @@ ChildSpec shell(const std::string& name, const std::string& script, bool restart
   return {name, {"/bin/sh", "-c", script}, restart};
 }
 
-/// The next event, or a failed test.
+/// Returns the next event, or fails the test.
 ChildEvent next_event(ProcessGroup& group) {
   const auto events = group.poll(kDeadline);
   REQUIRE(events.size() == 1);
   return events[0];
 }
 
-/// Waits until a child has printed the line.
+/// Waits until a child has printed this line.
 void wait_for_line(ProcessGroup& group, const std::string& name, const std::string& line) {
   const auto until = SteadyClock::now() + kDeadline;
   while (SteadyClock::now() < until) {
@@ -86,7 +86,7 @@ TEST_CASE("a death is reported with exit code or signal, and the last lines are 
   CHECK(group.running() == 0);
 }
 
-TEST_CASE("the processor time and memory of children add up over their restarts") {
+TEST_CASE("children's processor time and memory are summed over restarts") {
   ProcessGroup group(log_path());
   group.start(shell("busy", "i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done", true));
   CHECK(group.resource_use().empty());
@@ -108,7 +108,7 @@ TEST_CASE("a child runs at the requested priority") {
   wait_for_line(group, "polite", std::to_string(std::min(getpriority(PRIO_PROCESS, 0) + 3, 19)));
 }
 
-TEST_CASE("a program that does not exist is refused at once") {
+TEST_CASE("a program that does not exist is rejected at once") {
   ProcessGroup group(log_path());
   CHECK_THROWS_WITH(group.start({"ghost", {"/nowhere/ghost"}, false}),
                     ContainsSubstring("cannot start ghost (/nowhere/ghost): No such file"));
@@ -125,7 +125,7 @@ TEST_CASE("a program that cannot be executed says why in its last lines") {
   CHECK_THAT(group.last_lines("text")[0], StartsWith("cannot execute " + path));
 }
 
-TEST_CASE("a child with `restart` is started again after each death, as a new process") {
+TEST_CASE("a child with `restart` is started again as a new process after each death") {
   ProcessGroup group(log_path());
   const pid_t first = group.start(shell("phoenix", "echo up; exec sleep 1000", true));
   pid_t pid = first;
@@ -162,13 +162,13 @@ TEST_CASE("a child that keeps dying is restarted less and less often, but prompt
   CHECK(restart_delay() < 1s);
   for (int i = 0; i < 3; ++i) (void)restart_delay();
   CHECK(restart_delay() > 1500ms);
-  // A life of more than two seconds.
+  // Lives for more than two seconds.
   CHECK(group.poll(2100ms).empty());
   CHECK(restart_delay() < 1s);
   CHECK(restart_delay() < 1s);
 }
 
-TEST_CASE("a child that is alive or dead is started again on request, once, with new arguments") {
+TEST_CASE("a child is restarted once on request, whether alive or dead, with new arguments") {
   ProcessGroup group(log_path());
   const pid_t first = group.start(shell("target", "echo first; exec sleep 1000"));
   wait_for_line(group, "target", "first");
@@ -190,7 +190,7 @@ TEST_CASE("a child that is alive or dead is started again on request, once, with
   CHECK_FALSE(group.send_signal("nobody", SIGKILL));
 }
 
-TEST_CASE("terminating ends children by SIGTERM, those that ignore it by SIGKILL, and restarts none") {
+TEST_CASE("terminating ends children by SIGTERM, then by SIGKILL, and restarts none") {
   ProcessGroup group(log_path());
   group.start(
       shell("polite", "trap 'echo bye; exit 0' TERM; echo ready; while :; do sleep 0.01; done", true));
@@ -205,7 +205,7 @@ TEST_CASE("terminating ends children by SIGTERM, those that ignore it by SIGKILL
   CHECK(group.poll(0ms).empty());
 }
 
-TEST_CASE("a child reads its input again after a restart, and ends when its stdin is closed") {
+TEST_CASE("a restarted child reads its input again, and a child ends when its stdin is closed") {
   ProcessGroup group(log_path());
   const std::string text(100'000, 'x');
   group.start({"reader", {"/bin/sh", "-c", "head -c 100000 | wc -c; read end; echo over"}, true, text});
@@ -244,7 +244,7 @@ TEST_CASE("a child gets more input while it runs, and all of it again after a re
   CHECK(group.last_lines("deaf") == std::vector<std::string>{"end"});
 }
 
-TEST_CASE("a child gets more input than its stdin holds, and one that does not read it does no harm") {
+TEST_CASE("a child can get more input than its stdin holds, and one that does not read does no harm") {
   ProcessGroup group(log_path());
   const std::string text(8 << 20, 'x');
   group.start({"reader", {"/bin/sh", "-c", "head -c 8388608 | wc -c"}, false, text});

@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 using Deaths = std::vector<std::string>;
 
-/// Set in a director when it is asked to end.
+/// Set in a director when the director is asked to end.
 volatile std::sig_atomic_t is_asked_to_end = 0;
 
 void obey_sigterm() {
@@ -35,7 +35,7 @@ ChildSpec shell(const std::string& name, const std::string& script) {
 
 bool is_alive(pid_t pid) { return kill(pid, 0) == 0; }
 
-/// Waits for it in a director, which fails after ten seconds.
+/// Waits in a director for a condition, and fails after ten seconds.
 template <typename Condition>
 void wait_for(Condition condition) {
   for (int i = 0; !condition(); ++i) {
@@ -56,7 +56,7 @@ struct Fixture {
   TemporaryFolder folder;
   ProcessGroup group{folder.file("log")};
   std::string lost;
-  std::optional<std::chrono::milliseconds> max_ending;  // of directors; nullopt: the default
+  std::optional<std::chrono::milliseconds> max_ending;  // of directors; nullopt: default
 };
 
 }  // namespace
@@ -107,7 +107,7 @@ TEST_CASE("each director learns which processes have died permanently") {
   CHECK(f.group.running() == 0);
 }
 
-TEST_CASE("a failed request of a director throws an exception in the director") {
+TEST_CASE("a director's failed request throws an exception in the director") {
   Fixture f;
   const int code = f.keep([](Processes& processes, const Deaths&) {
     try {
@@ -120,7 +120,7 @@ TEST_CASE("a failed request of a director throws an exception in the director") 
   CHECK(code == 0);
 }
 
-TEST_CASE("a director that is asked to end may finish its work, and if it dies instead it is lost") {
+TEST_CASE("a director that is asked to end may finish its work, but is not replaced if it dies instead") {
   Fixture f;
   const pid_t self = getpid();
   const auto ends_well = [&](Processes& processes, const Deaths&) {
@@ -149,12 +149,12 @@ TEST_CASE("a director that is asked to end may finish its work, and if it dies i
   CHECK(other.group.running() == 0);
 }
 
-TEST_CASE("a director that ends its processes is not asked to end again, and may write its report") {
+TEST_CASE("a director that is ending its processes is not asked to end again and may write its report") {
   Fixture f;
   const pid_t self = getpid();
   const auto ends_slowly = [&](Processes& processes, const Deaths&) {
     obey_sigterm();
-    // Takes longer than the keeping process waits before it asks again.
+    // Ends later than the keeping process would ask again.
     (void)processes.start(
         shell("agent", "trap 'sleep 1.5; exit 0' TERM; echo ready; while :; do sleep 0.01; done"));
     wait_for([&] { return !processes.last_lines("agent").empty(); });
@@ -162,7 +162,7 @@ TEST_CASE("a director that ends its processes is not asked to end again, and may
     wait_for([] { return is_asked_to_end != 0; });
     signal(SIGTERM, SIG_DFL);
     const bool has_ended = processes.terminate(5s).empty();
-    (void)processes.poll(0ms);  // so that the keeping process has continued in the meantime
+    (void)processes.poll(0ms);  // waits until the keeping process has continued
     return has_ended ? 3 : 4;
   };
   CHECK(f.keep(ends_slowly) == 3);
@@ -187,13 +187,12 @@ TEST_CASE("a director that hangs after it has ended its processes is killed", "[
   CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
 }
 
-TEST_CASE(
-    "a director that was stopped and is asked to end is killed, the processes end, and it is reported") {
+TEST_CASE("a stopped director that is asked to end is killed and reported, and its processes end") {
   Fixture f;
   f.max_ending = 500ms;
   const pid_t self = getpid();
   const int code = f.keep([&](Processes& processes, const Deaths&) {
-    obey_sigterm();  // which may come before the next line but one
+    obey_sigterm();  // the signal may come before the next line but one
     write_file(f.file("pid"), std::to_string(processes.start(shell("agent", "exec sleep 1000"))));
     kill(self, SIGINT);
     std::raise(SIGSTOP);
@@ -207,7 +206,7 @@ TEST_CASE(
   CHECK(DirectorWork{}.max_ending <= 30s);
 }
 
-TEST_CASE("a director that dies before it has started anything is not started again") {
+TEST_CASE("a director that dies before it has started anything is not restarted") {
   Fixture f;
   CHECK(f.keep([](Processes&, const Deaths&) -> int { std::abort(); }) == 1);
   CHECK(f.lost == "signal 6 (SIGABRT)");
@@ -250,7 +249,7 @@ TEST_CASE("when the keeping process is killed, robots come to rest and the direc
   CHECK(f.text("rest") == "rest\n");
 }
 
-TEST_CASE("robots have come to rest before other processes are asked to end") {
+TEST_CASE("robots come to rest before other processes are asked to end") {
   Fixture f;
   ChildSpec robots = shell("robots", "trap 'sleep 0.3; date +%s%N >" + f.file("rest") +
                                          "; exit 0' TERM; echo ready; while :; do sleep 0.01; done");

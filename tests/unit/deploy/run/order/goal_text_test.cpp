@@ -7,7 +7,7 @@
 
 namespace sidestep::goal_text_test {
 
-TEST_CASE("a goal is a place, with or without a heading") {
+TEST_CASE("a goal is a place with or without a heading") {
   CHECK(parse_goal("1.2,-0.4").position_m == Vec2(1.2, -0.4));
   CHECK_FALSE(parse_goal("1.2,-0.4").heading_rad);
   CHECK(parse_goal("-1,2,1.5").heading_rad == 1.5);
@@ -22,7 +22,7 @@ TEST_CASE("a goal is a place, with or without a heading") {
   }
 }
 
-TEST_CASE("orders are for a robot or for all") {
+TEST_CASE("an order addresses one robot or all robots") {
   CHECK(parse_robots("7") == 7);
   CHECK(parse_robots("all") == kAllRobots);
   for (const char* text : {"", "-1", "1024", "3x", "ALL", "4294967295"}) {
@@ -31,7 +31,7 @@ TEST_CASE("orders are for a robot or for all") {
   }
 }
 
-TEST_CASE("a file gives goals to several robots, and what is wrong in it is named with its line") {
+TEST_CASE("a file gives goals to several robots, and an error in it is reported with its line") {
   const GoalLists lists = parse_goal_lists("3: [[1.2, -0.4], [0, 0, 1.5]]\n12: [[1, 1]]\n", "goals.yaml");
   REQUIRE(lists.size() == 2);
   REQUIRE(lists.at(3).size() == 2);

@@ -5,7 +5,7 @@
 
 namespace sidestep::order_command_test {
 
-/// Empty if the arguments are accepted.
+/// The error for these arguments; empty if they are accepted.
 std::string usage_error(const std::vector<std::string>& arguments) {
   CommandLine command_line("test", "sidestep");
   std::function<int()> action;

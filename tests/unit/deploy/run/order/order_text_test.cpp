@@ -5,7 +5,7 @@
 
 namespace sidestep::order_text_test {
 
-TEST_CASE("orders are named by their robot, and zones by their number") {
+TEST_CASE("an order is described by its robot and a zone by its number") {
   const auto line = [](msg::OrderKind kind, RobotId robot) {
     Order order{kind, robot};
     order.zone_number = 7;

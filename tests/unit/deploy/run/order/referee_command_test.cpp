@@ -5,7 +5,7 @@
 
 namespace sidestep::referee_command_test {
 
-/// Empty if the arguments are accepted.
+/// The error for these arguments; empty if they are accepted.
 std::string usage_error(const std::vector<std::string>& arguments) {
   CommandLine command_line("test", "sidestep");
   std::function<int()> action;
@@ -18,7 +18,7 @@ std::string usage_error(const std::vector<std::string>& arguments) {
   return action ? "" : "no action";
 }
 
-TEST_CASE("commands of the referee are checked before anything is sent") {
+TEST_CASE("referee commands are checked before anything is sent") {
   CHECK(usage_error({"referee", "HALT"}).empty());
   CHECK(usage_error({"referee", "BALL_PLACEMENT_BLUE", "--place", "-1,0.5"}).empty());
   CHECK_THAT(usage_error({"referee"}), ContainsSubstring("COMMAND"));

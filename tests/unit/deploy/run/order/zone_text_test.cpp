@@ -7,7 +7,7 @@
 
 namespace sidestep::zone_text_test {
 
-TEST_CASE("a zone has corners, and a radius if it would cover no area without one") {
+TEST_CASE("a zone has corners, and needs a radius if the corners alone enclose no area") {
   const Zone disc = parse_zone({"1,-2"}, 0.3, std::nullopt);
   REQUIRE(disc.corners_m.size() == 1);
   CHECK(disc.corners_m[0] == Vec2(1, -2));
@@ -26,7 +26,7 @@ TEST_CASE("a zone has corners, and a radius if it would cover no area without on
   CHECK_THROWS_WITH(parse_zone(too_many, 1, std::nullopt), ContainsSubstring("at most 16 corners"));
 }
 
-TEST_CASE("a corner of a zone is two coordinates") {
+TEST_CASE("a corner of a zone is given by two coordinates") {
   for (const char* text : {"", "1", "1,", ",1", "1,2,3", "1;2", "nan,1", "1,inf", "1e9,0", "1,2 "}) {
     CAPTURE(text);
     CHECK_THROWS_AS(parse_zone({text}, 1, std::nullopt), UsageError);

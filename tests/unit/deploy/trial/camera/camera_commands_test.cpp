@@ -34,13 +34,13 @@ struct PictureFile {
   ~PictureFile() { std::filesystem::remove(path); }
 };
 
-TEST_CASE("the frame of a scenario shows its robots where they start") {
+TEST_CASE("a scenario's frame shows its robots at their starts") {
   const PictureFile file;
   REQUIRE(run("frame " + kCrossing + " " + file.path) == 0);
   const cv::Mat3b bgr = cv::imread(file.path);
   REQUIRE(bgr.cols == 780);
   REQUIRE(bgr.rows == 580);
-  // Camera 0 covers low x, where the four blue robots are; their centre dots are counted.
+  // Camera 0 covers low x, where the four blue robots are; the test counts their centre dots.
   int blue = 0, yellow = 0, white = 0;
   for (const cv::Vec3b& c : bgr) {
     blue += c[0] > 130 && c[2] < 70 && c[1] < 110;
@@ -62,7 +62,7 @@ TEST_CASE("the frame command accepts another camera and size") {
   CHECK(run("frame " + kCrossing + " " + file.path + square) == 0);
 }
 
-TEST_CASE("the frame command refuses invalid arguments and files") {
+TEST_CASE("the frame command rejects invalid arguments and files") {
   const PictureFile file;
   CHECK(run("frame " + kCrossing + " " + file.path + " --camera 7") == 2);
   CHECK_THROWS_AS(run("frame " + kCrossing + " picture.gif"), UsageError);

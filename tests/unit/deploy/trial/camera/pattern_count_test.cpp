@@ -13,7 +13,7 @@
 
 namespace sidestep::pattern_count_test {
 
-/// A rotated pattern as colours by position in millimetres.
+/// A rotated pattern: colours by position in millimetres.
 using ColourMap = std::map<std::pair<long, long>, std::uint64_t>;
 
 ColourMap colour_map(const MarkerLayout& layout, const std::vector<std::uint64_t>& colours,
@@ -72,7 +72,7 @@ std::uint64_t slow_count(const MarkerLayout& layout, std::uint64_t colours) {
   return accepted.size();
 }
 
-TEST_CASE("the number of patterns equals that of an exhaustive search") {
+TEST_CASE("the number of patterns agrees with an exhaustive search") {
   const std::uint64_t seed = 21;
   CAPTURE(seed);
   Rng rng(seed);
@@ -92,7 +92,7 @@ TEST_CASE("known numbers of patterns are reproduced") {
   Rng rng(22);
   CHECK(countable_patterns(butterfly(), 2) == 16);
   CHECK(countable_patterns(butterfly(), 3) == 81);
-  // Aperiodic necklaces of two colours: 1, 2, 3, 6, 9, 18, 30 for 2 to 8 beads.
+  // Aperiodic necklaces in two colours: 1, 2, 3, 6, 9, 18, 30 for 2 to 8 beads.
   const std::vector<std::uint64_t> necklaces{1, 2, 3, 6, 9, 18, 30};
   for (std::size_t beads = 2; beads <= 8; ++beads)
     CHECK(countable_patterns(random_rings(beads, 1, rng), 2) == necklaces[beads - 2]);

@@ -28,7 +28,7 @@ struct Fault {
 const std::vector<Fault> kFaults{
     {{3s, std::nullopt}, "kill agent 1"}, {{1s, 3500ms}, "pause vision"}, {{3s, 3250ms}, "pause simulator"}};
 
-TEST_CASE("faults begin and end at their times, those of the same time in the file's order") {
+TEST_CASE("faults begin and end at their times, and simultaneous faults follow the file's order") {
   const Time zero = time_from_ns(5'000'000'000);
   FaultSchedule schedule(kFaults, zero);
   Effects effects;
@@ -44,7 +44,7 @@ TEST_CASE("faults begin and end at their times, those of the same time in the fi
   CHECK(schedule.problems().empty());
 }
 
-TEST_CASE("a fault that cannot be applied is recorded with its time, and the others go on") {
+TEST_CASE("a fault that cannot be applied is recorded with its time, and the other faults continue") {
   FaultSchedule schedule(kFaults, Time{});
   Effects effects;
   effects.failing = 0;

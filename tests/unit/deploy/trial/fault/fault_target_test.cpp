@@ -5,7 +5,7 @@
 
 namespace sidestep::fault_target_test {
 
-TEST_CASE("fault targets are named as in reports, and other names are refused") {
+TEST_CASE("fault targets have the same names as in reports, and other names are rejected") {
   const auto number = [](const std::string& text) { return parse_fault_target(text)->number; };
   CHECK(number("all") == kEveryProcess);
   CHECK(parse_fault_target("all")->participant.empty());

@@ -29,11 +29,11 @@ class Grid {
   Vec2 centre_m(int i) const { return corner_m_ + cell_m_ * Vec2(i % columns_, i / columns_); }
   int size() const { return columns_ * rows_; }
 
-  /// Two cells with the same label are joined by a free path: between neighbours' centres, every point is
-  /// within half a cell of one of them.
+  /// Two cells with the same label are joined by a free path: between the centres of neighbours, every point
+  /// is within half a cell of one of the centres.
   std::vector<int> surely_joined() const { return labels(cell_m_ / 2, false); }
   /// Two cells with different labels are not joined by any free path: each cell with a free point counts, and
-  /// a path may pass from one to the next across a corner.
+  /// a path may pass diagonally from one cell to the next.
   std::vector<int> possibly_joined() const { return labels(-cell_m_ * std::sqrt(0.5) - 1e-9, true); }
 
  private:
@@ -69,7 +69,7 @@ class Grid {
   std::vector<double> clearance_m_;
 };
 
-/// Obstacles of all kinds, enough that some free positions are enclosed.
+/// Obstacles of all kinds, enough of them to enclose some free positions.
 PlanWorld crowded_world(std::uint64_t seed) {
   Rng rng(seed);
   PlanWorld world;
@@ -116,7 +116,7 @@ bool connects(const std::vector<std::string>& rows) {
   return FreeSpace(scene.world).connects(scene.a, scene.b);
 }
 
-TEST_CASE("free space connects what a flood fill joins and separates what a flood fill separates") {
+TEST_CASE("free space connects and separates the same positions as a flood fill") {
   int joined = 0, separated = 0, undecided = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
@@ -149,7 +149,7 @@ TEST_CASE("free space connects what a flood fill joins and separates what a floo
   CHECK(undecided < joined / 10);
 }
 
-TEST_CASE("free space distinguishes a gap that is a nanometre too narrow from one that is wide enough") {
+TEST_CASE("free space distinguishes a gap a nanometre too narrow from one a nanometre wider than needed") {
   PlanWorld world;
   world.radius_m = 0.1;
   for (const double excess_m : {-1e-9, 1e-9}) {
@@ -164,25 +164,25 @@ TEST_CASE("free space distinguishes a gap that is a nanometre too narrow from on
   }
 }
 
-TEST_CASE("free space connects everything where there is no obstacle") {
+TEST_CASE("free space without obstacles is connected") {
   CHECK(FreeSpace(PlanWorld{}).connects({-4.9, -4.9}, {4.9, 4.9}));
 }
 
-TEST_CASE("a closed ring separates its inside from its outside and an open one does not") {
+TEST_CASE("a closed ring separates its inside from its outside, but an open ring does not") {
   CHECK_FALSE(connects({".......",  //
                         ".#####.", ".#.a.#.", ".#...#.", ".#####b"}));
   CHECK(connects({".......",  //
                   ".#####.", ".#.a.#.", ".#....b", ".#####."}));
 }
 
-TEST_CASE("a wall from side to side separates, even one of boxes that meet at corners") {
+TEST_CASE("a wall from side to side separates, even if its boxes meet only at corners") {
   CHECK_FALSE(connects({"a.#....",  //
                         "..#....", "...#...", "....#.b"}));
   CHECK(connects({"a.#....",  //
                   "..#....", ".......", "....#.b"}));
 }
 
-TEST_CASE("two islands in one ring are distinguished from rings around both positions") {
+TEST_CASE("two islands inside one ring do not separate, but a wall across the ring does") {
   CHECK(connects({"#########",  //
                   "#.......#", "#a.#.#.b#", "#.......#", "#########"}));
   CHECK_FALSE(connects({"#########",  //

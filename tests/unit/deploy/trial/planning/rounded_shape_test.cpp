@@ -9,7 +9,7 @@ namespace sidestep::rounded_shape_test {
 
 constexpr double kStep_m = 0.05;
 
-/// Points all over a shape without its radius, at most kStep_m apart along each direction.
+/// Points all over a shape without its radius, at most kStep_m apart in each direction.
 std::vector<Vec2> points_of(const RoundedShape& shape) {
   const std::vector<Vec2>& corners = shape.corners_m;
   std::vector<Vec2> points;
@@ -30,7 +30,7 @@ double sampled_distance_m(const std::vector<Vec2>& a, const std::vector<Vec2>& b
   return std::sqrt(nearest2_m2);
 }
 
-TEST_CASE("the closest points of two shapes are as close as dense samples of both and lie on both") {
+TEST_CASE("the closest points of two shapes are as close as dense samples and lie on both shapes") {
   const auto seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -51,7 +51,7 @@ TEST_CASE("the closest points of two shapes are as close as dense samples of bot
   }
 }
 
-TEST_CASE("a rounded shape has the same distance from a point as the shape outside of it") {
+TEST_CASE("a point outside a shape has the same distance from its rounded form") {
   Rng rng(5);
   const PlanWorld world = make_world("mixed", 1, 5);
   for (const Shape& shape : world.obstacles) {

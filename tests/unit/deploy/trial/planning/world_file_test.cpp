@@ -22,7 +22,7 @@ void check_refused(const std::string& text, int line, const std::string& reason)
   CHECK_THAT(message, ContainsSubstring(reason));
 }
 
-TEST_CASE("a world is read back from its text") {
+TEST_CASE("a world survives writing and reading") {
   const std::string name = GENERATE(from_range(world_names()));
   const PlanWorld world = make_world(name, 5, 3);
   const PlanWorld read = parse_plan_world(plan_world_text(world), "other.yaml");

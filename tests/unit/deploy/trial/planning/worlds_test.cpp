@@ -27,7 +27,7 @@ TEST_CASE("a seed determines its world, and all queries are solvable") {
   }
 }
 
-TEST_CASE("an unknown world name is refused") {
+TEST_CASE("an unknown world name is rejected") {
   CHECK_THROWS_WITH(make_world("ocean", 1, 1), ContainsSubstring("ocean") && ContainsSubstring("maze"));
 }
 
@@ -42,7 +42,7 @@ TEST_CASE("the path check finds a path that touches an obstacle or leaves the fi
   CHECK_FALSE(is_valid_path(world, {}, 0));
 }
 
-TEST_CASE("the path check finds contacts of a micrometre between the corners of a path") {
+TEST_CASE("the path check finds micrometre contacts between the corners of a path") {
   PlanWorld world;
   world.radius_m = 0.1;
   for (const Shape& shape :

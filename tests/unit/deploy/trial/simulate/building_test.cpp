@@ -31,7 +31,7 @@ BuildingOptions small_building(const Folder& folder) {
   return options;
 }
 
-/// The cells that are connected with a cell, by way of cells whose centres are far enough from walls for a
+/// The cells that are connected with a cell through cells whose centres are far enough from walls for a
 /// robot.
 class FloodFill {
  public:
@@ -52,7 +52,7 @@ class FloodFill {
     }
   }
 
-  /// Whether a cell within 15 cm is reached.
+  /// Whether a cell within 15 cm was reached.
   bool reaches_near(const Vec2& p) const {
     const Cell at = map_.cell_at(p);
     for (int column = at.column - 3; column <= at.column + 3; ++column)
@@ -98,7 +98,7 @@ TEST_CASE("all places of a random building are connected, and robots are apart a
   }
 }
 
-TEST_CASE("the same options give the same building, another seed gives another one") {
+TEST_CASE("the same options give the same building, and a different seed gives a different one") {
   const Folder folder;
   BuildingOptions options = small_building(folder);
   write_building(options);
@@ -111,7 +111,7 @@ TEST_CASE("the same options give the same building, another seed gives another o
   CHECK(folder.text("map.pgm") != map);
 }
 
-TEST_CASE("a building without room for its robots is refused") {
+TEST_CASE("a building without room for its robots is rejected") {
   const Folder folder;
   BuildingOptions options = small_building(folder);
   options.cells = 100;

@@ -5,8 +5,7 @@
 
 namespace sidestep::run_picture_test {
 
-/// A robot that drives from x = 0 to x = 1 m in one second, and another one at rest that is seen half as
-/// long.
+/// A robot that drives from x = 0 to x = 1 m in one second, and a resting robot that is seen half as long.
 std::string picture() {
   Scenario scenario;
   scenario.robots.resize(2);
@@ -26,10 +25,10 @@ std::string picture() {
 }
 
 TEST_CASE(
-    "in the picture of a run each robot drives from its start to its end, and rests there for a moment") {
+    "in the picture of a run each robot drives from its start to its end and rests there for a moment") {
   const std::string svg = picture();
   CAPTURE(svg);
-  // 200 pixels a metre, relative to where the robot is drawn: at its end.
+  // 200 pixels per metre, relative to where the robot is drawn: at its end.
   CHECK_THAT(svg, ContainsSubstring("values='-200,0;") && ContainsSubstring(";-100,0;"));
   CHECK_THAT(svg, ContainsSubstring(";-20,0;0,0;") || ContainsSubstring(";-20,0;-20,0;0,0;"));
   CHECK_THAT(svg, ContainsSubstring("values='0,0;0,0;"));

@@ -12,14 +12,14 @@ std::pair<std::uint64_t, std::uint64_t> parsed(const std::string& text) {
   return {seeds.first, seeds.last};
 }
 
-TEST_CASE("a range of seeds has a first and a last one") {
+TEST_CASE("a range of seeds has a first and a last seed") {
   CHECK(parsed("3..7") == std::pair<std::uint64_t, std::uint64_t>{3, 7});
   CHECK(parsed("0..0") == std::pair<std::uint64_t, std::uint64_t>{0, 0});
   CHECK(parsed("1..1000000") == std::pair<std::uint64_t, std::uint64_t>{1, 1'000'000});
   CHECK(parsed("18446744073709551615..18446744073709551615").first == 18446744073709551615U);
 }
 
-TEST_CASE("other texts and more than a million seeds are refused") {
+TEST_CASE("other text and more than a million seeds are rejected") {
   const auto text = GENERATE("", "1", "1..", "..1", "1..-1", "-1..1", "2..1", "1...2", "1..2 ", " 1..2",
                              "a..b", "1..99999999999999999999");
   CAPTURE(text);

@@ -8,7 +8,7 @@ namespace sidestep::sight_picture_test {
 
 using namespace std::chrono_literals;
 
-/// A robot before a wall, and somebody who walks past it.
+/// A robot in front of a wall, and a person who walks past it.
 Scenario scene() {
   Scenario scenario;
   scenario.field = {6, 4};
@@ -28,7 +28,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST_CASE("a picture of a laser's view shows the scan, where people may step out, and what moves") {
+TEST_CASE("a picture of a laser's view shows the scan, where people may step out, and moving objects") {
   const Scenario scenario = scene();
   SimSystem system(scenario, 1);
   SightPicture picture(scenario, 7);

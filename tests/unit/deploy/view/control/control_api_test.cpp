@@ -43,7 +43,7 @@ struct ControlledRun {
   double x_m(std::size_t index) const { return truth.robots()[index].x_m(); }
 };
 
-TEST_CASE("a robot is sent somewhere by HTTP, and its order can be followed") {
+TEST_CASE("a robot is sent to a place by HTTP, and its order can be followed") {
   ControlledRun run;
   const WebResponse answer =
       run.request("POST", "/api/robots/3/order", R"({"goals": [[0, -1], [1, -1, 1.57]]})");
@@ -56,7 +56,7 @@ TEST_CASE("a robot is sent somewhere by HTTP, and its order can be followed") {
   CHECK(run.x_m(0) == Approx(1).margin(0.03));
 }
 
-TEST_CASE("robots are held, resumed and canceled by HTTP") {
+TEST_CASE("robots are held and resumed and orders canceled by HTTP") {
   ControlledRun run;
   (void)run.request("POST", "/api/robots/3/order", R"({"goals": [[2, -1]]})");
   run.system.run_for(500ms);
@@ -75,7 +75,7 @@ TEST_CASE("robots are held, resumed and canceled by HTTP") {
   CHECK(run.x_m(0) == Approx(canceled_m).margin(0.005));
 }
 
-TEST_CASE("zones are set and removed, and faults caused, by HTTP") {
+TEST_CASE("zones are set and removed and faults are caused by HTTP") {
   ControlledRun run;
   CHECK(run.phase(run.request("POST", "/api/zones/1",
                               R"({"corners": [[0, 0], [1, 0], [1, 1]], "radius_m": 0.1})")) == "sent");
@@ -107,7 +107,7 @@ TEST_CASE("requests without the right to command have no effect") {
   CHECK(run.bookmarks.empty());
 }
 
-TEST_CASE("invalid request bodies and paths are refused with the reason") {
+TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   ControlledRun run;
   const auto error = [&](const std::string& path, const std::string& body) {
     const WebResponse answer = run.request("POST", path, body);

@@ -19,7 +19,7 @@ namespace sidestep::foxglove_test {
 using namespace std::chrono_literals;
 using Json = nlohmann::json;
 
-/// Remembers what it receives.
+/// A client that remembers what it receives.
 class FakeClient : public WebSocket {
  public:
   void send_state(unsigned, WebMessage message) override { received.push_back(*message.payload); }
@@ -29,7 +29,7 @@ class FakeClient : public WebSocket {
   std::vector<Json> texts;
 };
 
-TEST_CASE("the client that Lichtblick uses decodes the messages of a run with the schemas that it receives") {
+TEST_CASE("Lichtblick's client library decodes the messages of a run by the schemas that it receives") {
   const TemporaryFolder folder;
   for (const char* name : {"package.json", "package-lock.json", "check.mjs"})
     std::filesystem::copy_file(std::string(SIDESTEP_CLIENT_DIR "/") + name, folder.file(name));
@@ -96,7 +96,7 @@ TEST_CASE("the client that Lichtblick uses decodes the messages of a run with th
   CHECK(transforms[0].at("translation").at("x") == Approx(x_m).margin(0.1));
 }
 
-TEST_CASE("a client gets messages of the channels that it subscribes to only") {
+TEST_CASE("a client gets messages only from channels that it subscribes to") {
   FoxgloveServer server;
   FakeClient client;
   server.add(client);
@@ -128,7 +128,7 @@ TEST_CASE("a client gets messages of the channels that it subscribes to only") {
   publish();
 }
 
-TEST_CASE("meaningless messages of clients are refused, and writing is not supported") {
+TEST_CASE("invalid messages from clients are rejected, and writing is not supported") {
   FoxgloveServer server;
   FakeClient client;
   server.add(client);

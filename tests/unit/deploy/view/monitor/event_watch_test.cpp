@@ -37,7 +37,7 @@ TEST_CASE("each contact is one event, even if several are reported at once") {
   w.hear(truth);
   CHECK(w.kinds() == "contact contact contact ");
   CHECK(w.log.since(2)[0].text == "robot 0 touches an obstacle");
-  // If there are more contacts than a message lists, the last ones are events.
+  // If there are more contacts than a message lists, the latest ones are events.
   truth.contacts(1'000'000);
   w.hear(truth);
   CHECK(w.log.count() == 3 + msg::MAX_CONTACTS);
@@ -50,7 +50,7 @@ TEST_CASE("each contact is one event, even if several are reported at once") {
   CHECK(w.log.count() == 3 + msg::MAX_CONTACTS + 3);
 }
 
-TEST_CASE("an agent that falls silent and returns is two events") {
+TEST_CASE("an agent that falls silent and returns causes two events") {
   Watched w;
   msg::AgentStatus status;
   status.robot(3);
@@ -68,7 +68,7 @@ TEST_CASE("an agent that falls silent and returns is two events") {
   CHECK(w.kinds() == "silent heard ");
 }
 
-TEST_CASE("changes of robots, agents, orders and coordinators are events, repetitions are not") {
+TEST_CASE("changes of robots, agents, orders and coordinators are events, but repetitions are not") {
   Watched w;
   msg::Feedback feedback;
   msg::AgentStatus status;
@@ -123,7 +123,7 @@ TEST_CASE("impossible values in messages do no harm") {
   CHECK(w.kinds() == "epoch ");
 }
 
-TEST_CASE("a flood of orders of invented senders causes few events") {
+TEST_CASE("a flood of orders from made-up senders causes few events") {
   Watched w;
   msg::Order order;
   for (std::uint32_t i = 0; i < 100'000; ++i) {
@@ -133,7 +133,7 @@ TEST_CASE("a flood of orders of invented senders causes few events") {
     w.now += 100us;
   }
   CHECK(w.log.count() <= 2'100);
-  // Later ones are shown again, and repetitions are not.
+  // Later events are shown again, and repetitions are not.
   w.now += 60s;
   const std::uint64_t before = w.log.count();
   w.hear(order);
@@ -143,7 +143,7 @@ TEST_CASE("a flood of orders of invented senders causes few events") {
   CHECK(w.log.count() == before + 1);
 }
 
-TEST_CASE("a flood of invented senders with different rules causes few events, and hides no later one") {
+TEST_CASE("a flood of made-up senders with different rules causes few events and hides no later one") {
   Watched w;
   for (std::uint32_t i = 0; i < 100'000; ++i) {
     w.watch.on_refused(1'000'000 + i, w.now);

@@ -33,14 +33,14 @@ TEST_CASE("a history finds the snapshot at or before a time") {
   CHECK(history.stepped(at_ms(990), 30).at == at_ms(1000));
 }
 
-TEST_CASE("a history ignores what is not later than its end") {
+TEST_CASE("a history ignores snapshots that are not later than its end") {
   History history = filled(10);
   history.add(snapshot(100));
   history.add(snapshot(50));
   CHECK(history.size() == 10);
 }
 
-TEST_CASE("a full history forgets the oldest") {
+TEST_CASE("a full history forgets its oldest snapshots") {
   const History history = filled(1000, 20'000);
   CHECK(history.bytes() <= 20'000);
   CHECK(history.last().at == at_ms(10'000));
@@ -48,12 +48,12 @@ TEST_CASE("a full history forgets the oldest") {
   CHECK(history.first().at == at_ms(10'000 - 10 * (static_cast<int>(history.size()) - 1)));
 }
 
-TEST_CASE("a full history of a recording keeps the whole time with fewer snapshots") {
+TEST_CASE("a full history of a recording keeps its whole time span with fewer snapshots") {
   const History history = filled(1000, 20'000, History::WhenFull::kThinOut);
   CHECK(history.bytes() <= 20'000);
   CHECK(history.first().at == at_ms(10));
   CHECK(history.last().at >= at_ms(9'800));
-  // Equally spaced.
+  // The remaining snapshots are equally spaced.
   const Duration gap = history.stepped(history.first().at, 1).at - history.first().at;
   for (std::size_t i = 1; i + 1 < history.size(); ++i) {
     const Time before = history.stepped(history.first().at, static_cast<int>(i)).at;
@@ -61,7 +61,7 @@ TEST_CASE("a full history of a recording keeps the whole time with fewer snapsho
   }
 }
 
-TEST_CASE("a viewer sees the newest moment, a moment at rest, or moments one after another") {
+TEST_CASE("a viewer sees the newest moment, a paused moment or a playback") {
   History history = filled(100);
   ViewerTime time;
   CHECK(time.update(history, at_ms(0)) == at_ms(1000));
@@ -78,7 +78,7 @@ TEST_CASE("a viewer sees the newest moment, a moment at rest, or moments one aft
   CHECK(time.update(history, at_ms(1)) == at_ms(1010));
 }
 
-TEST_CASE("playing stops at either end, and moments beyond them are the ends") {
+TEST_CASE("playing stops at either end, and times beyond the ends show the ends") {
   const History history = filled(100);
   ViewerTime time;
   time.play(at_ms(900), 1, at_ms(0));

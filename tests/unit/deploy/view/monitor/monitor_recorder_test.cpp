@@ -15,7 +15,7 @@ namespace sidestep::monitor_recorder_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a monitor records from one moment to another, several times") {
+TEST_CASE("a monitor can record several intervals of a run") {
   const std::string file = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
   const Scenario scenario = load_scenario(file);
   const TemporaryFolder folder;
@@ -70,7 +70,7 @@ TEST_CASE("the messages of a channel of a recording are found in any interval") 
     SimSystem system(scenario, 1);
     SimBus bus(system.network());
     bus.become_observer();
-    // Small chunks, so that there are many to find.
+    // Small chunks, so that the interval spans many of them.
     RecordingWriter writer(folder.file("a.mcap"), recording_header(scenario, file),
                            {true, 1'000'000'000, 20'000});
     record(bus, scenario, writer);

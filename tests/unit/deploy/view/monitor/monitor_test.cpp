@@ -41,7 +41,7 @@ class FakeViewer : public WebSocket {
     std::memcpy(&value, frame.data(), sizeof value);
     return value;
   }
-  /// The value of a column in the row of a robot, decoded by the layout that the scene gives.
+  /// The value of a column in a robot's row, decoded by the layout that the scene gives.
   std::optional<double> value(RobotId robot, const std::string& column) const {
     const Json& layout = states.at("scene").at("layout");
     const std::vector<std::string> columns = layout.at("sections")[0].at("columns");
@@ -96,7 +96,7 @@ struct MonitoredRun {
   const Json& promise() const { return viewer.states.at("panels").at("promise"); }
 };
 
-TEST_CASE("viewers see where robots are, what they execute, and what panels say about them") {
+TEST_CASE("viewers see where robots are, what they execute and what panels say about them") {
   MonitoredRun run;
   run.system.run_for(2s);
   CHECK(run.viewer.frames >= 60);
@@ -124,14 +124,14 @@ TEST_CASE("viewers see where robots are, what they execute, and what panels say 
     CHECK(topics.contains(topic));
 }
 
-TEST_CASE("a viewer whose JSON is nested deeply is disconnected") {
+TEST_CASE("a viewer that sends deeply nested JSON is disconnected") {
   MonitoredRun run(false);
   const std::string nested = std::string(32'000, '[') + std::string(32'000, ']');
   CHECK_FALSE(run.send(R"({"op":"inspect","channel":)" + nested + "}"));
   CHECK_FALSE(run.send(R"({"op":)" + nested + "}"));
 }
 
-TEST_CASE("the lamp shows that the guarantee has held, and states the smallest clearance") {
+TEST_CASE("the lamp shows that the guarantee has held and states the smallest clearance") {
   MonitoredRun run;
   run.system.run_for(6s);
   CHECK(run.promise().at("state") == "kept");
@@ -149,10 +149,10 @@ TEST_CASE("without the scenario nothing is judged, and robots are found by their
   CHECK(std::isfinite(*run.viewer.value(run.scenario.robots[0].id, "executing_start")));
 }
 
-TEST_CASE("a run that breaks the guarantee is an event and changes the lamp") {
+TEST_CASE("a run that breaks the guarantee causes an event and changes the lamp") {
   MonitoredRun run;
   run.system.run_for(1s);
-  // Somebody carries a robot into another one: reported by the simulator as a contact.
+  // A person carries a robot into another one: reported by the simulator as a contact.
   msg::GroundTruth touch = run.truth;
   touch.header().message_number(touch.header().message_number() + 1'000'000);
   touch.contacts(touch.contacts() + 1);
@@ -192,7 +192,7 @@ TEST_CASE("a viewer can seek back while the run continues") {
   CHECK(run.viewer.time_s() == Approx(end_s + 2.1).margin(0.1));
 }
 
-TEST_CASE("a viewer gets all messages of the channel that it inspects, and of no other") {
+TEST_CASE("a viewer gets all messages of the channel that it inspects and of no other") {
   MonitoredRun run;
   run.system.run_for(500ms);
   CHECK(run.viewer.inspected == 0);
@@ -208,7 +208,7 @@ TEST_CASE("a viewer gets all messages of the channel that it inspects, and of no
   CHECK(run.viewer.inspected == before);
 }
 
-TEST_CASE("meaningless messages of viewers are refused") {
+TEST_CASE("invalid messages from viewers are rejected") {
   MonitoredRun run;
   run.system.run_for(500ms);
   for (const char* bad :
@@ -219,7 +219,7 @@ TEST_CASE("meaningless messages of viewers are refused") {
     CHECK_FALSE(run.send(bad));
 }
 
-TEST_CASE("the state, the events and the scene are answered over HTTP") {
+TEST_CASE("the state, the events and the scene are available over HTTP") {
   MonitoredRun run;
   run.system.run_for(6s);
   const auto get = [&](const std::string& path, std::map<std::string, std::string> query = {}) {

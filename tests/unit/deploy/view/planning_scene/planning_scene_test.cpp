@@ -10,8 +10,7 @@ namespace sidestep::planning_scene_test {
 
 using Json = nlohmann::json;
 
-/// Whether the path leads from start to goal, and no point of it is in an obstacle (checked every
-/// centimetre).
+/// Whether the path leads from start to goal and no point of it, checked every centimetre, is in an obstacle.
 bool is_valid(const Json& plan) {
   const auto at = [](const Json& p) { return Vec2(p[0].get<double>(), p[1].get<double>()); };
   const Json& path = plan.at("path");
@@ -28,7 +27,7 @@ bool is_valid(const Json& plan) {
   return true;
 }
 
-TEST_CASE("while obstacles are dragged, each plan avoids them where they are") {
+TEST_CASE("while obstacles are dragged, each plan avoids them at their current positions") {
   const std::string planner = GENERATE("dynamic-prm", "errt");
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u);
   CAPTURE(planner, seed);
@@ -47,7 +46,7 @@ TEST_CASE("while obstacles are dragged, each plan avoids them where they are") {
   CHECK(solved > 80);
 }
 
-TEST_CASE("the roadmap stays while obstacles move, and shows what is blocked") {
+TEST_CASE("the roadmap stays while obstacles move and shows which parts are blocked") {
   PlanningScene scene(5);
   const Json before = scene.json();
   REQUIRE(scene.apply({{"op", "move"}, {"what", 0u}, {"x", 0}, {"y", 0}}));
@@ -61,7 +60,7 @@ TEST_CASE("the roadmap stays while obstacles move, and shows what is blocked") {
   CHECK(states[2] > states[1]);  // only what the search needed was checked again
 }
 
-TEST_CASE("meaningless messages change nothing") {
+TEST_CASE("invalid messages change nothing") {
   PlanningScene scene(1);
   const std::string before = scene.json().dump();
   for (const char* bad : {"3", "{}", R"({"op":"move"})", R"({"op":"move","what":"start","x":99,"y":0})",

@@ -13,7 +13,7 @@ std::string all_of(Outbox& outbox) {
   return all;
 }
 
-TEST_CASE("a slow viewer gets all events, but only the newest of each state") {
+TEST_CASE("a slow viewer gets all events but only the newest of each state") {
   Outbox outbox;
   for (int i = 0; i < 100; ++i) {
     outbox.put_state(0, message("frame" + std::to_string(i)));
@@ -33,7 +33,7 @@ TEST_CASE("states take turns, so that none of them starves") {
   CHECK(taken == "120120");
 }
 
-TEST_CASE("an outbox with too many events reports that") {
+TEST_CASE("an outbox with too many events reports an overflow") {
   Outbox outbox;
   const WebMessage large = message(std::string(Outbox::kMaxEventBytes / 4, 'x'));
   for (int i = 0; i < 4; ++i) CHECK(outbox.add_event(large));

@@ -15,7 +15,7 @@ TEST_CASE("the target of a request is decoded") {
   CHECK(parse_target("/")->query.empty());
 }
 
-TEST_CASE("targets that are not valid are refused") {
+TEST_CASE("invalid targets are rejected") {
   for (const char* target : {"", "api", "http://host/", "/%", "/%4", "/%zz", "/%00", "/a?b=%g1", "*"})
     CHECK_FALSE(parse_target(target));
 }

@@ -7,7 +7,7 @@
 
 namespace sidestep::viewer_json_test {
 
-/// A list in a list in a list ….
+/// Nested lists: [[[…]]].
 std::string nested(std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); }
 
 TEST_CASE("messages from viewers are parsed, and anything but JSON is discarded") {
@@ -19,11 +19,11 @@ TEST_CASE("messages from viewers are parsed, and anything but JSON is discarded"
   }
 }
 
-TEST_CASE("JSON that is nested deeply is discarded") {
+TEST_CASE("deeply nested JSON is discarded") {
   CHECK(parse_viewer_json(nested(16)).is_array());
   CHECK(parse_viewer_json(nested(18)).is_discarded());
   CHECK(parse_viewer_json(R"({"op": "inspect", "channel": )" + nested(32'000) + "}").is_discarded());
-  // What comes after it does not matter either.
+  // Whatever follows does not matter either.
   CHECK(parse_viewer_json("[" + nested(100) + ", 1, {}]").is_discarded());
 }
 

@@ -18,14 +18,14 @@ struct HttpAnswer {
   std::string body;
 };
 
-/// Sends one request, and waits for the answer. Status 0: there was none within `timeout`.
+/// Sends one request and waits for the answer. Status 0: no answer within `timeout`.
 [[nodiscard]] HttpAnswer http_request(std::uint16_t port, const std::string& method,
                                       const std::string& target,
                                       const std::map<std::string, std::string>& headers = {},
                                       const std::string& body = {},
                                       Duration timeout = std::chrono::seconds(60));
 
-/// A viewer of a web socket, for tests.
+/// A web socket viewer for tests.
 class SocketClient {
  public:
   struct Message {
@@ -33,7 +33,7 @@ class SocketClient {
     bool is_binary = false;
   };
 
-  /// Throws std::runtime_error if it is refused.
+  /// Throws std::runtime_error if the connection is refused.
   explicit SocketClient(std::uint16_t port, const std::string& protocol = "sidestep.monitor.v1",
                         const std::map<std::string, std::string>& headers = {});
   ~SocketClient();
@@ -41,7 +41,7 @@ class SocketClient {
   SocketClient& operator=(const SocketClient&) = delete;
 
   void send(const std::string& message, bool is_binary = false);
-  /// The next message; nullopt: none within `timeout`, or disconnected.
+  /// The next message; nullopt: no message within `timeout`, or disconnected.
   std::optional<Message> receive(Duration timeout = std::chrono::seconds(10));
   bool is_connected() const;
   /// The server's reason for disconnecting.

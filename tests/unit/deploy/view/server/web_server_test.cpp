@@ -16,7 +16,7 @@ namespace sidestep::web_server_test {
 
 using namespace std::chrono_literals;
 
-/// A server in a thread of its own that sends each viewer what `on_tick` wants.
+/// A server in its own thread that sends each viewer the messages of `on_tick`.
 class TestServer {
  public:
   explicit TestServer(const std::string& address = "127.0.0.1") {
@@ -64,7 +64,7 @@ class TestServer {
   }
   std::uint16_t port() const { return port_ ? port_ : port_ = server->access().port; }
 
-  std::function<void(WebSocket&)> on_tick;  ///< set it before viewers connect
+  std::function<void(WebSocket&)> on_tick;  ///< set before viewers connect
   std::set<WebSocket*> sockets;             ///< used only in the server's thread
   std::set<std::string> protocols;
   std::atomic<int> opened = 0, closed = 0, closed_while_sending = 0;
@@ -82,7 +82,7 @@ bool wait_until(const std::function<bool()>& condition) {
   return condition();
 }
 
-/// Sends these bytes on a connection, and returns what arrives within a second.
+/// Sends these bytes on a connection and returns what arrives within a second.
 std::string raw_exchange(std::uint16_t port, const std::string& bytes) {
   const int fd = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -136,7 +136,7 @@ TEST_CASE("viewers negotiate a protocol and get messages") {
   CHECK_THROWS(SocketClient(server.port(), "one", {{"Host", "evil.example:1"}}));
 }
 
-TEST_CASE("a viewer whose messages make no sense or are too long is disconnected, the others are not") {
+TEST_CASE("only a viewer whose messages are invalid or too long is disconnected") {
   TestServer server;
   SocketClient other(server.port(), "one");
   for (const std::string& bad : {std::string("garbage"), std::string(WebServer::kMaxRequestBytes + 1, 'x')}) {
@@ -211,7 +211,7 @@ TEST_CASE("fifty viewers are served, and connections beyond the limit are refuse
   CHECK(refused >= 50);
 }
 
-TEST_CASE("a viewer that does not read its events is disconnected, but not while they are sent to it") {
+TEST_CASE("a viewer that does not read its events is disconnected, but not while it still receives them") {
   TestServer server;
   server.on_tick = [](WebSocket& socket) {
     socket.send_event({std::make_shared<const std::string>(100'000, 'x'), false});
@@ -222,7 +222,7 @@ TEST_CASE("a viewer that does not read its events is disconnected, but not while
   CHECK(http_request(server.port(), "GET", "/").status == 200);
 }
 
-TEST_CASE("a server whose address is taken reports that") {
+TEST_CASE("a server whose address is already in use reports that") {
   const TestServer server;
   CHECK_THROWS_WITH(WebServer({"127.0.0.1", server.port(), {}, ""}, {"one"}, {}),
                     ContainsSubstring("Address already in use"));

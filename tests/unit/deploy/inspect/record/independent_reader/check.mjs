@@ -28,7 +28,7 @@ class FileSource {
 }
 
 let fields = 0;
-const words = new Map(); // by topic and path: what each number is called
+const words = new Map();  // by topic and path: the word for each number
 
 function fail(path, ours, theirs) {
   const text = (value) => JSON.stringify(value, (key, v) => (typeof v === "bigint" ? String(v) : v));
@@ -44,7 +44,7 @@ function compareText(path, ours, theirs) {
   }
   if (ours === String(theirs) || ours === `unknown ${theirs}`) return true;
   if (/^[0-9a-f]{16}$/.test(ours) && BigInt("0x" + ours) === BigInt(theirs)) return true;
-  // A word for an enumerator: always the same one for this number, and for no other number.
+  // An enumerator's word: always the same word for this number, and for no other number.
   if (!words.has(path)) words.set(path, new Map());
   const known = words.get(path);
   const [number] = [...known].find(([, word]) => word === ours) ?? [theirs];
@@ -74,7 +74,7 @@ function compare(path, ours, theirs) {
   }
 }
 
-/// Sidestep prints quantiles of the counts.
+/// Sidestep prints quantiles instead of the counts.
 function compareHistogram(path, ours, theirs) {
   ++fields;
   const counts = Object.values(theirs).find((value) => typeof value !== "number" && typeof value !== "bigint");

@@ -12,7 +12,7 @@ namespace sidestep::idl_encoder_test {
 using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
-TEST_CASE("all our messages are encoded by their IDL as by the generated code, and so are their keys") {
+TEST_CASE("our messages and their keys are encoded by their IDL exactly as by the generated code") {
   const IdlTypes types = parse_idl(kIdlText, "idl");
   Rng rng(7);
   for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
@@ -25,7 +25,7 @@ TEST_CASE("all our messages are encoded by their IDL as by the generated code, a
       Bytes bytes{0, 1, 0, 0};
       append_cdr(topic, &message, bytes);
       const Json json = decode_by_idl(type, bytes);
-      // Compared as JSON: a signalling NaN of the random message becomes a quiet one.
+      // Compared as JSON, because a signalling NaN of the random message becomes a quiet one.
       CHECK(decode_by_idl(type, encode_by_idl(type, json)).dump() == json.dump());
       CHECK(encode_by_idl(type, json).size() == bytes.size());
       CHECK(key_by_idl(type, json) == topic.type.cdr_key(&message));
@@ -39,7 +39,7 @@ const IdlTypes kTypes = parse_idl(
     "e; sequence<P, 2> p; octet n[2]; boolean f; char c; short i; };",
     "test.idl");
 
-TEST_CASE("members that are left out are zero") {
+TEST_CASE("omitted members are zero") {
   CHECK(encode_by_idl(*kTypes.at("P"), Json::object()) == Bytes{0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   const Json all = decode_by_idl(*kTypes.at("T"), encode_by_idl(*kTypes.at("T"), Json::object()));
   CHECK(all == Json{{"a", 0},
@@ -53,7 +53,7 @@ TEST_CASE("members that are left out are zero") {
                     {"i", 0}});
 }
 
-TEST_CASE("the key is that of the key members, big-endian and aligned") {
+TEST_CASE("the key is encoded from the key members, big-endian and aligned") {
   const auto key = key_by_idl(*kTypes.at("T"), {{"a", 5}, {"b", 258}, {"s", "x"}});
   CHECK(key == CdrKey{5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2});
   CHECK_FALSE(is_keyed(*kTypes.at("P")));
@@ -61,11 +61,11 @@ TEST_CASE("the key is that of the key members, big-endian and aligned") {
   CHECK_THROWS_WITH(key_by_idl(*long_key.at("T"), Json::object()), ContainsSubstring("more than 16 bytes"));
 }
 
-TEST_CASE("bytes that are not UTF-8 in a refused value do not suppress the reason") {
+TEST_CASE("invalid UTF-8 in a rejected value does not suppress the reason") {
   CHECK_THROWS_AS(encode_by_idl(*kTypes.at("T"), {{"b", "\xff"}}), IdlEncodingError);
 }
 
-TEST_CASE("JSON that is not a message of the type is refused with the member's name") {
+TEST_CASE("JSON that does not fit the message type is rejected with the member's name") {
   const auto check = [](const Json& json, const std::string& reason) {
     CHECK_THROWS_WITH(encode_by_idl(*kTypes.at("T"), json), ContainsSubstring(reason));
   };

@@ -15,7 +15,7 @@ using Kind = IdlType::Kind;
 
 IdlTypes parse(const std::string& text) { return parse_idl(text, "test.idl"); }
 
-TEST_CASE("structs have the members of the IDL, with their types") {
+TEST_CASE("structs have the members of the IDL with their types") {
   const IdlTypes types = parse(R"(
     // A comment, and /* another one */
     #pragma once
@@ -92,7 +92,7 @@ TEST_CASE("a file includes others relative to itself, each once") {
   CHECK_THROWS_WITH(load_idl(folder.path()), ContainsSubstring("cannot be read"));
 }
 
-TEST_CASE("wrong IDL is refused with the file, the line and the reason") {
+TEST_CASE("invalid IDL is rejected with the file, the line and the reason") {
   const auto check = [](const std::string& text, const std::string& reason) {
     CAPTURE(text);
     CHECK_THROWS_WITH(parse(text), Equals("test.idl:" + reason));

@@ -14,7 +14,7 @@ Json readable(const std::string& idl, Json value, const Rewrites& rewrites = {})
   return value;
 }
 
-TEST_CASE("enumerators become words, without the prefix that all of them share") {
+TEST_CASE("enumerators become words without their common prefix") {
   const std::string idl =
       "enum E { ROAD_SIGN_ONE, ROAD_SIGN_TWO_WAY }; enum F { ALPHA, ALSO }; enum G { G_MIXED_a }; "
       "@final struct T { E e; F f; G g; sequence<E> list; };";
@@ -25,7 +25,7 @@ TEST_CASE("enumerators become words, without the prefix that all of them share")
       Json{{"e", "two way"}, {"f", "also"}, {"g", "a"}, {"list", {"one", "unknown 2"}}});
 }
 
-TEST_CASE("an array is cut to the member that counts its elements") {
+TEST_CASE("an array is cut to the length that its count member states") {
   const std::string idl =
       "@final struct P { double x; }; @final struct T { octet part_count; P parts[3]; P spares[3]; "
       "sequence<P> orphans; unsigned long orphan_count; string leg_count; octet legs[2]; };";
@@ -39,7 +39,7 @@ TEST_CASE("an array is cut to the member that counts its elements") {
   CHECK(readable(idl, message(255, all)) == message(255, all));
 }
 
-TEST_CASE("values are rewritten by their struct or by their member") {
+TEST_CASE("values can be rewritten by struct type or by member") {
   const Rewrites rewrites{{"m::P", [](const Json& p) { return Json(p["x"].get<int>() + 1); }},
                           {"m::T.code", [](const Json&) { return Json("secret"); }}};
   const std::string idl =
@@ -50,7 +50,7 @@ TEST_CASE("values are rewritten by their struct or by their member") {
   CHECK(value == Json{{"p", 2}, {"list", {3, 4}}, {"code", "secret"}});
 }
 
-TEST_CASE("what is readable already remains exact") {
+TEST_CASE("values that are already readable are not changed") {
   const std::string idl =
       "@final struct P { double x; }; @final struct T { P p; sequence<P> list; string s; boolean b; };";
   CHECK(ReadableForm(*parse_idl(idl, "test.idl").at("T"), {}).is_exact());

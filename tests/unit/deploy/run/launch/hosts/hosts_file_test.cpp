@@ -80,7 +80,7 @@ TEST_CASE("hosts with `rest` share the remaining processes evenly") {
   CHECK(on_floor == 4);
 }
 
-TEST_CASE("an invalid hosts file is refused with the line and the expected value") {
+TEST_CASE("an invalid hosts file is rejected with the line and the expected value") {
   check_refused("", "hosts.yaml:1: ", "expected a hosts file");
   check_refused("hosts: [", "hosts.yaml:", "not YAML");
   check_refused("hosts: []", "hosts.yaml:1: ", "\"launcher\" is missing");
@@ -157,7 +157,7 @@ TEST_CASE("the shipped hosts files fit any scenario") {
   }
 }
 
-TEST_CASE("peers are the hosts' addresses and the launcher's, and others that are listed") {
+TEST_CASE("peers are the addresses of the hosts and the launcher, and any others that are listed") {
   const Hosts none = parse_hosts(kTwoHosts, "hosts.yaml");
   CHECK(none.peers.empty());
   const Hosts hosts = parse_hosts("peers: hosts\n" + std::string(kTwoHosts), "hosts.yaml");

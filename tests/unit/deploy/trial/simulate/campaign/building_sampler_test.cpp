@@ -8,8 +8,8 @@
 
 namespace sidestep::building_sampler_test {
 
-/// The largest connected part of the places that are free for a disc, as a fraction of all of them. Grid
-/// neighbours are connected if the disc fits between them.
+/// The largest connected part of the places where a disc fits, as a fraction of all of them. Grid neighbours
+/// are connected if the disc fits between them.
 double largest_part(const OccupancyMap& map, const Field& field, double radius_m, double step_m) {
   const int columns = static_cast<int>(field.length_m / step_m),
             rows = static_cast<int>(field.width_m / step_m);
@@ -45,7 +45,7 @@ double largest_part(const OccupancyMap& map, const Field& field, double radius_m
   return static_cast<double>(largest) / free;
 }
 
-TEST_CASE("the map of a random building covers the floor, and its middle is that of the floor") {
+TEST_CASE("a random building's map covers the floor and is centred on it") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -60,7 +60,7 @@ TEST_CASE("the map of a random building covers the floor, and its middle is that
   }
 }
 
-TEST_CASE("robots fit through the doors of random buildings, however wide they are") {
+TEST_CASE("robots fit through the doors of random buildings, however wide the robots are") {
   const double radius_m = GENERATE(0.09, 0.6);
   CAPTURE(radius_m);
   double sum = 0;

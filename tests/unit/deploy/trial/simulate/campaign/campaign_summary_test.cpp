@@ -59,7 +59,7 @@ TEST_CASE("each number of a trial result survives a round trip through a line of
   CHECK(back.distance_after_recovery_m == result.distance_after_recovery_m);
 }
 
-TEST_CASE("a summary of trials whose workers died contains only numbers") {
+TEST_CASE("a summary of trials whose workers died contains only finite numbers") {
   CampaignSummary summary;
   TrialResult dead;
   dead.failures = {"the worker process died"};

@@ -54,7 +54,7 @@ TEST_CASE("a partition cuts links for its duration, even if two partitions overl
   CHECK(verdicts.answered > within + 8);
 }
 
-TEST_CASE("a killed process is dead until it is started, and a second agent runs beside the first one") {
+TEST_CASE("a killed process stays dead until it is started, and a second agent runs beside the first") {
   const Scenario scenario = pair_of_robots();
   FaultPlan plan =
       plan_of(scenario, {{1s, Kill{"vision"}}, {2s, Start{"vision"}}, {3s, Start{twin_process(1)}}}, 20s);
@@ -92,7 +92,7 @@ TEST_CASE("the operator places a robot even if its agent is dead when the first 
   CHECK(on_floor == 2);
 }
 
-TEST_CASE("the operator places a robot whose lifting takes effect late, because the simulator was paused") {
+TEST_CASE("the operator places a robot whose lifting is delayed by a simulator pause") {
   const Scenario scenario = pair_of_robots();
   RobotDisturbance lift;
   lift.robot = 1;
@@ -110,7 +110,7 @@ TEST_CASE("the operator places a robot whose lifting takes effect late, because 
   CHECK(on_floor == 2);
 }
 
-TEST_CASE("the operator attests the absence of a robot that was taken away without power") {
+TEST_CASE("the operator attests the absence of a robot that was taken away while switched off") {
   const Scenario scenario = pair_of_robots();
   RobotDisturbance off;
   off.robot = 1;
@@ -126,8 +126,7 @@ TEST_CASE("the operator attests the absence of a robot that was taken away witho
   CHECK(system.metrics().report().audit->violations == 0);
 }
 
-TEST_CASE(
-    "after a restart of all that knew the orders the operator resumes robots and sends them to their goals") {
+TEST_CASE("if all processes that knew the orders restart, the operator resumes robots and sends them on") {
   const Scenario scenario = pair_of_robots();
   std::vector<TimedFault> faults;
   for (const std::string& process : {agent_process(0), agent_process(1), coordinator_process(0)})
@@ -147,7 +146,7 @@ TEST_CASE(
   CHECK(are_all(msg::AgentState::AGENT_DRIVING));
 }
 
-TEST_CASE("at the end of all faults link qualities recover and partitions end") {
+TEST_CASE("when all faults end, link qualities recover and partitions end") {
   const Scenario scenario = pair_of_robots();
   LinkQuality terrible;
   terrible.loss = 1;
@@ -164,7 +163,7 @@ TEST_CASE("at the end of all faults link qualities recover and partitions end") 
   CHECK(verdicts.answered > 10);
 }
 
-TEST_CASE("the same seed gives the same trial result, another seed another one") {
+TEST_CASE("the same seed gives the same trial result and a different seed a different one") {
   const auto outcome = [](std::uint64_t seed) {
     Report report;
     run_trial(sample_trial(seed, 10s, std::nullopt), &report);

@@ -8,7 +8,7 @@ namespace sidestep::forger_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("a forged world that shows robots elsewhere moves each by a metre, with a later observation time") {
+TEST_CASE("a forged world state shows each robot a metre away at a later observation time") {
   const Scenario scenario =
       parse_scenario("field: {length_m: 6, width_m: 4}\ncircle: {count: 2, spacing_m: 3}\n", "pair.yaml");
   SimNetwork network(1, Time{1000s}, scenario.network);

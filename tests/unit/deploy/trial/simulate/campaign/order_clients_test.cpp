@@ -22,14 +22,14 @@ struct Trial {
     order.goals = std::move(goals);
     clients.give(order);
   }
-  /// An operator that the judge does not know.
+  /// A resume by an operator of whom the judge does not know.
   void resume_secretly() {
     system.send(
         {msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator, static_cast<OrderNumber>(to_ns(system.now()))});
   }
 };
 
-TEST_CASE("a held robot that moves fails a trial, one that was resumed does not") {
+TEST_CASE("a trial fails if a held robot moves, but not if it was resumed") {
   const bool is_resumed = GENERATE(false, true);
   const RobotId scope = GENERATE(RobotId{0}, kAllRobots);
   CAPTURE(is_resumed, scope);
@@ -46,7 +46,7 @@ TEST_CASE("a held robot that moves fails a trial, one that was resumed does not"
   CHECK(trial.clients.failures().empty() == is_resumed);
 }
 
-TEST_CASE("a held robot that is pushed by another one, which somebody carries, fails no trial") {
+TEST_CASE("a trial does not fail if a carried robot pushes a held one") {
   Trial trial;
   trial.give(msg::OrderKind::ORDER_HOLD, kAllRobots, kClient);
   trial.system.run_for(4s);
@@ -89,7 +89,7 @@ TEST_CASE("a held robot without power may coast to rest, however long that takes
   CHECK(trial.clients.failures().empty());
 }
 
-TEST_CASE("an order that a coordinator does not remember fails a trial, until its client has repeated it") {
+TEST_CASE("a trial fails while a coordinator has forgotten an order that its client has not repeated") {
   Trial trial;
   trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1, 1}}});
   trial.system.run_for(2s);
@@ -108,7 +108,7 @@ TEST_CASE("an order that a coordinator does not remember fails a trial, until it
   CHECK(trial.clients.failures().empty());
 }
 
-TEST_CASE("a restarted coordinator that hears nobody does not fail a trial because of what it knew before") {
+TEST_CASE("a trial does not fail because an isolated coordinator forgot an order in a restart") {
   Scenario scenario = waiting_robots(2);
   scenario.coordinators = 2;
   SimSystem system{scenario, 1};
@@ -130,9 +130,7 @@ TEST_CASE("a restarted coordinator that hears nobody does not fail a trial becau
   CHECK(clients.failures().empty());
 }
 
-TEST_CASE(
-    "a coordinator that permanently hears nobody does not fail a trial because of an order that it could not "
-    "hear") {
+TEST_CASE("a trial does not fail because a permanently isolated coordinator never heard an order") {
   Scenario scenario = waiting_robots(2);
   scenario.coordinators = 2;
   SimSystem system{scenario, 1};
@@ -152,7 +150,7 @@ TEST_CASE(
   CHECK(clients.failures().empty());
 }
 
-TEST_CASE("an order without an answer fails a trial") {
+TEST_CASE("a trial fails if an order is not answered") {
   Trial trial;
   trial.system.kill("coordinator");
   trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);

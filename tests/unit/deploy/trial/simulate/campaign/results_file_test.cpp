@@ -46,7 +46,7 @@ TEST_CASE("results of a campaign are read again, except for an incomplete last l
   CHECK(ResultsFile(folder.file(), "campaign A").found().back().seed == 6);
 }
 
-TEST_CASE("a file of another campaign, or without results, is refused with the reason and kept") {
+TEST_CASE("a file without results or from another campaign is rejected with the reason and kept") {
   const Folder folder;
   { ResultsFile(folder.file(), "campaign A").add(result_of(1)); }
   CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign B"),
@@ -62,7 +62,7 @@ TEST_CASE("a file of another campaign, or without results, is refused with the r
                     ContainsSubstring("cannot write "));
 }
 
-TEST_CASE("two campaigns do not write one file at the same time") {
+TEST_CASE("two campaigns cannot write one file at the same time") {
   const Folder folder;
   {
     ResultsFile results(folder.file(), "campaign A");

@@ -57,7 +57,7 @@ TEST_CASE("a lifted robot is on the floor again in a simulator that starts later
   CHECK(planned.ends(30s) == std::map<RobotId, RobotEnd>{{2, RobotEnd::kTakenAway}});
 }
 
-TEST_CASE("the campaign expects no clock error that a later simulator has forgotten") {
+TEST_CASE("the campaign does not expect a clock error that a later simulator has forgotten") {
   const Trial trial = sample_trial(175666644, 60s, std::nullopt);
   const TrialResult result = run_trial(trial);
   CAPTURE(result.failures);

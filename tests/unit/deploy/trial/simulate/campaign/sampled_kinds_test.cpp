@@ -494,7 +494,7 @@ TEST_CASE("random scenes have every kind of floor, obstacle, sensor and pattern"
                                             {"large", 0.1, 0.8}}));
 }
 
-TEST_CASE("trials have random vision, planners and disturbances beside the faults") {
+TEST_CASE("trials have random vision, planners and disturbances in addition to faults") {
   Shares trials;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     const Trial trial = sample_trial(seed, kDuration, std::nullopt);

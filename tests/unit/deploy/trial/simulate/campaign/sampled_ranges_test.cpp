@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sizes of what a campaign samples fill their ranges and do not leave them.
+// Sampled sizes fill their ranges and do not leave them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,7 +36,7 @@ class Extremes {
     max = std::max(max, value);
   }
   void add(const std::string& name, Duration value) { add(name, to_seconds(value)); }
-  /// The values lie between both limits, and come as near to them as a hundredth to a thirtieth of the range.
+  /// Checks that the values lie between both limits, and come as near to them as 1/100 to 1/30 of the range.
   void check(const std::string& name, double low, double high) const { check(name, low, high, high - low); }
   /// Like check(), for values whose orders of magnitude are equally likely.
   void check_log(const std::string& name, double low, double high) const {

@@ -8,7 +8,7 @@ namespace sidestep::trial_test {
 
 using namespace std::chrono_literals;
 
-/// A trial with three robots that passes, and the data that it is judged by.
+/// A passing trial with three robots, and the data from which it is judged.
 struct Judged {
   Trial trial{
       1,
@@ -62,60 +62,60 @@ TEST_CASE("a trial without a reason to fail passes") {
   CHECK(judged.failures().empty());
 }
 
-TEST_CASE("a trial fails for each of its reasons, and says which") {
+TEST_CASE("a trial fails for each of its reasons and states it") {
   Judged judged;
-  SECTION("a contact") {
+  SECTION("there was a contact") {
     judged.result.contacts = 1;
     judged.check_fails("1 contacts");
   }
-  SECTION("a violation") {
+  SECTION("there was an audit violation") {
     judged.report.audit->violations = 1;
     judged.report.audit->first.push_back({});
     judged.check_fails("1 audit violations");
   }
-  SECTION("an audit that saw too little") {
+  SECTION("the audit covered too little") {
     judged.report.audit->coverage.time = 0.5;
     judged.check_fails("did not judge the run");
   }
-  SECTION("a broken rule of the firmware") {
+  SECTION("the firmware broke a rule") {
     judged.report.firmware_violations = 1;
     judged.check_fails("1 firmware violations");
   }
-  SECTION("nothing granted") {
+  SECTION("nothing was granted") {
     judged.report.grants = 0;
     judged.check_fails("no coordinator ever granted");
   }
-  SECTION("a robot that does not drive") {
+  SECTION("a robot does not drive") {
     judged.progress[2].agent_state = GENERATE(msg::AgentState::AGENT_WAITING, msg::AgentState::AGENT_ABSENT,
                                               msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
     judged.check_fails("robots 2 do not drive");
   }
-  SECTION("a robot of which nothing was heard") {
+  SECTION("a robot was never heard") {
     judged.progress[1].agent_state.reset();
     judged.check_fails("robots 1 do not drive");
   }
-  SECTION("a clock out of bounds that nobody notices") {
+  SECTION("a clock out of bounds was not detected") {
     const RobotEnd end = GENERATE(RobotEnd::kClockOutOfBound, RobotEnd::kClockLeftBound);
     judged.end(1, end, msg::AgentState::AGENT_DRIVING);
     judged.progress[1].grants = 0;
     judged.check_fails("the agents of robots 1 do not detect");
   }
-  SECTION("a robot that is driven although its clock is far out of bounds") {
+  SECTION("a robot was driven although its clock was far out of bounds") {
     judged.end(1, RobotEnd::kClockOutOfBound, msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND);
     judged.trial.scenario.robots[1].clock_offset = 30s;
     judged.check_fails("robots 1 were driven");
   }
-  SECTION("a robot off the floor that is not reported absent") {
+  SECTION("a robot off the floor was not reported absent") {
     judged.end(0, RobotEnd::kLifted, msg::AgentState::AGENT_DRIVING);
     judged.check_fails("do not report that these are off the floor");
   }
-  SECTION("nobody moves") {
+  SECTION("no robot moves") {
     judged.result.stationary = 3;
     judged.check_fails("no robot moves");
   }
 }
 
-TEST_CASE("the audit judges every trial in which nobody believed a second simulator") {
+TEST_CASE("the audit judges every trial in which no process believed a second simulator") {
   Judged judged;
   judged.report.audit->coverage.time = 0.5;
   judged.report.audit->violations = 1;
@@ -126,7 +126,7 @@ TEST_CASE("the audit judges every trial in which nobody believed a second simula
   CHECK_FALSE(judged.failures().empty());
 }
 
-TEST_CASE("robots that need not move may rest, and all may rest at their goals") {
+TEST_CASE("robots that need not move may rest, and all robots may rest at their goals") {
   Judged judged;
   judged.result.stationary = 3;
   judged.has_arrived = true;

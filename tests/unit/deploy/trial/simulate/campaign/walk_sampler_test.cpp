@@ -6,7 +6,7 @@
 
 namespace sidestep::walk_sampler_test {
 
-TEST_CASE("people of random scenes walk through buildings, and touch neither walls nor obstacles") {
+TEST_CASE("people in random scenes walk through buildings and touch neither walls nor obstacles") {
   int people = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);

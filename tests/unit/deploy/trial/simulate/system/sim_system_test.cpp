@@ -17,7 +17,7 @@ std::string outcome(SimSystem& system) {
   return to_json(report);
 }
 
-TEST_CASE("the same seed gives the same run, another seed another one") {
+TEST_CASE("the same seed gives the same run and a different seed a different one") {
   Scenario scenario = crossing();
   scenario.network.loss = 0.1;
   std::string outcomes[3];

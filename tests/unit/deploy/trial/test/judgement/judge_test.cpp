@@ -63,7 +63,7 @@ void check_not_judged(const ExpectationCheck& check, const RunHistory& history, 
   CHECK_THAT(judgement.reason, ContainsSubstring(reason));
 }
 
-TEST_CASE("no contact: a contact fails with both robots and its time, unless a robot is excepted") {
+TEST_CASE("no contact: a contact fails with both robots and its time, unless a robot is excluded") {
   RunHistory history = run();
   check_passes(ExpectNoContact{kBoth, {}}, history);
   history.contacts.push_back({3.2, 2, 5});
@@ -78,7 +78,7 @@ TEST_CASE("no contact: a contact fails with both robots and its time, unless a r
   check_passes(ExpectNoContact{kOne, {}}, crash);
 }
 
-TEST_CASE("no contact is not judged if ground truth is missing at the end, or the run was aborted") {
+TEST_CASE("no contact: not judged if ground truth is missing at the end or the run was aborted") {
   RunHistory history = run();
   history.unidentified_contacts = 3;
   check_not_judged(ExpectNoContact{kBoth, {}}, history, "the robots of 3 contacts are unknown");
@@ -89,13 +89,13 @@ TEST_CASE("no contact is not judged if ground truth is missing at the end, or th
                    "the run was aborted: interrupted");
   remove_truth(history, 0, 100);
   check_not_judged(ExpectNoContact{kBoth, {}}, history, "no ground truth was heard");
-  // The totals include what was missed in that time.
+  // The totals at the end include the time without ground truth.
   RunHistory gap = run();
   remove_truth(gap, 3, 5);
   check_passes(ExpectNoContact{kBoth, {}}, gap);
 }
 
-TEST_CASE("clearance: the moment when it was first too small") {
+TEST_CASE("clearance: fails at the first moment when it is too small") {
   RunHistory history = run();
   check_passes(ExpectMinClearance{0.02}, history);
   for (TruthSample& sample : history.truths) sample.min_clearance_m = sample.at_s >= 7 ? 0.004 : 0.02;
@@ -104,19 +104,19 @@ TEST_CASE("clearance: the moment when it was first too small") {
   check_not_judged(ExpectMinClearance{0.005}, history, "ground truth is missing after 5.9");
 }
 
-TEST_CASE("at rest: within the span, and for as long as expected") {
+TEST_CASE("at rest: must rest within the span and for as long as expected") {
   const RunHistory history = run();
   check_passes(ExpectAtRest{kOne, {3.5, 4.1}, 0}, history);
   check_passes(ExpectAtRest{kOne, {3.5, 4.1}, 3}, history);
   check_fails(ExpectAtRest{kOne, {2, 3.5}, 0}, history, 3.5,
               "robot 1 still moved at 1.500 m/s, and came to rest by 4.0");
-  // It rests at first, but not for long enough.
+  // The robot rests at first, but not for long enough.
   check_passes(ExpectAtRest{kOne, {0.2, 0.5}, 0}, history);
   check_fails(ExpectAtRest{kOne, {0.2, 0.5}, 1}, history, 1.5, "robot 1 still moved");
   check_fails(ExpectAtRest{kBoth, {4.2, 5}, 0}, history, 5, "robot 2 still moved at 0.500 m/s");
 }
 
-TEST_CASE("at rest: not judged without ground truth, for robots off the floor, or after the end") {
+TEST_CASE("at rest: not judged without ground truth, for robots off the floor or after the end") {
   RunHistory history = run();
   remove_truth(history, 3, 4.5);
   check_not_judged(ExpectAtRest{kOne, {2, 4}, 0}, history, "ground truth is missing after 2.9");
@@ -128,7 +128,7 @@ TEST_CASE("at rest: not judged without ground truth, for robots off the floor, o
   check_not_judged(ExpectAtRest{{{2}, false}, {2, 4}, 0}, run_until(3), "the run ended at 3.000 s");
 }
 
-TEST_CASE("moving: at least once within the span") {
+TEST_CASE("moving: must move at least once within the span") {
   RunHistory history = run();
   check_passes(ExpectMoving{kOne, {3.9, 6}}, history);
   check_fails(ExpectMoving{kOne, {5, 6}}, history, 6,
@@ -139,7 +139,7 @@ TEST_CASE("moving: at least once within the span") {
   check_not_judged(ExpectMoving{{{7}, false}, {5, 6}}, run(), "robot 7 was not on the floor");
 }
 
-TEST_CASE("speed limit: the moment when it was first exceeded") {
+TEST_CASE("speed limit: fails at the first moment when it is exceeded") {
   RunHistory history = run();
   check_passes(ExpectMaxSpeed{kOne, 0.02, 4.1, 9}, history);
   check_passes(ExpectMaxSpeed{kOne, 0.02, 4.1, std::nullopt}, history);
@@ -149,7 +149,7 @@ TEST_CASE("speed limit: the moment when it was first exceeded") {
   check_not_judged(ExpectMaxSpeed{kOne, 2, 0, std::nullopt}, run_until(5, "interrupted"), "aborted");
 }
 
-TEST_CASE("takeover: another coordinator grants in a higher epoch in time") {
+TEST_CASE("takeover: another coordinator must grant in a higher epoch in time") {
   RunHistory history = run_until(3);
   history.end.at_s = 10;
   history.coordinators.push_back({3.1, 1, 201, false});
@@ -160,14 +160,14 @@ TEST_CASE("takeover: another coordinator grants in a higher epoch in time") {
   check_not_judged(ExpectTakeover{{3, 3.3}}, run_until(3), "the run ended at 3.000 s");
   history.coordinators.clear();
   check_not_judged(ExpectTakeover{{3, 3.3}}, history, "no coordinator had granted before");
-  // The same coordinator in a new epoch has taken over from nobody.
+  // The same coordinator in a new epoch is not a takeover.
   history = run_until(3);
   history.end.at_s = 10;
   history.coordinators.push_back({3.1, 0, 201, true});
   check_fails(ExpectTakeover{{3, 3.3}}, history, 3.3, "no other coordinator granted");
 }
 
-TEST_CASE("named: each robot, for the right reason, within the span") {
+TEST_CASE("named: each robot must be named for the right reason within the span") {
   RunHistory history = run();
   history.notices = {{2, 1, NoticeKind::kMissing}, {5.2, 1, NoticeKind::kDisplaced}};
   const auto named = [](NoticeKind as, double from_s, double to_s) {
@@ -183,7 +183,7 @@ TEST_CASE("named: each robot, for the right reason, within the span") {
   check_not_judged(named(NoticeKind::kConflict, 4, 6), history, "no active coordinator was heard");
 }
 
-TEST_CASE("violations: the first one and its time, or not judged if the audit covered too little") {
+TEST_CASE("violations: fails at the first one, and is not judged if the audit covered too little") {
   RunHistory history = run();
   check_passes(ExpectNoViolations{}, history);
   history.end.shortfall = "34.5 % of the messages were missed";
@@ -195,7 +195,7 @@ TEST_CASE("violations: the first one and its time, or not judged if the audit co
   check_not_judged(ExpectNoViolations{}, run_until(5, "interrupted"), "aborted");
 }
 
-TEST_CASE("arrivals: which robot has not arrived, or too late") {
+TEST_CASE("arrivals: fails with the robot that has not arrived or arrives too late") {
   const RunHistory history = run();
   check_passes(ExpectArrived{kOne, std::nullopt}, history);
   check_passes(ExpectArrived{kOne, 4.6}, history);
@@ -209,7 +209,7 @@ TEST_CASE("arrivals: which robot has not arrived, or too late") {
   check_not_judged(ExpectNotArrived{{{2}, false}}, run_until(5, "interrupted"), "aborted");
 }
 
-TEST_CASE("different rules: the expected process is named, or only others are") {
+TEST_CASE("different rules: the expected process must be named") {
   RunHistory history = run();
   check_fails(ExpectMismatch{"agent 1"}, history, 10, "no process is reported");
   history.end.mismatches["agent 2"] = "margin_m is 0.02 instead of 0.01";

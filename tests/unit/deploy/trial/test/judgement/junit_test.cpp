@@ -14,7 +14,7 @@ TestResult passed_result() {
   return result;
 }
 
-TEST_CASE("results become one test case each, with counts and times") {
+TEST_CASE("each result becomes one test case, with counts and times") {
   TestResult failed = passed_result(), broken = passed_result();
   failed.file = "b \"quoted\" & <odd>.yaml";
   failed.seed = 3;
@@ -42,13 +42,13 @@ TEST_CASE("results become one test case each, with counts and times") {
         "</testsuite>\n");
 }
 
-TEST_CASE("text is escaped, and what XML cannot contain is replaced") {
+TEST_CASE("text is escaped, and characters that XML cannot contain are replaced") {
   CHECK(xml_escaped("a<b>&\"c'") == "a&lt;b&gt;&amp;&quot;c'");
   CHECK(xml_escaped("line\nnext\ttab") == "line&#10;next&#9;tab");
   CHECK(xml_escaped(std::string("\0\x1b[K\x7f", 5)) == "??[K\x7f");
   CHECK(xml_escaped("gr\xc3\xbc\xc3\x9f, \xe2\x82\xac, \xf0\x9f\xa4\x96") ==
         "gr\xc3\xbc\xc3\x9f, \xe2\x82\xac, \xf0\x9f\xa4\x96");
-  CHECK(xml_escaped("\xff \xc3 \xe2\x82 \xc0\x80") == "? ? ?? ??");  // no UTF-8
+  CHECK(xml_escaped("\xff \xc3 \xe2\x82 \xc0\x80") == "? ? ?? ??");  // invalid UTF-8
   CHECK(xml_escaped("\xed\xa0\x80 \xef\xbf\xbf") == "??? ???");      // surrogate, non-character
   CHECK(xml_escaped("\xf4\x90\x80\x80") == "????");                  // beyond Unicode
 }

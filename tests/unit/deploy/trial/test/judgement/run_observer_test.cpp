@@ -8,7 +8,7 @@ namespace sidestep::run_observer_test {
 
 using namespace std::chrono_literals;
 
-/// An observer, and a process that sends what it hears.
+/// An observer, and a process that sends messages to it.
 struct Fixture {
   Fixture() { observer_bus.become_observer(); }
 
@@ -86,8 +86,7 @@ TEST_CASE("states of superseded coordinators and of standbys are ignored") {
   CHECK(run.history().granting_coordinator() == 1);
 }
 
-TEST_CASE(
-    "contacts are recorded with their robots, each once, and those beyond a message's list are counted") {
+TEST_CASE("contacts are recorded once with their robots, and contacts beyond a message's list are counted") {
   Fixture run;
   run.send_truth(1);  // before the first grant
   run.send_state(0, 40, kGranting);

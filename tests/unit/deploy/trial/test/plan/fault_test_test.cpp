@@ -11,7 +11,7 @@
 
 namespace sidestep::fault_test_test {
 
-/// Three robots and two coordinators on six lines.
+/// Three robots and two coordinators, in six lines.
 const std::string kScenario =
     "time_limit_s: 20\ncoordinators: 2\nrobots:\n"
     "  - {id: 0, start_m: [-2, 0], goals_m: [[2, 0]]}\n"
@@ -95,7 +95,7 @@ TEST_CASE("a process restarts with another scenario, whose path is relative to t
       ContainsSubstring("that scenario has no agent 9"));
 }
 
-TEST_CASE("a partition separates processes from all others, or from those that are named") {
+TEST_CASE("a partition separates processes from all others or from named ones") {
   const auto all = action_of<Partition>("at_s: 1, partition: [coordinator, vision]");
   CHECK(all.from == ProcessNames{"coordinator", "vision"});
   CHECK(all.to == ProcessNames{"simulator", "coordinator 1", "agent 0", "agent 1", "agent 4"});
@@ -110,7 +110,7 @@ TEST_CASE("a partition separates processes from all others, or from those that a
   CHECK_FALSE(out.is_two_way);
 }
 
-TEST_CASE("network faults have the values of `sidestep fault network`") {
+TEST_CASE("network faults have the same values as in `sidestep fault network`") {
   const auto fault = action_of<ImpairmentFault>(
       "at_s: 1, network: all, loss: 0.3, burst: 5, duplicate: 0.1, delay_ms: [5, 20, 150]");
   using std::chrono::milliseconds;
@@ -160,7 +160,7 @@ TEST_CASE("expectations are read") {
   CHECK(check_of<ExpectNamed>("named: 1, as: displaced, within_s: 1").as == NoticeKind::kDisplaced);
 }
 
-TEST_CASE("spans begin with the first fault, another one or a time, and end after a while or at a time") {
+TEST_CASE("spans begin with a fault or at a time, and end after a duration or at a time") {
   const std::string faults = "faults: [{at_s: 3, lift: 1}, {at_s: 5, place: 1, at_m: [0, 2.5]}]\n";
   const auto rest_of = [&](const std::string& keys, const std::string& with_faults) {
     return check_of<ExpectAtRest>("at_rest: 0, " + keys, with_faults);
@@ -234,7 +234,7 @@ TEST_CASE("invalid expectations are rejected with their line") {
   check_rejected("expect: []\n", kLines + 1, "expect: expected at least one element");
 }
 
-TEST_CASE("a scenario with faults and expectations is also a scenario, with the same rules as without") {
+TEST_CASE("a scenario with faults and expectations is also a scenario, with the same rules as without them") {
   const Scenario plain = parse_scenario(kScenario, "file.yaml");
   const Scenario with_keys = parse_scenario(
       kScenario + "faults: [{at_s: 1, kill: agent 1}]\nexpect: [{no_contact: all}]\n", "file.yaml");

@@ -15,7 +15,7 @@ FaultTest test_with(const std::string& faults) {
       "file.yaml");
 }
 
-/// Which of these processes share a host.
+/// Whether these processes share a host.
 bool are_together(const FaultTest& test, const std::vector<std::string>& processes) {
   const Hosts hosts = hosts_for_partitions(test);
   const Placement placement(hosts, test.scenario);
@@ -25,7 +25,7 @@ bool are_together(const FaultTest& test, const std::vector<std::string>& process
   return true;
 }
 
-TEST_CASE("processes share a host if they are on the same sides of all partitions") {
+TEST_CASE("processes share a host if they are on the same side of every partition") {
   const FaultTest one = test_with("{at_s: 1, partition: [coordinator, agent 7], seconds: 1}");
   CHECK(hosts_for_partitions(one).hosts.size() == 2);
   CHECK(are_together(one, {"coordinator", "agent 7"}));
@@ -38,7 +38,7 @@ TEST_CASE("processes share a host if they are on the same sides of all partition
   CHECK(are_together(two, {"simulator", "coordinator", "coordinator 1", "agent 7"}));
 }
 
-TEST_CASE("the hosts are namespaces that the launcher creates, with addresses of their own") {
+TEST_CASE("the hosts are namespaces with their own addresses, which the launcher creates") {
   const Hosts hosts = hosts_for_partitions(test_with("{at_s: 1, partition: vision, seconds: 1}"));
   CHECK(hosts.create);
   REQUIRE(hosts.hosts.size() == 2);
@@ -48,7 +48,7 @@ TEST_CASE("the hosts are namespaces that the launcher creates, with addresses of
   CHECK(hosts.hosts[0].interface != hosts.interface);
 }
 
-TEST_CASE("partitions that do not separate whole namespace hosts are refused with the reason") {
+TEST_CASE("partitions that do not separate whole namespace hosts are rejected with the reason") {
   const FaultTest test = test_with("{at_s: 1, partition: coordinator, seconds: 1}");
   const RunHosts local(local_hosts("127.0.0.1"), test.scenario);
   CHECK_THROWS_WITH(HostPartitions(test, local),

@@ -13,7 +13,7 @@
 
 namespace sidestep::sim_test_run_test {
 
-/// Two robots on their own lanes.
+/// Two robots in separate lanes.
 const std::string kLanes =
     "field: {length_m: 6, width_m: 3}\ntime_limit_s: 12\nrobots:\n"
     "  - {id: 1, start_m: [-2, -0.5], goals_m: [[2, -0.5]]}\n"
@@ -29,14 +29,14 @@ void check_passes(const std::string& keys) {
   for (const std::string& failure : result_of(keys).failures()) FAIL_CHECK(failure);
 }
 
-TEST_CASE("a test without faults passes, and ends soon after the last arrival") {
+TEST_CASE("a test without faults passes and ends soon after the last arrival") {
   const TestResult result = result_of("expect: [{no_contact: all}, {no_violations: true}, {arrived: all}]\n");
   for (const std::string& failure : result.failures()) FAIL_CHECK(failure);
   CHECK(result.run_s > 2);
   CHECK(result.run_s < 6);
 }
 
-TEST_CASE("a wrong expectation fails with its line, the moment and the reason") {
+TEST_CASE("an unmet expectation fails with its line, the moment and the reason") {
   const TestResult result = result_of(
       "faults: [{at_s: 1, kill: agent 1}]\nexpect:\n  - {no_contact: all}\n  - {arrived: 1, by_s: 4}\n"
       "  - {moving: 1, after_s: 2, within_s: 1}\n  - {max_speed_mps: 0.5, robots: 2, to_s: 3}\n");
@@ -63,7 +63,7 @@ TEST_CASE("the same seed gives the same outcome") {
   CHECK(arrivals(3) != arrivals(4));
 }
 
-TEST_CASE("faults of processes: killed, restarted by a fault or by the scenario's rule, paused") {
+TEST_CASE("faults of processes: killed, restarted by a fault or by the scenario, and paused") {
   check_passes(
       "faults: [{at_s: 1, kill: agent 1}, {at_s: 2, restart: agent 1}]\n"
       "expect: [{at_rest: 1, within_s: 0.8}, {moving: 1, after_fault: 1, within_s: 3}, {arrived: all}]\n");
@@ -87,7 +87,7 @@ TEST_CASE("faults of the network: a partition and a cut end after their time") {
       "expect: [{at_rest: 1, within_s: 0.8}, {moving: 2, after_s: 1.4, within_s: 0.2}, {arrived: all}]\n");
 }
 
-TEST_CASE("disturbances of robots, and what the coordinator says of them") {
+TEST_CASE("disturbances of robots are applied, and the coordinator's notices about them are judged") {
   check_passes(
       "faults: [{at_s: 1, lift: 1}, {at_s: 2, place: 1, at_m: [0, -0.5]}]\n"
       "expect: [{no_contact: all}, {moving: 1, after_fault: 1, within_s: 3}, {arrived: all}]\n");
@@ -96,7 +96,7 @@ TEST_CASE("disturbances of robots, and what the coordinator says of them") {
       "expect: [{named: 1, as: displaced, within_s: 1}, {not_arrived: 1}, {arrived: 2}]\n");
 }
 
-TEST_CASE("a standby with different rules is named, a later restart with the test's own rules is accepted") {
+TEST_CASE("a standby with different rules is named, and a later restart with the test's rules is accepted") {
   const FaultTest test =
       parse_fault_test("coordinators: 2\n" + kLanes +
                            "faults:\n  - {at_s: 0.5, restart: coordinator 1, scenario: ../crossing.yaml}\n"
@@ -128,7 +128,7 @@ TEST_CASE("without ground truth nothing is judged") {
                ContainsSubstring("not judged") && ContainsSubstring("ground truth is missing after"));
 }
 
-TEST_CASE("the command runs each file with each seed, writes JUnit XML and returns 1 if one failed") {
+TEST_CASE("the command runs each file with each seed, writes JUnit XML and returns 1 if any test failed") {
   const std::string stem = "/tmp/sidestep-test-command-" + std::to_string(getpid());
   std::ofstream(stem + "-good.yaml") << kLanes << "expect: [{arrived: all}]\n";
   std::ofstream(stem + "-bad.yaml") << kLanes << "expect: [{arrived: all, by_s: 1}]\n";

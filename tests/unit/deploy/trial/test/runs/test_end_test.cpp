@@ -29,19 +29,19 @@ double end_s(const std::string& keys, const std::set<RobotId>& arriving) {
   }
 }
 
-TEST_CASE("a run ends half a second after the robots that are expected to arrive") {
+TEST_CASE("a run ends half a second after the expected robots have arrived") {
   CHECK(end_s("expect: [{no_contact: all}]\n", {1, 2}) == Approx(5.5).margin(0.051));
   CHECK(end_s("expect: [{arrived: 1}]\n", {1}) == Approx(5.5).margin(0.051));
   CHECK(end_s("expect: [{not_arrived: 2}]\n", {1}) == Approx(5.5).margin(0.051));
   CHECK(end_s("expect: [{arrived: all, by_s: 15}]\n", {1, 2}) == Approx(5.5).margin(0.051));
 }
 
-TEST_CASE("a run ends at the time limit if they do not arrive") {
+TEST_CASE("a run ends at the time limit if the expected robots do not arrive") {
   CHECK(end_s("expect: [{no_contact: all}]\n", {1}) == Approx(20).margin(0.051));
   CHECK(end_s("expect: [{arrived: 2}]\n", {1}) == Approx(20).margin(0.051));
 }
 
-TEST_CASE("a run does not end before all faults and spans are past") {
+TEST_CASE("a run does not end before all faults and spans are over") {
   CHECK(end_s("faults: [{at_s: 6, pause: vision, seconds: 3}]\nexpect: [{no_contact: all}]\n", {1, 2}) ==
         Approx(9.5).margin(0.051));
   CHECK(end_s("expect: [{at_rest: 1, within_s: 7, for_s: 4}]\n", {1, 2}) == Approx(11.5).margin(0.051));

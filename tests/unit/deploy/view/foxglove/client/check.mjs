@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Usage: node check.mjs PORT
-// Connects as Lichtblick does, subscribes to all channels for three seconds, decodes all messages by the schemas that
-// were advertised, and prints a JSON object of what arrived: per topic the number of messages and the last one.
+// Connects as Lichtblick does, subscribes to all channels for three seconds, decodes all messages by the advertised
+// schemas, and prints a JSON object: per topic the number of messages and the last one.
 import WebSocket from "ws";
 import protocol from "@foxglove/ws-protocol";
 import { parseIDL } from "@foxglove/omgidl-parser";
@@ -9,7 +9,7 @@ import { MessageReader } from "@foxglove/omgidl-serialization";
 
 const { FoxgloveClient } = protocol;
 const client = new FoxgloveClient({ ws: new WebSocket(`ws://localhost:${process.argv[2]}`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
-const channels = new Map(); // by subscription
+const channels = new Map();  // by subscription
 const arrived = {};
 
 client.on("error", (error) => {
