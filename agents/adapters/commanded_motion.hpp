@@ -7,20 +7,20 @@
 
 namespace sidestep {
 
-/// The velocities recently commanded to a base, and the velocities that result from them: the base obeys each
-/// command after a fixed latency, until the next one takes effect.
+/// Predicts the velocity of a base from the velocities recently commanded to it. The base obeys each command
+/// after a fixed latency, until the next command takes effect.
 class CommandedMotion {
  public:
   /// Precondition: 0 <= latency <= kMaxLatency.
   explicit CommandedMotion(Duration latency) : latency_(latency) {}
 
-  /// Precondition: `at` is later than in the last call.
+  /// Precondition: `at` is later than in the previous call.
   void add(Time at, const BodyVelocity& velocity);
   /// The mean velocity of the base between `from` and `to`. Precondition: both are later than the oldest
   /// remembered command. Before the first command the base is at rest.
   BodyVelocity mean(Time from, Time to) const;
-  /// The earliest time after `time` at which the base starts to obey another command that was already sent,
-  /// but at most `latest`. Precondition: as for mean().
+  /// The earliest time after `time` at which a command that was already sent takes effect, but at most
+  /// `latest`. Precondition: `time` is later than the oldest remembered command.
   Time next_change(Time time, Time latest) const;
   /// The velocity once all commands are in effect.
   BodyVelocity latest() const;

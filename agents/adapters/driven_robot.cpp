@@ -12,7 +12,7 @@ namespace sidestep {
 namespace {
 
 // The values suit bases that follow their commands as the league's simulators do.
-constexpr double kVelocityNoise_mps = 0.05;  ///< standard deviation with which a base follows its commands
+constexpr double kVelocityNoise_mps = 0.05;  ///< standard deviation of a base's velocity from its command
 /// Standard deviation of a base's own motion measurement, if it has one.
 constexpr double kOdometryNoise_mps = 0.01;
 constexpr double kPositionGain_ps = 4;
@@ -23,10 +23,10 @@ constexpr double kTurningSpeed_radps = 3;
 
 using std::chrono::milliseconds;
 
-// A base stops within this time after its last command, whoever sent it.
+// A base stops within this time after its last command, whichever process sent it.
 constexpr Duration kStoppingTime = milliseconds(500);
 // The first fixes of a robot at rest agree if all lie within this many standard deviations, plus this
-// distance, of one of them.
+// distance, of a single fix.
 constexpr double kAgreement = 5, kMinAgreement_m = 0.003;
 // After a longer pause of this process, the base's motion in the meantime is unknown.
 constexpr Duration kMaxPause = milliseconds(200);

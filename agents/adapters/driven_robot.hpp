@@ -14,14 +14,14 @@
 
 namespace sidestep {
 
-/// What is known of a driven robot and its base.
+/// Properties of a driven robot and its base.
 struct DriveSettings {
   /// Delay from a command until the base moves accordingly.
   Duration latency = std::chrono::milliseconds(100);
   double tracking_bound_m = SafetyBudget{}.tracking_bound_m;
   MotionLimits limits;
-  double fix_noise_m = 0.0005;  ///< standard deviation of vision, on each axis
-  /// Standard deviation of the relative error of a base's own motion measurement.
+  double fix_noise_m = 0.0005;  ///< standard deviation of vision's position error, on each axis
+  /// Standard deviation of the relative error of a base's odometry.
   double scale_error = 0.005;
 };
 
@@ -30,8 +30,8 @@ DriveSettings drive_settings(const Scenario& scenario, Duration latency);
 /// A robot that a driver moves. It consists of the robot's side of the protocol in single precision, the
 /// estimate of its pose, and the control of its velocity. The base obeys after a latency, so the robot
 /// predicts where it will be by then and steers towards its reference's position at that time. It refuses
-/// versions that arrive too late for this. It starts without a pose, and stays at rest until fixes agree on
-/// where it is. All times are by the process's clock, which never goes back.
+/// versions that arrive too late for this. It starts without a pose, and stays at rest until vision's pose
+/// fixes agree on where it is. All times are by the process's clock, which never goes back.
 class DrivenRobot {
  public:
   /// Period of the control loop.
@@ -53,7 +53,7 @@ class DrivenRobot {
 
   /// Whether the robot can report: it knows its pose.
   bool may_report() const { return side_.may_report() && estimator_.is_finite(); }
-  /// The facts, except robot_incarnation. Precondition: may_report().
+  /// The robot's report, without robot_incarnation. Precondition: may_report().
   RobotReport robot_report(Time now);
 
   /// Whether the base is at rest, and stays at rest unless it receives further versions.
@@ -70,14 +70,15 @@ class DrivenRobot {
     double heading_rad = 0;
   };
   void advance(Time now);
-  /// The pose is unknown until first fixes agree on it.
+  /// Makes the pose unknown until new fixes agree on it.
   void forget_pose(Time now);
-  /// The velocity in the world frame that follows from the commands alone.
+  /// The mean velocity in the world frame, predicted from the commands alone.
   Odometry commanded(Time from, Time to, double heading_rad) const;
-  /// The pose at a time at or after the estimator's time, predicted from the commands under way.
+  /// The pose predicted from the commands already sent. Precondition: `at` is not before the estimator's
+  /// time.
   Pose predicted(Time at) const;
   robot::Estimate<float> estimate(Time now) const;
-  /// The motion that the commands under way cause until a command that is sent now takes effect.
+  /// The motion caused by commands already sent, until a command sent now takes effect.
   robot::MotionUnderWay<float> under_way(Time now, const Pose& pose) const;
   BodyVelocity track(Time now) const;
   void add_first_fix(const PoseFix& fix, Time now);
@@ -94,8 +95,8 @@ class DrivenRobot {
   /// Oldest fix that is waiting for the odometry of its capture time, which arrives later.
   std::optional<PoseFix> waiting_fix_;
   double target_heading_rad_ = 0;
-  Time moved_at_;                         ///< without a pose: when it may last have moved
-  std::array<PoseFix, 3> first_fixes_{};  ///< without a pose: the latest fixes that agree
+  Time moved_at_;                         ///< while the pose is unknown: when the robot may last have moved
+  std::array<PoseFix, 3> first_fixes_{};  ///< while the pose is unknown: the latest fixes that agree
   std::size_t first_fix_count_ = 0;
 };
 

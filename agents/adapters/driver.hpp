@@ -41,9 +41,9 @@ class Driver {
 
   /// Sends the commands of all robots, once per control period.
   virtual void send(std::span<const BaseCommand> commands) = 0;
-  /// Sets the callback for odometry. A driver without odometry never calls it. Every report is checked: it is
-  /// finite and belongs to a robot of this driver. Its time is what the base reports, converted to the
-  /// process's clock; DrivenRobot checks whether it is plausible.
+  /// Sets the callback for odometry. A driver without odometry never calls it. The driver checks that every
+  /// report is finite and belongs to one of its robots. A report's time is the time that the base states,
+  /// converted to the process's clock; DrivenRobot checks whether it is plausible.
   virtual void on_odometry(std::function<void(const OdometryReport&)> /*callback*/) {}
   /// Adds the driver's own drop counts.
   virtual void count_drops(DropCounters& drops) const { (void)drops; }

@@ -24,7 +24,8 @@ constexpr double kRegularisation = 1e-8;
 constexpr double kRounding_m = 1e-6;
 
 constexpr Duration kMinPart = std::chrono::milliseconds(2);
-/// Maximum acceleration of a part. Receivers refuse more, and compute it from numbers in single precision.
+/// Maximum acceleration of a part. Receivers refuse higher accelerations, which they compute in single
+/// precision.
 constexpr double kMaxPartAcceleration_mps2 = 0.9 * kMaxAcceleration_mps2;
 
 using Ends = std::array<std::size_t, kMaxParts + 1>;  ///< ends of the parts, as points of the path
@@ -76,8 +77,9 @@ UnderWay fitted(std::span<const PathPoint> path, const Vec2& last_velocity_mps, 
   return motion;
 }
 
-/// Between two points the path is straight with constant velocity. The distance between the motion and the
-/// straight line through its own positions at those times is at most a t² / 8.
+/// Between two points the path is straight with constant velocity. With the acceleration a and the time t
+/// between the points, the motion deviates by at most a t² / 8 from the straight line through its own
+/// positions.
 double max_error_m(std::span<const PathPoint> path, const Ends& ends, const UnderWay& motion) {
   double largest_m = 0, error_m = 0;
   Vec2 place_m = path.front().position_m, velocity_mps(motion.from_mps.x, motion.from_mps.y);
@@ -122,7 +124,7 @@ bool are_accelerations_small(const UnderWay& motion) {
   return true;
 }
 
-/// Constant at the last velocity, for paths that are too short in time to fit anything.
+/// A motion at the constant last velocity, for paths that are too short in time for a fit.
 UnderWay constant(std::span<const PathPoint> path, const Vec2& velocity_mps) {
   UnderWay motion;
   motion.from_mps = {static_cast<float>(velocity_mps.x()), static_cast<float>(velocity_mps.y())};

@@ -15,10 +15,10 @@ struct PathPoint {
   Vec2 position_m{0, 0};
 };
 
-/// Fits a motion to a path. The path moves at constant velocity between its points. The motion consists of
-/// parts in which the velocity changes linearly, and ends at `last_velocity_mps`. Its error_m bounds the
-/// distance from the path at all times. Precondition: times ascend from 0. A path with one point takes no
-/// time and has no parts.
+/// Fits a motion to a path. The base on the path moves at constant velocity between the points. The motion
+/// consists of parts in which the velocity changes linearly, and ends at `last_velocity_mps`. Its error_m
+/// bounds the distance from the path at all times. Precondition: times ascend from 0. The motion for a path
+/// with one point has no parts.
 [[nodiscard]] robot::MotionUnderWay<float> fit_motion_under_way(std::span<const PathPoint> path,
                                                                 const Vec2& last_velocity_mps);
 

@@ -8,9 +8,9 @@
 namespace sidestep {
 
 /// Decides whether the timestamps of a base's odometry can be trusted. A report cannot arrive before it was
-/// measured. But a base whose clock is behind cannot be distinguished from a slow connection. So timestamps
-/// are trusted for kBeliefPeriod after a report that arrived within `max_error` of its timestamp; reports
-/// that are much older are never trusted. A report from the future ends the trust.
+/// measured. But a slow clock in the base cannot be distinguished from a slow connection. So timestamps are
+/// trusted for kBeliefPeriod after a report that arrived within `max_error` of its timestamp. A report that
+/// arrives much later than its timestamp is never trusted, and a timestamp in the future ends the trust.
 class OdometryDates {
  public:
   static constexpr Duration kBeliefPeriod = std::chrono::milliseconds(500);

@@ -48,7 +48,7 @@ RobotDriverNode::RobotDriverNode(Bus& bus, const Scenario& scenario, const std::
   bus.at(begin, [this] { tick(); });
 }
 
-// This clock never goes back, so that reported facts stay true.
+// This clock never goes back, so that earlier reports stay true.
 Time RobotDriverNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
 
 void RobotDriverNode::tick() {
@@ -61,7 +61,7 @@ void RobotDriverNode::tick() {
     publish_if_changed(entry, now);
     if (entry.report_due <= now) publish(entry, now);
   }
-  // Missed periods are not made up for.
+  // Skips missed periods.
   next_tick_ = std::max(next_tick_ + DrivenRobot::kPeriod, now);
   bus_.at(next_tick_, [this] { tick(); });
 }
@@ -96,7 +96,7 @@ void RobotDriverNode::publish(Entry& entry, Time now) {
   if (entry.is_known != entry.robot->may_report()) {
     entry.is_known = entry.robot->may_report();
     if (!entry.is_known)
-      events_.report(LogLevel::kWarning, entry.robot->id(), "robot {} does not know its pose any more",
+      events_.report(LogLevel::kWarning, entry.robot->id(), "robot {} no longer knows its pose",
                      entry.robot->id());
   }
   if (!entry.is_known) return;

@@ -19,7 +19,7 @@ namespace sidestep {
 /// every change and at least once per cycle. The bus must make no callback after the node's destruction.
 class RobotDriverNode {
  public:
-  /// Precondition: `robots` belong to the scenario. Throws if RobotMemory does.
+  /// Precondition: `robots` belong to the scenario. Throws the same exceptions as RobotMemory.
   RobotDriverNode(Bus& bus, const Scenario& scenario, const std::vector<RobotId>& robots,
                   Incarnation incarnation, const DriveSettings& settings, Driver& driver,
                   const std::string& memory_folder);
@@ -45,7 +45,7 @@ class RobotDriverNode {
     Writer<msg::Feedback> robot_report;
     Time report_due{};
     Time watched_start{};  ///< the version start for which a timer is set
-    // As last reported.
+    // Values in the last published report.
     VersionNumber executing = 0;
     Incarnation incarnation = 0;
     Epoch epoch = 0;

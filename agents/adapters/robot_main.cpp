@@ -27,7 +27,7 @@ struct Options {
 };
 
 void add_options(const CliCommand& app, Options& options) {
-  app.add_option("--driver", options.driver, "how the robots are moved: league, velocity")
+  app.add_option("--driver", options.driver, "what moves the robots: league, velocity")
       .check(one_of({"league", "velocity"}))
       .required();
   app.add_option("--robots", options.robots, "numbers and ranges of the scenario's robots, such as 0-10,16")
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   Program program;
   program.name = "sidestep-robot";
   program.description =
-      "Drives real robots, or those of a foreign simulator: their side of the safety protocol.";
+      "Drives real robots, or robots of another simulator: the robots' side of the safety protocol.";
   program.add_options = [&options](const CliCommand& app) { add_options(app, options); };
   program.participant = [] { return "robots"; };
   program.process = [] { return static_cast<std::uint32_t>(Sender::kRobots); };

@@ -27,8 +27,8 @@ class RobotMemory final : public robot::StableMemory {
  public:
   /// Reads the file if it exists, and creates the folder. Throws std::runtime_error with the file, the line
   /// and the reason if the file cannot be read or is not a robot's memory, because a robot that has forgotten
-  /// whom it obeys must not drive. Also throws if another process has this robot's memory, because only one
-  /// may drive a robot.
+  /// which agent it obeys must not drive. Also throws if another process has this robot's memory, because
+  /// only one process may drive a robot.
   RobotMemory(const std::string& folder, RobotId robot);
 
   const robot::DurableState& state() const { return state_; }

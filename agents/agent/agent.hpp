@@ -19,8 +19,9 @@ namespace sidestep {
 
 /// Makes the decisions of one robot, once per cycle: it turns observations and messages into proposals and
 /// commands. It only connects the classes that decide: Negotiation, Observations, OrderExecution,
-/// MotionPlanner and ProposalSearch. All messages passed to it are already decoded for the robot, and the
-/// caller encodes those that it returns. All times are by the robot's clock, as estimated by the caller.
+/// MotionPlanner and ProposalSearch. The caller decodes all messages before it passes them to the agent, and
+/// encodes the messages that the agent returns. All times are by the robot's clock, as estimated by the
+/// caller.
 class Agent {
  public:
   /// The consequences of a verdict.
@@ -45,7 +46,7 @@ class Agent {
   /// Precondition: the robot has a laser.
   void on_scan(const LaserScan& scan, Time now) { observations_.on_scan(scan, now); }
   void on_page(const ReceivedPage& page) { observations_.on_page(page); }
-  /// Records where the lifted robot is to be put down.
+  /// Records where the lifted robot will be put down.
   void on_placement(const Vec2& position_m) { placement_m_ = position_m; }
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
   /// Processes orders that a coordinator remembers.
@@ -61,15 +62,15 @@ class Agent {
   bool must_ask_robot() const { return negotiation_.must_ask_robot(); }
   bool needs_registration() const { return negotiation_.needs_registration(); }
   bool is_fenced() const { return negotiation_.is_fenced(); }
-  /// Whether the active coordinator has announced all orders that this agent remembers. Only then does the
-  /// agent register, so that no order that an agent remembers is lost.
+  /// Whether the active coordinator has announced all orders that this agent remembers. The agent registers
+  /// only then, so that no remembered order is lost.
   bool is_told_all_orders() const { return orders_.is_told_all_orders(negotiation_.epoch()); }
   bool may_propose(Time now) const { return negotiation_.may_propose(now); }
   bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
   Registration registration();
   void on_request(Time now) { negotiation_.on_request(now); }
-  /// Whether the agent should ask for another coordinator, because this one does not serve it.
+  /// Whether the agent should ask for another coordinator, because the present coordinator does not serve it.
   bool is_unserved(Time now) const;
   /// See Negotiation.
   Registration epoch_notice() const { return negotiation_.epoch_notice(); }
@@ -78,21 +79,19 @@ class Agent {
   /// The start of the version to propose at the start of a cycle; nullopt if there is nothing to propose.
   std::optional<Time> start_to_propose(Time now, Time next_cycle) const;
 
-  /// Plans the motion from `start` on. Returns nullopt if the version that the robot holds already ends at
-  /// its goal. Also returns nullopt if vision has lost the robot, which must not rely on its own pose
-  /// estimate, and if the coordinator has lost vision, or the agent has had no list of obstacles recently.
-  /// `max_speed_mps`: the speed that the clocks allow. `max_lag`: how late the robot may be beyond the clock
-  /// bound (ClockMonitor).
+  /// Plans the motion from `start` on. Returns nullopt if the robot's current version already ends at its
+  /// goal, if vision has lost the robot, if the coordinator has lost vision, or if the agent has no recent
+  /// list of obstacles. `max_speed_mps`: the speed that the clocks allow. `max_lag`: the robot's maximum lag
+  /// in excess of the clock bound; see ClockMonitor.
   [[nodiscard]] std::optional<MotionPlan> plan(Time now, Time start, double max_speed_mps, Duration max_lag);
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
-  /// Why plan() returns nothing at this time, unless the reason lies in the robot's own versions.
+  /// Why plan() returns nothing now. Does not consider the robot's own versions.
   WaitReason wait_reason(Time now) const;
   AgentActivity activity(Time now) const;
 
-  /// Whether the robot is off the floor and a rest version may be proposed at the place where it is to be put
-  /// down.
+  /// Whether the robot is off the floor, and a version at rest may be proposed where it will be put down.
   bool needs_rest_version(Time now) const;
   /// The proposal for that rest version. Precondition: needs_rest_version().
   [[nodiscard]] Proposal propose_rest_version(Time now, Time start);
@@ -120,7 +119,7 @@ class Agent {
   }
 
  private:
-  /// Learns from a report what the robot has reached. Precondition: the robot is fenced.
+  /// Checks in a report whether the robot has reached its goal. Precondition: the robot is fenced.
   void update_goal(const RobotReport& robot_report);
 
   const RobotSpec robot_;
@@ -133,7 +132,7 @@ class Agent {
   ProposalSearch search_;
   Rng rng_;
   std::optional<Version> forwarded_;  // granted, and not started yet
-  std::optional<Vec2> placement_m_;   // where the robot is to be put down
+  std::optional<Vec2> placement_m_;   // where the robot will be put down
 };
 
 }  // namespace sidestep

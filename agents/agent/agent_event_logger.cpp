@@ -37,7 +37,7 @@ void AgentEventLogger::update(const AgentActivity& activity, const ClockSpeedLim
 void AgentEventLogger::report_protocol(const AgentActivity& activity) {
   if (activity.is_superseded && !last_.is_superseded)
     events_.report(LogLevel::kWarning, robot_,
-                   "superseded: a later agent drives this robot; this one stays silent");
+                   "superseded: a later agent drives this robot; this agent stays silent");
   if (!activity.is_superseded && last_.is_superseded)
     events_.report(LogLevel::kWarning, robot_, "the robot obeys this agent after all");
   if (activity.is_fenced && !last_.is_fenced)
@@ -73,7 +73,7 @@ void AgentEventLogger::report_wait(WaitReason reason, Time now) {
 }
 
 void AgentEventLogger::report_speed_limit(const ClockSpeedLimit& limit, Time now) {
-  // Without a measurement the agent waits and reports that instead.
+  // Without a measurement the agent waits, and the wait is reported instead.
   const bool is_limited = limit.offset && limit.speed_mps < limit.robot_limit_mps;
   if (is_limited != limited_since_.has_value())
     limited_since_ = is_limited ? std::optional(now) : std::nullopt;
@@ -92,7 +92,7 @@ void AgentEventLogger::report_speed_limit(const ClockSpeedLimit& limit, Time now
 }
 
 void AgentEventLogger::on_robot_report(const RobotReport& robot_report) {
-  if (robot_report.valid_at < latest_report_) return;  // overtaken by a later fact
+  if (robot_report.valid_at < latest_report_) return;  // overtaken by a later report
   latest_report_ = robot_report.valid_at;
   report_restart(robot_report.activated);
   if (robot_report.is_off_reference && robot_report.executing.number > own_stop_) {
@@ -118,13 +118,13 @@ void AgentEventLogger::report_restart(std::uint64_t activated) {
 
 void AgentEventLogger::on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinator) {
   if (coordinator)
-    events_.report(LogLevel::kInfo, robot_, "epoch {} of {}", epoch, process_name(*coordinator));
+    events_.report(LogLevel::kInfo, robot_, "adopts epoch {} of {}", epoch, process_name(*coordinator));
   else
-    events_.report(LogLevel::kInfo, robot_, "epoch {}, which the robot obeys already", epoch);
+    events_.report(LogLevel::kInfo, robot_, "adopts epoch {}, which the robot obeys already", epoch);
 }
 
 void AgentEventLogger::on_denial(const Verdict& verdict) {
-  // Candidates may have been denied for different reasons; the first candidate is the desired motion.
+  // Candidates may be denied for different reasons. The first candidate, the desired motion, counts.
   ++denials_[static_cast<std::size_t>(verdict.reasons.front())];
   ++denial_count_;
   if (verdict.reasons.front() == msg::Reason::REASON_CONFLICT) blocker_ = verdict.blockers.front();

@@ -21,7 +21,7 @@ struct AgentActivity {
   Epoch epoch = 0;  ///< 0: no epoch is known
   WaitReason waits_for = WaitReason::kNone;
   std::size_t goal_index = 0;
-  bool has_arrived = false;  ///< at the current goal, which is the last one
+  bool has_arrived = false;  ///< the robot is at rest at its last goal
   bool is_recovering = false;
   bool is_escaping = false;
 };
@@ -33,8 +33,8 @@ struct ClockSpeedLimit {
   std::optional<OffsetInterval> offset;
 };
 
-/// Reports changes in the work of one agent. A condition that may change in every cycle is reported once it
-/// has lasted for kSettlingTime, and at most once per kMinInterval.
+/// Logs changes of one agent's state. A condition that may change in every cycle is reported once it has
+/// lasted for kSettlingTime, and at most once per kMinInterval.
 class AgentEventLogger {
  public:
   static constexpr Duration kSettlingTime{250'000'000};
@@ -46,7 +46,7 @@ class AgentEventLogger {
   void update(const AgentActivity& activity, const ClockSpeedLimit& limit, Time now);
   /// Processes a report of a robot that obeys the agent.
   void on_robot_report(const RobotReport& robot_report);
-  /// The agent has adopted an epoch that `coordinator` announced; nullopt: its robot did.
+  /// Logs that the agent has adopted an epoch announced by `coordinator`; nullopt: by its robot.
   void on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinator);
   /// Processes the denial of a proposal.
   void on_denial(const Verdict& verdict);
@@ -78,7 +78,7 @@ class AgentEventLogger {
   // Number of denials since the last report, by reason.
   std::array<std::uint64_t, static_cast<std::size_t>(msg::Reason::REASON_HELD) + 1> denials_{};
   std::uint64_t denial_count_ = 0;
-  RobotId blocker_ = 0;  // robot of the last conflict
+  RobotId blocker_ = 0;  // the other robot of the latest conflict
   Time denials_reported_at_{};
 };
 

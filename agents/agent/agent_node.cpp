@@ -16,8 +16,8 @@ namespace {
 
 constexpr Duration kStatusPeriod{200'000'000};
 constexpr int kCyclesBetweenRegistrations = 3;
-// Registrations that only measure a clock are less frequent than those that ask for another coordinator, see
-// FleetReception::kMaxRequestGap.
+// Registrations that only measure a clock are less frequent than registrations that ask for another
+// coordinator; see FleetReception::kMaxRequestGap.
 constexpr Duration kBetweenMeasurements{500'000'000};
 // An agent may have to ask for another coordinator for a long time.
 constexpr int kCyclesBetweenRequests = 6;
@@ -83,8 +83,8 @@ void AgentNode::on_robot_report(const msg::Feedback& message) {
   const Epoch last_epoch = agent_.epoch();
   const bool was_fenced = agent_.is_fenced();
   const bool is_contradicted = agent_.on_robot_report(*robot_report);
-  // Responds to the robot's first acknowledgement immediately by sending the epoch: nothing moves before the
-  // robot obeys it.
+  // Sends the epoch immediately after the robot's first acknowledgement, because no robot moves until all
+  // robots have acknowledged the epoch.
   if (!was_fenced && agent_.is_fenced() && agent_.epoch() != 0) publish_command(agent_.command(robot_now()));
   orders_.publish_status(agent_);
   event_logger_.on_robot_report(*robot_report);
@@ -108,7 +108,8 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
 
 void AgentNode::on_world_state(const msg::WorldState& message) {
   WorldObservations world = world_.decode(message);
-  // With a clock beyond the bound, the robot would take this position for its position at another time.
+  // If the robot's clock is beyond the bound, the robot would take this position for its position at a wrong
+  // time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
   agent_.on_world_state(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
 }
@@ -138,7 +139,7 @@ void AgentNode::on_coordinator_state(const msg::CoordinatorState& message) {
   agent_.on_coordinator_state(*heartbeat, robot_now());
   if (agent_.epoch() != last_epoch) event_logger_.on_epoch(agent_.epoch(), heartbeat->sender);
   if (agent_.is_superseded()) return;
-  // A new epoch is forwarded immediately, because no robot moves until all have acknowledged it.
+  // A new epoch is forwarded immediately, because no robot moves until all robots have acknowledged it.
   if (agent_.epoch() != last_epoch) publish_command(agent_.command(robot_now()));
   register_if_due();
   if (!could_propose && agent_.may_propose(robot_now()) && !agent_.has_upcoming_version(robot_now()))
@@ -223,7 +224,7 @@ Time AgentNode::cycle_after(Time now) const {
 
 void AgentNode::measure_robot_clock(const RobotReport& robot_report) {
   clocks_.on_robot_report(robot_report, agent_.incarnation(), bus_.now());
-  // The robot's clock estimate jumped: reschedule the next cycle.
+  // If the estimate of the robot's clock has jumped, reschedules the next cycle.
   const Duration until_cycle = next_cycle_ - robot_now();
   if (until_cycle > 2 * cycle_ || until_cycle < -2 * cycle_) next_cycle_ = cycle_after(robot_now());
 }
@@ -252,7 +253,7 @@ void AgentNode::measure_coordinator_clock(Duration since_last) {
 
 bool AgentNode::update_clocks() {
   clocks_.on_epoch(agent_.epoch());
-  // The agent keeps asking as long as nobody answers.
+  // The agent keeps asking as long as no coordinator answers.
   if (clocks_.is_measurement_due(bus_.now())) measure_coordinator_clock(kCyclesBetweenRegistrations * cycle_);
   return clocks_.allows_motion(bus_.now());
 }

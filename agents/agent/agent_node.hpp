@@ -16,9 +16,9 @@
 namespace sidestep {
 
 /// Connects an agent to the bus and runs its control cycle. Decodes and checks every message once, and counts
-/// invalid ones. The cycles of all robots are spread evenly over the cycle time, so that their proposals do
-/// not coincide. Versions start and end by the robot's clock, so the agent uses the robot's time: the bus's
-/// time plus the measured offset.
+/// invalid messages. The cycles of all robots are spread evenly over the cycle time, so that their proposals
+/// do not coincide. Versions start and end by the robot's clock, so the agent uses the robot's time: the
+/// bus's time plus the measured offset.
 class AgentNode {
  public:
   AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
@@ -31,8 +31,8 @@ class AgentNode {
     events_.set_listener(min_level, std::move(callback));
   }
   void count_drops(DropCounters& drops) const;
-  /// Whether this agent must keep its clock although the host's clock has been set: either the agent can
-  /// drive its robot by this clock, or a restart would make it a later agent than the one that its robot
+  /// Whether this agent must keep its own clock after the host's clock has been set. It must if it can drive
+  /// its robot by its own clock, or if a restart would make it a later agent than the one that its robot
   /// obeys.
   bool uses_clock() const {
     return agent_.is_superseded() || clocks_.robot_coordinator_offset(bus_.now()).has_value();
@@ -60,7 +60,7 @@ class AgentNode {
   void begin_cycle();
   void register_if_due();
   /// Registers again, because the coordinator's answer measures its clock. Does nothing if the last
-  /// registration is more recent than this.
+  /// registration is more recent than `since_last`.
   void measure_coordinator_clock(Duration since_last);
   /// Requests a measurement of the clocks if one is due. Returns whether the clocks allow proposals.
   bool update_clocks();
@@ -69,12 +69,13 @@ class AgentNode {
   double speed_limit_mps() const;
   void report_changes();
   Time robot_now() const;
-  /// Whether this duration has passed since a time by this process's clock.
+  /// Whether `period` has passed since `since`, by this process's clock.
   bool has_elapsed(Duration period, Time since) const;
-  /// The start of this robot's first cycle after a time.
+  /// The start of this robot's first cycle after `now`.
   Time cycle_after(Time now) const;
   void schedule_next_cycle();
-  /// Proposes for the earliest start, unless the next cycle begins too soon for an answer.
+  /// Proposes a version with the earliest possible start, unless the next cycle begins before an answer can
+  /// arrive.
   void negotiate_if_time();
   /// Proposes a version that starts at `start`.
   void negotiate(Time start);
@@ -86,7 +87,7 @@ class AgentNode {
   Bus& bus_;
   RobotId robot_;
   Duration cycle_;
-  double max_speed_mps_;  // of the scenario's robots
+  double max_speed_mps_;  // speed limit of the scenario's robots
   Agent agent_;
   ClockMonitor clocks_;
   WorldStateDecoder world_;

@@ -12,10 +12,10 @@
 
 namespace sidestep {
 
-/// The orders of all robots that coordinators have announced, and which coordinator has announced all of
-/// them. They include those of other robots, whose agents may have restarted together with all coordinators.
-/// An order that a coordinator's memory lacks is not forgotten, because that coordinator may have been cut
-/// off. `own`: what the robot itself remembers, which may be further than what was announced.
+/// The orders that coordinators have announced, and which coordinators have announced all of them. They
+/// include the orders of other robots, whose agents may have forgotten them in a restart together with all
+/// coordinators. An order that a coordinator's memory lacks is kept, because that coordinator may have been
+/// cut off from the network. `own` are the robot's orders with its latest progress.
 class AnnouncedOrders {
  public:
   /// Orders of robots that are not on the roster are ignored; if the roster is empty, all are remembered.
@@ -26,18 +26,18 @@ class AnnouncedOrders {
   /// Records that the robot has progressed since the last memory was heard.
   void on_progress() { has_progressed_ = true; }
 
-  /// Whether a coordinator with a complete memory has been heard.
+  /// Whether a coordinator that remembers all orders has been heard.
   bool is_known() const { return is_known_; }
   bool is_empty() const { return told_.empty() && changes_.empty(); }
-  /// All orders, those of `own` included.
+  /// All orders, including `own`.
   OrderBook with(const OrderBook& own) const;
   /// The announced orders of one robot and those of all robots.
   OrderBook of(RobotId robot) const;
   /// Removes and returns the orders of all robots that were missing in the latest memory heard from a
   /// coordinator.
   std::vector<RememberedOrder> take_missing() { return std::exchange(missing_, {}); }
-  /// Whether this run of a coordinator has announced every order that is remembered here. It has not
-  /// forgotten any since, because coordinators do not forget orders.
+  /// Whether the coordinator process with this incarnation has announced every order that is remembered here.
+  /// A running coordinator forgets no order.
   bool is_told_by(std::uint32_t coordinator, Incarnation incarnation) const;
 
  private:
@@ -46,14 +46,14 @@ class AnnouncedOrders {
   /// Adds a page of a coordinator's complete memory.
   void add(std::shared_ptr<const OrderPage> page, const OrderBook& own);
   void add_changes(std::shared_ptr<const OrderPage> page, const OrderBook& own);
-  /// Compares a coordinator's complete memory with this one.
+  /// Compares a coordinator's complete memory with the orders remembered here.
   void compare(const Round& round, const OrderBook& own);
   template <typename Use>
   void for_each(Use use) const;
 
   std::vector<RobotId> roster_;  // robot numbers, ascending
   bool is_known_ = false;
-  Round told_;                                    // the last complete memory of a coordinator
+  Round told_;                                    // the latest complete memory of a coordinator
   Round changes_;                                 // orders that told_ lacks, and later changes
   bool has_progressed_ = false;                   // since that memory was heard
   std::map<std::uint32_t, Round> rounds_;         // by coordinator: memories whose pages are still arriving

@@ -77,7 +77,7 @@ void Assignment::choose() {
     return;
   }
   if (stands()) return;
-  // An earlier agent of this robot has finished an order, and the robot must stay there.
+  // If an earlier agent of this robot has finished an order, the robot must stay at its goal.
   for (const Rank rank : kFromHighestRank) {
     const RememberedOrder* order = book_.drive_order(robot_, rank);
     if (order && order->progress.state == msg::OrderState::ORDER_ARRIVED) return take(*order);

@@ -20,15 +20,15 @@ struct OtherAssignment {
   bool is_held = false;
   bool has_to_go = false;        ///< it has an unfinished order to drive
   OrderNumber number = 0;        ///< number of that order
-  std::optional<Vec2> goal_m{};  ///< goal of that order; nullopt if only the scenario states it
+  std::optional<Vec2> goal_m{};  ///< goal of that order; nullopt if the goal is given by the scenario
 };
 
-/// Decides which order a robot carries out: among its unfinished orders, the one of the highest rank. A robot
-/// without an order stays where it is, and returns there if something moves it away.
+/// Decides which order a robot carries out: its unfinished order of the highest rank. A robot without an
+/// order stays where it is, and returns there if something moves it away.
 class Assignment {
  public:
-  /// `scenario_goals` are the goals of orders given by the scenario. Orders of robots that are not on the
-  /// roster are ignored; if the roster is empty, all orders are remembered.
+  /// `scenario_goals` are the robot's goals in the scenario, for orders that name none. Orders of robots that
+  /// are not on the roster are ignored; if the roster is empty, all orders are remembered.
   Assignment(RobotId robot, std::vector<Goal> scenario_goals, std::vector<RobotId> roster = {});
 
   /// Processes orders that a coordinator remembers.
@@ -39,10 +39,10 @@ class Assignment {
   /// its completion can be reported.
   void choose();
 
-  /// Whether a coordinator with a complete memory has been heard. Until then the robot has no orders.
+  /// Whether a coordinator that remembers all orders has been heard. Until then the robot has no orders.
   bool is_known() const { return announced_.is_known(); }
   bool is_held() const { return is_held_; }
-  /// nullptr if the robot has no order.
+  /// The current goal; nullptr if the robot has no order.
   const Goal* goal() const { return goals_.empty() ? nullptr : &goals_[progress_.goal_index]; }
   std::size_t goal_index() const { return progress_.goal_index; }
   /// Increases with every change of goal().
@@ -51,9 +51,10 @@ class Assignment {
   std::span<const Goal> goals_left() const {
     return std::span(goals_).subspan(std::min(progress_.goal_index, goals_.size()));
   }
-  /// The report on the robot's order, without what only the agent knows. Number 0: the robot has no order.
+  /// The report on the robot's order, without the fields that only the agent can fill in. Number 0: the robot
+  /// has no order.
   OrderReport report() const;
-  /// The orders for zones that are in force.
+  /// The zone orders in force.
   const std::vector<Order>& zones() const { return zones_; }
   /// Increases with every change of zones().
   std::uint64_t zone_revision() const { return zone_revision_; }
@@ -83,7 +84,7 @@ class Assignment {
 
   const RobotId robot_;
   const std::vector<Goal> scenario_goals_;
-  OrderBook book_;  // the robot's orders, those of all robots included
+  OrderBook book_;  // the robot's orders, including orders to all robots
   AnnouncedOrders announced_;
   bool is_held_ = false;
   // The order that the robot carries out or has carried out last.

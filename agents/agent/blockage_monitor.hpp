@@ -15,14 +15,14 @@ class BlockageMonitor {
   /// A blockage is reported if it lasts for at least `reported_after`.
   explicit BlockageMonitor(Duration reported_after) : reported_after_(reported_after) {}
 
-  /// The goal can be reached, or there is another goal.
+  /// Call it when the goal can be reached, or has changed.
   void clear();
   void on_blocked(const Blockage& blockage, Time now);
-  /// The robot's clock was set back, so that it is unknown how long the goal has been blocked.
+  /// Restarts the measurement of time, because the robot's clock was set back.
   void restart() { since_.reset(); }
 
   bool is_blocked() const { return since_.has_value(); }
-  /// The blockage if it has lasted for long enough.
+  /// The blockage if it has lasted long enough; otherwise nullopt.
   std::optional<Blockage> lasting(Time now) const;
 
  private:

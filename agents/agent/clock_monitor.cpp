@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// Measurements spoiled by a smaller change of this process's clock expire within that time anyway.
+// A smaller setback of this process's clock is not detected; measurements that it spoils soon expire anyway.
 constexpr Duration kMinSetback{10'000'000};
 
 }  // namespace
@@ -49,7 +49,7 @@ void ClockMonitor::on_verdict(const Verdict& verdict, Time received) {
   const Time asked = verdict.request_sent_at;
   if (verdict.epoch != epoch_ || asked == Time{}) return;
   if (std::ranges::find(requests_, asked) == requests_.end()) return;  // another agent's request, or too old
-  // Coordinators have consecutive sender numbers, so each has a place of its own.
+  // Coordinators have consecutive sender numbers, so each has an element of its own.
   coordinator_ = verdict.sender % coordinators_.size();
   CoordinatorClock& clock = coordinators_[*coordinator_];
   if (clock.sender != verdict.sender || clock.incarnation != verdict.incarnation)

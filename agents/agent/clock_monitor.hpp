@@ -21,7 +21,7 @@ namespace sidestep {
 /// the agent's own clock.
 class ClockMonitor {
  public:
-  /// Maximum age of a measurement. Older ones are ignored, because clocks drift.
+  /// Maximum age of a measurement. Older measurements are ignored, because clocks drift.
   static constexpr Duration kMaxMeasurementAge{2'000'000'000};
 
   ClockMonitor(const SafetyBudget& budget, double margin_m) : budget_(budget), margin_m_(margin_m) {}
@@ -31,8 +31,8 @@ class ClockMonitor {
   void on_robot_report(const RobotReport& robot_report, Incarnation own, Time received);
   /// Records the send time of a request that the coordinator will answer.
   void on_request_sent(Time sent);
-  /// A new epoch may belong to another coordinator with another clock. The first verdict of the epoch shows
-  /// whose clock counts; until then there is no measurement.
+  /// A new epoch may belong to another coordinator with another clock. There is no measurement until the
+  /// first verdict of the epoch shows which coordinator it is.
   void on_epoch(Epoch epoch);
   /// Uses answers to recorded requests, if they belong to the current epoch.
   void on_verdict(const Verdict& verdict, Time received);
@@ -42,8 +42,8 @@ class ClockMonitor {
   /// The highest speed at which even the largest offset consistent with the measurements does not use up the
   /// margin. 0 without recent measurements; above every speed limit if the network is fast enough.
   [[nodiscard]] double max_speed_mps(Time now) const;
-  /// How late the robot may be beyond the clock bound, given the offsets that the measurements permit. Bodies
-  /// that do not negotiate come nearer in that time.
+  /// The robot's maximum lag in excess of the clock bound, given the measured offsets. People and other
+  /// bodies that do not negotiate come nearer in that time.
   [[nodiscard]] Duration max_lag(Time now) const;
   /// Whether recent measurements prove that the offset exceeds the bound.
   [[nodiscard]] bool is_beyond_bound(Time now) const;
@@ -85,7 +85,7 @@ class ClockMonitor {
   ClockOffset robot_;  // relative to the agent's clock
   Incarnation robot_incarnation_ = 0;
   std::array<CoordinatorClock, kMaxCoordinators> coordinators_;
-  std::optional<std::size_t> coordinator_;  // the one of epoch_; nullopt: none has answered yet
+  std::optional<std::size_t> coordinator_;  // the coordinator of epoch_; nullopt: it has not answered yet
   Epoch epoch_ = 0;
   bool knows_robot_ = false;
   Duration robot_offset_{0};

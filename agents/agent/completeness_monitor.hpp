@@ -26,12 +26,13 @@ class CompletenessMonitor {
   void on_world_state(const WorldObservations& world);
   /// Precondition: all obstacles of the list were stored.
   void on_list(const ObstacleObservations& list);
-  /// Until a given time, obstacles outside this region are no longer known.
+  /// Records that obstacles outside the region `rest` were forgotten, and stay unknown until `until`.
   void on_forgotten(const SeenRegion& rest, Time until);
 
   /// The time of the latest usable list; Time{} if there is none.
   Time complete_at() const { return complete_at_; }
-  /// The region for a robot that may be late by `max_lag` beyond the clock bound.
+  /// The region in which all obstacles are known, for a robot that may lag by `max_lag` in excess of the
+  /// clock bound.
   SeenRegion seen(Time now, Duration max_lag) const;
 
  private:
@@ -51,7 +52,7 @@ class CompletenessMonitor {
 
   double max_speed_mps_;
   Duration max_clock_difference_;
-  std::array<OwnPosition, 16> positions_{};  // positions in the latest world states: a quarter of a second
+  std::array<OwnPosition, 16> positions_{};  // own positions in the world states of a quarter second
   std::size_t position_count_ = 0;           // number of positions stored so far
   std::optional<Pending> pending_;
   SeenRegion seen_;

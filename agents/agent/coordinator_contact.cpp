@@ -35,8 +35,8 @@ void CoordinatorContact::on_request(Time now) { begin(unanswered_since_, now); }
 void CoordinatorContact::on_verdict(const Verdict& verdict, Time now) {
   unanswered_since_.reset();
   if (verdict.proposal_number == 0) return;
-  // If a coordinator does not hear the robot, its list of the robot's versions fills up, and it does not know
-  // the latest ones.
+  // If a coordinator does not hear the robot, its list of the robot's versions fills up, and the coordinator
+  // does not know the latest versions.
   const msg::Reason reason = verdict.reasons.front();
   if (reason == msg::Reason::REASON_LEDGER_FULL || reason == msg::Reason::REASON_BASE_UNKNOWN)
     begin(unknown_since_, now);

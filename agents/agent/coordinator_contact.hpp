@@ -10,7 +10,7 @@ namespace sidestep {
 /// What the agent hears from the coordinator of its epoch, and whether that coordinator serves it.
 class CoordinatorContact {
  public:
-  /// Forgets what belongs to the last epoch.
+  /// Forgets everything about the previous epoch.
   void on_epoch();
   /// Uses a heartbeat of the current epoch.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, RobotId robot, Time now);
@@ -27,8 +27,8 @@ class CoordinatorContact {
   bool is_robot_missing() const { return is_robot_missing_; }
   /// Whether the coordinator grants proposals, according to the last heartbeat.
   bool is_granting() const { return is_granting_; }
-  /// Whether the agent has been without what it needs for too long: heartbeats, an answer, or a coordinator
-  /// that knows what the robot executes.
+  /// Whether, for too long, no heartbeat or no answer has arrived, or the coordinator has not known which
+  /// versions the robot executes.
   bool is_failing(Time now) const;
 
  private:

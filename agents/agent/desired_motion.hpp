@@ -7,13 +7,13 @@
 
 namespace sidestep {
 
-/// The time for which an acceleration may be held.
+/// The shortest and the longest time for which an acceleration may be held.
 struct HoldBounds {
   Duration min{};
   Duration max{};
 };
 
-/// An intent, and what limits how a robot follows it.
+/// An intent, and the limits within which a robot follows it.
 struct IntentToFollow {
   const Intent& intent;
   State at_start;       ///< the robot's state when the motion starts
@@ -26,7 +26,7 @@ struct IntentToFollow {
 /// The acceleration with which a robot follows its intent at up to `max_speed_mps`.
 [[nodiscard]] AccelerationCommand follow(const IntentToFollow& followed, double max_speed_mps);
 
-/// The acceleration towards a place.
+/// The acceleration towards a place at this displacement from the robot.
 [[nodiscard]] inline AccelerationCommand hold_towards(const Vec2& displacement_m, const Vec2& velocity_mps,
                                                       const MotionLimits& limits, const HoldBounds& hold) {
   return desired_acceleration(displacement_m, velocity_mps, limits, hold.min, hold.max);

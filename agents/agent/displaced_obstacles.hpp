@@ -14,8 +14,8 @@ namespace sidestep {
 /// by the coordinator. It is unknown what moves them.
 class DisplacedObstacles {
  public:
-  /// A displaced robot that vision has not seen for longer than this is dropped: by then it could have
-  /// reached half of the floor.
+  /// A displaced robot that vision has not seen for longer than this is dropped, because by then it could be
+  /// anywhere on half of the floor.
   static constexpr Duration kMaxObservationAge = ObservedObstacles::kMaxObservationAge;
 
   /// `margin_m` is the safety margin. `max_speed_mps` is an upper bound of a displaced robot's speed.
@@ -28,9 +28,9 @@ class DisplacedObstacles {
         max_speed_mps_(max_speed_mps),
         max_clock_difference_(max_clock_difference) {}
 
-  /// Replaces all bodies with those that the heartbeat reports at `now`.
+  /// Replaces all bodies with the bodies that the heartbeat reports at `now`.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
-  /// The bodies that vision has seen recently enough, for a robot that may be late by `max_lag` beyond the
+  /// The bodies that vision has seen recently enough, for a robot that may lag by `max_lag` in excess of the
   /// clock bound. Valid until the next call.
   std::span<const UncontrolledBody> recent(Time now, Duration max_lag);
 
@@ -41,7 +41,7 @@ class DisplacedObstacles {
   double max_speed_mps_;
   Duration max_clock_difference_;
   std::vector<UncontrolledBody> bodies_;
-  std::vector<UncontrolledBody> recent_;  // result of recent() for a robot that may be late
+  std::vector<UncontrolledBody> recent_;  // result of recent() for a robot that may lag
 };
 
 }  // namespace sidestep

@@ -4,16 +4,17 @@
 namespace sidestep {
 namespace {
 
-// Number of consecutive reports of the robot's earlier incarnation after which the report of the later one
-// must have been false. Delayed reports are fewer.
+// After this many consecutive reports of the robot's earlier incarnation, the report of a later incarnation
+// must have been false. There are never as many delayed reports.
 constexpr int kReportsOfOneIncarnation = 60;
-// If two agents both restart above the same incarnation, they add different increments below this bound.
+// If two agents both choose a new incarnation above the same one, they add different increments below this
+// bound.
 constexpr Incarnation kIncarnationSpread = 1'000'003;
 constexpr Duration kMaxUnheard{500'000'000};
 
 }  // namespace
 
-// A later incarnation's clock may be behind. A single false report must not exclude all true ones
+// The clock of a later incarnation may be behind. A single false report must not exclude all true reports
 // permanently.
 void Fencing::update_incarnation(const RobotReport& robot_report, ReportUse& use) {
   const bool is_earlier = robot_report.robot_incarnation < robot_incarnation_;
@@ -26,8 +27,8 @@ void Fencing::update_incarnation(const RobotReport& robot_report, ReportUse& use
   if (superseded_at_) superseded_at_ = Time::min();
 }
 
-// An agent that the robot has obeyed yields to a later one. Until then, a higher incarnation means that this
-// agent's clock is behind an earlier agent's.
+// Once the robot has obeyed this agent, it yields to a later agent. Before that, a report with a higher
+// incarnation means that this agent's clock is behind an earlier agent's clock.
 void Fencing::on_later_agent(const RobotReport& robot_report, bool is_current) {
   const Time at = is_current ? robot_report.valid_at : Time::min();
   if (is_fenced())

@@ -15,9 +15,9 @@ class Fencing {
   /// What a report of the robot means for the agent.
   struct ReportUse {
     bool is_acknowledged = false;     ///< the robot obeys this agent
-    bool is_first = false;            ///< the report ends the fencing
+    bool is_first = false;            ///< this is the first report that acknowledges this agent
     bool is_current = false;          ///< the report belongs to the robot's current incarnation
-    bool is_new_incarnation = false;  ///< the report is the first of that incarnation
+    bool is_new_incarnation = false;  ///< the report is the first of the robot's current incarnation
   };
 
   explicit Fencing(Incarnation incarnation) : incarnation_(incarnation) {}
@@ -29,17 +29,17 @@ class Fencing {
   Incarnation incarnation() const { return incarnation_; }
   /// The highest epoch that the robot has acknowledged.
   Epoch robot_epoch() const { return robot_epoch_; }
-  /// The epoch that the robot obeyed when it acknowledged this agent. 0: none, or it has not acknowledged it
-  /// yet.
+  /// The epoch that the robot obeyed when it acknowledged this agent. 0: it obeyed no epoch, or has not
+  /// acknowledged this agent yet.
   Epoch former_epoch() const { return former_epoch_; }
   bool is_fenced() const { return fenced_at_.has_value(); }
   /// When the robot acknowledged this agent, by the robot's clock.
   std::optional<Time> fenced_at() const { return fenced_at_; }
-  /// Whether the robot obeys a later agent, so that this one stays silent.
+  /// Whether the robot obeys a later agent, so that this agent stays silent.
   bool is_superseded() const { return superseded_at_.has_value(); }
-  /// Whether the robot last said that it obeys a later agent, and has then been silent for half a second.
-  /// Commands continue in this case: they carry the fixes without which a robot cannot say whom it obeys. If
-  /// it does obey a later agent, it refuses them.
+  /// Whether the robot's last report acknowledged a later agent, and the robot has been silent for half a
+  /// second since. Commands continue in this case, because they carry the pose fixes without which a robot
+  /// cannot report which agent it obeys. If the robot does obey a later agent, it refuses the commands.
   bool must_ask_robot(Duration cycle) const;
   /// Number of cycles since the last report that acknowledges this agent.
   int silent_cycles() const { return silent_cycles_; }
@@ -53,8 +53,8 @@ class Fencing {
   std::optional<Time> superseded_at_;  // time of the latest report that acknowledges a later agent
   Epoch robot_epoch_ = 0, former_epoch_ = 0;
   Incarnation robot_incarnation_ = 0;       // report times of different incarnations are not compared
-  int reports_of_earlier_incarnation_ = 0;  // number of consecutive ones
-  int unheard_cycles_ = 0;                  // number of cycles since the last report, whomever it obeys
+  int reports_of_earlier_incarnation_ = 0;  // number of consecutive reports
+  int unheard_cycles_ = 0;                  // number of cycles since the last report about any agent
   int silent_cycles_ = 0;
 };
 

@@ -49,8 +49,8 @@ HeldVersions::ReportEffect HeldVersions::apply(const RobotReport& robot_report, 
     number_above(executing);
   }
   if (is_current) latest_report_ = std::max(latest_report_, at);
-  // If the robot has advanced, one removed version is the one that it executed before. All others were lost:
-  // the robot can no longer switch to them.
+  // If the robot has advanced, one removed version is the one that it executed before. All other removed
+  // versions were lost: the robot can no longer switch to them.
   const int gone = static_cast<int>(before) - static_cast<int>(versions_.versions().size());
   if (!effect.is_unknown) effect.lost = std::max(0, gone - (has_advanced ? 1 : 0));
   return effect;

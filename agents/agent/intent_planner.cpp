@@ -12,14 +12,14 @@
 namespace sidestep {
 namespace {
 
-/// For this long lower ids have priority, then higher ids.
+/// Lower ids have the right of way for this long, then higher ids for the same time, and so on.
 constexpr Duration kRightOfWayPeriod{10'000'000'000};
-/// Intended speeds below this fraction of the limit count as waiting.
+/// A robot whose intended speed is below this fraction of the limit counts as waiting.
 constexpr double kWaitingSpeedFraction = 0.5;
 constexpr double kRecoveryClearPath_m = 0.5;  ///< length of free path that a recovery direction requires
 constexpr double kRecoveryHold_s = 0.3;       ///< how long the velocity of a recovery is held
 
-/// The state at a time on a robot's trajectory, assuming that it does not brake: the velocity is that at the
+/// The state at a time on a robot's trajectory, assuming that it does not brake: it keeps the velocity at the
 /// end of the first phase.
 State state_if_continued(const Trajectory& trajectory, Time t) {
   State state = trajectory.state_at(t);

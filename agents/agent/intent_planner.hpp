@@ -48,7 +48,7 @@ class IntentPlanner {
   Intent steer(const Query& query, const RouteToTarget& routes, Neighbours& neighbours);
   /// Like steer(), but uses the planner's local methods. Fills preferred_mps_.
   Intent steer_locally(Query query, const RouteToTarget& routes, Neighbours& neighbours);
-  /// Adds to the steering the nearby robots that this one steers around.
+  /// Adds to the steering the nearby robots that this robot steers around.
   void add_robots(const Query& query, Neighbours& neighbours);
   /// Adds the obstacles near a position to the steering.
   void add_obstacles(const Vec2& position_m, const ZoneMap& zones);

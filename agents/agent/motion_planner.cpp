@@ -48,8 +48,8 @@ std::optional<MotionPlan> MotionPlanner::plan(const Query& query) {
   if (query.now < last_plan_) restart_timers(query.now);
   last_plan_ = query.now;
   passage_.update(query.now, query.observations, query.assignment, route_, query.rng);
-  // Inflation ends only when the robot is at rest. If it drove on with inflation, it might never fit where it
-  // has to go.
+  // Inflation ends only when the robot is at rest. If the robot drove on with inflation, it might never fit
+  // through narrow places.
   const bool keeps_inflation =
       base.inflation_m > 0 && !query.observations.may_end_inflation(base, query.start);
   if (keeps_inflation || query.start <= base.trajectory.start()) return std::nullopt;

@@ -36,7 +36,7 @@ class MotionPlanner {
     const Version& base;  ///< the version that the motion continues
     int lead = 1;         ///< number of cycles from now to the start
     double max_speed_mps = std::numeric_limits<double>::infinity();  ///< the speed that the clocks allow
-    Duration max_lag{0};  ///< how late the robot may be beyond the clock bound
+    Duration max_lag{0};  ///< the robot's maximum lag in excess of the clock bound
     const Assignment& assignment;
     Observations& observations;
     Rng& rng;
@@ -47,12 +47,12 @@ class MotionPlanner {
 
   /// Plans the motion from `start` on. Returns nullopt if the base already ends where the robot wants to be,
   /// if the search for a route takes longer than this cycle, or if the robot must come to rest first.
-  /// Precondition: the agent is not waiting for anything.
+  /// Precondition: the agent's wait_reason() is kNone.
   [[nodiscard]] std::optional<MotionPlan> plan(const Query& query);
   /// Processes the result of the search for a plan.
   void on_search(const MotionPlan& plan, bool desired_is_clear, Time now);
 
-  /// The robot has another goal.
+  /// Call it when the robot gets another goal.
   void on_new_goal();
   void set_zones(std::span<const Order> zones);
 
@@ -66,15 +66,14 @@ class MotionPlanner {
   std::optional<double> remaining_s(const Assignment& assignment, bool has_arrived) const;
 
  private:
-  /// The robot's clock was set back, so it is unknown how long ago the recorded times were: restarts all
-  /// timers.
+  /// Restarts all timers, because the robot's clock was set back and recorded times have lost their meaning.
   void restart_timers(Time now);
   /// The robot's target: the place where it gives way, its goal, or the end of its base.
   Vec2 target_m(const Query& query) const;
   /// The route to the target; nullopt if the robot is there, or no route is known in this cycle.
   std::optional<Route> find_route(const Query& query, const Vec2& target_m);
   void update_blockage(const Route& route, Time now);
-  /// The plan that follows the intent; nullopt if the laser has not seen where the robot is.
+  /// The plan that follows the intent; nullopt if the laser has not seen the floor where the robot is.
   std::optional<MotionPlan> follow_intent(const Query& query, const Intent& intent, const State& at_start,
                                           const Route& route);
   /// Lets routes avoid a corner at which the robot has come to a standstill.

@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// An agent that knows no epoch waits for its coordinator to start.
+// An agent that knows no epoch waits this long for its coordinator to start.
 constexpr Duration kMaxStartTime{2'000'000'000};
 // Number of cycles beyond its lead for which an agent keeps proposing without hearing from its robot. It is
 // limited because a robot without power rolls on while others rely on its versions.
@@ -137,7 +137,7 @@ Negotiation::VerdictResult Negotiation::on_verdict(const Verdict& verdict, Time 
   if (verdict.granted_version == 0) {
     sent->is_open = false;
     ++counts_.denials;
-    // The coordinator knows an earlier agent of the robot but not this one: the registration was lost.
+    // The coordinator knows an earlier agent of the robot but not this agent: the registration was lost.
     if (verdict.reasons.front() == msg::Reason::REASON_NOT_ALL_REGISTERED) registration_pending_ = true;
     return {std::nullopt, round_trip};
   }

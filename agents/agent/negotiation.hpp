@@ -17,13 +17,13 @@ namespace sidestep {
 
 /// The agent's side of the safety protocol (coordinator/PROTOCOL.md): fences its robot, registers with the
 /// coordinator, proposes, and forwards only granted versions. If no verdict arrives in time it does nothing,
-/// and the robot brakes. Messages passed to it are already decoded for its robot. The caller sends the
-/// messages that it returns, and sets their send time.
+/// and the robot brakes. The caller decodes messages before it passes them to this class. It sends the
+/// messages that this class returns, and sets their send time.
 class Negotiation {
  public:
   /// The consequences of a verdict for the agent.
   struct VerdictResult {
-    /// Version to be forwarded to the robot; only if it was granted in time.
+    /// The version to forward to the robot; nullopt if no version was granted in time.
     std::optional<Version> granted;
     std::optional<Duration> round_trip;  ///< round trip of the proposal that the verdict grants or denies
   };
@@ -38,7 +38,7 @@ class Negotiation {
 
   Negotiation(RobotId robot, Incarnation incarnation, Duration cycle);
 
-  /// Handles a fact from the robot. The first one that acknowledges this incarnation ends the fencing.
+  /// Processes a report of the robot. The first report that acknowledges this incarnation ends the fencing.
   void on_robot_report(const RobotReport& robot_report);
   void on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now);
   VerdictResult on_verdict(const Verdict& verdict, Time now);
@@ -53,12 +53,12 @@ class Negotiation {
   bool is_fenced() const { return fencing_.is_fenced(); }
   /// Whether the robot is off the floor and executes nothing. It may still accept a rest version.
   bool is_absent() const { return is_fenced() && !held_.is_executing(); }
-  /// Whether the robot obeys a later agent, so that this one stays silent.
+  /// Whether the robot obeys a later agent, so that this agent stays silent.
   bool is_superseded() const { return fencing_.is_superseded(); }
   bool must_ask_robot() const { return fencing_.must_ask_robot(cycle_); }
   /// Whether the agent must register. It registers only after the robot has acknowledged the epoch. So an
-  /// agent that the robot does not obey cannot register for it, and no later agent of the robot can return to
-  /// an older coordinator.
+  /// agent that the robot does not obey cannot register, and no later agent of the robot can return to an
+  /// older coordinator.
   bool needs_registration() const {
     return !is_superseded() && is_epoch_obeyed() && (registration_pending_ || contact_.is_robot_missing());
   }
@@ -66,7 +66,7 @@ class Negotiation {
   bool may_propose(Time now) const { return wait_reason(now) == WaitReason::kNone; }
   /// Why the coordinator may not grant a proposal, as far as the negotiation knows.
   WaitReason wait_reason(Time now) const;
-  /// Whether the coordinator has registered this agent in the epoch, as far as is known.
+  /// Whether the coordinator has registered this agent in the epoch, as far as the agent knows.
   bool is_registered() const {
     return is_epoch_obeyed() && !registration_pending_ && !contact_.is_robot_missing() &&
            contact_.has_been_heard();
@@ -78,20 +78,20 @@ class Negotiation {
   /// Number of cycles to propose ahead, and upper bound of the number of cycles for which an acceleration is
   /// held.
   int lead() const { return pacing_.lead(); }
-  /// Whether a report since the last proposal shows that the robot does not execute the version that was
-  /// assumed.
+  /// Whether a report since the last proposal shows that the robot does not execute the version that the
+  /// proposal assumed.
   bool is_contradicted() const { return contradicted_; }
 
   /// Whether the agent should ask for another coordinator by repeating its registration. It should if it
-  /// hears no active coordinator, gets no answer from it, or if the coordinator does not know what the robot
-  /// executes.
+  /// hears no active coordinator, if the coordinator does not answer, or if the coordinator does not know
+  /// which versions the robot executes.
   bool is_unserved(Time now) const;
 
   Registration registration();
   /// Records that a request which the coordinator will answer has been sent.
   void on_request(Time now) { contact_.on_request(now); }
-  /// A registration without a robot. It asks the coordinator of the epoch to announce all orders, and informs
-  /// others of the epoch.
+  /// A registration without a robot report. It asks the coordinator of the epoch to announce all orders, and
+  /// informs other coordinators of the epoch.
   Registration epoch_notice() const { return {robot_, incarnation(), epoch_, Time{}, std::nullopt}; }
   /// The versions that the robot may be executing. Precondition: is_fenced().
   const HeldVersions& held() const { return held_; }

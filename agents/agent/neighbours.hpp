@@ -21,8 +21,8 @@ class Neighbours {
   /// Filters pages that arrive from now on: versions that start farther than `horizon_m` from `centre_m` are
   /// dropped.
   void set_horizon(const Vec2& centre_m, double horizon_m);
-  /// Stores a page of the ledger, unless a newer message of that page is already stored. Decodes its versions
-  /// only if the page is within the horizon.
+  /// Stores a page of the ledger, unless a newer message with that page is already stored. Decodes its
+  /// versions only if the page is within the horizon.
   void on_page(const ReceivedPage& received);
 
   /// Fills the index with the versions that start within `horizon_m` of `centre_m`. Valid until the next
@@ -38,7 +38,7 @@ class Neighbours {
     const Intent* intent = nullptr;
   };
   /// The robots that have been at rest since `since` and have no later version that moves. Returns the
-  /// `max_count` nearest ones, sorted by robot id. Valid until the next page or call.
+  /// `max_count` nearest of these robots, sorted by robot id. Valid until the next page or call.
   std::span<const Stationary> find_stationary(Time since, const Vec2& centre_m, std::size_t max_count);
   /// Number of versions within the horizon that could not be decoded.
   std::uint64_t invalid() const { return invalid_; }
@@ -49,7 +49,7 @@ class Neighbours {
     Epoch epoch = 0;
     std::uint64_t number = 0;
     std::shared_ptr<DecodedLedgerPage> decoded;
-    std::vector<std::uint32_t> nearby;  // indices of the versions within the horizon, as stored in the view
+    std::vector<std::uint32_t> nearby;  // indices in `decoded` of the versions within the horizon
   };
   void store(const ReceivedPage& received, Page& page);
   /// Whether any version of the robot ends after `since`.

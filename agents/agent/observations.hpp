@@ -37,13 +37,13 @@ class Observations {
   /// Processes a heartbeat of the coordinator in charge.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
 
-  /// The first reason from kNotSeen onwards in WaitReason for which the robot must not be driven; kNone if
-  /// everything is recent.
+  /// The first reason in WaitReason, from kNotSeen on, why the robot must not drive; kNone if all
+  /// observations are recent.
   WaitReason wait_reason(Time now) const;
   /// Whether vision works, but the coordinator does not receive it.
   bool is_only_coordinator_blind(Time now) const;
-  /// Whether the robot is at rest at the end of `base`, where vision agrees with its own position estimate. A
-  /// version from there has no inflation.
+  /// Whether the robot is at rest at the end of `base`, and vision agrees with the robot's own position
+  /// estimate. A version that starts there needs no inflation.
   bool may_end_inflation(const Version& base, Time start) const;
   /// Returns the latest observation of the robot, once.
   std::optional<PoseFix> take_fix() { return std::exchange(fix_, std::nullopt); }
@@ -68,7 +68,7 @@ class Observations {
   std::optional<PoseFix> fix_;  // observed but not yet forwarded
   Time last_fix_{};
   Vec2 last_fix_m_{0, 0};
-  Time watched_until_{};       // the coordinator's last comparison of the robots' places with their versions
+  Time watched_until_{};       // when the coordinator last compared the robots' positions with their versions
   std::uint64_t invalid_ = 0;  // number of observations from the future
 };
 

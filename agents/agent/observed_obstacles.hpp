@@ -14,7 +14,7 @@ namespace sidestep {
 /// The latest observations of obstacles that do not take part in the protocol, and the region for which they
 /// are complete. An observation is kept until a newer one of the same track replaces it, because an occluded
 /// obstacle may still approach. It is dropped after kMaxObservationAge, because a false track must not stop
-/// all robots: by then the obstacle could have reached half of the field, and about sixty frames of vision
+/// all robots: by then the obstacle could be anywhere on half of the field, and about sixty frames of vision
 /// have not confirmed it. Allocates only in the constructor.
 class ObservedObstacles {
  public:
@@ -29,12 +29,12 @@ class ObservedObstacles {
   /// Stores observations whose times are not in the future. If the capacity is exceeded, forgets the
   /// obstacles that are farthest from the robot. `robot_m` is the robot's position.
   void on_list(const ObstacleObservations& list, const Vec2& robot_m, Time now);
-  /// The observations that are younger than kMaxObservationAge, for a robot that may be late by `max_lag`
-  /// beyond the clock bound. Valid until the next call.
+  /// The observations that are younger than kMaxObservationAge, for a robot that may lag by `max_lag` in
+  /// excess of the clock bound. Valid until the next call.
   std::span<const MovingObstacle> recent(Time now, Duration max_lag);
-  /// The region in which there are no obstacles except the recent ones.
+  /// The region in which there are no obstacles except the recent obstacles.
   SeenRegion seen(Time now, Duration max_lag) const { return completeness_.seen(now, max_lag); }
-  /// The time for which this is known; Time{} if never.
+  /// The time at which the agent knew that region; Time{} if never.
   Time complete_at() const { return completeness_.complete_at(); }
   /// Number of lists and observations with times in the future.
   std::uint64_t invalid() const { return invalid_; }
@@ -46,7 +46,8 @@ class ObservedObstacles {
     auto operator<=>(const Track&) const = default;
   };
   void store(const Track& track, const MovingObstacle& obstacle, const Vec2& robot_m, Time now);
-  /// Forgets the farthest obstacle if it is farther away than this one. Returns whether it did.
+  /// Forgets the farthest stored obstacle if it is farther away than `obstacle`. Returns whether it forgot an
+  /// obstacle.
   bool make_room_for(const MovingObstacle& obstacle, const Vec2& robot_m, Time now);
   void drop_old(Time now);
   /// Whether any stored observation is later than `now`, because it was accepted when the robot's clock was
@@ -61,7 +62,7 @@ class ObservedObstacles {
   CompletenessMonitor completeness_;
   std::vector<Track> tracks_;              // sorted by track number
   std::vector<MovingObstacle> obstacles_;  // the obstacles in tracks_
-  std::vector<MovingObstacle> recent_;     // result of recent() for a robot that may be late
+  std::vector<MovingObstacle> recent_;     // result of recent() for a robot that may lag
   std::uint64_t invalid_ = 0;
   Time incomplete_until_{};  // set by forget()
 };

@@ -24,8 +24,8 @@ struct ObservedObstacle {
 struct ObstacleObservations {
   Incarnation vision = 0;  ///< incarnation of the vision process
   Time valid_at{};
-  /// No unlisted obstacle is nearer than this to a robot of the world state of that time; see ObstacleList in
-  /// idl/vision.idl. kCompleteEverywhere_m: there are no unlisted obstacles.
+  /// No unlisted obstacle is nearer than this to any robot in the world state of the same time; see
+  /// ObstacleList in idl/vision.idl. kCompleteEverywhere_m: there are no unlisted obstacles.
   double complete_within_m = 0;
   std::span<const ObservedObstacle> obstacles{};
 };

@@ -16,16 +16,16 @@ class OccludedCorners {
  public:
   explicit OccludedCorners(double radius_m) : radius_m_(radius_m) {}
 
-  /// What a robot does at a corner.
+  /// How a robot approaches a corner.
   struct Approach {
     State at_start;            ///< the robot's state when its next motion starts
     Time start{};              ///< that time
     Vec2 waypoint_m{0, 0};     ///< where the robot wants to go
     bool is_creeping = false;  ///< no speed is safe
   };
-  /// Forgets old corners. Remembers the nearest one ahead if the robot has crept near one place for a while,
-  /// unless a person or another robot is there, because these will leave. Returns whether it remembers a new
-  /// one.
+  /// Forgets old corners. Remembers the nearest corner ahead if the robot has crept near one place for a
+  /// while, unless a person or another robot is at the corner, because these will leave. Returns whether it
+  /// remembers a new corner.
   bool update(const Approach& approach, const RobotLaser& laser, Time now);
   /// Forgets everything, because the robot's clock was set back.
   void restart();
@@ -47,15 +47,15 @@ class OccludedCorners {
     Vec2 at_m{0, 0};
     Time since{};
   };
-  /// Measures how long the robot has crept near one place. Returns whether it has for the full time, which
-  /// then starts over.
+  /// Measures how long the robot has crept near one place. Returns whether the full time has passed; the
+  /// measurement then starts over.
   bool measure_standstill(const Approach& approach, Time now);
   /// The nearest place ahead of the robot where a person may appear.
   std::optional<Vec2> corner_ahead_m(const Approach& approach, const HiddenSpace& hidden) const;
   /// Whether a person or another robot is at the corner.
   bool is_body(const Vec2& corner_m, const RobotLaser& laser) const;
 
-  double radius_m_;  // the robot's
+  double radius_m_;  // of the robot
   std::optional<Standstill> standstill_;
   std::vector<Corner> corners_;
 };

@@ -25,10 +25,10 @@ class OrderExecution {
 
   /// Processes orders that a coordinator remembers.
   Changes on_page(std::shared_ptr<const OrderPage> page);
-  /// Checks whether the robot, which executes this motion at a time, has arrived at its goal, and then goes
-  /// on to the next one. Returns whether the goal has changed.
+  /// Checks whether the robot, which executes `executing`, is at its goal at time `at`. If so, continues with
+  /// the next goal. Returns whether the goal has changed.
   bool on_execution(const Trajectory& executing, Time at);
-  /// The robot is off the floor.
+  /// Records that the robot is off the floor.
   void on_absence() { has_arrived_ = false; }
   /// Processes a heartbeat of the active coordinator in the agent's epoch.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat);
@@ -38,7 +38,7 @@ class OrderExecution {
   std::vector<RememberedOrder> take_missing() { return assignment_.take_missing(); }
 
   const Assignment& assignment() const { return assignment_; }
-  /// Whether the robot is at rest at its goal, which is the last one.
+  /// Whether the robot is at rest at its last goal.
   bool has_arrived() const { return has_arrived_; }
   double desired_heading_rad() const { return desired_heading_rad_; }
   /// Whether the coordinator that is active in this epoch has announced all orders that are remembered here.
@@ -51,7 +51,8 @@ class OrderExecution {
     Incarnation incarnation = 0;
     Epoch epoch = 0;
   };
-  /// Starts a new goal if the goal has changed since this revision of the assignment. Returns whether it did.
+  /// Starts a new goal if the goal has changed since this revision of the assignment. Returns whether it has
+  /// changed.
   bool begin_if_changed(std::uint64_t revision);
 
   double goal_tolerance_m_;

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Publishes what the agent knows of orders: those that coordinators lack, those that they have announced,
-/// and the progress of its robot's own order.
+/// Publishes what the agent knows about orders: the orders that coordinators lack, the orders that
+/// coordinators have announced, and the progress of its robot's own order.
 class OrderPublisher {
  public:
   OrderPublisher(Bus& bus, RobotId robot);
@@ -26,7 +26,7 @@ class OrderPublisher {
  private:
   /// Announces orders to the coordinators.
   void publish(std::span<const RememberedOrder> orders, const Agent& agent);
-  /// Whether this duration has passed since a time by this process's clock.
+  /// Whether `period` has passed since `since`, by this process's clock.
   bool has_elapsed(Duration period, Time since) const;
 
   Bus& bus_;

@@ -9,10 +9,11 @@
 namespace sidestep {
 namespace {
 
-// A robot has the right of way where robots cannot pass each other for the time to drive this far plus a
-// fixed time.
+// Where robots cannot pass each other, a robot has the right of way for the time that it needs to drive this
+// far, plus a fixed time.
 constexpr double kPassage_m = 40, kPassage_s = 10;
-/// Trips of other robots; for longer ones, only the next waypoint counts.
+/// Longest trip of another robot that is considered as a whole; of longer trips, only the way to the next
+/// waypoint.
 constexpr double kLongestTrip_m = 20;
 
 }  // namespace

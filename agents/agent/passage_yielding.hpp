@@ -11,9 +11,9 @@
 
 namespace sidestep {
 
-/// Decides whether a robot that makes no progress leaves a passage for another one. Inputs: the versions and
-/// orders of the robots nearby, and the robot's own order and route. Output: the place where the robot goes
-/// instead of its goal.
+/// Decides whether a robot that makes no progress leaves a passage for another robot. Inputs: the versions
+/// and orders of the robots nearby, and the robot's own order and route. Output: the place where the robot
+/// goes instead of its goal.
 class PassageYielding {
  public:
   /// `rules` must outlive this object.
@@ -22,7 +22,7 @@ class PassageYielding {
   /// Call it once per planning.
   void update(Time now, Observations& observations, const Assignment& assignment, const RouteToTarget& route,
               Rng& rng);
-  /// Measures progress by a new route to the robot's target.
+  /// Measures the robot's progress towards its target by a new route.
   void on_route(const Route& route);
   /// Forgets the place, because the robot has another goal or its clock was set back.
   void restart(Time now) { give_way_.restart(now); }
@@ -31,7 +31,7 @@ class PassageYielding {
   std::optional<Vec2> place_m() const { return give_way_.place_m(); }
 
  private:
-  /// The robots to which this one may have to give way.
+  /// The robots to which this robot may have to give way.
   std::vector<OtherRobot> others_in_passages(Time now, Observations& observations,
                                              const Assignment& assignment) const;
   OtherRobot other_nearby(const Version& version, Time now, const Assignment& assignment) const;

@@ -16,7 +16,7 @@ class ReceivedPage {
  public:
   /// Returns nullopt if the untrusted page is not from a coordinator, its index is out of range, or its epoch
   /// is implausible at `now`. `attachment`, if not null, is the slot in which all readers of the message
-  /// share one decoded view of it.
+  /// share one decoded copy of it.
   [[nodiscard]] static std::optional<ReceivedPage> decode(const msg::LedgerPage& message, Time now,
                                                           MessageAttachment* attachment = nullptr);
 
@@ -25,12 +25,12 @@ class ReceivedPage {
   Epoch epoch() const { return epoch_; }
   /// Increases with each message of an epoch.
   std::uint64_t number() const { return number_; }
-  /// According to the coordinator, contains the start positions of the page's versions. Not checked: may be
-  /// wrong or NaN.
+  /// Bounding box of the start positions of the page's versions, as the coordinator states it. Not checked:
+  /// it may be wrong or NaN.
   const Box& bounds_m() const { return bounds_m_; }
 
-  /// Replaces a view with this page's view: the shared one if it exists. Otherwise decodes the page, reusing
-  /// the old view's memory if it has no other readers.
+  /// Replaces `decoded` with the decoded form of this page. Uses the shared copy if there is one. Otherwise
+  /// decodes the page, in the memory of the old `decoded` if that has no other readers.
   void update(std::shared_ptr<DecodedLedgerPage>& decoded) const;
 
  private:

@@ -13,7 +13,8 @@
 namespace sidestep {
 
 /// What the agent knows from its robot's laser. Inputs: scans, and the versions of nearby robots, which
-/// explain part of what the laser sees. Output: the sight, and the floor that the laser did not see.
+/// explain part of what the laser sees. Outputs: the interpreted scan, and the floor that the laser did not
+/// see.
 class RobotLaser {
  public:
   /// `rules` must outlive this object. Precondition: the robots of the scenario have lasers.

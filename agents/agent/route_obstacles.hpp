@@ -30,7 +30,7 @@ class RouteObstacles {
   const ObstacleWorld& world() const { return world_; }
   /// The world without the temporary obstacles.
   ObstacleWorld fixed_world() const;
-  /// Describes the obstacle as the cause of a blocked goal, except for the place that the robot goes to
+  /// Describes the obstacle as the cause of a blocked goal. Does not set the place to which the robot goes
   /// instead.
   Blockage blockage(ObstacleId obstacle) const;
 

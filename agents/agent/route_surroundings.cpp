@@ -16,9 +16,9 @@ constexpr Duration kStationaryAfter{500'000'000};
 constexpr std::size_t kMaxStationary = 8;  ///< number of stationary robots considered, the nearest ones first
 constexpr std::size_t kMaxMoving = 4;      ///< number of moving obstacles considered, the nearest ones first
 constexpr double kMovingRange_m = 1.5;     ///< moving obstacles farther away are ignored
-/// Their positions and radii are rounded to this grid to avoid replanning in every cycle.
+/// Positions and radii of moving obstacles are rounded to this grid to avoid replanning in every cycle.
 constexpr double kMovingGrid_m = 0.05;
-constexpr Duration kMovingHorizon{150'000'000};  ///< radii are enlarged by their motion over this time
+constexpr Duration kMovingHorizon{150'000'000};  ///< radii are enlarged by the motion over this time
 
 }  // namespace
 
@@ -50,7 +50,7 @@ std::vector<TemporaryObstacle> RouteSurroundings::find_in_sight(const Vec2& targ
     if (signed_distance(target, Shape(circle)) > required_separation_m(rules_)) found.push_back({circle});
   };
   for (const Circle& square : laser.sight().unknown()) add(square);
-  // At this distance the robot can pass slowly.
+  // At this distance from the corner, the robot can pass slowly.
   const double radius_m = laser.approach_m(reaction);
   corners.for_each_corner_m([&](const Vec2& corner) { add({corner, radius_m}); });
   return found;

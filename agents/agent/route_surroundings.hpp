@@ -10,10 +10,9 @@
 
 namespace sidestep {
 
-/// Finds the temporary obstacles that a route has to lead around: people and other moving obstacles,
-/// displaced robots, robots at rest, and, where robots have lasers, stationary obstacles that the rules do
-/// not contain, and occluded corners. Inputs: what the agent has observed, and what other robots are ordered
-/// to do.
+/// Finds the temporary obstacles that a route must avoid: people and other moving obstacles, displaced
+/// robots, and robots at rest. For robots with lasers, also stationary obstacles that the rules do not
+/// contain, and occluded corners. Inputs: the agent's observations, and the orders of other robots.
 class RouteSurroundings {
  public:
   /// `rules` must outlive this object.
@@ -25,10 +24,11 @@ class RouteSurroundings {
                                       Duration reaction) const;
 
  private:
-  /// Obstacles that the laser sees but the rules do not contain, and corners that the robot could not pass.
+  /// Obstacles that the laser sees but the rules do not contain, and corners that the robot cannot pass.
   std::vector<TemporaryObstacle> find_in_sight(const Vec2& target_m, const RobotLaser& laser,
                                                const OccludedCorners& corners, Duration reaction) const;
-  /// The nearest moving obstacles, enlarged by their motion as far as they do not cover the target.
+  /// The nearest moving obstacles, enlarged by their expected motion, but not so far that they cover the
+  /// target.
   std::vector<Circle> find_moving(const Vec2& target_m, Time now, Observations& observations) const;
   /// Whether a robot at rest will not move away by itself.
   bool will_stay(const Neighbours::Stationary& other, const Assignment& assignment,

@@ -29,16 +29,16 @@ class RouteToTarget {
   RouteToTarget(const RouteToTarget&) = delete;
   RouteToTarget& operator=(const RouteToTarget&) = delete;
 
-  /// Replaces the zones. The next route is a new one.
+  /// Replaces the zones, and discards the route.
   void set_zones(std::span<const Order> zones);
-  /// The next route is a new one, because the robot has another goal.
+  /// Discards the route, because the robot has another goal.
   void forget() { has_route_ = false; }
-  /// The next route is a new one once the last one is old or no longer free, because obstacles have changed.
+  /// Records that obstacles have changed. The route is replaced once it is old or no longer free.
   void mark_outdated() { is_outdated_ = true; }
   /// Records that the robot is at its target.
   void on_arrival() { length_m_ = 0; }
-  /// The next step of the route. If the planner finds no route, it leads straight to the target. nullopt: the
-  /// search continues in the next cycle.
+  /// The next step of the route. If the planner finds no route, the step leads straight to the target.
+  /// nullopt: the search continues in the next cycle.
   [[nodiscard]] std::optional<Route> find(const Query& query, std::span<const TemporaryObstacle> temporary,
                                           Rng& rng);
 
@@ -51,8 +51,8 @@ class RouteToTarget {
   double length_m() const { return length_m_; }
   /// All obstacles that routes avoid; nullptr before the first route.
   const RouteObstacles* obstacles() const { return obstacles_ ? &*obstacles_ : nullptr; }
-  /// What covers the target, except for the place that the robot goes to instead. Precondition: there has
-  /// been a route.
+  /// The obstacle that covers the target. Does not set the place to which the robot goes instead.
+  /// Precondition: there has been a route.
   Blockage blockage() const;
   /// The last route, starting at its next waypoint. Precondition: there has been a route.
   std::span<const Vec2> remaining_waypoints_m() const { return route_planner_->remaining_waypoints_m(); }

@@ -29,7 +29,7 @@ struct SentProposal {
 /// The agent's latest proposals, as long as verdicts may arrive for them.
 class SentProposals {
  public:
-  /// Makes room for a proposal that starts then, with no candidates yet.
+  /// Adds a proposal for this start. The caller fills in the candidates.
   SentProposal& add(Time start, Time now, int lead);
 
   /// The proposal with this number that has not been answered yet; nullptr if there is none.
@@ -38,18 +38,18 @@ class SentProposals {
   int attempts() const { return attempts_; }
   /// The start of the latest proposal if its verdict is overdue and there is time to propose it again.
   std::optional<Time> start_to_retry(Time now, Duration answer_timeout, Duration cycle) const;
-  /// Whether a proposal for a start soon after `now` awaits its verdict.
+  /// Whether a proposal that starts soon after `now` awaits its verdict.
   bool has_upcoming(Time now) const;
 
-  /// From now on, grants of these proposals are not forwarded.
+  /// Closes all proposals: grants of them are no longer forwarded.
   void close();
-  /// Closes the proposals that start from a version that the robot can no longer reach. Returns whether there
-  /// were any.
+  /// Closes the proposals that continue a version to which the robot can no longer switch. Returns whether
+  /// there were any.
   bool close_unreachable(const HeldVersions& held);
   /// Closes the proposals whose start has passed, because their verdicts would arrive too late. Returns the
-  /// lead of the last of them in cycles; 0 if there were none.
+  /// lead, in cycles, of the last proposal that it closed; 0 if it closed none.
   int close_started(Time now);
-  /// Forgets all proposals, so a verdict on one of them is unexpected.
+  /// Forgets all proposals, so that later verdicts on them are unexpected.
   void discard();
 
  private:

@@ -14,9 +14,9 @@ struct SightMotion {
       false;  ///< no speed was safe, so the robot only moves away from where people may step out
 };
 
-/// Like follow(), but limited to the highest speed at which the robot comes to rest before anybody who was
-/// hidden can touch it. If there is no such speed, the robot moves away from where somebody may step out, so
-/// slowly that it counts as being at rest. The motion starts at `start`.
+/// Like follow(), but limited to the highest speed at which the robot comes to rest before a hidden person
+/// can touch it. If there is no such speed, the robot moves away from the place where a person may step out,
+/// so slowly that it counts as being at rest. The motion starts at `start`.
 [[nodiscard]] SightMotion follow_in_sight(const IntentToFollow& followed, Time start, double max_speed_mps,
                                           const HiddenSpace& hidden, const FloorRules& rules);
 

@@ -14,7 +14,7 @@ enum class WaitReason : std::uint8_t {
   kEpochNotObeyed,       ///< the robot has not acknowledged the epoch
   kNotRegistered,        ///< the coordinator has not confirmed the registration
   kOthersNotRegistered,  ///< the coordinator does not grant yet
-  kRobotSilent,          ///< the robot sends no facts
+  kRobotSilent,          ///< the robot sends no reports
   kTooManyVersions,      ///< the robot may execute the maximum number of versions that can be tracked
   kOrdersUnknown,        ///< no coordinator that remembers all orders has been heard
   kHeld,                 ///< an order holds the robot
@@ -44,9 +44,9 @@ constexpr const char* to_text(WaitReason reason) {
     case WaitReason::kOthersNotRegistered:
       return "the registrations of other robots";
     case WaitReason::kRobotSilent:
-      return "facts from the robot: it is silent";
+      return "reports from the robot: it is silent";
     case WaitReason::kTooManyVersions:
-      return "a fact that shows which versions the robot has left";
+      return "a report that shows which versions the robot has left";
     case WaitReason::kOrdersUnknown:
       return "the orders that coordinators remember";
     case WaitReason::kHeld:

@@ -11,9 +11,9 @@ namespace sidestep::batch {
 /// Longest time span of a batched comparison. Trajectories that rest later are compared by is_clear().
 inline constexpr double kMaxHorizon_s = 1.2;
 
-/// A set of trajectories that are compared with one trajectory at a time, several per instruction. All
-/// decisions are conservative with respect to the exact clearance: a lane that is neither clear nor blocked
-/// is undecided, and the caller must then use is_clear().
+/// A set of trajectories that are compared with one reference trajectory, several per instruction. Each
+/// trajectory has a lane. All decisions are conservative with respect to the exact clearance: a lane that is
+/// neither clear nor blocked is undecided, and the caller must then use is_clear().
 class BatchClearance {
  public:
   explicit BatchClearance(const Kernels& kernels) : kernels_(&kernels) {}
@@ -26,9 +26,9 @@ class BatchClearance {
   /// Prepares comparisons that start at `begin` and cover at least `min_span_s`.
   void sample(Time begin, double min_span_s);
   double step_s() const { return step_s_; }
-  /// Compares all lanes with `reference`, which is sampled at the same times.
-  /// `extra_clearance_m` is added to the minimum separations when deciding "clear" and subtracted when
-  /// deciding "blocked".
+  /// Compares all lanes with `reference`, which is sampled at the same times. To be clear, a lane must keep
+  /// the minimum separation plus `extra_clearance_m`; to be blocked, it must be nearer than the minimum
+  /// separation minus `extra_clearance_m`.
   void compare(const Track& reference, double acceleration_mps2, double extra_clearance_m);
 
   /// After sample(): whether the lane cannot be compared in a batch.

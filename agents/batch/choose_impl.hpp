@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choice kernels for one instruction set; see vectors.hpp. Their results are proposed, so products must not
-// be contracted: every machine has to compute the same bits.
+// Choice kernels for one instruction set; see vectors.hpp. Their results are proposed, so every machine must
+// compute the same bits. Multiplications and additions must therefore not be fused.
 #include "agents/batch/vectors.hpp"
 #include "common/motion/rest.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Comparison kernels for one instruction set; see vectors.hpp. Products may be contracted here:
-// rounding then differs between instruction sets, but by less than the slack of every decision.
+// Comparison kernels for one instruction set; see vectors.hpp. Multiplications and additions may be fused
+// here: rounding then differs between instruction sets, but by less than the slack of every decision.
 #include "agents/batch/vectors.hpp"
 
 namespace sidestep::batch {
@@ -62,15 +62,15 @@ void sample(const MotionBlock* motions, std::size_t blocks, double begin_s, doub
   }
 }
 
-/// Minimum differences so far between squared distances and the thresholds for "clear" and "blocked".
-/// Differences of chords are scaled by their squared lengths, which preserves the signs.
+/// Minimum differences so far between squared distances and the thresholds for "clear" and "blocked". The
+/// differences for a chord are multiplied by its squared length, which preserves the signs.
 struct Gaps {
   Vector clear, blocked;
 };
 
-// Within a step, the relative motion is close to its chord. The distance of the chord from the origin is that
-// of one of its ends, or, if the foot of the perpendicular lies within the chord, that of its line. The
-// squared distance of the line, times the squared length of the chord, is (distance * length)^2 - along^2.
+// Within a step, the relative motion is close to its chord. The chord is nearest to the origin at one of its
+// ends or, if the foot of the perpendicular lies within the chord, at this foot. The squared distance of the
+// foot, times the squared length of the chord, is (distance * length)^2 - along^2.
 template <bool kHasLateStarts>
 inline void compare_block(const ComparisonSettings& s, const Track& reference, const TrackBlock& track,
                           std::size_t at, const Vector& start, const Vector& clear_from2,

@@ -5,7 +5,7 @@
 
 namespace sidestep::batch {
 
-// Kernels of each instruction set. dispatch.cpp lists those that the machine can run.
+// Kernels of each instruction set. dispatch.cpp lists the kernels that the machine can run.
 extern const ComparisonKernels kBaselineComparison;
 extern const ChoiceKernels kBaselineChoice;
 extern const PredictionKernels kBaselinePrediction;

@@ -87,8 +87,8 @@ struct ComparisonKernels {
   void (*sample)(const MotionBlock* motions, std::size_t blocks, double begin_s, double step_s,
                  TrackBlock* tracks);
   /// Computes the gaps between `reference` and each lane. With `accumulate`, existing gaps are lowered to the
-  /// new ones; otherwise they are overwritten. `separations` has one block per block of lanes, or a single
-  /// block if `is_shared`.
+  /// new gaps if those are smaller; otherwise existing gaps are overwritten. `separations` has one block per
+  /// block of lanes, or a single block if `is_shared`.
   void (*compare)(const ComparisonSettings& settings, const Track& reference, const TrackBlock* lanes,
                   const SeparationBlock* separations, bool is_shared, std::size_t blocks, bool accumulate,
                   GapBlock* gaps);
@@ -105,8 +105,8 @@ struct ChoiceKernels {
   /// Builds the motions that hold each acceleration and then stop.
   void (*stop)(const StopSettings& settings, const AccelerationBlock* accelerations, std::size_t blocks,
                MotionBlock* motions);
-  /// Excludes accelerations whose squared distance from (x, y) is below `spread2`, and blocked ones. Returns
-  /// the remaining lane nearest to the desired acceleration, or the number of lanes if none remains.
+  /// Excludes accelerations whose squared distance from (x, y) is below `spread2`, and blocked accelerations.
+  /// Returns the remaining lane nearest to the desired acceleration, or the number of lanes if none remains.
   std::size_t (*choose)(double x, double y, double spread2, AccelerationBlock* accelerations,
                         const GapBlock* gaps, std::size_t blocks);
 };
@@ -123,8 +123,8 @@ struct alignas(64) PredictionRow {
   float lane[kPredictionLanes];
 };
 
-/// States and intents of robots: hold the intent's velocity for `velocity_duration_s`, then head for the goal
-/// by way of the waypoint.
+/// States and intents of robots. Each robot holds its intent's velocity for `velocity_duration_s`, then heads
+/// for its goal by way of the waypoint.
 struct CourseBlock {
   PredictionRow x_m, y_m, vx_mps, vy_mps;
   PredictionRow intent_vx, intent_vy, velocity_duration_s;

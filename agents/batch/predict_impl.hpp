@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prediction kernels for one instruction set; see vectors.hpp. Their results enter proposals, so products
-// must not be contracted: every machine has to compute the same bits.
+// Prediction kernels for one instruction set; see vectors.hpp. Their results enter proposals, so every
+// machine must compute the same bits. Multiplications and additions must therefore not be fused.
 #define SIDESTEP_SINGLE_PRECISION
 #include "agents/batch/vectors.hpp"
 
@@ -17,8 +17,7 @@ constexpr Number kSlowdownRatio2 = 0.9F;
 constexpr Number kEpsilon = 1e-9F;
 constexpr Number kEpsilon_s = 1e-4F;  // exceeds rounding errors
 
-/// Predicted states. For each robot also the offset and distance to the next target, and the remaining path
-/// length.
+/// Predicted states, with each robot's offset and distance to its next target and its remaining path length.
 struct Rollout {
   Vector x, y, vx, vy;
   Vector past_waypoint;  // 1 or 0
@@ -39,7 +38,7 @@ void update_target(const CourseBlock& c, std::size_t at, const Vector& leg, Roll
   r.remaining = r.to_go + (past_waypoint ? broadcast(0) : leg);
 }
 
-/// Minimum time within the limits for the remaining paths.
+/// Minimum time to drive the remaining paths within the motion limits.
 Vector time_to_go_s(const DrivingSettings& s, const Rollout& r) {
   const Number f = s.acceleration_mps2, b = s.deceleration_mps2;
   const Vector zero = broadcast(0);
@@ -95,7 +94,7 @@ void roll_out(const DrivingSettings& s, const CourseBlock& c, std::size_t at, Pr
   Rollout r{
       load(c.x_m, at), load(c.y_m, at), load(c.vx_mps, at), load(c.vy_mps, at), zero, zero, zero, zero, zero};
   r.past_waypoint = leg < broadcast(kEpsilon) ? broadcast(1) : zero;
-  // Time from which the remaining motion is a simple trapezoidal profile, and the state at that time.
+  // The time from which the remaining motion is a simple trapezoidal profile, and the state at that time.
   Vector braking_s = broadcast(-1);
   Rollout braking = r;
   const Number braking_distance_m = s.speed_mps * s.speed_mps / (2 * kBrakingShare * s.deceleration_mps2);
@@ -131,8 +130,8 @@ void roll_out(const DrivingSettings& settings, const CourseBlock* courses, std::
   }
 }
 
-/// (1 - distance² * inverse)², where distance is that of the segment from a to b from the origin; 0 if this
-/// is outside the range.
+/// (1 - distance² * inverse)², where `distance` is the distance of the segment ab from the origin; 0 if
+/// distance² * inverse exceeds 1.
 Vector proximity(const Vector& ax, const Vector& ay, const Vector& bx, const Vector& by, Number inverse) {
   const Vector dx = bx - ax, dy = by - ay;
   const Vector length2 = max(dx * dx + dy * dy, broadcast(kEpsilon));

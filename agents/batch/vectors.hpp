@@ -45,7 +45,8 @@ inline unsigned less_equal_bits(const Vector& a, const Vector& b) {
   const auto is = a <= b;
   unsigned bits = 0;
   for (std::size_t i = 0; i < kWidth; ++i) {
-    // Separate from the shift: with -fsanitize=shift, g++ 12 selects a wrong lane if both are one expression.
+    // Kept separate from the shift: with -fsanitize=shift, g++ 12 selects a wrong lane if both are one
+    // expression.
     const auto lane = static_cast<unsigned>(is[i] & 1);
     bits |= lane << i;
   }

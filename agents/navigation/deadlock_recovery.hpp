@@ -16,7 +16,7 @@ class DeadlockRecovery {
   /// How long an active recovery holds its angle once the robot is free.
   static constexpr double kReleaseDelay_s = 0.5;
 
-  /// Call once per decision, with the time since the last one. `is_free`: the robot got its desired motion.
+  /// Call it once per decision. `is_free`: the robot got its desired motion.
   void update(bool is_free, double speed_mps, Time now);
   /// Angle to turn right of the route, from 0 to 2 pi.
   double angle_rad() const { return angle_rad_; }

@@ -16,9 +16,9 @@ struct FreeDistance {
   Vec2 away{0, 0};  ///< unit vector pointing away from the nearest obstacle; 0 if unknown
 };
 
-/// Obstacle points, for example of a laser, for distance queries. They are stored in single precision
-/// relative to the first position that they were set with, which costs at most a micrometre of accuracy
-/// within ten metres.
+/// Obstacle points, for example from a laser, for distance queries. They are stored in single precision
+/// relative to the first robot position passed to set(), which costs at most a micrometre of accuracy within
+/// ten metres.
 class ObstaclePoints {
  public:
   /// Skips points that are not finite. Does not allocate once warm.

@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-/// Without progress for this long, a robot may be in the way of another one.
+/// Without progress for this long, a robot may be in the way of another robot.
 constexpr Duration kStuckAfter{1'500'000'000};
 /// Progress means coming this much nearer to the goal than ever before.
 constexpr double kProgress_m = 0.1;
@@ -15,9 +15,9 @@ constexpr double kProgress_m = 0.1;
 constexpr Duration kRetryAfter{500'000'000};
 /// A place is given up if the robot comes no nearer to it for this long.
 constexpr Duration kUnreachableAfter{3'000'000'000};
-/// After a longer time without decisions, progress is measured from the start.
+/// After a longer time without decisions, the measurement of progress starts over.
 constexpr Duration kMaxPause{1'000'000'000};
-/// Places up to this distance are searched first, later ones up to twice as far.
+/// The first search covers places up to this distance. Each further search covers twice the distance.
 constexpr double kFirstRange_m = 1;
 constexpr double kLongestRange_m = 8;
 

@@ -29,9 +29,9 @@ struct OtherRobot {
 };
 
 /// Lets a robot back out of a passage in which two robots cannot pass each other. This concerns a robot that
-/// makes no progress and blocks the route of a robot that has the right of way and no way around it. It
-/// drives to the nearest reachable place off the routes of all such robots, for example a bay, and stays
-/// there until the others have passed. Safety does not depend on it.
+/// makes no progress and blocks the route of a robot that has the right of way and no way around it. The
+/// blocking robot drives to the nearest reachable place off the routes of all robots with the right of way,
+/// for example a bay, and stays there until they have passed. Safety does not depend on it.
 class GiveWay {
  public:
   explicit GiveWay(const GiveWayFloor& floor, const GiveWaySettings& settings = {});
@@ -43,7 +43,7 @@ class GiveWay {
   /// Whether a search has begun, so that search() must be called. Otherwise call begin_search() if
   /// track_progress() says so.
   bool is_searching() const { return search_.is_active(); }
-  /// Starts a search. `others`: all robots nearby, and those in yields_to() that are still under way.
+  /// Starts a search. `others`: all robots nearby, and the robots in yields_to() that are still under way.
   /// `fixed`: all obstacles except robots.
   void begin_search(Time now, const Vec2& position_m, std::span<const OtherRobot> others,
                     ObstacleWorld fixed);
@@ -68,13 +68,13 @@ class GiveWay {
   GiveWaySettings settings_;
   GiveWaySearch search_;
   double remaining_m_ = kInfinity_m;  // remaining length of the last route
-  double shortest_m_ = kInfinity_m;   // shortest since the last search that found the robot in nobody's way
+  double shortest_m_ = kInfinity_m;   // shortest since the last search in which it blocked no robot
   Time progress_at_{}, checked_at_{}, began_at_{};
   Time called_at_{};
   double range_m_;
   double min_separation_m_;
   std::vector<RobotId> searched_;       // robots with the right of way when the search began
-  std::vector<RobotId> yields_to_;      // these keep the right of way until they have passed
+  std::vector<RobotId> yields_to_;      // robots that keep the right of way until they have passed
   std::multimap<RobotId, Trip> trips_;  // last known trips of all robots that were near when a search began
   std::vector<Vec2> unreachable_;       // places that could not be reached
   double nearest_m_ = kInfinity_m;      // smallest distance to the place so far

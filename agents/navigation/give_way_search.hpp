@@ -11,12 +11,12 @@
 
 namespace sidestep {
 
-/// The properties of the floor that a robot needs to know to give way on it.
+/// The properties of the floor and of the robots that a search needs.
 struct GiveWayFloor {
   Field field;
   double radius_m;
-  double required_m;        ///< distance of the robot's centre from obstacles
-  double min_separation_m;  ///< distance between the centres of two robots
+  double required_m;        ///< required distance of the robot's centre from obstacles
+  double min_separation_m;  ///< required distance between the centres of two robots
 };
 
 /// The input of a search.
@@ -27,7 +27,7 @@ struct GiveWayQuery {
   std::vector<Vec2> others_m;  ///< positions of all other robots
   /// Path along which the robot is already giving way; empty: it is not giving way yet.
   std::vector<Vec2> way;
-  double range_m = 1;                 ///< maximum distance of places
+  double range_m = 1;                 ///< maximum distance of places from the robot
   std::vector<Vec2> unreachable_m{};  ///< places near these are not considered
 };
 
@@ -42,7 +42,7 @@ class GiveWaySearch {
 
   explicit GiveWaySearch(const GiveWayFloor& floor);
 
-  /// Starts a search and discards the last one. `fixed`: all obstacles except robots.
+  /// Starts a search and discards the previous search. `fixed`: all obstacles except robots.
   void begin(GiveWayQuery query, ObstacleWorld fixed);
   void cancel() { stage_ = Stage::kIdle; }
   bool is_active() const { return stage_ != Stage::kIdle; }
@@ -50,10 +50,10 @@ class GiveWaySearch {
   void step(Rng& rng);
 
   // Results, available once no search is active.
-  /// Whether the robot, at its position, is in the way of another robot that cannot drive around it and all
-  /// others. If it already gives way: whether it would be in the way of another robot anywhere along its way.
+  /// Whether the robot, where it is, blocks another robot that cannot drive around it and all others. If the
+  /// robot already gives way: whether it would block another robot anywhere along `way`.
   bool is_in_the_way() const { return is_in_the_way_; }
-  /// The path to the place; empty if none is needed or there is no such place.
+  /// The path to the place; empty if no place is needed or no place was found.
   const std::vector<Vec2>& way() const { return way_; }
 
  private:
@@ -64,11 +64,11 @@ class GiveWaySearch {
   void check_passage(Rng& rng);
   void begin_places();
   void search_places(Rng& rng);
-  /// Takes a place if a path to it is worth planning: it is free, off the routes, and not next to one that
-  /// was taken. Returns whether it is.
+  /// Accepts a place if a path to it is worth planning: the place is free, off the routes, and not next to a
+  /// place that was accepted before. Returns whether it accepts the place.
   bool take_candidate(const Vec2& place);
-  /// Examines further places, up to the limit of a step. Returns the nearest remaining one; nullopt if it is
-  /// not known yet or there are none left.
+  /// Examines further places, up to the limit of a step. Returns the nearest place that remains; nullopt if
+  /// it is not known yet or no place is left.
   std::optional<Vec2> next_place();
   /// The next place of the grid, in square rings around the robot; nullopt if all have been examined.
   std::optional<Vec2> next_of_grid();
@@ -85,7 +85,7 @@ class GiveWaySearch {
   std::size_t next_ = 0;     // index of the next trip or route
   bool is_in_the_way_ = false;
   Way way_;
-  // Places: the known free ones, sorted by distance, and what has been examined.
+  // The accepted places as a heap, nearest first, and what has been examined.
   std::vector<std::pair<double, Vec2>> candidates_;
   std::set<std::pair<long, long>> taken_;
   std::vector<Vec2> unreachable_;

@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-// With a polyline or band: the robot steers to the first of these distances along it that is free in a
+// On a polyline or band, the robot steers to the point at the first of these distances that it can reach in a
 // straight line.
 constexpr std::array<double, 4> kLookAhead_m{0.8, 0.4, 0.2, 0.1};
 /// Nearer to the goal than this, a window's grid of velocities is too coarse.

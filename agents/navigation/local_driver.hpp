@@ -14,7 +14,7 @@
 
 namespace sidestep {
 
-/// The input of the local methods. Needs to exist only during the call.
+/// The input of the local methods. Its spans and pointers are used only during the call.
 struct LocalQuery {
   State at;
   std::span<const Vec2> path_m{};  ///< from the next waypoint to the end; not empty
@@ -25,8 +25,8 @@ struct LocalQuery {
 
 struct LocalChoice {
   Vec2 target_m{0, 0};  ///< the point to steer to
-  /// The velocity chosen by the window or the field. nullopt if there is neither, near the goal, too near to
-  /// an obstacle, or if the chosen velocity makes no progress.
+  /// The velocity chosen by the window or the field. nullopt if there is neither, if the robot is near the
+  /// goal or too near to an obstacle, or if the chosen velocity makes no progress.
   std::optional<Vec2> velocity_mps{};
   std::span<const Vec2> preferred_mps{};  ///< the next best velocities; valid until the next call
 };

@@ -39,7 +39,7 @@ class PathFollower {
   std::span<const Vec2> path() const { return path_; }
 
  private:
-  /// A place on the path: the fraction of the piece that starts at a point.
+  /// A place on the path: the index of a piece between two points, and the fraction of this piece.
   struct Place {
     std::size_t piece = 0;
     double share = 0;
@@ -50,7 +50,7 @@ class PathFollower {
   PathFollowerSettings settings_;
   std::vector<Vec2> path_;
   Vec2 target_{0, 0};
-  std::size_t first_piece_ = 0;  // the pieces before this one have been driven
+  std::size_t first_piece_ = 0;  // the robot has driven past all earlier pieces
 };
 
 }  // namespace sidestep

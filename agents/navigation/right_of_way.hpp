@@ -7,9 +7,9 @@
 
 namespace sidestep {
 
-/// Whether a robot has to yield to another one among moving robots. All robots must agree on who yields: if
-/// every robot yields to every other, their choices oscillate. Lower ids come first, then higher ids, in
-/// alternation, so that no robot always yields.
+/// Whether `self` must yield to `other` while both drive. All robots must agree on who yields: if every robot
+/// yields to every other, their choices oscillate. In alternating periods, lower ids or higher ids have the
+/// right of way, so that no robot always yields.
 [[nodiscard]] bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period);
 
 /// A robot that wants to pass, with the number of its order. The number is a clock reading, so older orders
@@ -19,10 +19,10 @@ struct PassageContender {
   OrderNumber order = 0;
 };
 
-/// Whether a robot may pass first where robots cannot pass each other and may have to wait for whole periods.
-/// The older order goes first: no robot waits for more orders than were given before its own. Robots with the
-/// same number, and in every fourth period all robots, go in a random order that is drawn again in each
-/// period, because the robot with the oldest order may be unable to drive.
+/// Whether `other` may pass before `self` where robots cannot pass each other and may have to wait for whole
+/// periods. The older order goes first: no robot waits for more orders than were given before its own. Robots
+/// with the same number, and in every fourth period all robots, go in a random order that is drawn again in
+/// each period, because the robot with the oldest order may be unable to drive.
 [[nodiscard]] bool may_pass_first(const PassageContender& other, const PassageContender& self, Time t,
                                   Duration period);
 

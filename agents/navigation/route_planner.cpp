@@ -15,7 +15,7 @@ constexpr double kReplanIncrease_m = 0.05;
 constexpr double kReached_m = 0.1;
 // A path that keeps clear of obstacles is straightened by at most this.
 constexpr double kAside_m = 0.02;
-// Random samples cost more, and all of them are spent if there is no path.
+// Random samples cost more than expanded states, and a planner spends all of them if there is no path.
 constexpr std::size_t kMaxRandomSamples = 1500;
 // Maximum number of nodes of roadmaps, which would otherwise grow with each query that they do not solve.
 constexpr std::size_t kMaxRandomNodes = 2000;

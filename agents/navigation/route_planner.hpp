@@ -29,17 +29,17 @@ struct Route {
 /// narrow passages, and so may random samples. Therefore, if the planner finds no path, the lazy visibility
 /// graph decides whether there is one. If obstacles cover or enclose the goal, routes lead to the nearest
 /// place that can be reached. On large floors, the search for a route may take several cycles, and a new
-/// route around changed obstacles keeps the part of the last one that is far away.
+/// route around changed obstacles keeps the part of the last route that is far away.
 class RoutePlanner {
  public:
   RoutePlanner(const RoutePlanner&) = delete;
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
   /// The robot's centre keeps at least `radius_m + margin_m` from the obstacles, plus the largest of the
-  /// extra clearances with which a route exists; they are given in descending order. If a goal has less
-  /// clearance than that, the route ends with a straight line from the nearest place that has it, unless it
-  /// is the last clearance. The path planner, one of kDrivingPlanners, and the obstacles must outlive this
-  /// object.
+  /// extra clearances with which a route exists; they are given in descending order. If the goal has less
+  /// clearance than that, the route ends with a straight line from the nearest place with that clearance,
+  /// unless that is the last (smallest) clearance. The path planner, one of kDrivingPlanners, and the
+  /// obstacles must outlive this object.
   RoutePlanner(const NamedPlanner& planner, const ObstacleWorld& obstacles, const Field& field,
                double radius_m, double margin_m, std::span<const double> extra_clearances_m);
 
@@ -72,8 +72,8 @@ class RoutePlanner {
  private:
   Field extended_field() const;
   DiscDomain domain(const Vec2& start_m, const Vec2& goal_m) const;
-  /// Plans a new route that keeps this distance from obstacles. Returns whether it leads to the goal or, if
-  /// an obstacle covers the goal, to the nearest place.
+  /// Plans a new route that keeps this distance from obstacles. Returns whether the route leads to the goal
+  /// or, if an obstacle covers the goal, to the nearest free place.
   bool replan(const NamedPlanner& planner, const Vec2& start_m, double clearance_m, Rng& rng);
   /// Like replan(), but for a goal that is nearer to an obstacle than this distance.
   bool replan_to_tight_goal(const NamedPlanner& planner, const Vec2& start_m, double clearance_m, Rng& rng);
@@ -97,7 +97,7 @@ class RoutePlanner {
   /// Stores a path without the states that lie almost on a straight line.
   void take_straightened(std::span<const Vec2> path_m);
   bool follow(const NamedPlanner& planner, const DiscDomain& domain, const Plan<Vec2>& plan);
-  /// The planner that is reliable if it finds no path.
+  /// The planner whose failure proves that there is no path.
   const NamedPlanner& exact() const { return exact_ ? *exact_ : *planner_; }
   /// Whether the line from a position to a waypoint is free for the robot.
   bool is_leg_free(const Vec2& from_m, std::size_t waypoint) const;

@@ -22,14 +22,14 @@ class ZoneMap {
   /// `orders` must be of the kind ORDER_ZONE.
   explicit ZoneMap(std::span<const Order> orders);
 
-  /// Outlines of the zones to keep out of.
+  /// Outlines of the keep-out zones.
   std::span<const Shape> keep_outs() const { return keep_outs_; }
-  /// The clients' numbers of these zones, in the same order.
+  /// The numbers that clients gave to the keep-out zones, in the same order.
   std::span<const std::uint32_t> keep_out_numbers() const { return keep_out_numbers_; }
-  /// Circles that represent the zones to keep out of, as seen from a position: the zones that are circles,
-  /// and the nearest edge point of the others.
+  /// Circles that represent the keep-out zones, as seen from a position: zones that are circles, and the
+  /// nearest edge point of every other zone.
   std::vector<Circle> seen_from(const Vec2& position_m) const;
-  /// Whether a disc at this position overlaps a zone to keep out of.
+  /// Whether a disc at this position overlaps a keep-out zone.
   bool is_kept_out(const Vec2& position_m, double radius_m) const;
   /// The maximum speed of a disc at this position such that it enters no zone faster than the zone allows.
   /// `reaction` is the time until it can start to brake. Infinite if no zone has a speed limit.

@@ -36,9 +36,9 @@ class LaserBeams {
   /// finite.
   explicit LaserBeams(const LaserSettings& settings, double robot_tolerance_m = 0.1);
 
-  /// `robots` are the known robots at the time of the scan, without the one that carries the scanner. Throws
-  /// std::invalid_argument if the number of ranges differs from the number of beams, a robot or the pose is
-  /// not finite, or a radius is negative. Finite ranges beyond the limits count as those limits.
+  /// `robots` are the known robots at the time of the scan, without the robot that carries the scanner.
+  /// Throws std::invalid_argument if the number of ranges differs from the number of beams, a robot or the
+  /// pose is not finite, or a radius is negative. Finite ranges beyond the limits are clamped to the limits.
   void read(const LaserScan& scan, std::span<const Circle> robots);
 
   std::span<const Beam> all() const { return beams_; }

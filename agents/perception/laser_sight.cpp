@@ -8,8 +8,8 @@
 namespace sidestep {
 namespace {
 
-/// Minimum interval between scans that are added to the grid. This takes most of the time, and nothing
-/// appears on the floor that quickly.
+/// Minimum interval between scans that are added to the grid. Adding a scan takes most of the time, and
+/// nothing appears on the floor that quickly.
 constexpr Duration kGridPeriod{90'000'000};
 constexpr double kUnknownRange_m = 2.5;  ///< squares farther away are ignored
 

@@ -18,15 +18,15 @@ struct LaserSightSettings {
   // bound.
   double position_error_m = SafetyBudget{}.tracking_bound_m;
   double heading_error_rad = 0.02;
-  /// Number of squares with unknown stationary obstacles, the nearest ones first.
+  /// Maximum number of reported squares with unknown stationary obstacles; the nearest squares are reported.
   std::size_t max_unknown = 48;
 };
 
-/// Interprets the scans of a robot's own laser: where people may step out, who moves, and which stationary
+/// Interprets the scans of a robot's own laser: where people may step out, what moves, and which stationary
 /// obstacles are not on the map. Only obstacles that the rules contain limit where people may be.
 class LaserSight {
  public:
-  /// Side of the squares that report unknown stationary obstacles.
+  /// Unknown stationary obstacles are reported as squares with this side.
   static constexpr double kUnknownCell_m = 0.2;
   static constexpr Duration kUnknownAfter{500'000'000};  ///< cells occupied for longer are stationary
 

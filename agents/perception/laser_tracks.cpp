@@ -11,17 +11,17 @@ constexpr double kJoin_m = 0.15;          ///< hits this near to each other belo
 constexpr int kMinHits = 2;               ///< minimum number of hits in a cluster
 constexpr double kMaxPerson_m = 0.6;      ///< larger clusters are not people
 constexpr double kClusterNoise_m = 0.03;  ///< standard deviation of a cluster's centre, on each axis
-/// The same standard deviation if part of the cluster is hidden.
+/// Standard deviation of a cluster's centre if part of the cluster is hidden.
 constexpr double kPartialNoise_m = 0.1;
 constexpr MotionNoise kPersonMotion{0.15, 1};
 constexpr double kStartSpeed_mps = 1;  ///< standard deviation of a new track's velocity, on each axis
 constexpr double kGate_m = 0.4;        ///< maximum distance of a cluster from the prediction
 constexpr int kConfirmScans = 4;
 constexpr Duration kDropAfter{1'000'000'000};  ///< time without an observation after which a track ends
-constexpr double kMinSpeed_mps = 0.25;         ///< tracks slower than this do not move
-/// Nor do tracks whose speed is below this many standard deviations.
+constexpr double kMinSpeed_mps = 0.25;         ///< tracks slower than this count as not moving
+/// Tracks whose speed is below this many standard deviations count as not moving.
 constexpr double kSpeedDeviations = 2.5;
-constexpr double kMinMoved_m = 0.3;  ///< nor do tracks that have moved less than this
+constexpr double kMinMoved_m = 0.3;  ///< tracks that have moved less than this count as not moving
 /// How long a place counts as seen free after a beam crossed it.
 constexpr Duration kCrossingMemory{10'000'000'000};
 /// Fraction of a place that beams must cross for it to count as seen free.
@@ -77,7 +77,7 @@ bool LaserTracks::is_explained(const Vec2& hit, const LocalGrid& grid) const {
   return is_found;
 }
 
-/// Whether a track that has moved may have brought the object that was hit.
+/// Whether a track that has moved is at the hit, so that the object may have come there recently.
 bool LaserTracks::is_of_mover(const Vec2& hit, Time occupied_since) const {
   return std::ranges::any_of(entries_, [&](const Entry& entry) {
     const double reach_m = entry.radius_m + kTrackSlack_m;

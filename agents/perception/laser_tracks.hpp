@@ -28,7 +28,7 @@ struct LaserTrack {
 /// has also covered some distance, and either its current place was seen free earlier, or its first place was
 /// seen free later. A part of a wall does not meet this condition: it looks like a disc that is half inside
 /// the wall, where no beam ever passes. A person who stops keeps the track, and is not taken for a wall while
-/// it lasts.
+/// the track lasts.
 class LaserTracks {
  public:
   static constexpr std::size_t kMaxTracks = 256;

@@ -30,11 +30,11 @@ class LocalGrid {
   /// Throws std::invalid_argument if the number of cells is out of range.
   explicit LocalGrid(const LocalGridSettings& settings = {});
 
-  /// Moves the window to the scanner, lets old evidence decay, and adds that of a scan. Beams clear the cells
-  /// up to their hit, or up to the maximum range. A cell with a hit is not cleared by other beams of the same
-  /// scan. Hits on known robots are not added, and dropouts change nothing. Returns false and changes nothing
-  /// if the scan is not newer than the last one. Throws std::invalid_argument for positions beyond
-  /// kMaxMapOrigin_m.
+  /// Moves the window to the scanner, lets old evidence decay, and adds the evidence of a scan. Beams clear
+  /// the cells up to their hit, or up to the maximum range. A cell with a hit is not cleared by other beams
+  /// of the same scan. Hits on known robots are not added, and dropouts change nothing. Returns false and
+  /// changes nothing if the scan is not newer than the last one. Throws std::invalid_argument for positions
+  /// beyond kMaxMapOrigin_m.
   bool update(const LaserBeams& beams);
 
   int side_cells() const { return settings_.side_cells; }

@@ -4,7 +4,8 @@
 namespace sidestep {
 namespace {
 
-/// Maximum number of missing beams within a cluster, and beside one before its surroundings count as unknown.
+/// Maximum number of missing beams within a cluster, and beside a cluster before its surroundings count as
+/// unknown.
 constexpr int kMissing = 2;
 
 bool is_full_turn(const LaserBeams& beams) {
@@ -49,7 +50,7 @@ void ScanClusters::find(const LaserBeams& beams, std::span<const std::uint8_t> i
   clusters_.clear();
   const int count = beams.count();
   const auto selected = [&](int beam) { return is_selected[static_cast<std::size_t>(beam)] != 0; };
-  // A full turn starts outside a cluster, so that no cluster is divided.
+  // A scan of a full turn is searched from a beam outside all clusters, so that no cluster is divided.
   int start = 0;
   if (is_full_turn(beams))
     while (start < count && (selected(start) || beams[start].end == BeamEnd::kUnknown)) ++start;

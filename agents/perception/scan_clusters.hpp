@@ -9,14 +9,14 @@ namespace sidestep {
 struct ScanCluster {
   Vec2 mean_m{0, 0};    ///< mean of the hits
   Vec2 away{1, 0};      ///< unit vector from the scanner to the mean
-  double radius_m = 0;  ///< radius of a disc that would be seen at this distance and angle
+  double radius_m = 0;  ///< radius of the disc that would fill the cluster's angle at its distance
   int hits = 0;
   bool is_partial = false;  ///< a nearer object hides one end, or the field of view ends there
 };
 
 /// Finds the clusters among selected hits: consecutive hits that are at most `join_m` apart, or more at
-/// larger distances, where beams diverge (adaptive breakpoints: Borges, Aldon 2004). Dropouts do not
-/// separate. Does not allocate once warm.
+/// larger distances, where beams diverge (adaptive breakpoints: Borges, Aldon 2004). Dropouts do not separate
+/// clusters. Does not allocate once warm.
 class ScanClusters {
  public:
   explicit ScanClusters(double join_m) : join_m_(join_m) {}
@@ -28,7 +28,7 @@ class ScanClusters {
  private:
   /// The hits of the current cluster.
   struct Run {
-    int first = 0, last = 0, hits = 0;  // beams; last - first counts across the end of the scan
+    int first = 0, last = 0, hits = 0;  // beams, numbered on beyond the end of the scan
     Vec2 sum_m{0, 0};
     double nearest_m = 0;
   };

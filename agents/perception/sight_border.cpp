@@ -8,7 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kInside_m = 1e-9;    // larger than rounding errors
-constexpr double kShortest_m = 1e-9;  // shortest frontiers
+constexpr double kShortest_m = 1e-9;  // minimum length of frontiers
 /// Rays at larger angles prove nothing about the space between them.
 constexpr double kHalfTurn_rad = std::numbers::pi - 1e-6;
 
@@ -44,7 +44,7 @@ SightBorder::Wedge SightBorder::closed_wedge(const SightRay& ray, const SightRay
 SightBorder::Wedge SightBorder::open_wedge(const SightRay& ray, const SightRay& next, double radius_m) {
   const double angle_rad = angle_between_rad(ray, next);
   const double sine = std::sin(angle_rad / 2), cosine = std::cos(angle_rad / 2);
-  // The cut: seen up to this distance along both rays, minus the bulge.
+  // The floor was seen up to this distance along both rays, minus the bulge.
   double cut_m = 0, bulge_m = 0, height_m = -std::numeric_limits<double>::infinity();
   if (angle_rad < kHalfTurn_rad) {
     cut_m = std::min(ray.free_m, next.free_m);

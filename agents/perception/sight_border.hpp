@@ -11,16 +11,16 @@ namespace sidestep {
 /// The border of the region that rays prove free of hidden people; see Visibility for the derivation.
 class SightBorder {
  public:
-  /// `radius_m` is that of the smallest person. No robot touches anybody nearer than `untouched_m` to
-  /// something stationary. Does not allocate once warm.
+  /// `radius_m` is the radius of the smallest person. No robot can touch a person at a place nearer than
+  /// `untouched_m` to a stationary object. Does not allocate once warm.
   void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double untouched_m);
 
   /// Whether a point is in the region. False within a nanometre of the border.
   [[nodiscard]] bool contains(const Vec2& p) const;
   /// Places where people may step out, sorted counter-clockwise around the scanner.
   std::span<const Frontier> frontiers() const { return frontiers_; }
-  /// Gaps between stationary objects that are too narrow for people. The bulge is 0 if nobody who protrudes
-  /// through the gap can touch a robot.
+  /// Gaps between stationary objects that are too narrow for people. The bulge is 0 if a person who protrudes
+  /// through the gap cannot touch a robot.
   std::span<const Frontier> closed_gaps() const { return closed_; }
 
  private:

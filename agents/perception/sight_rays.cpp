@@ -13,7 +13,7 @@ constexpr double kMaxAngle_rad = std::numbers::pi / 2;
 constexpr double kShortestGap_m = 1e-9;
 
 /// Calls `count_dropped(first)` for each ray in turn, which returns the number of rays after this one to
-/// drop. Dropped rays have the length 0 until the end.
+/// drop. Dropped rays are marked with the length 0, and removed at the end.
 template <typename CountDropped>
 void drop_runs(std::vector<SightRay>& rays, const CountDropped& count_dropped) {
   const std::size_t count = rays.size();

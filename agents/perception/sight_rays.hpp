@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// A beam that gives some information.
+/// A beam that is known to be free for some distance.
 struct SightRay {
   double angle_rad = 0;  ///< counter-clockwise from the first ray
   Vec2 direction{1, 0};  ///< unit vector
@@ -20,9 +20,9 @@ struct SightRay {
 
 /// A gap between two known stationary points; no person can pass it.
 struct ClosedGap {
-  Segment posts;              ///< ends, relative to the scanner
-  double bulge_m = 0;         ///< maximum distance that a person can ever protrude through the gap
-  double reach_m = 0;         ///< distance from stationary objects within which such a person can touch
+  Segment posts;       ///< ends, relative to the scanner
+  double bulge_m = 0;  ///< maximum distance that a person can ever protrude through the gap
+  double reach_m = 0;  ///< maximum distance from stationary objects at which such a person can touch a robot
   double unseen_bulge_m = 0;  ///< maximum distance that a person could protrude between the rays at capture
 };
 
@@ -42,7 +42,7 @@ struct ClosedGap {
 /// touch the post, and the ends of the rays must be too close together for a disc to fit in between.
 [[nodiscard]] std::optional<ClosedGap> closed_gap(const SightRay& ray, const SightRay& next, double radius_m);
 
-/// Drops rays that end at things too narrow to hide a disc directly behind them, such as a post or a small
+/// Drops rays that end at an object too narrow to hide a disc directly behind it, such as a post or a small
 /// robot, if the neighbouring rays prove more. Dropping is always conservative, because nothing is assumed
 /// about missing rays.
 void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m);

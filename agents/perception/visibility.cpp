@@ -20,7 +20,7 @@ Visibility::Visibility(const VisibilitySettings& settings) : settings_(settings)
   if (!is_error(settings.position_error_m) || !is_error(settings.heading_error_rad))
     throw std::invalid_argument("the error of a scan's pose is negative or not finite");
   if (!is_error(settings.untouched_m))
-    throw std::invalid_argument("the distance at which nobody is touched is negative or not finite");
+    throw std::invalid_argument("the distance within which no person is touched is negative or not finite");
 }
 
 void Visibility::begin(const LaserBeams& beams) {

@@ -10,9 +10,9 @@ namespace sidestep {
 
 /// Plans to the goal or, if the goal touches an obstacle, to the nearest free position that the planner can
 /// reach. The domain handles a start that touches obstacles. `planner` is any planner with plan(domain,
-/// start, budget, rng). The goal itself gets the whole budget. All alternative positions together get the
-/// same number of samples again, because planners with random samples spend all of them on each unreachable
-/// position.
+/// start, budget, rng). The goal itself gets the whole budget. All alternative positions share the same
+/// number of samples once more, because a planner that samples at random would spend all of them on each
+/// unreachable position.
 template <typename Planner>
 const Plan<Vec2>& plan_with_fallback_goal(Planner& planner, const DiscDomain& domain, const Vec2& start,
                                           const Budget& budget, Rng& rng) {

@@ -26,7 +26,7 @@ namespace {
 
 using Trees = BidirectionalErrt<DiscDomain>;
 
-/// Rebuilds its graph if the world differs from that of the last plan.
+/// Full visibility graph. Rebuilds it if the world differs from the world of the last plan.
 class FullVisibility {
  public:
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget&, Rng&) {

@@ -53,9 +53,10 @@ struct NamedPlanner {
   std::optional<LocalMethods> local{};  ///< nullopt: steering among the other robots follows the path
 };
 
-/// The settings that OMPL's RRT and RRTConnect and our planners of the same names share in comparisons.
+/// Goal bias that OMPL's RRT and our planner of the same name share in comparisons.
 inline constexpr double kNamesakeGoalBias = 0.05;
-/// A fifth of the diagonal of the rectangle of the robot's possible positions: OMPL's default range
+/// Step length that OMPL's planners and our planners of the same names share in comparisons: a fifth of the
+/// diagonal of the rectangle of the robot's possible positions, OMPL's default range
 /// (ompl::magic::MAX_MOTION_LENGTH_AS_SPACE_EXTENT_FRACTION).
 [[nodiscard]] double namesake_range_m(const Field& field, double radius_m);
 

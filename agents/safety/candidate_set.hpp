@@ -18,13 +18,13 @@ class CandidateSet {
  public:
   CandidateSet(int samples, const MotionLimits& limits, const batch::Kernels& kernels);
 
-  /// Makes the desired acceleration candidate 0, and fills the rest with samples of A(v), limited so that
-  /// they may be held for `hold_time` at this maximum speed. Precondition: the desired acceleration obeys the
-  /// limits.
+  /// Makes the desired acceleration candidate 0, and fills the rest with samples of A(v), the accelerations
+  /// allowed at this velocity, limited so that they may be held for `hold_time` at this maximum speed.
+  /// Precondition: the desired acceleration obeys the limits.
   void sample_accelerations(const Vec2& velocity_mps, const Vec2& desired_mps2, Duration hold_time,
                             double max_speed_mps, Rng& rng);
-  /// Replaces samples with these accelerations, which are taken in this order after the desired one.
-  /// Precondition: they obey the limits, like the desired one.
+  /// Replaces samples with these accelerations, which are taken in this order after the desired acceleration.
+  /// Precondition: they obey the limits.
   void prefer(std::span<const Vec2> accelerations_mps2);
   /// Prepares for compare(): samples the motions that start in `at_start`, hold an acceleration for `hold_s`,
   /// and then stop.

@@ -8,8 +8,8 @@ namespace sidestep {
 namespace {
 
 constexpr double kRounding_m = 1e-9;
-/// Minimum bulge of a closed gap, unless its bulge is 0 because nobody who protrudes through it can touch a
-/// robot.
+/// Minimum bulge of a closed gap, unless its bulge is 0 because no person who protrudes through it can touch
+/// a robot.
 constexpr double kTouching_m = 1e-6;
 /// A trajectory within this distance of being unsafe counts as unsafe.
 constexpr double kTolerance_m = 1e-3;

@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// The floor that a robot's laser did not see, of which only the border is known; see Visibility. From this
-/// border people may have approached at up to their maximum speed since the time of the scan.
+/// The floor that a robot's laser did not see. Only its border is known; see Visibility. People may have come
+/// from this border at up to their maximum speed since the time of the scan.
 struct HiddenSpace {
   std::span<const Frontier> frontiers{};    ///< places where people may step out
   std::span<const Frontier> closed_gaps{};  ///< gaps too narrow for people, who may protrude through them
@@ -21,15 +21,15 @@ struct HiddenSpace {
   Vec2 observed_from_m{0, 0};
 
   [[nodiscard]] bool is_nothing() const { return frontiers.empty() && closed_gaps.empty(); }
-  /// A lower bound of the distance between a point and anybody who was hidden, at a time after the
+  /// A lower bound of the distance between a point and any person who was hidden, at a time after the
   /// observation. Negative: the point may be covered.
   [[nodiscard]] double distance_m(const Vec2& p, Time t) const;
 };
 
 /// Whether the robot is at rest before a person who was hidden could reach it (passive safety), or creeps to
-/// a place where nobody can be nearer than at its present place. Otherwise a robot next to a place where
-/// somebody may step out could not leave. Until the trajectory ends, the disc of radius `min_separation_m`,
-/// the robot's radius plus the margin, around its centre stays clear of all positions that somebody may have
+/// a place where no person can be nearer than at its present place. Otherwise a robot next to a place where a
+/// person may step out could not leave. Until the trajectory ends, the disc of radius `min_separation_m`, the
+/// robot's radius plus the margin, around its centre stays clear of all positions that a person may have
 /// reached from a frontier. Precondition: the trajectory begins in the region that was seen. Conservative:
 /// never falsely true; false negatives only within a millimetre.
 ///

@@ -153,7 +153,7 @@ void SafetySearch::find_nearby(const SearchQuery& query, const Circle& disc, Tra
 void SafetySearch::find_cells(const Circle& disc) {
   cells_.clear();
   if (!rules_.map || rules_.map->field().lower_bound_m(disc.centre_m) > disc.radius_m) return;
-  // The disc of a path of unknown length is huge, and boxes of that size would lose all precision.
+  // If the length of the path is unknown, its disc is huge, and boxes of that size would lose all precision.
   constexpr double kMaxReach_m = 1e5;
   const Vec2 half_m = Vec2::Constant(std::min(disc.radius_m, kMaxReach_m));
   rules_.map->cells().for_each_box({disc.centre_m - half_m, disc.centre_m + half_m}, [&](const Box& box) {

@@ -29,17 +29,18 @@ struct SearchQuery {
   Duration hold_time{};
   std::span<const MovingObstacle> moving{};          ///< obstacles that the robot must be passively safe from
   std::span<const UncontrolledBody> uncontrolled{};  ///< bodies to stay clear of
-  const Trajectory* stop =
-      nullptr;  ///< the motion that the robot follows otherwise; not null if `uncontrolled` is not empty
-  std::optional<RobotId> robot{};  ///< if set, this robot's versions in the index are ignored
-  /// Below the speed limit if the clocks require it. A robot that is already faster slows down.
+  const Trajectory* stop = nullptr;  ///< the motion that the robot follows if no candidate is granted; not
+                                     ///< null if `uncontrolled` is not empty
+  std::optional<RobotId> robot{};    ///< if set, this robot's versions in the index are ignored
+  /// Maximum speed, below the robot's speed limit if the clocks require it. A robot that is already faster
+  /// slows down.
   double max_speed_mps = std::numeric_limits<double>::infinity();
-  SeenRegion seen{};                   ///< region in which there are no obstacles except those in `moving`
-  HiddenSpace hidden{};                ///< floor that the robot's laser did not see
+  SeenRegion seen{};     ///< region in which there are no obstacles except the obstacles in `moving`
+  HiddenSpace hidden{};  ///< floor that the robot's laser did not see
   std::span<const Shape> keep_outs{};  ///< zones that the robot must not enter
   std::optional<Vec2> way_out_m{};     ///< place outside the zones that overlap at the start
-  /// Tried in this order after the desired one and before random ones; their number is at most that of the
-  /// samples.
+  /// Accelerations tried in this order, after the desired acceleration and before random accelerations; at
+  /// most kSamples.
   std::span<const Vec2> preferred_mps2{};
 
   /// The motion limits with the lower of the two speed limits.
@@ -58,10 +59,10 @@ struct SearchResult {
   int checks = 0;                 ///< number of pairs of trajectories compared
 };
 
-/// Dynamics safety search (Bruce, CMU-CS-06-181, ch. 5). Tests the desired acceleration and random ones from
-/// A(v). Each is held for `hold_time` and followed by the stop manoeuvre. The search keeps those candidates
-/// that stay on the field and clear of the obstacles and of every version that other robots may be executing.
-/// Allocates nothing once warm.
+/// Dynamics safety search (Bruce, CMU-CS-06-181, ch. 5). Tests the desired acceleration and random
+/// accelerations from A(v), the set allowed at the robot's velocity v. Each is held for `hold_time` and
+/// followed by the stop manoeuvre. The search keeps those candidates that stay on the field and clear of the
+/// obstacles and of every version that other robots may be executing. Allocates nothing once warm.
 class SafetySearch {
  public:
   /// Number of accelerations sampled from A(v) in addition to the desired one.
@@ -87,7 +88,7 @@ class SafetySearch {
   void find_cells(const Circle& disc);
   /// Collects the moving obstacles that could reach a candidate within the disc before it is at rest.
   void find_moving(const SearchQuery& query, const Circle& disc);
-  /// Collects the frontiers from which somebody could reach a candidate within the disc before it is at rest.
+  /// Collects the frontiers from which a person could reach a candidate within the disc before it is at rest.
   void find_hidden(const SearchQuery& query, const Circle& disc);
   void compare(const SearchQuery& query, const TrajectoryBounds& desired, double extra_clearance_m,
                int& checks);
@@ -105,10 +106,10 @@ class SafetySearch {
   std::vector<Other> nearby_;  // the subset of others_ that the candidates are compared with
   std::vector<Other> exact_;   // the subset of nearby_ that needs exact comparisons
   bool is_near_border_ = false;
-  std::vector<MovingObstacle> moving_;             // those of the query that may be near
-  std::vector<Frontier> frontiers_, closed_gaps_;  // those of the query that may be near
+  std::vector<MovingObstacle> moving_;             // obstacles of the query that may be near
+  std::vector<Frontier> frontiers_, closed_gaps_;  // borders of the query that may be near
   KeepOut keep_out_;
-  std::vector<Vec2> preferred_;  // those of the query, limited
+  std::vector<Vec2> preferred_;  // preferred accelerations of the query, limited
 };
 
 /// An acceleration that is held for `hold_time`, followed by the stop manoeuvre.

@@ -13,7 +13,7 @@ constexpr double kSpread = 0.1;
 constexpr double kAllowance_m = 0.03;
 // A robot that cannot avoid the body completely deviates from its stop only if it gains this much distance.
 constexpr double kGain_m = 0.01;
-// A body with an unknown direction may start to move in any direction.
+// Required distance from a body whose direction of motion is unknown.
 constexpr double kUnknownDirection_m = 0.4;
 // Two bodies with a relative speed of 4 m/s approach by 2 cm in this time.
 constexpr Duration kSampling{5'000'000};
@@ -66,7 +66,7 @@ bool avoids_by_driving_on(const Trajectory& candidate, const UncontrolledBody& b
   return false;
 }
 
-/// Whether the candidate rests beside the body's path, or no deeper in it than the stop.
+/// Whether the candidate rests off the body's path, or no deeper in it than the stop does.
 bool rests_well(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody& body) {
   const double distance_m = body.distance_from_path_m(rest_m);
   if (distance_m >= body.required_distance_m(rest_m)) return true;

@@ -25,23 +25,23 @@ struct UncontrolledBody {
 };
 
 /// The excess over the required distance between the body, if it moves as expected, and a robot that follows
-/// the trajectory from a time on and then rests. Negative: it may touch the robot.
+/// the trajectory from a time on and then rests. Negative: the body may touch the robot.
 [[nodiscard]] double spare_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body);
 
-/// Decides which candidates a robot may follow if it otherwise follows `stop`. What depends only on the stop
-/// is computed once, in the constructor.
+/// Decides which candidates a robot may follow instead of `stop`. The constructor computes everything that
+/// depends only on the stop.
 class UncontrolledBodies {
  public:
   /// All candidates start at `start`. `stop` must not be null if there are bodies; there is at most one body
   /// per robot. `bodies` and `stop` must outlive this object.
   UncontrolledBodies(std::span<const UncontrolledBody> bodies, const Trajectory* stop, Time start);
 
-  /// Whether the candidate, with respect to every body,
-  /// - rests beside the body's path, or farther out than the stop, by as much as it rests nearer to the body,
-  /// and
-  /// - is at rest before the body could reach the robot (passive safety), or, if the body may touch the robot
-  ///   that stops, leads out of its way, or at least farther from it, if the robot then drives on for up to
-  ///   0.4 s.
+  /// Whether, for every body, the candidate
+  /// - rests off the body's path, or farther from its centre line than the stop does, by at least as much as
+  ///   it rests nearer to the body, and
+  /// - is at rest before the body could reach the robot (passive safety). If the body may touch the stopping
+  ///   robot anyway, it suffices that the candidate leads out of the body's way, or at least farther from it,
+  ///   when the robot then drives on for up to 0.4 s.
   [[nodiscard]] bool allow(const Trajectory& candidate, double min_separation_m,
                            double deceleration_mps2) const;
 

@@ -47,7 +47,7 @@ int run(int argc, char** argv) {
     app.add_option("--league-interface", options.interface,
                    "address of the network interface of these packets")
         .show_default();
-    app.add_option("--team", team, "the only team whose robots obey, if the run has one team")
+    app.add_option("--team", team, "the team whose robots obey, if the run has only one team")
         .check(one_of({"blue", "yellow"}));
     app.add_flag("--defence-areas", options.settings.closes_defence_areas,
                  "keep all robots, goalkeepers too, out of both defence areas");

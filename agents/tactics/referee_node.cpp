@@ -74,7 +74,7 @@ void RefereeNode::update_periodically() {
 void RefereeNode::report_silence() {
   if (is_silent_ || bus_.now() - heard_at_ <= kSilenceTimeout) return;
   is_silent_ = true;
-  events_.report(LogLevel::kWarning, std::nullopt, "no packet of the referee for {} s: {}",
+  events_.report(LogLevel::kWarning, std::nullopt, "no packet from the referee for {} s: {}",
                  to_seconds(kSilenceTimeout),
                  packet_ ? fmt::format("{} stays in force", name_of(packet_->command))
                          : std::string("nothing is ordered"));

@@ -43,7 +43,7 @@ class RefereeNode {
   void on_world_state(const msg::WorldState& world);
   void update_periodically();
   void report_silence();
-  /// Orders the differences from what was last ordered.
+  /// Sends orders for all demands that differ from the last orders.
   void update();
   void update_zone(std::uint32_t number, const RefereeDemands& demands);
   void warn(Time now, const std::string& text);
@@ -54,8 +54,8 @@ class RefereeNode {
   OrderClient client_;
   std::optional<league::RefereePacket> packet_;  ///< the last accepted packet
   std::optional<BallState> ball_;
-  std::optional<bool> is_held_;                         ///< as ordered; nullopt: nothing was ordered
-  std::map<std::uint32_t, std::optional<Zone>> zones_;  ///< as ordered; nullopt: removed
+  std::optional<bool> is_held_;                         ///< as last ordered; nullopt: nothing was ordered
+  std::map<std::uint32_t, std::optional<Zone>> zones_;  ///< as last ordered; nullopt: removed
   Time heard_at_;                                       ///< time of the last packet, or of the start
   bool is_silent_ = false;
   RateLimit warnings_{5, std::chrono::seconds(10)};

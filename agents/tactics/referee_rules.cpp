@@ -25,7 +25,7 @@ constexpr double kAreaDistance_m = 0.2;  ///< distance from defence areas while 
 
 using league::RefereeCommand;
 
-/// So large that the limit also holds for robots that were carried off the field.
+/// Large enough that the limit also holds for robots that were carried off the field.
 constexpr double kFloorMargin_m = 1;
 
 bool is_in_play(RefereeCommand command) {

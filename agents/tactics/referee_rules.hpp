@@ -14,7 +14,7 @@
 namespace sidestep {
 
 struct RefereeSettings {
-  /// The only team whose robots obey. nullopt: both teams do, or neither.
+  /// The team whose robots obey orders, if only one team's robots do; otherwise nullopt.
   std::optional<Team> team{};
   /// Whether to keep all robots, including goalkeepers, out of both defence areas.
   bool closes_defence_areas = false;
@@ -41,7 +41,7 @@ inline constexpr std::array kRefereeZones{kFloorZone, kBallZone, kBallPathZone, 
 inline constexpr double kZoneTolerance_m = 0.02;
 
 /// Determines what robots must do at a command, by the rules of the Small Size League. Zones apply to all
-/// robots. A rule for one team only is therefore enforced only if it is the team whose robots obey; see
+/// robots. A rule for one team is therefore enforced only if it concerns the team whose robots obey; see
 /// README.md.
 class RefereeRules {
  public:

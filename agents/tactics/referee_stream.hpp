@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// Selects the packets to use: those of one referee, in the order in which they were sent. HALT counts even
-/// if it arrives late. After kSilence without a packet in order, any packet counts: the referee was
-/// restarted, its clock was set back, or another has taken over.
+/// Selects the packets to use: the packets of one referee, in the order in which they were sent. HALT counts
+/// even if it arrives late. After kSilence without a packet in order, any packet counts: the referee was
+/// restarted, its clock was set back, or another referee has taken over.
 class RefereeStream {
  public:
   enum class Outcome {

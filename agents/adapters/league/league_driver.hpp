@@ -32,7 +32,7 @@ class LeagueDriver : public Driver {
   void send(std::span<const BaseCommand> commands) override;
   void count_drops(DropCounters& drops) const override;
 
-  /// Becomes readable when an answer has arrived; then call receive().
+  /// A file descriptor that becomes readable when an answer has arrived. Call receive() then.
   int descriptor() const { return socket_.descriptor(); }
   void receive();
 

@@ -13,15 +13,15 @@ struct Bubble {
   double path_m = 0;  ///< path length along the band up to the centre
 };
 
-/// The displacement of a bubble: towards its neighbours, which shortens the band, and away from the nearest
-/// obstacle. Both forces shrink with bubbles smaller than the reach of obstacles. Since a displacement is
-/// shorter than the radius, a bubble never jumps over an obstacle.
+/// The displacement of a bubble in one step. It is pulled towards its neighbours, which shortens the band,
+/// and pushed away from the nearest obstacle. Both forces are weaker on bubbles smaller than the reach of
+/// obstacles. Since a displacement is shorter than the radius, a bubble never jumps over an obstacle.
 [[nodiscard]] Vec2 displacement_m(const Vec2& previous_m, const Bubble& bubble, const Vec2& next_m,
                                   double robot_radius_m);
 
-/// The diameter of the largest disc that can move straight from the centre of one bubble to that of another
-/// within both: the common chord if it lies between the centres, otherwise the diameter of the smaller
-/// bubble; 0 if they do not overlap.
+/// The diameter of the largest disc that can move straight from the centre of one bubble to the centre of
+/// another without leaving both: the common chord if it lies between the centres, otherwise the diameter of
+/// the smaller bubble; 0 if they do not overlap.
 [[nodiscard]] double passage_m(const Bubble& a, const Bubble& b);
 
 }  // namespace sidestep

@@ -16,7 +16,7 @@ constexpr double kMaxBubble_m = 2;    ///< maximum radius of bubbles far from ob
 constexpr double kMinSpacing_radii = 0.125;  ///< minimum distance between centres of inserted bubbles
 constexpr double kCrowded_radii = 1;         ///< if a bubble's neighbours are closer, it may be removed
 constexpr std::size_t kMaxBubbles = 400;
-// Path lengths from which, and from which fully, obstacles near the robot are ignored.
+// Path lengths at which obstacles near the robot begin to be ignored, and from which they are fully ignored.
 constexpr double kMaskedFrom_m = 2, kMaskedFullyFrom_m = 10;
 
 void require(bool condition, const char* what) {

@@ -17,9 +17,9 @@ struct BubbleBandSettings {
 
 /// A band of overlapping free bubbles from the robot to its goal (Quinlan, Khatib 1993; Philippsen, EPFL
 /// thesis 3146, ch. 3). It starts as a planner's path. Each update moves the bubbles: internal forces shorten
-/// the band, external ones keep it away from obstacles. While the band is not broken, a disc of the robot's
-/// radius can follow the polyline of the centres, free of all obstacles that are not masked. A broken band
-/// must be restarted with a new path.
+/// the band, external forces keep it away from obstacles. While the band is not broken, a disc of the robot's
+/// radius can follow the polyline of the centres without touching any obstacle, except obstacles that are
+/// masked (ignored; see max_masked_m). A broken band must be restarted with a new path.
 ///
 /// `FreeSpace` is ObstaclePoints, DistanceFunction, or any function that takes a position and the masked
 /// distance and returns a FreeDistance. Does not allocate once warm.
@@ -29,7 +29,7 @@ class BubbleBand {
   explicit BubbleBand(double robot_radius_m, const BubbleBandSettings& settings = {});
 
   /// Starts along a path from the robot to the goal. Throws std::invalid_argument if the path has no point,
-  /// or one that is not finite.
+  /// or has a point that is not finite.
   template <typename FreeSpace>
   void start(std::span<const Vec2> path_m, const FreeSpace& free) {
     begin(path_m);
@@ -46,8 +46,7 @@ class BubbleBand {
     fit(Query(free));
   }
 
-  /// Whether there is a place in the band that the robot does not fit through. A new path must then be
-  /// planned.
+  /// Whether the robot does not fit through some place in the band. A new path must then be planned.
   bool is_broken() const { return is_broken_; }
   /// The bubbles, from the robot to the goal.
   std::span<const Bubble> bubbles() const { return bubbles_; }
@@ -78,7 +77,7 @@ class BubbleBand {
 
   void begin(std::span<const Vec2> path_m);
   void follow(const Vec2& robot_m);
-  /// Moves the bubbles, but none so far that the robot would no longer fit through.
+  /// Moves the bubbles, but no bubble so far that the robot would no longer fit through.
   void step(const Query& free);
   /// Removes and inserts bubbles, and checks the passages between them.
   void fit(const Query& free);
@@ -86,7 +85,7 @@ class BubbleBand {
   void measure_all(const Query& free);
   bool is_superfluous(const Bubble& before, const Bubble& bubble, const Bubble& after) const;
   void remove_superfluous();
-  /// Appends bubbles after the last one in kept_ until the passage to `next` is wide enough or the spacing
+  /// Appends bubbles after the last bubble in kept_ until the passage to `next` is wide enough or the spacing
   /// too small.
   void insert_before(const Bubble& next, const Query& free);
 

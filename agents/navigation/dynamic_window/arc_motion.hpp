@@ -16,7 +16,7 @@ struct ArcMotion {
   ArcMotion reversed() const { return {-speed_mps, -turn_rate_radps}; }
 };
 
-/// The robot's displacement after a time, in the frame at the start.
+/// The robot's displacement after a time, in the robot's frame at the start.
 [[nodiscard]] Vec2 displacement_m(const ArcMotion& motion, double seconds);
 
 /// The position of a fixed point in the robot's frame after the robot has moved.
@@ -24,7 +24,7 @@ struct ArcMotion {
 
 /// The event that a point crosses a line.
 struct Crossing {
-  double time_s = std::numeric_limits<double>::infinity();  ///< infinite: it never does
+  double time_s = std::numeric_limits<double>::infinity();  ///< infinite: the point never crosses the line
   /// Crossing point in the robot's frame at that time.
   Vec2 at_m{0, 0};
 };

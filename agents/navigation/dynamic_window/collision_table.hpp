@@ -44,7 +44,7 @@ class CollisionTable {
 
   ObstacleGrid grid_;
   Quantiser quantiser_;
-  // Indexed by cell: its place among the stored cells, or one of the constants.
+  // Indexed by cell: its place among the stored cells, or kOutOfReach or kOnHull.
   std::vector<std::int32_t> place_;
   std::size_t cells_ = 0;
   std::vector<Line> table_;                // indexed by tile, then place

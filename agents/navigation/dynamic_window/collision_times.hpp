@@ -19,7 +19,7 @@ enum class CollisionMethod {
 template <typename Outline>
 class CollisionTimes {
  public:
-  /// `times` is called only if a table is needed.
+  /// `compute` returns the CellTimes, and is called only if a table is needed.
   template <typename ComputeCellTimes>
   CollisionTimes(Outline outline, CollisionMethod method, float horizon_s, ComputeCellTimes compute)
       : outline_(std::move(outline)), horizon_s_(horizon_s) {
@@ -51,7 +51,7 @@ class CollisionTimes {
       for (const Vec2& point : exact_) {
         if (times_s_[slot] <= needed_s[slot]) break;
         const double time_s = outline_.time_to_collision_s(point, slot);
-        // Rounds down, so that it is never later than the exact time.
+        // Rounds down, so that the stored time is never later than the exact time.
         if (time_s < static_cast<double>(times_s_[slot]))
           times_s_[slot] = std::nextafter(static_cast<float>(time_s), 0.0F);
       }
@@ -72,7 +72,7 @@ class CollisionTimes {
   std::vector<Vec2> exact_;
 };
 
-/// Value in CollisionTimes that forbids a velocity, because no time to collision is long enough.
+/// Value in `needed_s` that forbids a velocity, because no time to collision is long enough.
 inline constexpr float kForbidden_s = std::numeric_limits<float>::infinity();
 
 }  // namespace sidestep

@@ -6,13 +6,13 @@
 
 namespace sidestep {
 
-/// Rim speeds of the two wheels, positive ahead.
+/// Rim speeds of the two wheels, positive forwards.
 struct WheelSpeeds {
   double left_mps = 0, right_mps = 0;
 };
 
 /// A robot with two wheels on a common axis. The origin of its frame is midway between them, with the x axis
-/// ahead. The defaults are those of the Robox robots (Philippsen, EPFL thesis 3146).
+/// ahead. The defaults describe the Robox robots (Philippsen, EPFL thesis 3146).
 struct DifferentialDrive {
   double wheel_base_m = 0.521;
   double wheel_speed_mps = 0.572;          ///< maximum for each wheel
@@ -23,7 +23,7 @@ struct DifferentialDrive {
   ArcMotion motion(const WheelSpeeds& wheels) const {
     return {(wheels.left_mps + wheels.right_mps) / 2, (wheels.right_mps - wheels.left_mps) / wheel_base_m};
   }
-  /// Rows of the velocity grid are speeds of the left wheel, columns those of the right one.
+  /// Rows of the velocity grid are speeds of the left wheel; columns are speeds of the right wheel.
   WheelSpeeds wheels(int row, int column) const {
     return {grid_speed(row, wheel_speed_mps), grid_speed(column, wheel_speed_mps)};
   }
@@ -36,7 +36,7 @@ struct DifferentialDrive {
   double time_to_brake_s(const WheelSpeeds& wheels) const {
     return std::max(std::abs(wheels.left_mps), std::abs(wheels.right_mps)) / wheel_acceleration_mps2;
   }
-  /// The wheel speeds after braking in proportion for some time.
+  /// The wheel speeds after braking on the same arc for some time.
   WheelSpeeds braked(const WheelSpeeds& wheels, double seconds) const;
 };
 

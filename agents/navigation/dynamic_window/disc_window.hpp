@@ -14,9 +14,9 @@ struct DiscWindowSettings {
   ObjectiveWeights weights{};
 };
 
-/// The input of a window's decision, relative to the robot's position.
+/// The input of DiscWindow::choose(), relative to the robot's position.
 struct DiscWindowQuery {
-  std::span<const Vec2> points_m{};  ///< obstacle points; those that are not finite are skipped
+  std::span<const Vec2> points_m{};  ///< obstacle points; points that are not finite are skipped
   Vec2 velocity_mps{0, 0};           ///< current velocity
   Vec2 goal_m{0, 0};
   double cycle_s = 1.0 / 60;  ///< time until the next decision
@@ -39,10 +39,10 @@ struct DiscWindowChoice {
 
 /// The dynamic window of an omnidirectional disc, whose motions are straight. Its admissible velocities can
 /// be desired motions for a safety search. Considers the velocities of a grid that the robot's accelerations
-/// reach within a cycle (see is_admissible) or, if the grid is too coarse for that, those next to the current
-/// one. Otherwise it works like DynamicWindow, except that the heading objective rates the direction of the
-/// velocity, and the speed objective prefers the speed at which the robot can just stop at its goal. Does not
-/// allocate once warm.
+/// reach within a cycle (see is_admissible) or, if the grid is too coarse for that, the velocities next to
+/// the current velocity. Otherwise it works like DynamicWindow, except that the heading objective rates the
+/// direction of the velocity, and the speed objective prefers the speed at which the robot can just stop at
+/// its goal. Does not allocate once warm.
 class DiscWindow {
  public:
   /// Throws std::invalid_argument if a dimension, limit or setting is invalid.

@@ -18,9 +18,9 @@ struct DynamicWindowSettings {
   ObjectiveWeights weights{};
 };
 
-/// The input of a window's decision, in the robot's frame.
+/// The input of DynamicWindow::choose(), in the robot's frame.
 struct WindowQuery {
-  std::span<const Vec2> points_m{};  ///< obstacle points; those that are not finite are skipped
+  std::span<const Vec2> points_m{};  ///< obstacle points; points that are not finite are skipped
   WheelSpeeds wheels{};              ///< current speeds
   DriveGoal goal{};
   double cycle_s = 0.1;  ///< time until the next decision

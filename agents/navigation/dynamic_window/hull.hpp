@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// A polygon that contains all points within `padding_m` of the given one; its edges are the given edges
+/// A polygon that contains all points within `padding_m` of `polygon`. Its edges are the edges of `polygon`
 /// moved outwards, with the corners cut off. Throws std::invalid_argument if the polygon is invalid (see
 /// check(Shape)) or the padding is negative or not finite.
 [[nodiscard]] ConvexPolygon padded(const ConvexPolygon& polygon, double padding_m);

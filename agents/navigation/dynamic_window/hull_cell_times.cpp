@@ -10,7 +10,7 @@ namespace {
 
 void lower(float& least, double time_s) { least = std::min(least, static_cast<float>(time_s)); }
 
-/// Adds the cells that a corner of the hull passes through to one velocity's times.
+/// Updates one velocity's times in the cells that a corner of the hull passes through.
 class CornerTrace {
  public:
   CornerTrace(CellTimes& times, std::size_t slot) : times_(times), slot_(slot) {}
@@ -54,7 +54,7 @@ double outer_radius_m(std::span<const Vec2> corners_m) {
   return radius_m;
 }
 
-/// Adds the cells whose corners enter the hull to one velocity's times.
+/// Updates one velocity's times in the cells whose corners enter the hull.
 void add_cell_corners(const Hull& hull, const ArcMotion& motion, std::size_t slot, CellTimes& times) {
   const ObstacleGrid& grid = times.grid;
   const double radius_m = outer_radius_m(hull.corners_m()), horizon_s = static_cast<double>(times.horizon_s);

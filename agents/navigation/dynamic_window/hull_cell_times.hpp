@@ -9,9 +9,9 @@ namespace sidestep {
 
 /// The exact times to collision of all cells that the hull can reach within the horizon, for all wheel speeds
 /// of the velocity grid. Two convex shapes touch first at a corner of one of them. So the time of a cell is
-/// the earlier of two times: when its first corner enters the hull, and when the first corner of the hull
-/// enters it. Throws std::invalid_argument if the hull or the horizon is invalid, or the grid would be too
-/// large.
+/// the earlier of two times: when the cell's first corner enters the hull, and when the hull's first corner
+/// enters the cell. Throws std::invalid_argument if the hull or the horizon is invalid, or the grid would be
+/// too large.
 [[nodiscard]] CellTimes hull_cell_times(const DifferentialDrive& drive, const ConvexPolygon& hull,
                                         double cell_m, double horizon_s);
 

@@ -8,8 +8,8 @@
 namespace sidestep {
 
 /// Quantises times to at most 256 ascending levels, numbered by one byte. A time is stored as the number of
-/// the last level that is not after it. So the stored time is never later than the true one, and numbers
-/// compare like times.
+/// the last level that is not after it. So the stored time is never later than the true time, and the numbers
+/// have the same order as the times.
 class Quantiser {
  public:
   static constexpr std::size_t kLevels = 256;
@@ -28,7 +28,7 @@ class Quantiser {
   std::uint8_t encode(float time_s) const;
   float decode(std::uint8_t number) const { return levels_s_[number]; }
 
-  /// The number of levels; the remaining entries repeat the last one.
+  /// The number of levels; the remaining entries repeat the last level.
   std::size_t size() const { return size_; }
 
  private:

@@ -29,13 +29,13 @@ constexpr double grid_speed(int index, double max_speed) {
   return max_speed * (index - kMiddle) / kMiddle;
 }
 
-/// A range of indices on an axis, including the last one.
+/// A range of indices on an axis, including `last`.
 struct IndexRange {
   int first = 0, last = -1;
 };
 
-/// The indices of speeds that differ from `speed` by at most `max_change`. If there are none, the indices
-/// next to `speed`: in that case the axis can only begin to approach them.
+/// The indices of speeds that differ from `speed` by at most `max_change`. If there are none, returns the
+/// indices next to `speed`, although the axis can only begin to approach these speeds.
 inline IndexRange reachable_indices(double speed, double max_change, double max_speed) {
   constexpr double kRounding = 1e-9;
   constexpr int kMiddle = kGridSide / 2;

@@ -19,7 +19,7 @@ enum class DescentEnd {
   kArrived,       ///< the robot is at the goal
   kLocalMinimum,  ///< the forces cancel: the robot hardly moves, although it is not at the goal
   kTouching,      ///< an obstacle is within the robot's radius
-  kStepsSpent
+  kStepsSpent,    ///< the maximum number of steps was reached
 };
 
 struct Descent {
@@ -36,7 +36,8 @@ class PotentialField {
   /// Throws std::invalid_argument if the radius or a setting is out of range.
   explicit PotentialField(double robot_radius_m, const PotentialFieldSettings& settings = {});
 
-  /// The force at a position with this free distance. To the goal it is the distance in metres.
+  /// The force at a position with this free distance. The attractive part has the size of the distance to the
+  /// goal in metres.
   Vec2 force(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;
   /// The potential without the rotational force; infinite where the robot touches an obstacle.
   double potential(const Vec2& at_m, const Vec2& goal_m, const FreeDistance& free) const;
@@ -55,7 +56,7 @@ class PotentialField {
 
  private:
   void begin(const Vec2& start_m);
-  /// Whether the descent has ended, and how.
+  /// Whether the descent has ended; if so, records why.
   bool check_end(const Vec2& goal_m, int max_steps);
   void step(const Vec2& goal_m, const FreeDistance& free);
   bool makes_progress() const;

@@ -14,8 +14,8 @@ namespace sidestep {
 
 struct DiscDomainSettings {
   double step_m = 2;  ///< maximum length of an extension
-  /// Fraction of samples close to an obstacle. Short paths follow obstacles, and narrow passages contain only
-  /// such positions.
+  /// Fraction of samples close to an obstacle. Short paths follow obstacles, and in narrow passages all
+  /// positions are close to an obstacle.
   double contact_probability = 0.2;
 };
 
@@ -78,7 +78,7 @@ class DiscDomain {
   /// The nearest position outside the deepest obstacle, if that position is free.
   std::optional<Vec2> projected_out(const Vec2& position) const;
   void measure_from_start();
-  /// nullopt: there is none that can be reached; see nearest_free_position().
+  /// The nearest free position that `can_reach` accepts; nullopt: there is none. See nearest_free_position().
   std::optional<Vec2> free_position_near(const Vec2& position,
                                          const std::function<bool(const Vec2&)>& can_reach = {}) const;
   Vec2 sample_uniform(Rng& rng) const;

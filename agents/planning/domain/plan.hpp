@@ -30,7 +30,7 @@ enum class PlanReason {
   kSolved,       ///< path to the goal
   kImproved,     ///< path to the goal, shorter than the first one found
   kBudgetSpent,  ///< no path found within the budget; the states lead to the state nearest to the goal
-  /// The path does not exist, or not on this planner's grid or graph; states as for kBudgetSpent.
+  /// There is no path, at least on this planner's grid or graph; states as for kBudgetSpent.
   kUnreachable,
 };
 [[nodiscard]] const char* name_of(PlanReason reason);

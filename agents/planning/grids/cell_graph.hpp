@@ -35,7 +35,7 @@ struct CellPath {
     std::uint32_t portal;
     std::uint32_t cell;  ///< cell that it leads into
   };
-  Vec2 from_m{0, 0}, to_m{0, 0};  ///< offsets in the first and in the last cell
+  Vec2 from_m{0, 0}, to_m{0, 0};  ///< where the path starts in the first cell and ends in the last cell
   std::vector<Step> steps;
 };
 
@@ -57,7 +57,7 @@ class CellSearch {
     std::uint32_t cell;  // the cell that the portal leads into
     std::uint32_t from;  // the previous portal
   };
-  /// A cell, and the point at which the path from a position outside enters it.
+  /// A cell, and the point at which a path from a position outside all cells enters it.
   struct Entry {
     std::uint32_t cell;
     Vec2 at_m;

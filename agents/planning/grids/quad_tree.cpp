@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-/// Side of the smallest cell: longer side of the free area / 2^depth.
+/// The side of the smallest cell is the longer side of the free area / 2^depth.
 constexpr int kTreeDepth = 8;
 
 constexpr std::uint32_t kNone = 0xffffffff;

@@ -106,7 +106,7 @@ void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
   }
 }
 
-/// Adds the part within a box slightly larger than the field.
+/// Adds the part of a polygon within a box slightly larger than the field.
 void TrapezoidalDecomposition::add_polygon(const std::vector<Vec2>& vertices_m) {
   const Vec2 half_m = in_metres(half_field_.x + kMargin, half_field_.y + kMargin);
   std::vector<Vec2> clipped = vertices_m;
@@ -159,7 +159,7 @@ void TrapezoidalDecomposition::count_covers() {
   }
 }
 
-/// No effect if the count is already known.
+/// Does nothing if the count is already known.
 void TrapezoidalDecomposition::cover(Index trapezoid, std::int32_t count) {
   if (trapezoid == TrapezoidalMap::kNone || covers_[trapezoid] != kUnknown) return;
   covers_[trapezoid] = count;
@@ -200,7 +200,7 @@ void TrapezoidalDecomposition::shorten(const DiscDomain& domain, const Vec2& sta
   path_portals_.clear();
   for (const auto& [portal, cell] : path.steps) {
     path_portals_.push_back(walls_[portal]);
-    // A portal's second cell is the one on its right.
+    // A portal's second cell is the cell on its right.
     if (cell != graph_.portals[portal].b)
       std::swap(path_portals_.back().left_m, path_portals_.back().right_m);
   }

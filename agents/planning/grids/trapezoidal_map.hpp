@@ -24,8 +24,8 @@ class TrapezoidalMap {
   struct Trapezoid {
     Index bottom = kNone, top = kNone;  ///< indices of segments
     GridPoint left, right;              ///< the segment ends that cause its walls
-    /// For each wall: the neighbour behind it with the same bottom segment, and the one with the same top
-    /// segment; kNone if there is none.
+    /// The neighbours behind each wall: first the neighbour with the same bottom segment, then the neighbour
+    /// with the same top segment; kNone if there is none.
     std::array<Index, 2> left_neighbours{kNone, kNone}, right_neighbours{kNone, kNone};
     Index leaf = kNone;  ///< leaf in the search structure; kNone for unused trapezoids
   };

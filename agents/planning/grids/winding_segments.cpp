@@ -98,7 +98,7 @@ void CrossingDivider::compare(const std::vector<WindingSegment>& segments, std::
   cut(segments, k, at);
 }
 
-/// No effect at an end of the segment, or on its line beyond its ends.
+/// Does nothing if the point is an end of the segment, or lies beyond its ends.
 void CrossingDivider::cut(const std::vector<WindingSegment>& segments, std::size_t i, const GridPoint& at) {
   const GridSegment& segment = segments[i].segment;
   if (at == segment.left || at == segment.right || !is_within_bounds(at, segment)) return;

@@ -29,9 +29,9 @@ class Course {
   std::vector<Trajectory> legs_;
 };
 
-/// Whether a robot that executes `motion` until a time, at which it may still be moving, keeps
-/// `min_separation_m` from one on this course, from the start of the motion on. If `until` is Time::max(),
-/// checks all time. Uses the exact clearance of common/motion.
+/// Whether a robot that executes `motion` keeps `min_separation_m` from a robot on this course, from the
+/// start of the motion until `until`. The robot may still be moving then. If `until` is Time::max(), checks
+/// all time. Uses the exact clearance of common/motion.
 [[nodiscard]] bool is_clear(const Course& course, const Trajectory& motion, Time until,
                             double min_separation_m);
 

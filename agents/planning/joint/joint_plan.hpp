@@ -26,8 +26,8 @@ struct JointProblem {
   double distance_from_obstacles_m() const;
 };
 
-/// Distance that planners keep beyond the required ones, to allow for rounding when motions become
-/// trajectories.
+/// Distance that planners keep in addition to the required distances, to allow for rounding when motions
+/// become trajectories.
 inline constexpr double kJointTolerance_m = 1e-6;
 
 inline double JointProblem::distance_from_obstacles_m() const {

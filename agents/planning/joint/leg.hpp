@@ -22,8 +22,8 @@ struct LegTimes {
 [[nodiscard]] Trajectory make_leg(Time start, const Vec2& from_m, const Vec2& to_m, const LegTimes& times);
 
 /// The part of a trajectory from `from` to `until`, where it stops abruptly. The clearance of two
-/// trajectories clipped to the same interval is therefore their clearance within it. Precondition: from <=
-/// until.
+/// trajectories clipped to the same interval is therefore their clearance within that interval. Precondition:
+/// from <= until.
 [[nodiscard]] Trajectory clipped(const Trajectory& trajectory, Time from, Time until);
 
 }  // namespace sidestep

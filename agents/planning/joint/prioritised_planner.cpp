@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kPlansPerRobot = 8;       ///< the one with the earliest arrival is kept
+constexpr std::size_t kPlansPerRobot = 8;       ///< the plan with the earliest arrival is kept
 constexpr std::size_t kSamplesPerRobot = 1500;  ///< for one tree, before another order of robots is tried
 constexpr std::size_t kMaxOrders = 1000;        ///< maximum number of orders of robots that are tried
 

@@ -30,8 +30,8 @@ class SpaceTimeDomain {
   State start() const { return {problem_->starts_m[robot_], Time{}}; }
   /// The time from a to b in seconds; more than a thousand if b is too early to be reached from a.
   double distance(const State& a, const State& b) const;
-  /// The motion to `to`. If that is too early, to its position at a later time; otherwise to a position on
-  /// the way.
+  /// Returns `to` or, if `to` is too early, its position at the earliest possible time. If that motion is
+  /// blocked, returns a position on the way.
   std::optional<State> extend(const State& from, const State& to) const;
   bool check(const State& from, const State& to) const;
   State sample(Rng& rng) const;
@@ -40,7 +40,7 @@ class SpaceTimeDomain {
 
   /// The arrival time of a motion that starts at once.
   Time earliest_arrival(const State& from, const Vec2& to_m) const;
-  /// The motion: waiting, then driving. Precondition: the state is not too early.
+  /// The motion: waiting, then driving. Precondition: the robot can reach `to` in time.
   Trajectory motion(const State& from, const State& to) const;
 
  private:

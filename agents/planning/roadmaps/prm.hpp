@@ -7,10 +7,10 @@
 namespace sidestep {
 
 struct PrmSettings {
-  /// Number sampled initially, and again while the roadmap does not solve the query.
+  /// Number of nodes sampled initially, and again while the roadmap does not solve the query.
   std::size_t nodes = 200;
   ConnectionSettings connection = {};
-  bool keep_roadmap = true;  ///< kept for the next query
+  bool keep_roadmap = true;  ///< whether to keep the roadmap for the next query
   /// Allows the world to differ between queries: a motion is checked again when A* takes it from the queue.
   bool is_dynamic = false;
 };
@@ -148,7 +148,7 @@ class Prm {
   Roadmap<D> map_;
   std::size_t base_size_ = 0;              // number of nodes without the start and goal of the last query
   std::uint32_t version_ = 1;              // version of the world; changes only if the world does
-  std::vector<std::uint32_t> reached_by_;  // indexed by node: the edge
+  std::vector<std::uint32_t> reached_by_;  // indexed by node: the edge by which the search reached it
   std::vector<Open> queue_;
   Plan<State> plan_;
 };

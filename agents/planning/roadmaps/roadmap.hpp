@@ -15,8 +15,8 @@ namespace sidestep {
 
 /// Which nodes a new node is joined with.
 enum class Connection {
-  kNearest,  ///< the nearest ones (Kavraki et al. 1996)
-  kRadial,   ///< the nearest visible one in each sector around the node, by the first two coordinates
+  kNearest,  ///< the nearest nodes (Kavraki et al. 1996)
+  kRadial,   ///< the nearest visible node in each sector around the new node, by the first two coordinates
   kRadius,   ///< all nodes within a radius
 };
 
@@ -66,7 +66,8 @@ class Roadmap {
     return static_cast<std::size_t>(std::count_if(edges_.begin(), edges_.end(), std::mem_fn(&Edge::is_free)));
   }
 
-  /// Adds a state and joins it to neighbours by free motions, and by blocked ones if the settings keep them.
+  /// Adds a state and joins it to neighbours by free motions, and by blocked motions if the settings keep
+  /// them.
   Node add(const D& domain, const State& state, const ConnectionSettings& settings, std::uint32_t version) {
     const Node node = append(state);
     const bool is_radial = settings.method == Connection::kRadial;

@@ -8,9 +8,9 @@ namespace sidestep {
 
 struct BidirectionalErrtSettings {
   std::size_t cache_capacity = 50;  ///< 0: no cache
-  /// Maximum number per turn of one tree towards its target; 1: RRT-Connect.
+  /// Maximum number of extensions per turn of one tree towards its target; 1: RRT-Connect.
   std::size_t growth_extensions = 100;
-  std::size_t connect_extensions = 100;  ///< maximum number per turn of the other tree towards the new node
+  std::size_t connect_extensions = 100;  ///< maximum extensions per turn of the other tree to the new node
   std::size_t bridges = 1;               ///< number of bridges at which planning ends
   /// Whether to try the straight path before the trees grow, and to make the goal their first target.
   /// RRT-Connect does neither.
@@ -20,7 +20,8 @@ struct BidirectionalErrtSettings {
 /// Bidirectional multi-bridge ERRT (Bruce 2006, section 4.3.4). A tree from the start and a tree from the
 /// goal grow alternately: one towards a target, the other towards the node that the first one reached
 /// (RRT-Connect; Kuffner and LaValle 2000). Planning ends once the requested number of bridges join the
-/// trees; the plan is the shortest path over both. Caches plans for the next query, and reuses its memory.
+/// trees; the plan is the shortest path through both trees. Caches plans for the next query, and reuses its
+/// memory.
 template <StraightDomain D>
 class BidirectionalErrt {
  public:

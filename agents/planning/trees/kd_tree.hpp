@@ -91,7 +91,7 @@ class KdTree {
 
   static void clear_leaf(Leaf& leaf) {
     leaf.count = 0;
-    // Empty lanes are compared too, so they are infinitely far.
+    // Empty lanes are compared too, so their coordinates are infinite.
     for (auto& axis : leaf.coordinate)
       for (double& x : axis) x = std::numeric_limits<double>::infinity();
   }

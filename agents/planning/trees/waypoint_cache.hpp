@@ -14,9 +14,9 @@ namespace sidestep {
 
 /// Replacement strategy: which waypoint a full cache drops for a new one.
 enum class CacheReplacement {
-  kRandom,             ///< a random one (Bruce and Veloso 2002)
-  kOldest,             ///< the one stored first
-  kLeastRecentlyUsed,  ///< the one least recently used as a growth target
+  kRandom,             ///< a random waypoint (Bruce and Veloso 2002)
+  kOldest,             ///< the waypoint stored first
+  kLeastRecentlyUsed,  ///< the waypoint least recently used as a growth target
   kWholePlan,          ///< all of them, so that the cache contains only the last plan
 };
 
@@ -74,7 +74,7 @@ class WaypointCache {
       case CacheReplacement::kOldest:
         return oldest([](const Entry& e) { return e.stored; });
       case CacheReplacement::kLeastRecentlyUsed:
-        // One hard plan may use all waypoints; then the one stored first is dropped.
+        // One hard plan may use all waypoints; then the waypoint stored first is dropped.
         return oldest([](const Entry& e) { return std::pair(e.used, e.stored); });
       default:
         return random_index(rng);
@@ -87,8 +87,8 @@ class WaypointCache {
   std::uint64_t now_ = 0;
 };
 
-/// The common part of planners with a cache. Tries the straight path if `tries_straight_line`. Unless that is
-/// free, calls `grow`, which writes the plan. Stores the states of successful plans in the cache.
+/// The common part of planners with a cache. Tries the straight path if `tries_straight_line`. Unless that
+/// path is free, calls `grow`, which writes the plan. Stores the states of successful plans in the cache.
 template <PlanningDomain D, typename Grow>
 void plan_and_remember(const D& domain, const typename D::State& start,
                        WaypointCache<typename D::State>& cache, Plan<typename D::State>& plan, Rng& rng,

@@ -21,7 +21,7 @@ class KnownObstacles {
   void add(const Shape& shape);
   std::size_t size() const { return known_.size(); }
 
-  /// Whether the obstacle that blocked the last motion also blocks this one. If false, use blocks().
+  /// Whether the obstacle that blocked the last motion also blocks this motion. If false, use blocks().
   bool last_blocks(const Segment& motion) const;
   /// Whether any obstacle blocks the motion.
   bool blocks(const Segment& motion);

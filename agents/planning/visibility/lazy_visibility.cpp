@@ -86,7 +86,7 @@ void LazyVisibility::begin_search(const DiscDomain& domain, const Vec2& start) {
   expand(domain, 0, kGoal);
 }
 
-/// Returns whether the search ended before the budget did.
+/// Returns whether the search ended before the budget was spent.
 bool LazyVisibility::search(const DiscDomain& domain, const Budget& budget) {
   while (!queue_.empty()) {
     if (budget.is_spent(arrivals_.size(), plan_.samples++)) return false;

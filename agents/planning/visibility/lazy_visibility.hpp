@@ -9,8 +9,8 @@
 namespace sidestep {
 
 /// Finds the shortest path of a disc among obstacles: A* over the tangents between arcs. A tangent is only
-/// checked when it is the most promising one, and an obstacle is only taken into account once such a tangent
-/// is blocked by it. A query therefore considers few obstacles, even in a world with many.
+/// checked when it is the most promising tangent, and an obstacle is only taken into account once it blocks a
+/// checked tangent. A query therefore considers few obstacles, even in a world with many.
 class LazyVisibility {
  public:
   /// The result belongs to this planner and is valid until its next plan. Deterministic. kUnreachable means
@@ -21,7 +21,7 @@ class LazyVisibility {
   std::vector<Segment> explored_tangents() const;
 
  private:
-  /// A path to an arc on which it arrives in direction `along`.
+  /// A path that arrives at an arc in direction `along`.
   struct Arrival {
     std::uint32_t arc = 0;
     Side side = Side::kLeft;
@@ -61,7 +61,7 @@ class LazyVisibility {
   bool is_arc_free(const DiscDomain& domain, const Arrival& at, double turn_rad, const Vec2& along,
                    double vertex_turn_rad);
   bool is_free(const DiscDomain& domain, const Vec2& from, const Vec2& to);
-  /// Adds the first obstacle that blocks a motion, if it is not known yet.
+  /// Adds the first obstacle that blocks a motion to the known obstacles, unless it is known already.
   void discover(const DiscDomain& domain, const Vec2& from, const Vec2& to);
   /// Hides corners that lie in another obstacle or outside the field, since no shortest path turns at them.
   /// These are corners of the newest obstacle, whose arcs start at `first_arc`, and older corners that it
@@ -76,7 +76,7 @@ class LazyVisibility {
   std::vector<std::uint32_t> last_;      // indexed by arc and side: last arrival
   std::vector<Arrival> candidates_;
   std::vector<OpenEntry> queue_;          // a heap
-  std::vector<std::uint32_t> promising_;  // arcs that may have a tangent from the expanded one
+  std::vector<std::uint32_t> promising_;  // arcs that may have a tangent from the expanded arc
   std::vector<Vec2> vertices_;
   std::vector<std::uint32_t> path_;
   Plan<Vec2> plan_;

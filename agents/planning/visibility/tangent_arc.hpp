@@ -71,7 +71,7 @@ inline bool snap_to_circle(bool is_point, double distance_m, double slack_m, dou
 inline Vec2 tangent_point(const TangentArc& arc, Side side, const Vec2& along) {
   return arc.centre_m - sign(side) * arc.radius_m * left_of(along);
 }
-/// The direction from the arc's centre to that point.
+/// The direction from the arc's centre to the tangent point.
 inline Vec2 tangent_point_direction(Side side, const Vec2& along) { return -sign(side) * left_of(along); }
 
 /// The turn towards a side from one direction to another, in [0, 2 pi). A turn to the other side within

@@ -64,7 +64,7 @@ class TangentGraph {
 
   DiscDomain domain_;
   std::vector<TangentArc> arcs_;  // the start, the goal, then the arcs of the world
-  std::vector<Node> nodes_;       // nodes of the world, then those of the query
+  std::vector<Node> nodes_;       // nodes of the world, then nodes of the query
   std::size_t world_nodes_ = 0;
   std::vector<std::vector<std::uint32_t>> rings_;  // indexed by ring, sorted by angle_rad
   std::vector<std::uint32_t> index_in_ring_;       // indexed by node

@@ -51,8 +51,8 @@ inline bool may_have_tangent(const TangentArc& from, Side from_side, const Tange
   if (!from.is_corner && !to.is_corner) return true;
   const Vec2 between = to.centre_m - from.centre_m;
   const SidePair across = (kSideSigns * to.radius_m - sign(from_side) * from.radius_m).abs();
-  // 1.16 bounds the inverse cosine of angles up to 30 degrees; the last line accepts larger angles. Full
-  // circles have zero directions.
+  // 1.16 is an upper bound of 1 / cos for angles up to 30 degrees; the last line accepts larger angles. For
+  // full circles, `first` and `last` are zero.
   const SidePair tolerance_m = 1.16 * across + slack_m;
   const double departure_slack_m =
       std::min(-sign(from_side) * between.dot(from.first), sign(from_side) * between.dot(from.last));

@@ -59,8 +59,7 @@ void find_blocked_cells(const GridLayout& layout, const Shape& shape, double rad
          column <= clipped(last.x(), layout.columns); ++column) {
       const GridCell cell = layout.cell(column, row);
       const Vec2 centre = layout.centre_of(cell);
-      // The distance of the cell's centre decides for all cells except those near the border of the blocked
-      // region.
+      // The distance of the cell's centre decides, except for cells near the border of the blocked region.
       const double centre_m = signed_distance(centre, shape);
       if (centre_m > distance_m + circumradius_m) continue;
       if (centre_m <= distance_m ||
@@ -82,7 +81,7 @@ void block_occupied(CostGrid& grid, std::span<const std::uint8_t> occupied, doub
     return static_cast<std::int64_t>(std::min(std::sqrt(radius * radius - gap * gap), 1e9)) + 1;
   };
   const std::int64_t columns = layout.columns, rows = layout.rows;
-  // Number of blocked runs that start, minus those that end.
+  // Number of blocked runs that start, minus the number of blocked runs that end.
   std::vector<std::int32_t> starts(layout.columns + 1);
   for (std::int64_t row = 0; row < rows; ++row) {
     std::fill(starts.begin(), starts.end(), 0);

@@ -11,10 +11,10 @@ namespace sidestep {
 
 /// A priority queue whose entries are sorted by key only up to the width of a bucket (untidy priority queue:
 /// Yatziv, Bartesaghi, Sapiro 2006). Within a bucket they come in the order in which they were added. Entries
-/// are never removed before their turn; the user skips entries whose keys have changed. Does not allocate
+/// are never removed before their turn; the caller skips entries whose keys have changed. Does not allocate
 /// once warm.
 ///
-/// A bucket has two lanes, for two kinds of entries: those with and without the flag kSecondLane.
+/// A bucket has two lanes: one for entries without the flag kSecondLane, one for entries with it.
 ///
 /// Buckets cover a window of keys. Entries beyond it wait in a list and are distributed when their turn
 /// comes.
@@ -60,7 +60,7 @@ class BucketQueue {
     }
   }
 
-  /// Moves back if necessary, so that keys from this one upwards can be added.
+  /// Moves the current bucket back if necessary, so that this key and higher keys can be added.
   template <typename KeyOf>
   void rewind(float key, const KeyOf& key_of) {
     if (key >= begin_) {

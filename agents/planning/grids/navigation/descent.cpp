@@ -197,7 +197,7 @@ Vec2 direction_at(const EStar& field, const Vec2& position_m) {
   Vec2 sum(0, 0);
   for (std::size_t i = 0; i < corners.count && !is_at_goal; ++i)
     sum += corners.weights[i] * direction_of(field, corners.cells[i]);
-  // The directions cancel out between two equally good ways around an obstacle: choose one of them.
+  // The directions cancel out between two equally good ways around an obstacle, so one way is chosen.
   if (!is_at_goal && sum.norm() < 1e-9) sum = direction_of(field, corners.cells[0]);
   if (is_at_goal) sum = to_goal;
   const double length = sum.norm();

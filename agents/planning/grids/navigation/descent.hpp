@@ -6,8 +6,8 @@
 namespace sidestep {
 
 /// The direction of steepest descent as a unit vector, interpolated between the centres of cells. Zero at the
-/// goal, in blocked cells, outside the grid, and where the goal cannot be reached. Precondition: values up to
-/// that of the position's cell are final.
+/// goal, in blocked cells, outside the grid, and where the goal cannot be reached. Precondition: all values
+/// up to the value of the position's cell are final.
 [[nodiscard]] Vec2 direction_at(const EStar& field, const Vec2& position_m);
 
 /// Follows the field from a position to the goal and writes the vertices of the path, both ends included. The

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::uint32_t kEverywhere = 0xffffffff;
 
-// An entry of the queue is a cell whose value is lower than its neighbours have taken into account. With this
-// flag, it is a cell that waits to be raised. The key of an entry is the cell's value, or its former value if
-// it waits to be raised.
+// An entry of the queue is a cell whose value was lowered, and whose neighbours do not use the new value yet.
+// With this flag, it is a cell that waits to be raised. The key of an entry is the cell's value, or its
+// former value if it waits to be raised.
 constexpr std::uint32_t kRaise = BucketQueue::kSecondLane;
 
 }  // namespace
@@ -133,7 +133,7 @@ void EStar::update(std::uint32_t at) {
     return;
   }
   if (value == before && !is_unsupported) return;
-  // Its neighbours must learn the value even if it is unchanged, since they have stopped using it.
+  // The neighbours must be updated even if the value is unchanged, because they have stopped using it.
   unsupported_ -= is_unsupported;
   raised_from_[at] = kBlocked;
   values_[at] = value;
@@ -175,7 +175,7 @@ void EStar::apply_changes() {
   changed_.clear();
 }
 
-/// Expands cells in the order of their keys, until this cell, all lower cells, and those up to `beyond`
+/// Expands cells in the order of their keys, until this cell, all lower cells, and all cells up to `beyond`
 /// higher are final.
 template <typename Kernel>
 void EStar::run(std::uint32_t until, float beyond) {

@@ -8,7 +8,7 @@
 namespace sidestep {
 
 enum class GridKernel {
-  kNf1,             ///< number of steps between the four neighbours
+  kNf1,             ///< number of steps; a step leads to one of four neighbours
   kAlpha,           ///< linear interpolation
   kLsm,             ///< fast marching: nearly Euclidean
   kSecondOrderLsm,  ///< more accurate on open floor, but slower
@@ -46,8 +46,8 @@ class EStar {
   void set_cost(GridCell cell, float cost);
   /// Updates all values that are out of date.
   void propagate();
-  /// Updates values until those of this cell, of all lower cells, and of cells that are at most `beyond`
-  /// higher are final; the rest can be updated later.
+  /// Updates values until this cell, all lower cells, and all cells that are at most `beyond` higher have
+  /// final values; the rest can be updated later.
   void propagate_until(GridCell cell, float beyond = 0);
 
   const GridLayout& layout() const { return layout_; }
@@ -67,7 +67,7 @@ class EStar {
 
  private:
   using Entry = BucketQueue::Entry;
-  /// The square of cells around the goal, including the last ones.
+  /// The square of cells around the goal, including its last column and row.
   struct Square {
     std::uint32_t first_column = 0, last_column = 0, first_row = 0, last_row = 0;
   };
@@ -128,12 +128,12 @@ class EStar {
   Vec2 goal_m_{0, 0};
   GridCell goal_ = 0;
   Square disc_;
-  // For the padded rows around the goal; infinite where there is no exact value.
+  // Exact values of the padded rows around the goal; infinite where there is no exact value.
   std::vector<float> exact_;
-  std::uint32_t exact_begin_ = 0;  // first of these cells
+  std::uint32_t exact_begin_ = 0;  // padded index of the first cell in exact_
   bool exact_is_stale_ = false;
   std::vector<LineOfSightDistances> line_of_sight_;  // one element or none
-  // Whether all cells that are not blocked have the same cost; only with lines of sight.
+  // Whether all cells that are not blocked have the same cost; used only with lines of sight.
   bool is_of_one_cost_ = true;
   std::uint64_t expansions_ = 0;
 };

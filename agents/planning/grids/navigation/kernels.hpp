@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-// Kernels compute a cell's value from those of its neighbours. `low` is the lowest value among the four
+// Kernels compute a cell's value from the values of its neighbours. `low` is the lowest value among the four
 // neighbours, `high` the lowest value of the two on the other axis, and lengths are in cells. Every kernel is
 // strictly causal, in floating point too: its result exceeds the values that it uses, and values that are not
 // below the result do not influence it. A field that satisfies the kernel everywhere is therefore unique, so
@@ -15,7 +15,7 @@ namespace sidestep {
 
 // `kReach` is the distance in cells of the farthest neighbours that a kernel uses.
 
-/// Exceeds 1 by so little that multiplying by it rounds to the next greater number or the one after.
+/// Multiplying a positive number by this rounds to the next greater number or the one after.
 inline constexpr float kNextUp = 1 + 0x1p-23f;
 
 /// The step from the lowest neighbour alone.
@@ -33,7 +33,7 @@ struct Nf1Kernel {
   static float value(float low, float, float cost) { return straight_step(low, cost); }
 };
 
-/// For fields in which all values are known exactly.
+/// A placeholder for fields in which all values are known exactly.
 struct NoKernel {
   static constexpr int kReach = 1;
   static float value(float, float, float) { return std::numeric_limits<float>::infinity(); }

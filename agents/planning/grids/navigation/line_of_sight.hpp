@@ -7,10 +7,10 @@
 
 namespace sidestep {
 
-/// Whether `passes(cell)` holds for all cells that a straight segment passes through. A segment through a
-/// common corner of four cells requires, besides the two cells that it crosses, one of the other two. So a
-/// segment may touch a cell's corner but not squeeze between two cells. Positions are in cells from the
-/// grid's origin; returns false if one lies outside the grid.
+/// Whether `passes(cell)` holds for all cells that a straight segment passes through. For a segment through a
+/// common corner of four cells, it must hold for the two cells that the segment crosses and for one of the
+/// other two. So a segment may touch a cell's corner but not squeeze between two cells. Positions are in
+/// cells from the grid's origin; returns false if one lies outside the grid.
 template <typename Passes>
 bool sees(const GridLayout& layout, const Vec2& from, const Vec2& to, const Passes& passes) {
   constexpr double kCorner = 1e-9;  // crossings of two borders this close together are one corner

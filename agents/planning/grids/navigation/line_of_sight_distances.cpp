@@ -119,7 +119,7 @@ void LineOfSightDistances::look_from(Corner corner) {
   }
 }
 
-/// Reaches the corners on a grid line, as far as it is open on one side.
+/// Reaches the corners on a grid line, as far as a cell on either side of the line is open.
 void LineOfSightDistances::look_along(std::int64_t x, std::int64_t y, std::int64_t step_x,
                                       std::int64_t step_y, Corner from) {
   const Vec2 position = this->position(from);

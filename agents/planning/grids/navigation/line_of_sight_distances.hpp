@@ -9,11 +9,11 @@
 
 namespace sidestep {
 
-/// Exact lengths of a point's shortest paths from the centres of open cells to a goal. Such paths turn only
-/// at corners that have exactly one closed cell (taut paths, as in Anya: Harabor et al. 2016), so this is
-/// Dijkstra's algorithm over these corners. From each corner, lines of sight are cast only behind the corner.
-/// Paths may touch closed cells, but not squeeze between two that meet at a corner. Does not allocate once
-/// warm.
+/// Exact lengths of a point robot's shortest paths from the centres of open cells to a goal. Shortest paths
+/// turn only at corners that have exactly one closed cell (taut paths, as in Anya: Harabor et al. 2016), so
+/// Dijkstra's algorithm searches these corners. From each corner, lines of sight are cast only into the space
+/// behind the corner. Paths may touch closed cells, but not squeeze between two closed cells that meet at a
+/// corner. Does not allocate once warm.
 class LineOfSightDistances {
  public:
   /// A corner of cells, or kGoal.
@@ -31,7 +31,7 @@ class LineOfSightDistances {
   float length(GridCell cell) const { return cell_lengths_[cell]; }
   /// The first corner on the path from a cell with a finite length.
   Corner source(GridCell cell) const { return sources_[cell]; }
-  /// The corner that follows a corner which is not the goal.
+  /// The next corner on the path from `corner`. Precondition: `corner` is not the goal.
   Corner next(Corner corner) const { return parents_[corner]; }
   /// The corner's position in cells from the origin.
   Vec2 position(Corner corner) const;

@@ -13,12 +13,12 @@ struct NavigationSettings {
   WorldFieldSettings field = {};
 };
 
-/// Plans paths that descend a navigation function. Keeps the functions of the last two radii or floors: a
-/// replan for the same goal computes only what the start, and obstacles that have changed, require. The path
-/// is the same as that of a newly created planner. Cells are blocked conservatively, so a passage must be up
-/// to three cells wider than the disc; PlanReason::kUnreachable applies to these cells only. Their number
-/// limits the effort. Only the time limit of the budget applies: once it is over, no further way to join the
-/// goal to the grid is tried. Does not allocate once warm.
+/// Plans paths that descend a navigation function. Keeps the functions for the last two radii or floors: a
+/// replan to the same goal computes only the values that a new start or changed obstacles require. The path
+/// is the same as the path of a newly created planner. Cells are blocked conservatively, so a passage must be
+/// up to three cells wider than the disc; PlanReason::kUnreachable applies to these cells only. The number of
+/// cells limits the effort. Of the budget, only the time limit applies: after it, the planner tries no
+/// further way to join the goal to the grid. Does not allocate once warm.
 class NavigationPlanner {
  public:
   explicit NavigationPlanner(const NavigationSettings& settings = {}) : settings_(settings) {}

@@ -13,15 +13,15 @@ struct MovingDisc {
 
 struct RiskSettings {
   double robot_speed_mps = 1;  ///< speed of the robot, to estimate when it reaches a cell
-  double cost = 20;            ///< cost added to a cell that both certainly occupy at the same time
+  double cost = 20;            ///< cost added to a cell that robot and disc certainly occupy at the same time
 };
 
 /// Adds the risk of meeting moving discs to the costs of a grid (the co-occurrence of Philippsen, Kolski,
-/// Macek, Jensfelt 2008, with discs instead of distributions over cells). A disc covers a cell's centre,
-/// together with the robot's radius, during an interval of time. The risk is 1 if the robot's straight drive
-/// would bring it there within the interval, and decreases like a normal distribution with the time from
-/// there to the interval. Without discs the costs are exactly those of the grid. Throws
-/// std::invalid_argument for invalid settings, discs, positions and identifiers.
+/// Macek, Jensfelt 2008, with discs instead of distributions over cells). A disc enlarged by the robot's
+/// radius covers a cell's centre during an interval of time. The risk is 1 if the robot, driving straight,
+/// would arrive at the cell within this interval. Otherwise it decreases like a normal distribution with the
+/// time between the arrival and the interval. Without discs the costs are exactly the costs of the grid.
+/// Throws std::invalid_argument for invalid settings, discs, positions and identifiers.
 class RiskLayer {
  public:
   static constexpr double kRobotRadius_m = 0.25;

@@ -67,7 +67,7 @@ void WorldField::update(const ObstacleWorld& world) {
   for (const Box& bounds_m : obstacles_.changed_bounds()) update_costs_near(world, bounds_m);
 }
 
-/// Runs once per update.
+/// Does nothing if the cell was already updated for this world.
 void WorldField::update_cost(const ObstacleWorld& world, GridCell cell) {
   if (updated_at_[cell] == updates_) return;
   updated_at_[cell] = updates_;

@@ -12,7 +12,7 @@ inline constexpr std::size_t kMaxFieldCells = 250'000;  ///< cells are larger if
 
 struct WorldFieldSettings {
   GridKernel kernel = GridKernel::kLsm;
-  /// Cells cost more if, at their centre, the disc is nearer than this to an obstacle; 0: none do.
+  /// A cell costs more if a disc at its centre is nearer than this to an obstacle; 0: no cell costs more.
   double clearance_m = 0;
   /// Additional cost of a cell where the disc touches. Elsewhere this is multiplied by the square of the
   /// missing fraction of the clearance.
@@ -22,8 +22,8 @@ struct WorldFieldSettings {
 };
 
 /// A grid of square cells for the positions of a disc's centre on a floor. It may leave a margin narrower
-/// than a cell. nullopt if the disc does not fit, or if the floor is too narrow for so few square cells.
-/// Throws std::invalid_argument for invalid settings, floors and radii.
+/// than a cell. nullopt if the disc does not fit, or if the floor is so narrow that it needs more than
+/// kMaxFieldCells square cells. Throws std::invalid_argument for invalid settings, floors and radii.
 [[nodiscard]] std::optional<GridLayout> layout_of(const Field& floor, double radius_m,
                                                   const WorldFieldSettings& settings);
 
@@ -32,7 +32,7 @@ struct WorldFieldSettings {
 /// once warm.
 class WorldField {
  public:
-  /// Precondition: `floor` and `radius_m` are those of the layout.
+  /// Precondition: `layout` was made for `floor` and `radius_m`; see layout_of().
   WorldField(const GridLayout& layout, const Field& floor, double radius_m,
              const WorldFieldSettings& settings = {});
 

@@ -74,7 +74,7 @@ TEST_CASE("nothing is ordered before the referee is heard") {
   system.see_ball();
   system.run_for(3s);
   CHECK(system.orders.empty());
-  CHECK(system.has_logged("no packet of the referee for 2 s: nothing is ordered"));
+  CHECK(system.has_logged("no packet from the referee for 2 s: nothing is ordered"));
 }
 
 TEST_CASE("HALT is ordered immediately and ends with the next command") {
@@ -157,7 +157,7 @@ TEST_CASE("without packets the last command stays in force, and the log says so"
   }
   CHECK(system.book.zones().size() == 2);
   CHECK((*system.ball_zone_m() - system.ball_m).norm() < 0.05);
-  CHECK(std::ranges::count(system.log, "no packet of the referee for 2 s: STOP stays in force") == 1);
+  CHECK(std::ranges::count(system.log, "no packet from the referee for 2 s: STOP stays in force") == 1);
 }
 
 TEST_CASE("world states that are implausible or not from vision do not move the ball") {
