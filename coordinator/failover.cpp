@@ -46,7 +46,7 @@ Failover::Failover(const CoordinatorIdentity& self, bool is_standby, Time now, c
     : self_(self),
       roster_(fleet.roster),
       reception_(fleet.report_period),
-      unheard_at_(now),
+      last_deaf_at_(now),
       last_heartbeat_(now),
       last_update_(now),
       is_starting_(is_standby) {
@@ -56,7 +56,7 @@ Failover::Failover(const CoordinatorIdentity& self, bool is_standby, Time now, c
 void Failover::begin_epoch(Time now, const RoleCause& cause) {
   if (!is_active()) {
     active_since_ = now;
-    has_served_ = has_risen_ = false;
+    has_served_ = has_begun_above_obeyed_ = false;
   }
   serving_since_.reset();
   reception_.forget_requests();
@@ -136,9 +136,9 @@ void Failover::on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId 
   // Once after becoming active, a coordinator begins a new epoch above the obeyed one. If it already grants,
   // has waited for registrations in vain, or is superseded again, it has a rival whose heartbeats do not
   // arrive. It then stands by, each time for twice as long.
-  const bool is_new = now - active_since_ <= kRegistrationTime && !has_risen_;
+  const bool is_new = now - active_since_ <= kRegistrationTime && !has_begun_above_obeyed_;
   if (is_active() && !is_granting && is_new) {
-    has_risen_ = true;
+    has_begun_above_obeyed_ = true;
     return begin_epoch(now, cause);
   }
   if (is_active()) backoff_exponent_ = std::min(backoff_exponent_ + 1, kMaxBackoffExponent);
@@ -165,7 +165,7 @@ Duration Failover::takeover_timeout() const {
 void Failover::update(Time now, bool is_granting) {
   const bool was_set_back = now < last_update_;
   if (was_set_back || now - last_update_ > kPauseThreshold) {
-    last_heartbeat_ = unheard_at_ = now;
+    last_heartbeat_ = last_deaf_at_ = now;
     active_since_ = std::min(active_since_, now);
     serving_since_.reset();
     has_heartbeat_ = false;
@@ -173,9 +173,9 @@ void Failover::update(Time now, bool is_granting) {
   }
   if (was_set_back) reception_.clear();
   last_update_ = now;
-  if (!reception_.hears_robots(now)) unheard_at_ = now;
+  if (!reception_.hears_robots(now)) last_deaf_at_ = now;
   if (is_active()) return observe_own_service(now, is_granting);
-  if (are_heartbeats_lost(now)) return begin_epoch(now, takeover_cause(now));
+  if (is_takeover_due(now)) return begin_epoch(now, takeover_cause(now));
   if (const auto robot = unserved_robot(now))
     begin_epoch(now, {msg::RoleReason::ROLE_EPOCH_OF_AGENT, *robot, Duration{0}, 0});
 }
@@ -192,8 +192,8 @@ void Failover::observe_own_service(Time now, bool is_granting) {
 
 // A coordinator that hears no robots cannot serve them. The stagger keeps several coordinators that hear
 // robots again from taking over simultaneously.
-bool Failover::are_heartbeats_lost(Time now) const {
-  return now - last_heartbeat_ > takeover_timeout() && now - unheard_at_ > kTimeoutStagger * self_.number &&
+bool Failover::is_takeover_due(Time now) const {
+  return now - last_heartbeat_ > takeover_timeout() && now - last_deaf_at_ > kTimeoutStagger * self_.number &&
          !is_served_by_other(now);
 }
 
@@ -204,17 +204,17 @@ bool Failover::is_served_by_other(Time now) const {
 }
 
 std::optional<RobotId> Failover::unserved_robot(Time now) const {
-  if (highest_ == 0 || now - unheard_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
+  if (highest_ == 0 || now - last_deaf_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
   for (const RobotId robot : missing_)
-    if (has_asked_long(robot, kRegistrationTime, now)) return robot;
+    if (is_request_overdue(robot, kRegistrationTime, now)) return robot;
   // Another coordinator may be serving the other agents, so this one must be likely to serve all of them.
   if (!reception_.hears_agents(roster_, now) || !reception_.hears_vision(now)) return std::nullopt;
   for (const RobotId robot : roster_)
-    if (has_asked_long(robot, kServiceTime, now)) return robot;
+    if (is_request_overdue(robot, kServiceTime, now)) return robot;
   return std::nullopt;
 }
 
-bool Failover::has_asked_long(RobotId robot, Duration first, Time now) const {
+bool Failover::is_request_overdue(RobotId robot, Duration first, Time now) const {
   const bool is_at_rest = !reception_.is_fleet_served(kRestTime, now);
   const int failures = is_at_rest ? std::min(failures_, kMaxFailuresAtRest) : failures_;
   const Duration needed = first * (1 << failures);

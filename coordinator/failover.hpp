@@ -89,13 +89,13 @@ class Failover {
   RoleCause takeover_cause(Time now) const;
   void record_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
   void observe_own_service(Time now, bool is_granting);
-  bool are_heartbeats_lost(Time now) const;
+  bool is_takeover_due(Time now) const;
   /// Whether another coordinator grants but its heartbeats do not arrive.
   bool is_served_by_other(Time now) const;
   /// A robot whose agent the active coordinator does not serve, but this coordinator might.
   std::optional<RobotId> unserved_robot(Time now) const;
   /// Whether the agent has asked long enough for this coordinator to take over.
-  bool has_asked_long(RobotId robot, Duration first, Time now) const;
+  bool is_request_overdue(RobotId robot, Duration first, Time now) const;
   /// Whether any agent has asked for a coordinator for this long.
   bool is_any_unserved(Duration min, Time now) const;
 
@@ -104,12 +104,12 @@ class Failover {
   FleetReception reception_;
   std::set<RobotId> missing_;  // robots missing according to the active coordinator's last heartbeat
   Time active_since_{};
-  Time unheard_at_;                    // last time at which this coordinator did not hear the robots
-  std::optional<Time> serving_since_;  // start of the time in which it grants and serves all agents
-  bool has_served_ = false;            // whether serving_since_ was ever set since it became active
-  bool has_risen_ = false;             // since it became active, it has begun an epoch above an obeyed one
-  int failures_ = 0;                   // number of consecutive times that it was active without serving
-  Epoch epoch_ = 0, highest_ = 0;      // own epoch; highest known epoch
+  Time last_deaf_at_;                    // last time at which this coordinator did not hear the robots
+  std::optional<Time> serving_since_;    // start of the time in which it grants and serves all agents
+  bool has_served_ = false;              // whether serving_since_ was ever set since it became active
+  bool has_begun_above_obeyed_ = false;  // since it became active, it has begun an epoch above an obeyed one
+  int failures_ = 0;                     // number of consecutive times that it was active without serving
+  Epoch epoch_ = 0, highest_ = 0;        // own epoch; highest known epoch
   RoleCause cause_;
   Time last_heartbeat_, last_update_;
   std::array<Duration, 32> gaps_{};  // intervals between the latest heartbeats

@@ -44,7 +44,7 @@ void OrderService::on_order(const msg::Order& message) {
   const bool is_to_remember = result == msg::OrderResult::RESULT_REMEMBERED && orders_.book().stands(*order);
   if (!is_to_remember) return answer(message.header().sender(), message.terms().order_number(), result);
   confirmations_.add(*order);
-  if (!is_announced) unheard_.merge(*orders_.book().in_place_of(*order));
+  if (!is_announced) unheard_.merge(*orders_.book().occupant_of(*order));
 }
 
 void OrderService::on_page(const OrderPage& page) {
@@ -58,7 +58,7 @@ void OrderService::on_page(const OrderPage& page) {
   if (orders_.on_page(page)) {
     has_learned_ = true;
     apply();
-    tell_registering_agents();
+    announce_to_registering_agents();
   }
   if (orders_.is_complete() == was_complete) return;
   apply_holds();
@@ -108,7 +108,7 @@ void OrderService::update() {
   update_memory();
   confirm();
   announce_again();
-  tell_registering_agents();
+  announce_to_registering_agents();
 }
 
 void OrderService::begin_epoch() {
@@ -175,7 +175,7 @@ void OrderService::announce_again() {
   unheard_ = {};
 }
 
-void OrderService::tell_registering_agents() {
+void OrderService::announce_to_registering_agents() {
   if (!coordinator_.is_active() || coordinator_.is_granting()) return;
   const bool is_due =
       !announced_at_ || bus_.now() - *announced_at_ > (has_learned_ ? kMinPeriod : kRegisteringPeriod);

@@ -66,7 +66,7 @@ class OrderService {
   void announce_again();
   /// Announces the orders repeatedly while agents have yet to register, because each registers only once it
   /// has received all orders that it remembers.
-  void tell_registering_agents();
+  void announce_to_registering_agents();
 
   Bus& bus_;
   const CoordinatorIdentity self_;

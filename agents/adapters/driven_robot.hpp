@@ -6,7 +6,7 @@
 #include "agents/adapters/commanded_motion.hpp"
 #include "agents/adapters/driver.hpp"
 #include "agents/adapters/measured_motion.hpp"
-#include "agents/adapters/odometry_dates.hpp"
+#include "agents/adapters/odometry_timestamp_check.hpp"
 #include "common/config/scenario.hpp"
 #include "common/protocol/robot_messages.hpp"
 #include "common/robot/robot_side.hpp"
@@ -89,7 +89,7 @@ class DrivenRobot {
   robot::RobotSide<float> side_;
   CommandedMotion commands_;
   MeasuredMotion measured_;
-  OdometryDates odometry_dates_;
+  OdometryTimestampCheck odometry_dates_;
   std::uint64_t misdated_ = 0;
   PoseEstimator estimator_;
   /// Oldest fix that is waiting for the odometry of its capture time, which arrives later.

@@ -46,10 +46,10 @@ void Agent::choose_order() {
   if (orders_.choose()) planner_.on_new_goal();
 }
 
-bool Agent::is_unserved(Time now) const {
-  if (negotiation_.is_unserved(now)) return true;
+bool Agent::needs_other_coordinator(Time now) const {
+  if (negotiation_.needs_other_coordinator(now)) return true;
   return negotiation_.may_propose(now) && !negotiation_.is_absent() &&
-         observations_.is_only_coordinator_blind(now);
+         observations_.is_coordinator_without_vision(now);
 }
 
 Registration Agent::registration() {

@@ -59,19 +59,21 @@ class Agent {
   Incarnation incarnation() const { return negotiation_.incarnation(); }
   Epoch epoch() const { return negotiation_.epoch(); }
   bool is_superseded() const { return negotiation_.is_superseded(); }
-  bool must_ask_robot() const { return negotiation_.must_ask_robot(); }
+  bool must_query_robot() const { return negotiation_.must_query_robot(); }
   bool needs_registration() const { return negotiation_.needs_registration(); }
   bool is_fenced() const { return negotiation_.is_fenced(); }
   /// Whether the active coordinator has announced all orders that this agent remembers. The agent registers
   /// only then, so that no remembered order is lost.
-  bool is_told_all_orders() const { return orders_.is_told_all_orders(negotiation_.epoch()); }
+  bool coordinator_knows_all_orders() const {
+    return orders_.coordinator_knows_all_orders(negotiation_.epoch());
+  }
   bool may_propose(Time now) const { return negotiation_.may_propose(now); }
   bool has_upcoming_version(Time now) const { return negotiation_.has_upcoming_version(now); }
 
   Registration registration();
   void on_request(Time now) { negotiation_.on_request(now); }
   /// Whether the agent should ask for another coordinator, because the present coordinator does not serve it.
-  bool is_unserved(Time now) const;
+  bool needs_other_coordinator(Time now) const;
   /// See Negotiation.
   Registration epoch_notice() const { return negotiation_.epoch_notice(); }
   /// The earliest start for a new version: the next cycle, or a later one on a slow network.

@@ -175,7 +175,7 @@ void AgentNode::on_orders(const msg::OrderMemory& message) {
   agent_.on_orders(page);
   if (agent_.is_superseded()) return;
   orders_.on_page(*page, agent_);
-  if (agent_.needs_registration() && agent_.is_told_all_orders()) registration_wait_ = 0;
+  if (agent_.needs_registration() && agent_.coordinator_knows_all_orders()) registration_wait_ = 0;
   register_if_due();
 }
 
@@ -187,7 +187,7 @@ void AgentNode::begin_cycle() {
   schedule_next_cycle();
   agent_.close_cycle(now);
   report_changes();
-  if (agent_.must_ask_robot()) publish_command(agent_.command(now));
+  if (agent_.must_query_robot()) publish_command(agent_.command(now));
   if (agent_.is_superseded()) return;
   agent_.choose_order();
   orders_.confirm_orders(agent_);
@@ -235,13 +235,13 @@ void AgentNode::schedule_next_cycle() {
 
 void AgentNode::register_if_due() {
   const bool needs_registration = agent_.needs_registration();
-  if (!needs_registration && !agent_.is_unserved(robot_now())) {
+  if (!needs_registration && !agent_.needs_other_coordinator(robot_now())) {
     registration_wait_ = 0;
     return;
   }
   if (registration_wait_ > 0) return;
   registration_wait_ = needs_registration ? kCyclesBetweenRegistrations : kCyclesBetweenRequests;
-  const bool may_register = agent_.is_told_all_orders();
+  const bool may_register = agent_.coordinator_knows_all_orders();
   publish(may_register ? agent_.registration() : agent_.epoch_notice());
 }
 

@@ -87,7 +87,7 @@ void AnnouncedOrders::compare(const Round& round, const OrderBook& own) {
   changes_.push_back(std::make_shared<const OrderPage>(std::move(kept)));
 }
 
-bool AnnouncedOrders::is_told_by(std::uint32_t coordinator, Incarnation incarnation) const {
+bool AnnouncedOrders::has_announced_all_orders(std::uint32_t coordinator, Incarnation incarnation) const {
   const auto found = told_by_.find(coordinator);
   return found != told_by_.end() && found->second == incarnation;
 }

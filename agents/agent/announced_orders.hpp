@@ -38,7 +38,7 @@ class AnnouncedOrders {
   std::vector<RememberedOrder> take_missing() { return std::exchange(missing_, {}); }
   /// Whether the coordinator process with this incarnation has announced every order that is remembered here.
   /// A running coordinator forgets no order.
-  bool is_told_by(std::uint32_t coordinator, Incarnation incarnation) const;
+  bool has_announced_all_orders(std::uint32_t coordinator, Incarnation incarnation) const;
 
  private:
   using Round = std::vector<std::shared_ptr<const OrderPage>>;
@@ -57,7 +57,7 @@ class AnnouncedOrders {
   Round changes_;                                 // orders that told_ lacks, and later changes
   bool has_progressed_ = false;                   // since that memory was heard
   std::map<std::uint32_t, Round> rounds_;         // by coordinator: memories whose pages are still arriving
-  std::map<std::uint32_t, Incarnation> told_by_;  // see is_told_by()
+  std::map<std::uint32_t, Incarnation> told_by_;  // see has_announced_all_orders()
   std::vector<RememberedOrder> missing_;
 };
 

@@ -49,7 +49,7 @@ OrderReport Assignment::report() const {
 }
 
 bool Assignment::yields_to(const PassageContender& other, Time t, Duration period) const {
-  return may_pass_first(other, {robot_, number_}, t, period);
+  return other_passes_first(other, {robot_, number_}, t, period);
 }
 
 OtherAssignment Assignment::other(RobotId robot) const {
@@ -59,7 +59,7 @@ OtherAssignment Assignment::other(RobotId robot) const {
   for (const Rank rank : kFromHighestRank) {
     const RememberedOrder* order = book.drive_order(robot, rank);
     if (!is_to_do(order)) continue;
-    other.has_to_go = true;
+    other.has_drive_order = true;
     other.number = order->order.number;
     const std::vector<Goal>& goals = order->order.goals;
     if (order->progress.goal_index < goals.size())

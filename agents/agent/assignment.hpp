@@ -18,7 +18,7 @@ namespace sidestep {
 /// What is known about another robot's orders.
 struct OtherAssignment {
   bool is_held = false;
-  bool has_to_go = false;        ///< it has an unfinished order to drive
+  bool has_drive_order = false;  ///< it has an unfinished order to drive
   OrderNumber number = 0;        ///< number of that order
   std::optional<Vec2> goal_m{};  ///< goal of that order; nullopt if the goal is given by the scenario
 };
@@ -60,16 +60,16 @@ class Assignment {
   std::uint64_t zone_revision() const { return zone_revision_; }
   /// What is known about another robot's orders.
   OtherAssignment other(RobotId robot) const;
-  /// Whether the other robot goes first where the two cannot pass each other; see may_pass_first().
+  /// Whether the other robot goes first where the two cannot pass each other; see other_passes_first().
   bool yields_to(const PassageContender& other, Time t, Duration period) const;
 
   /// All orders, including those of other robots.
   std::vector<RememberedOrder> all() const { return announced_.with(book_).all(); }
-  bool remembers_nothing() const { return announced_.is_empty() && book_.empty(); }
+  bool has_no_orders() const { return announced_.is_empty() && book_.empty(); }
   /// See AnnouncedOrders.
   std::vector<RememberedOrder> take_missing() { return announced_.take_missing(); }
-  bool is_told_by(std::uint32_t coordinator, Incarnation incarnation) const {
-    return announced_.is_told_by(coordinator, incarnation);
+  bool has_announced_all_orders(std::uint32_t coordinator, Incarnation incarnation) const {
+    return announced_.has_announced_all_orders(coordinator, incarnation);
   }
 
  private:

@@ -38,7 +38,7 @@ void Fencing::on_later_agent(const RobotReport& robot_report, bool is_current) {
 }
 
 Fencing::ReportUse Fencing::on_robot_report(const RobotReport& robot_report) {
-  unheard_cycles_ = 0;
+  cycles_since_report_ = 0;
   ReportUse use;
   update_incarnation(robot_report, use);
   if (robot_report.obeyed_incarnation > incarnation_) {
@@ -50,7 +50,7 @@ Fencing::ReportUse Fencing::on_robot_report(const RobotReport& robot_report) {
   // A robot never returns to an earlier agent, so a later report that acknowledges this agent proves that the
   // report about another agent was false.
   if (superseded_at_ && use.is_current && robot_report.valid_at > *superseded_at_) superseded_at_.reset();
-  silent_cycles_ = 0;
+  cycles_since_acknowledgement_ = 0;
   robot_epoch_ = std::max(robot_epoch_, robot_report.obeyed_epoch);
   use.is_first = !is_fenced() && use.is_current;
   if (use.is_first) {
@@ -60,13 +60,13 @@ Fencing::ReportUse Fencing::on_robot_report(const RobotReport& robot_report) {
   return use;
 }
 
-bool Fencing::must_ask_robot(Duration cycle) const {
-  return is_superseded() && unheard_cycles_ * cycle > kMaxUnheard;
+bool Fencing::must_query_robot(Duration cycle) const {
+  return is_superseded() && cycles_since_report_ * cycle > kMaxUnheard;
 }
 
 void Fencing::close_cycle() {
-  ++unheard_cycles_;
-  ++silent_cycles_;
+  ++cycles_since_report_;
+  ++cycles_since_acknowledgement_;
 }
 
 }  // namespace sidestep

@@ -40,9 +40,9 @@ class Fencing {
   /// Whether the robot's last report acknowledged a later agent, and the robot has been silent for half a
   /// second since. Commands continue in this case, because they carry the pose fixes without which a robot
   /// cannot report which agent it obeys. If the robot does obey a later agent, it refuses the commands.
-  bool must_ask_robot(Duration cycle) const;
+  bool must_query_robot(Duration cycle) const;
   /// Number of cycles since the last report that acknowledges this agent.
-  int silent_cycles() const { return silent_cycles_; }
+  int cycles_since_acknowledgement() const { return cycles_since_acknowledgement_; }
 
  private:
   void update_incarnation(const RobotReport& robot_report, ReportUse& use);
@@ -54,8 +54,8 @@ class Fencing {
   Epoch robot_epoch_ = 0, former_epoch_ = 0;
   Incarnation robot_incarnation_ = 0;       // report times of different incarnations are not compared
   int reports_of_earlier_incarnation_ = 0;  // number of consecutive reports
-  int unheard_cycles_ = 0;                  // number of cycles since the last report about any agent
-  int silent_cycles_ = 0;
+  int cycles_since_report_ = 0;             // number of cycles since the last report about any agent
+  int cycles_since_acknowledgement_ = 0;
 };
 
 }  // namespace sidestep

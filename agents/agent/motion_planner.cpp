@@ -122,7 +122,8 @@ std::optional<MotionPlan> MotionPlanner::follow_intent(const Query& query, const
                                                        const State& at_start, const Route& route) {
   Observations& seen = query.observations;
   const RobotLaser* laser = seen.laser();
-  if (laser && !laser->sight().visibility().is_before_frontiers(at_start.position_m)) return std::nullopt;
+  if (laser && !laser->sight().visibility().is_enclosed_by_frontiers(at_start.position_m))
+    return std::nullopt;
   const double max_speed = max_speed_mps(query, at_start);
   const double dead_reckoning_m = seen.own().dead_reckoning_m(at_start.position_m);
   const double length_m = std::min(route.length_m, dead_reckoning_m);

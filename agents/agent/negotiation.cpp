@@ -66,7 +66,7 @@ void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Ti
   contact_.on_heartbeat(heartbeat, robot_, now);
 }
 
-bool Negotiation::is_unserved(Time now) const {
+bool Negotiation::needs_other_coordinator(Time now) const {
   if (!is_fenced() || is_superseded() || fencing_.robot_epoch() != epoch_) return false;
   if (epoch_ == 0) return now - *fencing_.fenced_at() >= kMaxStartTime;
   return contact_.is_failing(now);
@@ -80,7 +80,7 @@ WaitReason Negotiation::wait_reason(Time now) const {
   if (registration_pending_) return WaitReason::kNotRegistered;
   if (!contact_.is_granting())
     return contact_.is_robot_missing() ? WaitReason::kNotRegistered : WaitReason::kOthersNotRegistered;
-  if (fencing_.silent_cycles() > lead() + kMaxSilentCycles) return WaitReason::kRobotSilent;
+  if (fencing_.cycles_since_acknowledgement() > lead() + kMaxSilentCycles) return WaitReason::kRobotSilent;
   if (held_.is_full()) return WaitReason::kTooManyVersions;
   return WaitReason::kNone;
 }

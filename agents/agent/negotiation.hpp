@@ -55,7 +55,7 @@ class Negotiation {
   bool is_absent() const { return is_fenced() && !held_.is_executing(); }
   /// Whether the robot obeys a later agent, so that this agent stays silent.
   bool is_superseded() const { return fencing_.is_superseded(); }
-  bool must_ask_robot() const { return fencing_.must_ask_robot(cycle_); }
+  bool must_query_robot() const { return fencing_.must_query_robot(cycle_); }
   /// Whether the agent must register. It registers only after the robot has acknowledged the epoch. So an
   /// agent that the robot does not obey cannot register, and no later agent of the robot can return to an
   /// older coordinator.
@@ -85,7 +85,7 @@ class Negotiation {
   /// Whether the agent should ask for another coordinator by repeating its registration. It should if it
   /// hears no active coordinator, if the coordinator does not answer, or if the coordinator does not know
   /// which versions the robot executes.
-  bool is_unserved(Time now) const;
+  bool needs_other_coordinator(Time now) const;
 
   Registration registration();
   /// Records that a request which the coordinator will answer has been sent.

@@ -70,7 +70,7 @@ WaitReason Observations::wait_reason(Time now) const {
   return WaitReason::kNone;
 }
 
-bool Observations::is_only_coordinator_blind(Time now) const {
+bool Observations::is_coordinator_without_vision(Time now) const {
   const bool is_watched = is_recent(watched_until_, now, kMaxWatchAge);
   return is_recent(last_fix_, now, kMaxFixAge) && !is_watched;
 }

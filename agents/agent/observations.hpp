@@ -41,7 +41,7 @@ class Observations {
   /// observations are recent.
   WaitReason wait_reason(Time now) const;
   /// Whether vision works, but the coordinator does not receive it.
-  bool is_only_coordinator_blind(Time now) const;
+  bool is_coordinator_without_vision(Time now) const;
   /// Whether the robot is at rest at the end of `base`, and vision agrees with the robot's own position
   /// estimate. A version that starts there needs no inflation.
   bool may_end_inflation(const Version& base, Time start) const;

@@ -47,9 +47,10 @@ bool OrderExecution::begin_if_changed(std::uint64_t revision) {
   return true;
 }
 
-bool OrderExecution::is_told_all_orders(Epoch epoch) const {
-  if (assignment_.remembers_nothing()) return true;
-  return in_charge_.epoch == epoch && assignment_.is_told_by(in_charge_.coordinator, in_charge_.incarnation);
+bool OrderExecution::coordinator_knows_all_orders(Epoch epoch) const {
+  if (assignment_.has_no_orders()) return true;
+  return in_charge_.epoch == epoch &&
+         assignment_.has_announced_all_orders(in_charge_.coordinator, in_charge_.incarnation);
 }
 
 }  // namespace sidestep

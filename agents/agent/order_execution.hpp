@@ -42,11 +42,11 @@ class OrderExecution {
   bool has_arrived() const { return has_arrived_; }
   double desired_heading_rad() const { return desired_heading_rad_; }
   /// Whether the coordinator that is active in this epoch has announced all orders that are remembered here.
-  bool is_told_all_orders(Epoch epoch) const;
+  bool coordinator_knows_all_orders(Epoch epoch) const;
 
  private:
   /// The coordinator that was last heard in its epoch.
-  struct Charge {
+  struct CoordinatorInCharge {
     std::uint32_t coordinator = 0;
     Incarnation incarnation = 0;
     Epoch epoch = 0;
@@ -58,7 +58,7 @@ class OrderExecution {
   double goal_tolerance_m_;
   double start_heading_rad_;
   Assignment assignment_;
-  Charge in_charge_;
+  CoordinatorInCharge in_charge_;
   double desired_heading_rad_;
   bool has_arrived_ = false;
 };

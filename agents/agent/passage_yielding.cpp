@@ -50,7 +50,7 @@ std::vector<OtherRobot> PassageYielding::others_in_passages(Time now, Observatio
   for (const RobotId robot : give_way_.yields_to()) {
     const OtherAssignment orders = assignment.other(robot);
     const bool is_near = std::ranges::any_of(others, [=](const auto& other) { return other.id == robot; });
-    if (!is_near && orders.has_to_go && !orders.is_held) others.push_back({robot, false});
+    if (!is_near && orders.has_drive_order && !orders.is_held) others.push_back({robot, false});
   }
   return others;
 }

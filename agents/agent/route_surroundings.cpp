@@ -89,7 +89,7 @@ std::vector<Circle> RouteSurroundings::find_moving(const Vec2& target, Time now,
 bool RouteSurroundings::will_stay(const Neighbours::Stationary& other, const Assignment& assignment,
                                   const Vec2& position) const {
   const OtherAssignment orders = assignment.other(other.robot);
-  if (orders.is_held || !orders.has_to_go) return true;
+  if (orders.is_held || !orders.has_drive_order) return true;
   // The other robot waits as near to its goal as it can get. But if this robot is what blocks it, one of the
   // two must move.
   const bool waits = other.intent && (other.position_m - other.intent->goal_m).norm() < kNeighbourAtGoal_m;

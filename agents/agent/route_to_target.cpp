@@ -25,7 +25,7 @@ void RouteToTarget::set_zones(std::span<const Order> zones) {
 
 std::optional<Route> RouteToTarget::find(const Query& query, std::span<const TemporaryObstacle> temporary,
                                          Rng& rng) {
-  begin_if_due(query, temporary);
+  replan_if_due(query, temporary);
   const Vec2& target = query.target_m;
   const Route straight{target, target, (target - query.start_m).norm(), target};
   const std::optional<Route> found = route_planner_->route_from(query.start_m, rng);
@@ -35,7 +35,7 @@ std::optional<Route> RouteToTarget::find(const Query& query, std::span<const Tem
   return route;
 }
 
-void RouteToTarget::begin_if_due(const Query& query, std::span<const TemporaryObstacle> temporary) {
+void RouteToTarget::replan_if_due(const Query& query, std::span<const TemporaryObstacle> temporary) {
   if (!route_planner_) {
     obstacles_.emplace(rules_, zones_);
     route_planner_.emplace(planner_, obstacles_->world(), rules_.field, rules_.radius_m, rules_.margin_m,

@@ -64,7 +64,7 @@ class RouteToTarget {
  private:
   /// Starts a new route if the target or the zones have changed. Also starts one if temporary obstacles have
   /// changed, unless the last route is free and recent.
-  void begin_if_due(const Query& query, std::span<const TemporaryObstacle> temporary);
+  void replan_if_due(const Query& query, std::span<const TemporaryObstacle> temporary);
 
   const NamedPlanner planner_;
   const FloorRules& rules_;

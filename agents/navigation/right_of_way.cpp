@@ -21,7 +21,8 @@ bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period) {
   return (other < self) == is_low_first;
 }
 
-bool may_pass_first(const PassageContender& other, const PassageContender& self, Time t, Duration period) {
+bool other_passes_first(const PassageContender& other, const PassageContender& self, Time t,
+                        Duration period) {
   const std::uint64_t number = number_of_period(t, period);
   if (other.order != self.order && number % kRandomPeriod != 0) return other.order < self.order;
   const auto rank = [&](RobotId robot) { return std::pair(Rng((number << 16) + robot).bits(), robot); };

@@ -23,7 +23,7 @@ struct PassageContender {
 /// periods. The older order goes first: no robot waits for more orders than were given before its own. Robots
 /// with the same number, and in every fourth period all robots, go in a random order that is drawn again in
 /// each period, because the robot with the oldest order may be unable to drive.
-[[nodiscard]] bool may_pass_first(const PassageContender& other, const PassageContender& self, Time t,
-                                  Duration period);
+[[nodiscard]] bool other_passes_first(const PassageContender& other, const PassageContender& self, Time t,
+                                      Duration period);
 
 }  // namespace sidestep

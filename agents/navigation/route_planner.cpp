@@ -76,8 +76,8 @@ DiscDomain RoutePlanner::domain(const Vec2& start, const Vec2& goal) const {
 }
 
 bool RoutePlanner::is_line_free(const Vec2& from, const Vec2& to) const {
-  using ForChecks = DiscDomain::ForChecks;
-  return DiscDomain(ForChecks(), *world_, extended_field(), clearance_m_, from, domain_settings_)
+  using WithoutGoal = DiscDomain::WithoutGoal;
+  return DiscDomain(WithoutGoal(), *world_, extended_field(), clearance_m_, from, domain_settings_)
       .check(from, to);
 }
 
@@ -110,7 +110,7 @@ bool RoutePlanner::follow(const NamedPlanner& planner, const DiscDomain& domain,
   if (planner.is_shortest) {
     take(plan);
   } else if (planner.keeps_clear) {
-    take_straightened(plan.states);
+    store_straightened(plan.states);
   } else {
     Plan<Vec2> smoothed = plan;
     LeaderFollower<DiscDomain>().smooth(domain, smoothed);
@@ -119,7 +119,7 @@ bool RoutePlanner::follow(const NamedPlanner& planner, const DiscDomain& domain,
   return !waypoints_.empty();
 }
 
-void RoutePlanner::take_straightened(std::span<const Vec2> path) {
+void RoutePlanner::store_straightened(std::span<const Vec2> path) {
   waypoints_.clear();
   for (std::size_t from = 0; from + 1 < path.size();) {
     std::size_t to = from + 1;
@@ -170,11 +170,11 @@ std::optional<Route> RoutePlanner::route_from(const Vec2& start, Rng& rng) {
   is_cut_short_ = false;
   bool is_found = find_detour(*planner_, start, rng) || (exact_ && find_detour(*exact_, start, rng)) ||
                   find_route(*planner_, start, rng);
-  if (!is_found && exact_ && !may_go_on()) {
+  if (!is_found && exact_ && !may_continue_search()) {
     is_cut_short_ = false;
     is_found = find_route(*exact_, start, rng);
   }
-  if (!is_found && may_go_on()) {
+  if (!is_found && may_continue_search()) {
     samples_ *= 2;
     is_searching_ = true;
     return std::nullopt;

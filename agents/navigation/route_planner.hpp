@@ -88,14 +88,14 @@ class RoutePlanner {
   /// there on.
   std::optional<std::size_t> far_waypoint(const Vec2& start_m) const;
   /// Whether a search in this cycle has spent its budget and may be continued with a larger one in the next.
-  bool may_go_on() const { return is_cut_short_ && samples_ < kMostSamples; }
+  bool may_continue_search() const { return is_cut_short_ && samples_ < kMaxTotalSamples; }
   Budget budget(const NamedPlanner& planner) const;
   bool may_skip_waypoint(const Vec2& start_m) const;
   /// Plans a new route to the nearest place that can be reached.
   bool replan_to_nearest(const Vec2& start_m, double clearance_m, Rng& rng);
   bool find_route_to_nearest(const Vec2& start_m, Rng& rng);
   /// Stores a path without the states that lie almost on a straight line.
-  void take_straightened(std::span<const Vec2> path_m);
+  void store_straightened(std::span<const Vec2> path_m);
   bool follow(const NamedPlanner& planner, const DiscDomain& domain, const Plan<Vec2>& plan);
   /// The planner whose failure proves that there is no path.
   const NamedPlanner& exact() const { return exact_ ? *exact_ : *planner_; }
@@ -112,7 +112,7 @@ class RoutePlanner {
   static constexpr std::size_t kCycleSamples = 5000;
   /// Maximum samples per search: enough for buildings of 100 by 100 m. Without a route, the robot heads
   /// straight for its goal while that is safe.
-  static constexpr std::size_t kMostSamples = 64 * kCycleSamples;
+  static constexpr std::size_t kMaxTotalSamples = 64 * kCycleSamples;
 
   const ObstacleWorld* world_;
   Field field_;

@@ -22,7 +22,7 @@ VisibilitySettings visibility_settings(const LaserSpec& laser, const FloorRules&
                                        const LaserSightSettings& settings) {
   const double clear_m = rules.margin_m - settings.position_error_m;
   return {laser.person_radius_m, laser.range_error_m, settings.position_error_m, settings.heading_error_rad,
-          untouched_distance_m(rules.radius_m, clear_m, laser.person_radius_m)};
+          min_contact_distance_m(rules.radius_m, clear_m, laser.person_radius_m)};
 }
 
 }  // namespace

@@ -72,13 +72,13 @@ bool LaserTracks::is_explained(const Vec2& hit, const LocalGrid& grid) const {
     const Duration occupied_for = grid.occupied_for(cell);
     is_found = is_found || (occupied_for >= kStandingAfter &&
                             signed_distance(hit, grid.box_of(cell)) <= kExplainedWithin_m &&
-                            !is_of_mover(hit, grid.updated_at() - occupied_for));
+                            !is_of_moving_track(hit, grid.updated_at() - occupied_for));
   });
   return is_found;
 }
 
 /// Whether a track that has moved is at the hit, so that the object may have come there recently.
-bool LaserTracks::is_of_mover(const Vec2& hit, Time occupied_since) const {
+bool LaserTracks::is_of_moving_track(const Vec2& hit, Time occupied_since) const {
   return std::ranges::any_of(entries_, [&](const Entry& entry) {
     const double reach_m = entry.radius_m + kTrackSlack_m;
     return entry.has_moved() && occupied_since >= entry.started_at &&

@@ -65,7 +65,7 @@ class LaserTracks {
 
   void classify(const LaserBeams& beams, const LocalGrid& grid, const PriorMap& floor);
   bool is_explained(const Vec2& hit_m, const LocalGrid& grid) const;
-  bool is_of_mover(const Vec2& hit_m, Time occupied_since) const;
+  bool is_of_moving_track(const Vec2& hit_m, Time occupied_since) const;
   Vec2 predicted_m(const Entry& entry) const;
   Vec2 centre_m(const ScanCluster& cluster, double radius_m) const;
   bool is_trackable(const ScanCluster& cluster) const;

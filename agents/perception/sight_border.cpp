@@ -14,7 +14,8 @@ constexpr double kHalfTurn_rad = std::numbers::pi - 1e-6;
 
 }  // namespace
 
-void SightBorder::build(std::span<const SightRay> rays, const Vec2& at, double radius_m, double untouched_m) {
+void SightBorder::build(std::span<const SightRay> rays, const Vec2& at, double radius_m,
+                        double min_contact_m) {
   at_m_ = at;
   wedges_.clear();
   frontiers_.clear();
@@ -27,14 +28,14 @@ void SightBorder::build(std::span<const SightRay> rays, const Vec2& at, double r
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const SightRay &ray = rays[i], &next = rays[(i + 1) % rays.size()];
     const std::optional<ClosedGap> gap = closed_gap(ray, next, radius_m);
-    wedges_.push_back(gap ? closed_wedge(ray, next, *gap, untouched_m) : open_wedge(ray, next, radius_m));
+    wedges_.push_back(gap ? closed_wedge(ray, next, *gap, min_contact_m) : open_wedge(ray, next, radius_m));
     wedges_.back().angle_rad = ray.angle_rad - rays.front().angle_rad;
   }
 }
 
 SightBorder::Wedge SightBorder::closed_wedge(const SightRay& ray, const SightRay& next, const ClosedGap& gap,
-                                             double untouched_m) {
-  const double bulge_m = gap.reach_m < untouched_m ? 0 : gap.bulge_m;
+                                             double min_contact_m) {
+  const double bulge_m = gap.reach_m < min_contact_m ? 0 : gap.bulge_m;
   closed_.push_back({{at_m_ + gap.posts.from_m, at_m_ + gap.posts.to_m}, bulge_m});
   const Vec2 from = ray.free_m * ray.direction, to = next.free_m * next.direction;
   const Vec2 normal = left_of(from - to).normalized();

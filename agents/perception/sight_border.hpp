@@ -12,8 +12,8 @@ namespace sidestep {
 class SightBorder {
  public:
   /// `radius_m` is the radius of the smallest person. No robot can touch a person at a place nearer than
-  /// `untouched_m` to a stationary object. Does not allocate once warm.
-  void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double untouched_m);
+  /// `min_contact_m` to a stationary object. Does not allocate once warm.
+  void build(std::span<const SightRay> rays, const Vec2& at_m, double radius_m, double min_contact_m);
 
   /// Whether a point is in the region. False within a nanometre of the border.
   [[nodiscard]] bool contains(const Vec2& p) const;
@@ -31,7 +31,7 @@ class SightBorder {
     double height_m;
   };
 
-  Wedge closed_wedge(const SightRay& ray, const SightRay& next, const ClosedGap& gap, double untouched_m);
+  Wedge closed_wedge(const SightRay& ray, const SightRay& next, const ClosedGap& gap, double min_contact_m);
   Wedge open_wedge(const SightRay& ray, const SightRay& next, double radius_m);
   void add_frontier(const Vec2& from_m, const Vec2& to_m, double bulge_m);
 

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-double untouched_distance_m(double robot_radius_m, double clear_m, double person_radius_m) {
+double min_contact_distance_m(double robot_radius_m, double clear_m, double person_radius_m) {
   const double clear2_m2 = clear_m * (2 * robot_radius_m + clear_m);
   return clear_m > 0 ? std::sqrt(clear2_m2 * person_radius_m / (person_radius_m + robot_radius_m)) : 0;
 }
@@ -19,7 +19,7 @@ Visibility::Visibility(const VisibilitySettings& settings) : settings_(settings)
     throw std::invalid_argument("the error of ranges is negative or not finite");
   if (!is_error(settings.position_error_m) || !is_error(settings.heading_error_rad))
     throw std::invalid_argument("the error of a scan's pose is negative or not finite");
-  if (!is_error(settings.untouched_m))
+  if (!is_error(settings.min_contact_m))
     throw std::invalid_argument("the distance within which no person is touched is negative or not finite");
 }
 
@@ -42,9 +42,9 @@ void Visibility::set_post(SightRay& ray, const Vec2& post_m) const {
 
 void Visibility::finish() {
   const double radius_m = settings_.person_radius_m;
-  seen_.build(rays_, at_m_, radius_m, settings_.untouched_m);
+  seen_.build(rays_, at_m_, radius_m, settings_.min_contact_m);
   drop_rays_within_gaps(rays_, radius_m);
-  reach_.build(rays_, at_m_, radius_m, settings_.untouched_m);
+  reach_.build(rays_, at_m_, radius_m, settings_.min_contact_m);
 }
 
 }  // namespace sidestep

@@ -13,7 +13,7 @@ struct VisibilitySettings {
   // scan's frame.
   double position_error_m = 0;
   double heading_error_rad = 0;
-  double untouched_m = 0;  ///< no contact with a person is nearer than this to known stationary objects
+  double min_contact_m = 0;  ///< no contact with a person is nearer than this to known stationary objects
 };
 
 /// A lower bound of the distance between known stationary objects and the place where a robot can touch a
@@ -24,7 +24,7 @@ struct VisibilitySettings {
 /// the nearest point of a stationary object, and a the component of PQ towards the person's centre. The
 /// person does not overlap Q, so PQ² >= 2 a r. The robot stays clear of Q, so PQ² >= c (2 ρ + c) - 2 a ρ. The
 /// larger of these two bounds is smallest where they are equal.
-[[nodiscard]] double untouched_distance_m(double robot_radius_m, double clear_m, double person_radius_m);
+[[nodiscard]] double min_contact_distance_m(double robot_radius_m, double clear_m, double person_radius_m);
 
 /// The floor that a robot did not see in its last scan, and the places where a person may step out.
 ///
@@ -60,7 +60,7 @@ struct VisibilitySettings {
 /// radius that ends at y. The disc does not overlap Q, so y is at most sqrt(2 r (r - sqrt(r² - w²))) from Q,
 /// which is little more than w. It also protrudes through a gap between two posts by no more than the
 /// sagitta. So a closed gap is a frontier that does not grow, unless y is so near to Q that no robot touches
-/// a person there: see untouched_distance_m(). agents/safety/hidden_space.hpp uses this to check
+/// a person there: see min_contact_distance_m(). agents/safety/hidden_space.hpp uses this to check
 /// trajectories.
 class Visibility {
  public:
@@ -82,7 +82,7 @@ class Visibility {
   /// Whether no hidden person covered the point at the time of the scan. Never falsely true.
   [[nodiscard]] bool was_seen_free(const Vec2& p) const { return seen_.contains(p); }
   /// Whether people can reach the point only through frontiers or closed gaps. Never falsely true.
-  [[nodiscard]] bool is_before_frontiers(const Vec2& p) const { return reach_.contains(p); }
+  [[nodiscard]] bool is_enclosed_by_frontiers(const Vec2& p) const { return reach_.contains(p); }
   /// Places where people may step out, sorted counter-clockwise around the scanner.
   std::span<const Frontier> frontiers() const { return reach_.frontiers(); }
   /// Gaps between known stationary objects that are too narrow for people.

@@ -82,11 +82,11 @@ PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, plan
 /// The settings used by the agents.
 DiscDomainSettings shipped_domain(const Field&, double) { return {}; }
 /// Settings that match OMPL: its range, and uniform samples only.
-DiscDomainSettings namesake_domain(const Field& field, double radius) {
-  return {.step_m = namesake_range_m(field, radius), .contact_probability = 0};
+DiscDomainSettings ompl_domain(const Field& field, double radius) {
+  return {.step_m = ompl_range_m(field, radius), .contact_probability = 0};
 }
 DiscDomainSettings border_sampling_domain(const Field& field, double radius) {
-  DiscDomainSettings settings = namesake_domain(field, radius);
+  DiscDomainSettings settings = ompl_domain(field, radius);
   settings.contact_probability = DiscDomainSettings{}.contact_probability;
   return settings;
 }
@@ -120,7 +120,7 @@ Factory shipped(Arguments... arguments) {
 
 /// RRT as in OMPL.
 constexpr ErrtSettings kRrt{
-    .goal_probability = kNamesakeGoalBias, .cache_capacity = 0, .tries_straight_line = false};
+    .goal_probability = kOmplGoalBias, .cache_capacity = 0, .tries_straight_line = false};
 ErrtSettings rrt_with(void (*change)(ErrtSettings&)) {
   ErrtSettings settings = kRrt;
   change(settings);
@@ -148,11 +148,11 @@ struct Entry {
 
 std::vector<Entry> one_tree_planners() {
   using Tree = Errt<DiscDomain>;
-  return {{"rrt", factory<Tree>(namesake_domain, kRrt)},
+  return {{"rrt", factory<Tree>(ompl_domain, kRrt)},
           {"rrt+straight-line",
-           factory<Tree>(namesake_domain, rrt_with([](auto& s) { s.tries_straight_line = true; })), "rrt"},
+           factory<Tree>(ompl_domain, rrt_with([](auto& s) { s.tries_straight_line = true; })), "rrt"},
           {"rrt+border-samples", factory<Tree>(border_sampling_domain, kRrt), "rrt"},
-          {"rrt+cache", factory<Tree>(namesake_domain, rrt_with([](auto& s) {
+          {"rrt+cache", factory<Tree>(ompl_domain, rrt_with([](auto& s) {
                                         s.cache_capacity = ErrtSettings{}.cache_capacity;
                                       })),
            "rrt"},
@@ -162,9 +162,9 @@ std::vector<Entry> one_tree_planners() {
 std::vector<Entry> two_tree_planners() {
   using Settings = BidirectionalErrtSettings;
   const auto two_trees = [](void (*change)(Settings&)) {
-    return factory<Trees>(namesake_domain, rrt_connect_with(change));
+    return factory<Trees>(ompl_domain, rrt_connect_with(change));
   };
-  return {{"rrt-connect", factory<Trees>(namesake_domain, kRrtConnect)},
+  return {{"rrt-connect", factory<Trees>(ompl_domain, kRrtConnect)},
           {"rrt-connect+straight-line", two_trees([](Settings& s) { s.tries_straight_line = true; }),
            "rrt-connect"},
           {"rrt-connect+border-samples", factory<Trees>(border_sampling_domain, kRrtConnect), "rrt-connect"},
@@ -227,7 +227,7 @@ const std::vector<Entry>& entries() {
 
 }  // namespace
 
-double namesake_range_m(const Field& field, double radius) {
+double ompl_range_m(const Field& field, double radius) {
   return 0.2 * std::hypot(field.length_m - 2 * radius, field.width_m - 2 * radius);
 }
 

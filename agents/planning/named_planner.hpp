@@ -54,11 +54,11 @@ struct NamedPlanner {
 };
 
 /// Goal bias that OMPL's RRT and our planner of the same name share in comparisons.
-inline constexpr double kNamesakeGoalBias = 0.05;
+inline constexpr double kOmplGoalBias = 0.05;
 /// Step length that OMPL's planners and our planners of the same names share in comparisons: a fifth of the
 /// diagonal of the rectangle of the robot's possible positions, OMPL's default range
 /// (ompl::magic::MAX_MOTION_LENGTH_AS_SPACE_EXTENT_FRACTION).
-[[nodiscard]] double namesake_range_m(const Field& field, double radius_m);
+[[nodiscard]] double ompl_range_m(const Field& field, double radius_m);
 
 /// The names that make_planner() knows, in the order of the benchmark's table.
 const std::vector<std::string>& planner_names();

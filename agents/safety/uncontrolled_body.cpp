@@ -33,7 +33,7 @@ double UncontrolledBody::required_distance_m(const Vec2& position_m) const {
   return separation_m + kAllowance_m + kSpread * std::max(ahead_m, 0.0);
 }
 
-double spare_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body) {
+double excess_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body) {
   double spare_m = std::numeric_limits<double>::infinity();
   for (Time t = from; t < trajectory.end(); t += kSampling) {
     const double age_s = to_seconds(t - body.reach.observed_at);
@@ -55,19 +55,19 @@ namespace {
 /// Whether the robot keeps this spare distance if it drives on for a while after the candidate's first phase.
 bool avoids_by_driving_on(const Trajectory& candidate, const UncontrolledBody& body, double min_spare_m,
                           double deceleration_mps2) {
-  if (candidate.phases().empty()) return spare_distance_m(candidate, candidate.start(), body) >= min_spare_m;
+  if (candidate.phases().empty()) return excess_distance_m(candidate, candidate.start(), body) >= min_spare_m;
   for (Duration longer{0}; longer <= kMaxDrivingOn; longer += kDrivingOnStep) {
     Trajectory trajectory(candidate.start(), candidate.at_start());
     trajectory.append(candidate.phases().front().duration, candidate.phases().front().acceleration_mps2);
     trajectory.append(longer, Vec2(0, 0));
     append_stop(trajectory, deceleration_mps2);
-    if (spare_distance_m(trajectory, trajectory.start(), body) >= min_spare_m) return true;
+    if (excess_distance_m(trajectory, trajectory.start(), body) >= min_spare_m) return true;
   }
   return false;
 }
 
 /// Whether the candidate rests off the body's path, or no deeper in it than the stop does.
-bool rests_well(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody& body) {
+bool rests_safely(const Vec2& rest_m, const Vec2& stop_m, const UncontrolledBody& body) {
   const double distance_m = body.distance_from_path_m(rest_m);
   if (distance_m >= body.required_distance_m(rest_m)) return true;
   const double out_m = distance_m - body.distance_from_path_m(stop_m);
@@ -82,14 +82,14 @@ UncontrolledBodies::UncontrolledBodies(std::span<const UncontrolledBody> bodies,
                                        Time start)
     : bodies_(bodies), stop_(stop) {
   for (std::size_t i = 0; i < bodies_.size(); ++i)
-    stop_spare_m_[i] = spare_distance_m(*stop_, start, bodies_[i]);
+    stop_spare_m_[i] = excess_distance_m(*stop_, start, bodies_[i]);
 }
 
 bool UncontrolledBodies::allow(const Trajectory& candidate, double min_separation_m,
                                double deceleration_mps2) const {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const UncontrolledBody& body = bodies_[i];
-    if (!rests_well(candidate.rest_position_m(), stop_->rest_position_m(), body)) return false;
+    if (!rests_safely(candidate.rest_position_m(), stop_->rest_position_m(), body)) return false;
     if (is_passively_safe(candidate, body.reach, min_separation_m)) continue;
     if (stop_spare_m_[i] >= 0) return false;
     const double min_spare_m = std::min(stop_spare_m_[i] + kGain_m, 0.0);

@@ -255,7 +255,7 @@ void OrderClient::compare(std::uint32_t coordinator, const OrderBook& remembered
 
 void OrderClient::compare(SentOrder& sent, std::uint32_t coordinator, const OrderBook& remembered) {
   const OrderNumber number = sent.order.number;
-  const RememberedOrder* const known = remembered.in_place_of(sent.order);
+  const RememberedOrder* const known = remembered.occupant_of(sent.order);
   if (known && known->order.number == number && known->order.client == client_) {
     missing_[sent.handle][coordinator] = 0;
     // Only an answer, or a report from the robot's agent, shows that a second process remembers the order.

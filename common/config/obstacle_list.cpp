@@ -161,7 +161,7 @@ std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map, const OccupancyMap*
   if (!node.IsDefined()) return nullptr;
   const std::string name = text_from(node, location);
   if (name.empty()) location.fail("expected the path of a map's YAML file, got nothing");
-  const std::string path = (std::filesystem::path(location.file).parent_path() / with_home(name)).string();
+  const std::string path = (std::filesystem::path(location.file).parent_path() / expand_home(name)).string();
   try {
     if (cells != nullptr) return std::make_shared<const FloorMap>(*cells, name);
     LoadedMap loaded = load_map(path, unknown == kUnknown[1] ? UnknownCells::kFree : UnknownCells::kBlocked);

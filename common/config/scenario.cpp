@@ -33,18 +33,18 @@ const RobotSpec* find_robot(const Scenario& scenario, RobotId id) {
 
 const RobotSpec* find_robot(const Scenario& scenario, Team team, std::uint32_t number) {
   const auto at = std::find_if(scenario.robots.begin(), scenario.robots.end(), [&](const RobotSpec& robot) {
-    return robot.team == team && number_of(robot.id) == number;
+    return robot.team == team && number_in_team(robot.id) == number;
   });
   return at != scenario.robots.end() ? &*at : nullptr;
 }
 
 void require_unique_numbers(const Scenario& scenario) {
   for (const RobotSpec& robot : scenario.robots) {
-    const RobotSpec* const first = find_robot(scenario, robot.team, number_of(robot.id));
+    const RobotSpec* const first = find_robot(scenario, robot.team, number_in_team(robot.id));
     if (first->id == robot.id) continue;
     throw std::invalid_argument(fmt::format(
         "robots {} and {} both have number {} (the id modulo 16) in the {} team, expected different numbers",
-        first->id, robot.id, number_of(robot.id), robot.team == Team::kBlue ? "blue" : "yellow"));
+        first->id, robot.id, number_in_team(robot.id), robot.team == Team::kBlue ? "blue" : "yellow"));
   }
 }
 

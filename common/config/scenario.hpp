@@ -142,7 +142,7 @@ const RobotSpec* find_robot(const Scenario& scenario, RobotId id);
 
 /// A robot's number within its team, 0 .. 15: the id of its marker pattern and its id in the league's
 /// packets.
-constexpr std::uint32_t number_of(RobotId id) { return id % 16; }
+constexpr std::uint32_t number_in_team(RobotId id) { return id % 16; }
 /// The first robot of a team with this number, or nullptr.
 const RobotSpec* find_robot(const Scenario& scenario, Team team, std::uint32_t number);
 /// Throws std::invalid_argument if two robots of a team have the same number, because neither marker patterns

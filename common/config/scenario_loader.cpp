@@ -28,7 +28,7 @@ constexpr std::size_t kMaxNameLength = 64;
 /// Turns the text into a name for reports and their files. Allowed are letters and digits of any language,
 /// '-', '_' and '.', but no leading '.'. Every other character becomes '_', and text beyond kMaxNameLength is
 /// cut off.
-std::string as_name(const std::string& text) {
+std::string sanitised_name(const std::string& text) {
   std::string name;
   std::size_t characters = 0;
   for (std::size_t at = 0; at < text.size() && characters < kMaxNameLength; ++characters) {
@@ -46,12 +46,12 @@ std::string as_name(const std::string& text) {
 void read_name(YamlMap& map, const std::string& file, Scenario& scenario) {
   const YAML::Node node = map.find("name");
   if (!node.IsDefined()) {
-    const std::string stem = as_name(std::filesystem::path(file).stem().string());
+    const std::string stem = sanitised_name(std::filesystem::path(file).stem().string());
     scenario.name = stem.empty() ? "scenario" : stem;
     return;
   }
   scenario.name = text_from(node, map.location_of("name"));
-  if (scenario.name.empty() || as_name(scenario.name) != scenario.name)
+  if (scenario.name.empty() || sanitised_name(scenario.name) != scenario.name)
     map.location_of("name").fail(
         fmt::format("expected 1 to {} letters, digits, '-', '_' or '.', and no leading '.'", kMaxNameLength));
 }

@@ -12,7 +12,7 @@ void write_text(std::FILE* stream, const std::string& text) noexcept {
   std::fflush(stream);
 }
 
-void open_closed_streams() noexcept {
+void reopen_standard_streams() noexcept {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
     // The lowest free descriptor, because those below it are open.

@@ -21,6 +21,6 @@ void print_to(std::FILE* stream, fmt::format_string<Values...> format, Values&&.
 
 /// Opens /dev/null as each of stdin, stdout and stderr that is closed. Otherwise the next file or socket that
 /// the process opens would get its descriptor and receive what is printed. Call it before opening anything.
-void open_closed_streams() noexcept;
+void reopen_standard_streams() noexcept;
 
 }  // namespace sidestep

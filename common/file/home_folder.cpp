@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-std::string with_home(const std::string& path) {
+std::string expand_home(const std::string& path) {
   const char* const home = std::getenv("HOME");
   const bool is_below_home = path == "~" || path.starts_with("~/");
   return is_below_home && home ? home + path.substr(1) : path;

@@ -6,6 +6,6 @@
 namespace sidestep {
 
 /// Replaces a leading "~" or "~/" in a path with the user's home folder ($HOME), as shells do.
-[[nodiscard]] std::string with_home(const std::string& path);
+[[nodiscard]] std::string expand_home(const std::string& path);
 
 }  // namespace sidestep

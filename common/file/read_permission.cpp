@@ -46,7 +46,7 @@ int needed_access(const fs::path& part, const fs::path& path) {
 }
 
 /// The file or folder whose permissions prevent the user from reading an absolute path.
-fs::path closed_part(const fs::path& path, int links = 0) {
+fs::path inaccessible_part(const fs::path& path, int links = 0) {
   fs::path part;
   for (const fs::path& name : path) {
     part /= name;
@@ -54,7 +54,7 @@ fs::path closed_part(const fs::path& path, int links = 0) {
     std::error_code none;
     if (status_of(part) || links == kMaxLinks || !fs::is_symlink(fs::symlink_status(part, none))) return part;
     const fs::path target = part.parent_path() / fs::read_symlink(part, none);
-    return closed_part(target.lexically_normal(), links + 1);
+    return inaccessible_part(target.lexically_normal(), links + 1);
   }
   return path;
 }
@@ -64,7 +64,7 @@ fs::path closed_part(const fs::path& path, int links = 0) {
 std::optional<std::string> denied_read(const std::string& path) {
   const fs::path absolute = fs::absolute(path).lexically_normal();
   if (!is_denied(absolute, needed_access(absolute, absolute))) return std::nullopt;
-  const fs::path closed = closed_part(absolute);
+  const fs::path closed = inaccessible_part(absolute);
   std::string reason = "permission denied at " + closed.string();
   if (const auto status = status_of(closed))
     reason = fmt::format("{} belongs to {} and has mode {:04o}", closed.string(), user_name(status->st_uid),

@@ -103,7 +103,7 @@ std::string folder_name(const Identity& identity) {
   return result;
 }
 
-bool may_speak_as(const Identity& identity, std::uint32_t sender) {
+bool may_use_sender(const Identity& identity, std::uint32_t sender) {
   const auto is = [sender](Sender process) { return sender == static_cast<std::uint32_t>(process); };
   switch (identity.role) {
     case Role::kAgent:

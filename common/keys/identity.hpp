@@ -31,6 +31,6 @@ struct Identity {
 [[nodiscard]] std::string folder_name(const Identity& identity);
 
 /// Whether messages from this identity may have this Header.sender.
-[[nodiscard]] bool may_speak_as(const Identity& identity, std::uint32_t sender);
+[[nodiscard]] bool may_use_sender(const Identity& identity, std::uint32_t sender);
 
 }  // namespace sidestep

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kIssueAgain = "`sidestep keys issue` makes a new one";
+constexpr const char* kReissueHint = "`sidestep keys issue` makes a new one";
 
 void require_files(const std::string& path) {
   std::error_code none;
@@ -66,7 +66,7 @@ void require_valid_documents(const KeyFolder& keys, const RevocationList& revoke
     throw std::invalid_argument(
         what(key_files::kPermissions, "expected the permissions of " + to_text(keys.identity)));
   require_valid(what(key_files::kPermissions, "the permissions of " + to_text(keys.identity)), *validity, now,
-                kIssueAgain);
+                kReissueHint);
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ KeyFolder load_key_folder(const std::string& path, Time now) {
     throw std::invalid_argument(
         fmt::format("{}: issued by an authority other than {}", where, file(key_files::kIdentityAuthority)));
   require_valid(fmt::format("{}: the key of {}", where, to_text(*identity)), certificate.validity(), now,
-                kIssueAgain);
+                kReissueHint);
   const KeyFolder keys{fs::absolute(path).lexically_normal().string(), *identity, certificate, authority};
   const RevocationList revoked = load_revocation_list(file(key_files::kRevoked), authority);
   if (revoked.serials.contains(certificate.serial()))

@@ -121,7 +121,7 @@ class RowPass {
 
 }  // namespace
 
-void distance_transform(const BitGrid& blocked, const TakeDistances& take) {
+void distance_transform(const BitGrid& blocked, const DistanceRowHandler& take) {
   const std::vector<std::uint16_t> down = distances_down(blocked);
   const auto columns = static_cast<std::size_t>(blocked.columns());
   std::vector<std::uint16_t> nearest(columns, kFar);

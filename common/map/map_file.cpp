@@ -91,7 +91,7 @@ ImageCells read_image(YamlMap& map, const std::string& path, const Interpretatio
   const YamlLocation location = map.location_of("image");
   const std::string name = text_from(map.require("image"), location);
   if (name.empty()) location.fail("expected the path of an image, got nothing");
-  const std::string image = (std::filesystem::path(path).parent_path() / with_home(name)).string();
+  const std::string image = (std::filesystem::path(path).parent_path() / expand_home(name)).string();
   try {
     return read_map_image(
         image, [&](double brightness) { return interpretation.state(brightness); }, unknown);

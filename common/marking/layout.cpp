@@ -78,10 +78,10 @@ const MarkerPattern* MarkerLayout::find(std::uint32_t id) const {
 }
 
 const MarkerPattern& pattern_of(const MarkerLayout& layout, RobotId robot) {
-  if (const MarkerPattern* const pattern = layout.find(number_of(robot))) return *pattern;
+  if (const MarkerPattern* const pattern = layout.find(number_in_team(robot))) return *pattern;
   throw std::invalid_argument(
       fmt::format("robot {} has number {}, for which the marker layout {} has no pattern", robot,
-                  number_of(robot), layout.name));
+                  number_in_team(robot), layout.name));
 }
 
 std::optional<LayoutError> validation_error(const MarkerLayout& layout) {

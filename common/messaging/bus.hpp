@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/messaging/attachment.hpp"
-#include "common/messaging/sole_sender.hpp"
+#include "common/messaging/single_writer_guard.hpp"
 #include "common/messaging/topics.hpp"
 #include "common/protocol/drop_counters.hpp"
 #include "common/protocol/senders.hpp"
@@ -91,18 +91,19 @@ class Bus {
   }
 
   /// From now on, `watcher` is called whenever a second process starts to write a single-writer channel
-  /// (TopicInfo::is_sole). It receives the topic, the robot and the header of that process's message.
-  void watch_contests(std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> watcher) {
-    contest_watcher_ = std::move(watcher);
+  /// (TopicInfo::is_single_writer). It receives the topic, the robot and the header of that process's
+  /// message.
+  void watch_conflicts(std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> watcher) {
+    conflict_watcher_ = std::move(watcher);
   }
 
   /// From now on, if two processes write a single-writer channel, only the messages of the process that was
   /// heard first are used. For observers of a simulation, where the first process is the genuine one.
-  void follow_first_senders() { follows_first_ = true; }
+  void trust_first_senders() { follows_first_ = true; }
 
   /// From now on, new subscriptions to single-writer channels listen for a moment before they trust a writer.
   /// For a process that starts while others are running.
-  void listen_first() { listening_ = SoleSender::kListening; }
+  void listen_before_trusting() { listening_ = SingleWriterGuard::kListening; }
 
   /// Counts an item that this process has dropped for a reason that its node does not count.
   void count_drop(DropReason reason) { drops_.count(reason); }
@@ -133,11 +134,11 @@ class Bus {
   template <typename Message, typename Callback>
   void subscribe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe(topic, robot,
-            [this, robot, info = TopicInfo(topic), sender = SoleSender(listening_),
+            [this, robot, info = TopicInfo(topic), sender = SingleWriterGuard(listening_),
              callback = std::move(callback)](const Message& message) mutable {
               if (!may_be_from(info, message.header())) return;
               if (!has_same_rules(info, message.header())) return;
-              if (info.is_sole && !admit(sender, info, robot, message.header())) return;
+              if (info.is_single_writer && !admit(sender, info, robot, message.header())) return;
               if (header_watcher_) header_watcher_(info, message.header());
               callback(message);
             });
@@ -173,13 +174,14 @@ class Bus {
     return false;
   }
 
-  bool admit(SoleSender& sender, const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
-    const SoleSender::Outcome outcome = sender.receive(header.incarnation(), now());
-    if (outcome == SoleSender::Outcome::kCounts) return true;
+  bool admit(SingleWriterGuard& sender, const TopicInfo& topic, std::uint32_t robot,
+             const msg::Header& header) {
+    const SingleWriterGuard::Outcome outcome = sender.receive(header.incarnation(), now());
+    if (outcome == SingleWriterGuard::Outcome::kCounts) return true;
     if (follows_first_ && sender.is_first(header.incarnation())) return true;
     count_drop(DropReason::kContestedSender);
-    if (outcome == SoleSender::Outcome::kNewlyContested && contest_watcher_)
-      contest_watcher_(topic, robot, header);
+    if (outcome == SingleWriterGuard::Outcome::kNewConflict && conflict_watcher_)
+      conflict_watcher_(topic, robot, header);
     return false;
   }
 
@@ -187,7 +189,7 @@ class Bus {
   bool follows_first_ = false;
   Duration listening_{0};
   std::function<void(const TopicInfo&, const msg::Header&)> on_refused_, header_watcher_;
-  std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> contest_watcher_;
+  std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> conflict_watcher_;
   DropCounters drops_;
 };
 

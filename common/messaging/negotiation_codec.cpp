@@ -13,7 +13,7 @@ namespace {
 
 /// Whether the sender is an agent of the robot that the message speaks for.
 template <typename Message>
-bool speaks_for_itself(const Message& message) {
+bool is_from_own_agent(const Message& message) {
   return message.robot() < kMaxRobots && message.header().sender() == message.robot();
 }
 
@@ -42,7 +42,7 @@ std::optional<VersionSet> decode_versions(const msg::Registration& message, Time
 }  // namespace
 
 std::optional<Proposal> decode(const msg::Proposal& message, Time now) {
-  if (!speaks_for_itself(message) || !is_plausible(message, now)) return std::nullopt;
+  if (!is_from_own_agent(message) || !is_plausible(message, now)) return std::nullopt;
   const msg::Version& first = message.candidates().front();
   Proposal proposal{message.robot(), message.header().incarnation(), message.epoch(),
                     time_from_ns(message.header().stamp_ns()), first.version_number()};
@@ -58,7 +58,7 @@ std::optional<Proposal> decode(const msg::Proposal& message, Time now) {
 }
 
 std::optional<Registration> decode(const msg::Registration& message, Time now) {
-  if (!speaks_for_itself(message) || !is_plausible(message, now)) return std::nullopt;
+  if (!is_from_own_agent(message) || !is_plausible(message, now)) return std::nullopt;
   return Registration{message.robot(),
                       message.header().incarnation(),
                       message.epoch(),

@@ -53,7 +53,7 @@ std::string describe_other(std::uint32_t process, Incarnation own, Incarnation o
       std::abs(by_s), by_s > 0 ? "earlier" : "later");
 }
 
-std::string describe_contest(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+std::string describe_conflict(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
   return fmt::format(
       "two processes send '{}' as {}; the messages of both are ignored on this topic until one of them ends",
       channel_name(topic, robot),

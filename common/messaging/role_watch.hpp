@@ -49,7 +49,7 @@ class RoleWatch {
 /// it does.
 std::string describe_other(std::uint32_t process, Incarnation own, Incarnation other);
 
-/// The message for Bus::watch_contests(): two processes write a single-writer channel.
-std::string describe_contest(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header);
+/// The message for Bus::watch_conflicts(): two processes write a single-writer channel.
+std::string describe_conflict(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header);
 
 }  // namespace sidestep

@@ -53,7 +53,8 @@ struct TopicInfo {
   bool per_robot = false;   ///< the topic has one channel per robot, "<name>/<robot>"
   bool is_checked = false;  ///< processes refuse messages on this topic from processes with other rules
   MessageType type{};
-  bool is_sole = false;  ///< only one process at a time may write each channel, see SoleSender
+  bool is_single_writer =
+      false;  ///< only one process at a time may write each channel, see SingleWriterGuard
 };
 
 template <typename Message>
@@ -128,7 +129,7 @@ inline constexpr Topic<msg::LedgerPage> kLedger{
     {"ledger", Role::kCoordinator, Role::kAgent | kWatchers, Qos::kState, false, true,
      message_type<msg::LedgerPage>("sidestep::msg::LedgerPage", 256)}};
 inline constexpr Topic<msg::CoordinatorState> kCoordinator{
-    {"coordinator", Role::kCoordinator, kParts | Role::kClient | kWatchers, Qos::kState, false, true,
+    {"coordinator", Role::kCoordinator, kSystemRoles | Role::kClient | kWatchers, Qos::kState, false, true,
      message_type<msg::CoordinatorState>("sidestep::msg::CoordinatorState", 1024)}};
 inline constexpr Topic<msg::AbsenceAttestation> kAttestation{
     {"attestation", Role::kOperator, Role::kCoordinator | kWatchers, Qos::kEvent, false, false,
@@ -157,19 +158,19 @@ inline constexpr Topic<msg::AgentStatus> kStatus{
 /// Counts of messages that each process has refused, dropped or received too late. Processes that must run
 /// alone also use it to detect a second process with their id.
 inline constexpr Topic<msg::Counters> kCounters{
-    {"counters", kParts, kSoleRoles | kWatchers, Qos::kState, false, true,
+    {"counters", kSystemRoles, kSingleInstanceRoles | kWatchers, Qos::kState, false, true,
      message_type<msg::Counters>("sidestep::msg::Counters", msg::MAX_COUNTERS)}};
 inline constexpr Topic<msg::Disturbance> kDisturbance{
     {"disturbance", Role::kOperator, Role::kAgent | Role::kSimulator | Role::kRobot | kWatchers, Qos::kEvent,
      false, false, message_type<msg::Disturbance>("sidestep::msg::Disturbance")}};
 inline constexpr Topic<msg::NetworkFault> kNetworkFault{
-    {"network_fault", Role::kOperator, kParts | kWatchers, Qos::kEvent, false, false,
+    {"network_fault", Role::kOperator, kSystemRoles | kWatchers, Qos::kEvent, false, false,
      message_type<msg::NetworkFault>("sidestep::msg::NetworkFault")}};
 inline constexpr Topic<msg::ClockProbe> kClockProbe{
-    {"clock_probe", Role::kOperator, kParts | kWatchers, Qos::kState, false, false,
+    {"clock_probe", Role::kOperator, kSystemRoles | kWatchers, Qos::kState, false, false,
      message_type<msg::ClockProbe>("sidestep::msg::ClockProbe")}};
 inline constexpr Topic<msg::ClockReading> kClockReading{
-    {"clock_reading", kParts, kWatchers, Qos::kState, false, false,
+    {"clock_reading", kSystemRoles, kWatchers, Qos::kState, false, false,
      message_type<msg::ClockReading>("sidestep::msg::ClockReading", msg::MAX_PLACE)}};
 /// Only for audit and metrics.
 inline constexpr Topic<msg::GroundTruth> kTruth{
@@ -178,8 +179,8 @@ inline constexpr Topic<msg::GroundTruth> kTruth{
 
 /// Sent by every process that has received messages from a process with other rules.
 inline constexpr Topic<msg::SharedRules> kRules{
-    {"rules", kParts | Role::kOperator, kParts | Role::kClient | kWatchers, Qos::kEvent, false, false,
-     message_type<msg::SharedRules>("sidestep::msg::SharedRules", msg::MAX_RULES_TEXT)}};
+    {"rules", kSystemRoles | Role::kOperator, kSystemRoles | Role::kClient | kWatchers, Qos::kEvent, false,
+     false, message_type<msg::SharedRules>("sidestep::msg::SharedRules", msg::MAX_RULES_TEXT)}};
 
 }  // namespace topics
 

@@ -256,7 +256,7 @@ void CliCommand::on_parsed(std::function<void()> callback) const {
 CommandLine::CommandLine(const std::string& description, const std::string& program_name)
     : app_(std::make_unique<CLI::App>(description, program_name)) {
   // Called here, because each program begins with its command line.
-  open_closed_streams();
+  reopen_standard_streams();
 }
 
 CommandLine::~CommandLine() = default;

@@ -68,9 +68,9 @@ bool run_on_bus(const Program& program, const Scenario& scenario, const DdsSetti
   const RulesExchange rules(bus, process, SharedRules(scenario), [](const RulesMismatch& mismatch) {
     log(LogLevel::kWarning, describe(mismatch));
   });
-  bus.listen_first();
-  bus.watch_contests([](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
-    log(LogLevel::kError, describe_contest(topic, robot, header));
+  bus.listen_before_trusting();
+  bus.watch_conflicts([](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+    log(LogLevel::kError, describe_conflict(topic, robot, header));
   });
   std::optional<std::string> yields_to;
   const RoleWatch role(bus, process, incarnation, [&](Incarnation other) {

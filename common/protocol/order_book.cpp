@@ -106,7 +106,7 @@ bool OrderBook::is_redundant(const Order& resume) const {
   });
 }
 
-bool OrderBook::lifts_any(const Order& resume) const {
+bool OrderBook::ends_any_hold(const Order& resume) const {
   const bool is_of_operator = resume.client == kOperator;
   const auto is_lifted_by = [&](const auto& entry) {
     const Order& hold = entry.second.order;
@@ -187,7 +187,7 @@ bool OrderBook::knows(const Order& order) const {
     case msg::OrderKind::ORDER_RESUME: {
       const bool is_forgotten =
           rank_of(order.client) == Rank::kClient && order.number <= resumes_.forgotten_number;
-      return is_redundant(order) || (is_forgotten && !lifts_any(order));
+      return is_redundant(order) || (is_forgotten && !ends_any_hold(order));
     }
     case msg::OrderKind::ORDER_REMOVE_ZONE:
       return known == orders_.end() && order.number <= removals_.forgotten_number;
@@ -259,7 +259,7 @@ bool OrderBook::is_lifted(const Order& hold) const {
 
 bool OrderBook::contradicts(const Order& order) const {
   if (knows(order)) return false;
-  if (order.kind == msg::OrderKind::ORDER_RESUME) return lifts_any(order);
+  if (order.kind == msg::OrderKind::ORDER_RESUME) return ends_any_hold(order);
   return orders_.contains(place_of(order));  // occupied by an earlier order, since this one is not known
 }
 
@@ -285,7 +285,7 @@ const RememberedOrder* OrderBook::drive_order(RobotId robot, Rank rank) const {
   return found == orders_.end() ? nullptr : &found->second;
 }
 
-const RememberedOrder* OrderBook::in_place_of(const Order& order) const {
+const RememberedOrder* OrderBook::occupant_of(const Order& order) const {
   const auto found = orders_.find(place_of(order));
   return found == orders_.end() ? nullptr : &found->second;
 }

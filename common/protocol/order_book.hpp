@@ -57,7 +57,7 @@ class OrderBook {
   /// The robot's drive order, or its cancellation, of this rank; null if none.
   const RememberedOrder* drive_order(RobotId robot, Rank rank) const;
   /// The order in the place of this order, which may be this one; null if none.
-  const RememberedOrder* in_place_of(const Order& order) const;
+  const RememberedOrder* occupant_of(const Order& order) const;
   /// The zones that have not been removed.
   std::vector<Order> zones() const;
   std::vector<RememberedOrder> all() const;
@@ -98,7 +98,7 @@ class OrderBook {
   /// Whether a later resume lifts everything that this one lifts.
   bool is_redundant(const Order& resume) const;
   /// Whether there is a hold that the resume ends, at least for one robot.
-  bool lifts_any(const Order& resume) const;
+  bool ends_any_hold(const Order& resume) const;
   /// Whether the resume releases one robot while its client still holds all robots.
   bool is_exception(const Order& resume) const;
   std::size_t exception_count() const;

@@ -41,10 +41,11 @@ constexpr Roles operator|(Role a, Role b) { return Roles(a) | Roles(b); }
 /// Roles that watch a run.
 inline constexpr Roles kWatchers = Role::kOperator | Role::kViewer | Role::kJudge;
 /// Roles whose processes have their own clocks and rules.
-inline constexpr Roles kParts =
+inline constexpr Roles kSystemRoles =
     Role::kAgent | Role::kCoordinator | Role::kVision | Role::kSimulator | Role::kRobot | Role::kReferee;
 
 /// Roles with only one process per number.
-inline constexpr Roles kSoleRoles = Role::kCoordinator | Role::kVision | Role::kSimulator | Role::kReferee;
+inline constexpr Roles kSingleInstanceRoles =
+    Role::kCoordinator | Role::kVision | Role::kSimulator | Role::kReferee;
 
 }  // namespace sidestep

@@ -119,7 +119,8 @@ bool RobotSide<Real>::on_command(const Command& command, std::int64_t now_ns, St
   DurableState next = durable_;
   next.incarnation = command.incarnation;
   next.epoch = larger(next.epoch, command.epoch);
-  if (highest_seen_ + kStoredAhead / 2 > next.number_bound) next.number_bound = highest_seen_ + kStoredAhead;
+  if (highest_seen_ + kStoredNumberReserve / 2 > next.number_bound)
+    next.number_bound = highest_seen_ + kStoredNumberReserve;
   if (!store(next, memory)) {
     ++counts_.refused_unstored;
     return false;
@@ -341,7 +342,7 @@ template <typename Real>
 void RobotSide<Real>::start_own_stop(OwnStopReason reason, const Estimate<Real>& estimate,
                                      std::int64_t now_ns, StableMemory& memory) {
   Version stop;
-  if (!begin_with_motion_under_way(stop, estimate)) return lose_pose();
+  if (!begin_with_commanded_motion(stop, estimate)) return lose_pose();
   own_stop_reason_ = reason;
   has_found_pose_ = false;
   drifted_since_ns_ = kNever_ns;
@@ -357,7 +358,7 @@ void RobotSide<Real>::start_own_stop(OwnStopReason reason, const Estimate<Real>&
   ++own_stops_;
   if (highest_seen_ <= durable_.number_bound) return;
   DurableState next = durable_;
-  next.number_bound = highest_seen_ + kStoredAhead;
+  next.number_bound = highest_seen_ + kStoredNumberReserve;
   // The stop must not wait for the memory. If storing fails, the robot still stops but reports nothing.
   is_memory_broken_ = !store(next, memory);
 }
@@ -365,7 +366,7 @@ void RobotSide<Real>::start_own_stop(OwnStopReason reason, const Estimate<Real>&
 // Computes the place, the motion and the inflation of a stop from the estimate. False if they cannot be
 // determined.
 template <typename Real>
-bool RobotSide<Real>::begin_with_motion_under_way(Version& stop, const Estimate<Real>& estimate) const {
+bool RobotSide<Real>::begin_with_commanded_motion(Version& stop, const Estimate<Real>& estimate) const {
   const MotionUnderWay<Real>& under_way = estimate.under_way;
   const bool is_late = settings_.actuation_lead_ns > 0;
   Vec<Real> velocity_mps = is_late ? under_way.from_mps : estimate.velocity_mps;

@@ -116,7 +116,7 @@ class RobotSide {
   static constexpr std::uint64_t kOwnNumberGap = std::uint64_t{1} << 20;
   /// The stored bound of numbers exceeds the numbers in use by up to this, so that it rarely needs to be
   /// stored again.
-  static constexpr std::uint64_t kStoredAhead = std::uint64_t{1} << 26;
+  static constexpr std::uint64_t kStoredNumberReserve = std::uint64_t{1} << 26;
 
   /// For a robot that has just been switched on and does not know its pose.
   RobotSide(const Settings<Real>& settings, const DurableState& remembered);
@@ -215,7 +215,7 @@ class RobotSide {
   bool must_stop(std::int64_t now_ns, const Estimate<Real>& estimate, OwnStopReason& reason) const;
   void start_own_stop(OwnStopReason reason, const Estimate<Real>& estimate, std::int64_t now_ns,
                       StableMemory& memory);
-  bool begin_with_motion_under_way(Version& stop, const Estimate<Real>& estimate) const;
+  bool begin_with_commanded_motion(Version& stop, const Estimate<Real>& estimate) const;
   void restart();
 
   static constexpr std::int64_t kNever_ns = INT64_MAX;

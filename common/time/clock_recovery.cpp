@@ -18,7 +18,7 @@ void ClockRecovery::on_message(std::uint32_t reference, std::int64_t stamp_ns, T
   ++known.messages;
 }
 
-bool ClockRecovery::is_evident(Duration host_ahead) const {
+bool ClockRecovery::is_host_clock_right(Duration host_ahead) const {
   bool agrees_with_host = false;
   for (const auto& [id, reference] : references_) {
     if (reference.messages < kMinMessages) continue;
@@ -31,7 +31,7 @@ bool ClockRecovery::is_evident(Duration host_ahead) const {
 bool ClockRecovery::end_period(Duration host_ahead, bool is_in_use) {
   const bool is_stepped = magnitude(host_ahead) >= kMinStep;
   const bool is_same_step = magnitude(host_ahead - last_host_ahead_) < kTolerance;
-  const bool counts = is_stepped && !is_in_use && is_evident(host_ahead);
+  const bool counts = is_stepped && !is_in_use && is_host_clock_right(host_ahead);
   evident_periods_ = !counts ? 0 : is_same_step ? evident_periods_ + 1 : 1;
   last_host_ahead_ = host_ahead;
   references_.clear();

@@ -44,7 +44,7 @@ class ClockRecovery {
     Duration min_age{Duration::max()};  ///< minimum time between a message's stamp and its arrival
     int messages = 0;
   };
-  bool is_evident(Duration host_ahead) const;
+  bool is_host_clock_right(Duration host_ahead) const;
   bool is_delay(Duration age) const { return age >= -tolerance_ && age <= kMaxDelay; }
 
   Duration tolerance_;

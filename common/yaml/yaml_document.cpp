@@ -23,12 +23,12 @@ constexpr std::size_t kMaxValues = 400'000;
 
 /// Records the line on which the last document began, and counts values. Every use of an anchor, and
 /// every merge, counts as many values as the anchor has. yaml-cpp takes about half a kilobyte for each value.
-class FirstReading : public YAML::EventHandler {
+class DocumentScanner : public YAML::EventHandler {
  public:
   int line = 1;
   bool has_merge_key = false;  ///< true also if other text contains "<<"
 
-  explicit FirstReading(const std::string& file_name) : file_name_(file_name) {}
+  explicit DocumentScanner(const std::string& file_name) : file_name_(file_name) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override { line = mark.line + 1; }
   void OnDocumentEnd() override {}
@@ -119,7 +119,7 @@ YAML::Node parse_yaml(const std::string& text, const std::string& file_name, con
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
-    FirstReading document(file_name);
+    DocumentScanner document(file_name);
     if (!parser.HandleNextDocument(document))
       throw ConfigError(file_name, 1, "the file is empty, expected " + expected);
     if (parser.HandleNextDocument(document)) {

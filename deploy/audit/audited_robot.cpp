@@ -127,8 +127,8 @@ double AuditedRobot::distance_from_version_m(const Vec2& position_m, std::int64_
 }
 
 void AuditedRobot::ExecutedVersions::add(const KnownVersion& version, std::int64_t from_ns) {
-  const bool is_of_agent = version.number != 0 && !version.is_own_stop;
-  if (!version.was_executed || !is_of_agent || version.path.start_ns() <= from_ns) return;
+  const bool is_agent_kind = version.number != 0 && !version.is_own_stop;
+  if (!version.was_executed || !is_agent_kind || version.path.start_ns() <= from_ns) return;
   ++all;
   traced += version.is_traced();
 }
@@ -167,11 +167,11 @@ ProposalRecord& AuditedRobot::add_proposal() {
 
 void AuditedRobot::reset() {
   const RobotId kept_id = id;
-  const Epoch last_epoch = std::max(forgotten_in, registered ? registered->epoch : 0);
+  const Epoch last_epoch = std::max(forgotten_until_epoch, registered ? registered->epoch : 0);
   const ExecutedVersions kept_versions = executed_versions();
   *this = AuditedRobot();
   id = kept_id;
-  forgotten_in = last_epoch;
+  forgotten_until_epoch = last_epoch;
   forgotten_ = kept_versions;
 }
 

@@ -54,7 +54,7 @@ struct KnownVersion {
   std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
   /// The ledger contained it at least until this time, which is by the clock of
   /// MessageTimes::granter_time_ns().
-  std::int64_t alive_until_ns = kAlways;
+  std::int64_t in_ledger_until_ns = kAlways;
   std::int64_t excluded_ns = kNever;
   // What ledger pages show, with times by the coordinator's clock. Unused if the auditor receives every
   // message.
@@ -120,7 +120,7 @@ class AuditedRobot {
   std::size_t early_verdict_count = 0;
   std::uint64_t max_evicted_proposal = 0;  ///< proposals up to this number may have been evicted
   /// Up to this epoch, ledgers may contain versions that reset() forgot.
-  Epoch forgotten_in = 0;
+  Epoch forgotten_until_epoch = 0;
   VersionNumber max_evicted_version = 0;  ///< versions up to this number may have been evicted
   /// Versions that start later than this were granted during the audit.
   std::int64_t traceable_from_ns = kNever;

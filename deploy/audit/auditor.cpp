@@ -37,7 +37,8 @@ AuditedRobot* Auditor::sender_of(RobotId robot, const msg::Header& header) {
 
 Reception Auditor::trace(Kind kind, std::uint32_t key, const msg::Header& header) {
   const Reception reception = times_.record(kind, key, header, findings_.now);
-  if (!run_.is_complete() && !MessageTimes::is_of_agent(kind) && reception.missed > 0) reference_.on_missed();
+  if (!run_.is_complete() && !MessageTimes::is_agent_kind(kind) && reception.missed > 0)
+    reference_.on_missed();
   return reception;
 }
 

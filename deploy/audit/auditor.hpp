@@ -5,10 +5,10 @@
 #include <functional>
 
 #include "common/messaging/bus.hpp"
-#include "deploy/audit/fact_audit.hpp"
 #include "deploy/audit/grant_audit.hpp"
 #include "deploy/audit/ledger_audit.hpp"
 #include "deploy/audit/reference_audit.hpp"
+#include "deploy/audit/robot_report_audit.hpp"
 
 namespace sidestep {
 
@@ -77,7 +77,7 @@ class Auditor {
   OrderAudit orders_;
   GrantAudit grants_;
   LedgerAudit ledger_;
-  FactAudit facts_;
+  RobotReportAudit facts_;
   ReferenceAudit reference_;
 };
 

@@ -27,7 +27,7 @@ void ComparableStamps::record(std::uint64_t channel, const msg::Header& header) 
   if (number > newest.number) newest = {number, stamp_ns};
 }
 
-bool ComparableStamps::tell_order(std::uint32_t sender, Incarnation incarnation) const {
+bool ComparableStamps::are_in_order(std::uint32_t sender, Incarnation incarnation) const {
   const auto run = runs_.find({sender, incarnation});
   return run != runs_.end() && !run->second.was_set_back;
 }

@@ -21,7 +21,7 @@ class ComparableStamps {
   void record(std::uint64_t channel, const msg::Header& header);
   /// Whether the messages of this run of a process have been stamped in the order of their numbers so far.
   /// False if no message of the run was recorded, or only long ago.
-  [[nodiscard]] bool tell_order(std::uint32_t sender, Incarnation incarnation) const;
+  [[nodiscard]] bool are_in_order(std::uint32_t sender, Incarnation incarnation) const;
 
  private:
   static constexpr std::size_t kMaxRuns = 4096, kMaxChannels = 2048;

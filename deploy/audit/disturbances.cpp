@@ -137,8 +137,8 @@ void Disturbances::update_rest(std::size_t robot) {
     state.rests_since = std::min(state.rests_since.value_or(*now_), *now_);
   else
     state.rests_since.reset();
-  state.rests_where_left =
-      rests && !robots_[robot]->is_in_place && (state.rests_where_left || is_displaced(robot));
+  state.rests_displaced =
+      rests && !robots_[robot]->is_in_place && (state.rests_displaced || is_displaced(robot));
 }
 
 void Disturbances::update_pushes() {

@@ -62,7 +62,7 @@ class Disturbances {
   bool is_displaced(std::size_t robot) const;
   /// Whether the robot rests, out of place, where a disturbance has left it. A robot that gets no usable
   /// observations never learns this, however long ago it was.
-  bool rests_where_left(std::size_t robot) const { return states_[robot].rests_where_left; }
+  bool rests_displaced(std::size_t robot) const { return states_[robot].rests_displaced; }
   /// Whether the robot was ever disturbed.
   bool was_disturbed(std::size_t robot) const { return states_[robot].reported_end.has_value(); }
   /// The observed time, summed over all pairs of robots on the floor, and the part of it in which a contact
@@ -81,7 +81,7 @@ class Disturbances {
     std::optional<Time> reported_end;  ///< end of the disturbance, as last reported
     std::optional<std::string_view> announced;
     std::optional<Time> rests_since;
-    bool rests_where_left = false;
+    bool rests_displaced = false;
     bool is_uncertain = false;
     std::optional<Displacement> displacement;
   };

@@ -124,7 +124,7 @@ void EpochAudit::check_obeyed(AuditedRobot& robot, const KnownVersion& executing
     if (!run_.is_complete()) break;
     if (record.is_reported || feedback.is_lifted() || feedback.obeyed_epoch() >= epoch) continue;
     if (record.first_grant_ns >= reception.earliest_ns) continue;
-    if (epoch <= std::max(robot.attested_until, robot.forgotten_in)) continue;
+    if (epoch <= std::max(robot.attested_until, robot.forgotten_until_epoch)) continue;
     record.is_reported = true;
     findings_.report(AuditRule::kAllRegistered, robot.id, nullptr, epoch,
                      "still obeys epoch {}, so it cannot have registered before the first grant",
@@ -140,7 +140,7 @@ bool EpochAudit::is_after_registration(const AuditedRobot& robot, const msg::Fee
   if (run_.is_complete()) return registered.latest_ns < reception.earliest_ns;
   // The report repeats the stamp of a command that the agent sent after the registration.
   return feedback.obeyed_incarnation() == registered.incarnation &&
-         times_.stamps().tell_order(robot.id, registered.incarnation) &&
+         times_.stamps().are_in_order(robot.id, registered.incarnation) &&
          feedback.command_stamp_ns() > registered.stamp_ns;
 }
 
@@ -165,17 +165,17 @@ void EpochAudit::check_registration(AuditedRobot& robot, const KnownVersion& exe
                    executing.granted_in);
 }
 
-bool EpochAudit::is_of_granter(const msg::LedgerPage& page) const {
+bool EpochAudit::is_from_granter(const msg::LedgerPage& page) const {
   const auto record = epochs_.find(page.epoch());
   return record == epochs_.end() || record->second.first_grant_ns == kNever ||
          record->second.granter_incarnation == page.header().incarnation();
 }
 
-bool EpochAudit::is_of_first_sender(const msg::LedgerPage& page) {
+bool EpochAudit::is_from_first_sender(const msg::LedgerPage& page) {
   EpochRecord& record = epoch_record(page.epoch());
   const Incarnation incarnation = page.header().incarnation();
   if (record.page_incarnation == 0) record.page_incarnation = incarnation;
-  return record.page_incarnation == incarnation && is_of_granter(page);
+  return record.page_incarnation == incarnation && is_from_granter(page);
 }
 
 }  // namespace sidestep

@@ -27,9 +27,9 @@ class EpochAudit {
                     const Reception& reception);
   /// Whether the coordinator that grants in the page's epoch sent the page; true if that coordinator is
   /// unknown.
-  bool is_of_granter(const msg::LedgerPage& page) const;
+  bool is_from_granter(const msg::LedgerPage& page) const;
   /// Whether, in addition, the same coordinator sent the first page of the epoch.
-  bool is_of_first_sender(const msg::LedgerPage& page);
+  bool is_from_first_sender(const msg::LedgerPage& page);
 
  private:
   /// What is known about one epoch.

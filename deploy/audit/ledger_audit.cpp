@@ -13,8 +13,8 @@ void LedgerAudit::on_page(const msg::LedgerPage& page, const Reception& receptio
       ++findings_.totals.invalid;
   }
   const bool is_usable = run_.is_complete()
-                             ? epochs_.is_of_granter(page)
-                             : times_.are_comparable(page.header()) && epochs_.is_of_first_sender(page);
+                             ? epochs_.is_from_granter(page)
+                             : times_.are_comparable(page.header()) && epochs_.is_from_first_sender(page);
   if (!is_usable) return;
   // All versions of a robot are on one page.
   const Versions all = page.versions();
@@ -36,8 +36,8 @@ void LedgerAudit::check_entry(AuditedRobot& robot, const msg::Version& version, 
   // A coordinator that receives no reports keeps versions that the auditor evicted long ago.
   if (robot.was_evicted(version.version_number())) return;
   const bool may_be_held = known && (known->may_be_in(page.epoch()) || known->is_own_stop);
-  const bool may_be_forgotten = page.epoch() <= robot.forgotten_in;
-  if (run_.is_complete() && epochs_.is_of_granter(page) && !may_be_held && !may_be_forgotten) {
+  const bool may_be_forgotten = page.epoch() <= robot.forgotten_until_epoch;
+  if (run_.is_complete() && epochs_.is_from_granter(page) && !may_be_held && !may_be_forgotten) {
     findings_.report(AuditRule::kLedgerPage, robot.id,
                      known ? known : &robot.find_or_insert(version.version_number()), page.epoch(),
                      "is in the ledger, but was neither registered nor granted");
@@ -71,13 +71,13 @@ void LedgerAudit::learn(AuditedRobot& robot, Versions versions, const msg::Ledge
     if (known->listed_in < page.epoch()) {
       known->listed_in = page.epoch();
       known->listed_from_ns = at_ns;
-      known->alive_until_ns = at_ns;
+      known->in_ledger_until_ns = at_ns;
       const bool was_unlisted = is_next_page && known->number > robot.max_evicted_version;
       known->entered_after_ns = was_unlisted ? robot.listed.at_ns : kAlways;
     }
     known->listed_from_ns = std::min(known->listed_from_ns, at_ns);
-    known->alive_until_ns = std::max(known->alive_until_ns, at_ns);
-    if (known->granted_in == page.epoch() && known->alive_until_ns >= known->granted_by_ns)
+    known->in_ledger_until_ns = std::max(known->in_ledger_until_ns, at_ns);
+    if (known->granted_in == page.epoch() && known->in_ledger_until_ns >= known->granted_by_ns)
       known->is_pair_checked = true;
   }
   if (is_next_page || robot.listed.epoch < page.epoch()) robot.listed = {page.epoch(), at_ns};
@@ -91,7 +91,7 @@ void LedgerAudit::check_complete(const AuditedRobot& robot, Versions versions, E
     if (!known.has_content) continue;
     if (known.exclusion != Exclusion::kNone || known.is_own_stop || !known.is_in(epoch)) continue;
     // The ledger still describes the robot on its former floor.
-    if (known.number == 0 && epoch <= robot.forgotten_in) continue;
+    if (known.number == 0 && epoch <= robot.forgotten_until_epoch) continue;
     if (std::ranges::any_of(versions, [&](const auto& v) { return v.version_number() == known.number; }))
       continue;
     findings_.report(AuditRule::kLedgerPage, robot.id, &known, epoch,

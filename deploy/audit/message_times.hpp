@@ -25,7 +25,7 @@ class MessageTimes {
     kOrderMemoryKind,
     kOrderStatusKind
   };
-  static bool is_of_agent(Kind kind) {
+  static bool is_agent_kind(Kind kind) {
     return kind == kProposalKind || kind == kRegistrationKind || kind == kCommandKind;
   }
 
@@ -34,7 +34,7 @@ class MessageTimes {
 
   Reception record(Kind kind, std::uint32_t key, const msg::Header& header, Time now) {
     record_stamp(kind, key, header);
-    return (is_of_agent(kind) ? agent_trace_ : trace_).record(channel_of(kind, key), header, now);
+    return (is_agent_kind(kind) ? agent_trace_ : trace_).record(channel_of(kind, key), header, now);
   }
   /// Records the stamp of a message that may be missed without harm.
   void record_stamp(Kind kind, std::uint32_t key, const msg::Header& header) {
@@ -44,7 +44,7 @@ class MessageTimes {
   /// Whether sending times of this agent or coordinator can be compared. Times by the auditor's clock always
   /// can; times by the sender's clock can only until that clock is set back.
   bool are_comparable(const msg::Header& header) const {
-    return run_.is_complete() || stamps_.tell_order(header.sender(), header.incarnation());
+    return run_.is_complete() || stamps_.are_in_order(header.sender(), header.incarnation());
   }
   /// An upper bound of the time at which a coordinator sent a message. It is by the auditor's clock if the
   /// auditor receives every message. Otherwise it is by the coordinator's clock, which orders the

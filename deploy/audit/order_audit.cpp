@@ -66,7 +66,7 @@ class OrderAudit::Memory {
   std::uint64_t last_resume(std::uint32_t client, std::uint32_t scope) const {
     std::uint64_t last = 0;
     for (const std::uint32_t by : {client, kOperator}) {
-      const auto found = by_subject_.find({Matter::kResume, scope, by, 0});
+      const auto found = by_subject_.find({SubjectKind::kResume, scope, by, 0});
       if (found != by_subject_.end()) last = std::max(last, found->second.number);
     }
     return last;
@@ -79,14 +79,14 @@ class OrderAudit::Memory {
       return true;
     const std::uint64_t resumed =
         std::max(last_resume(order.client, order.robot), last_resume(order.client, msg::ALL_ROBOTS));
-    switch (std::get<Matter>(order.subject)) {
-      case Matter::kDrive:
+    switch (std::get<SubjectKind>(order.subject)) {
+      case SubjectKind::kDrive:
         return false;
-      case Matter::kHold:
+      case SubjectKind::kHold:
         return resumed > order.number;
-      case Matter::kZone:
+      case SubjectKind::kZone:
         return false;
-      case Matter::kResume:
+      case SubjectKind::kResume:
         break;
     }
     // Otherwise, the absence of the hold shows that it was lifted.
@@ -94,7 +94,7 @@ class OrderAudit::Memory {
   }
   /// Whether the resume exempts a robot from a hold of all robots that is in force.
   bool excepts(const Terms& resume) const {
-    const auto hold = by_subject_.find({Matter::kHold, msg::ALL_ROBOTS, resume.client, 0});
+    const auto hold = by_subject_.find({SubjectKind::kHold, msg::ALL_ROBOTS, resume.client, 0});
     return resume.robot != msg::ALL_ROBOTS && hold != by_subject_.end() &&
            hold->second.number < resume.number;
   }
@@ -117,24 +117,24 @@ OrderAudit::Terms OrderAudit::terms_of(std::uint32_t robot, std::uint32_t client
   switch (order.kind) {
     case msg::OrderKind::ORDER_GO:
     case msg::OrderKind::ORDER_CANCEL:
-      order.subject = {Matter::kDrive, robot, driver_of(client), 0};
+      order.subject = {SubjectKind::kDrive, robot, driver_of(client), 0};
       break;
     case msg::OrderKind::ORDER_HOLD:
-      order.subject = {Matter::kHold, robot, client, 0};
+      order.subject = {SubjectKind::kHold, robot, client, 0};
       break;
     case msg::OrderKind::ORDER_RESUME:
-      order.subject = {Matter::kResume, robot, client, 0};
+      order.subject = {SubjectKind::kResume, robot, client, 0};
       break;
     case msg::OrderKind::ORDER_ZONE:
     case msg::OrderKind::ORDER_REMOVE_ZONE:
-      order.subject = {Matter::kZone, robot, client, terms.zone()};
+      order.subject = {SubjectKind::kZone, robot, client, terms.zone()};
       break;
   }
   return order;
 }
 
 OrderAudit::Coordinator* OrderAudit::coordinator_of(const msg::Header& header) {
-  if (!is_coordinator(header.sender()) || !stamps_.tell_order(header.sender(), header.incarnation()))
+  if (!is_coordinator(header.sender()) || !stamps_.are_in_order(header.sender(), header.incarnation()))
     return nullptr;
   Coordinator& coordinator = coordinators_[header.sender()];
   if (header.incarnation() < coordinator.incarnation) return nullptr;
@@ -242,10 +242,10 @@ void OrderAudit::on_memory(const msg::OrderMemory& memory) {
     orders.push_back(terms_of(order.robot(), order.client(), order.terms()));
     if (orders.back().kind != msg::OrderKind::ORDER_HOLD) continue;
     const auto [told, is_new] =
-        coordinator->told_ns.try_emplace({orders.back().number, order.client()}, header.stamp_ns());
+        coordinator->announced_ns.try_emplace({orders.back().number, order.client()}, header.stamp_ns());
     if (!is_new) told->second = std::min(told->second, header.stamp_ns());
   }
-  bound(coordinator->told_ns);
+  bound(coordinator->announced_ns);
   if (memory.page_count() == 0) return;
   if (memory.page_index() == 0) {
     coordinator->memory.clear();
@@ -264,11 +264,11 @@ void OrderAudit::on_memory(const msg::OrderMemory& memory) {
 
 void OrderAudit::judge(std::uint32_t sender, Coordinator& coordinator, bool claims_completeness) {
   const Memory memory(coordinator.memory);
-  may_lack_resumes_ |= memory.has_many_resumes();
+  may_miss_resumes_ |= memory.has_many_resumes();
   may_lack_removals_ |= memory.has_many_removals();
   judge_grants(memory, coordinator);
   judge_confirmed(memory, sender, coordinator, claims_completeness);
-  std::erase_if(coordinator.told_ns, [&](const auto& told) {
+  std::erase_if(coordinator.announced_ns, [&](const auto& told) {
     const auto stands = [&](const Terms& order) { return Key{order.number, order.client} == told.first; };
     return told.second < coordinator.memory_stamp_ns && std::ranges::none_of(coordinator.memory, stands);
   });
@@ -279,10 +279,10 @@ void OrderAudit::judge(std::uint32_t sender, Coordinator& coordinator, bool clai
 void OrderAudit::judge_grants(const Memory& memory, Coordinator& coordinator) {
   for (const auto& [subject, hold] : memory.orders()) {
     if (hold.kind != msg::OrderKind::ORDER_HOLD) continue;
-    const auto told = coordinator.told_ns.find({hold.number, hold.client});
-    if (told == coordinator.told_ns.end()) continue;
+    const auto told = coordinator.announced_ns.find({hold.number, hold.client});
+    if (told == coordinator.announced_ns.end()) continue;
     const bool is_for_all = hold.robot == msg::ALL_ROBOTS;
-    if (is_for_all && may_lack_resumes_) continue;
+    if (is_for_all && may_miss_resumes_) continue;
     for (auto grant = coordinator.grants.begin(); grant != coordinator.grants.end();) {
       const auto& [robot, granted] = *grant;
       const bool was_held =
@@ -312,10 +312,11 @@ void OrderAudit::judge_confirmed(const Memory& memory, std::uint32_t sender, con
                              coordinator.granting_since_ns < coordinator.memory_stamp_ns;
     if (!is_own && !(is_granting && has_witness(confirmed.terms, coordinator.epoch))) return false;
     const Terms& order = confirmed.terms;
-    const Matter matter = std::get<Matter>(order.subject);
-    const bool may_be_forgotten = matter == Matter::kZone                                ? may_lack_removals_
-                                  : matter == Matter::kHold || matter == Matter::kResume ? may_lack_resumes_
-                                                                                         : false;
+    const SubjectKind matter = std::get<SubjectKind>(order.subject);
+    const bool may_be_forgotten = matter == SubjectKind::kZone ? may_lack_removals_
+                                  : matter == SubjectKind::kHold || matter == SubjectKind::kResume
+                                      ? may_miss_resumes_
+                                      : false;
     if (may_be_forgotten) return false;
     if (memory.accounts_for(order)) return false;
     report_(AuditRule::kForgottenOrder, order.robot == msg::ALL_ROBOTS ? roster_.front() : order.robot, 0,
@@ -337,7 +338,7 @@ bool OrderAudit::has_witness(const Terms& terms, Epoch epoch) const {
     return registered != registered_.end() && registered->second.epoch == epoch &&
            registered->second.incarnation == entry.second.incarnation &&
            registered->second.stamp_ns > entry.second.stamp_ns &&
-           stamps_.tell_order(entry.first, entry.second.incarnation);
+           stamps_.are_in_order(entry.first, entry.second.incarnation);
   });
 }
 

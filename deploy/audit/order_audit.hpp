@@ -40,9 +40,9 @@ class OrderAudit {
   void on_grant(const msg::Verdict& verdict, std::int64_t earliest_ns);
 
  private:
-  enum class Matter : std::uint8_t { kDrive, kHold, kResume, kZone };
+  enum class SubjectKind : std::uint8_t { kDrive, kHold, kResume, kZone };
   /// What an order is about. Of two orders with the same subject, only the later one counts.
-  using Subject = std::tuple<Matter, std::uint32_t, std::uint32_t, std::uint32_t>;
+  using Subject = std::tuple<SubjectKind, std::uint32_t, std::uint32_t, std::uint32_t>;
   struct Terms {
     Subject subject;
     std::uint32_t client = 0;
@@ -72,11 +72,11 @@ class OrderAudit {
   /// One run of a coordinator. All stamps are by its clock, which must not be set back.
   struct Coordinator {
     Incarnation incarnation = 0;
-    std::map<Key, std::int64_t> told_ns;  // when it first announced each hold that it remembers
-    std::map<RobotId, Grant> grants;      // latest grants
-    Epoch epoch = 0;                      // epoch of the latest grant
-    std::int64_t granting_since_ns = 0;   // time of the first grant in that epoch
-    std::vector<Terms> memory;            // pages of a complete memory received so far
+    std::map<Key, std::int64_t> announced_ns;  // when it first announced each hold that it remembers
+    std::map<RobotId, Grant> grants;           // latest grants
+    Epoch epoch = 0;                           // epoch of the latest grant
+    std::int64_t granting_since_ns = 0;        // time of the first grant in that epoch
+    std::vector<Terms> memory;                 // pages of a complete memory received so far
     std::uint64_t first_message = 0, pages = 0;
     std::int64_t memory_stamp_ns = 0;
   };
@@ -117,7 +117,7 @@ class OrderAudit {
   std::map<RobotId, AgentRegistration> registered_;    // latest registrations
   std::map<RobotId, HeldFlag> held_;
   /// Some coordinator may have forgotten why holds or zones are no longer in force.
-  bool may_lack_resumes_ = false, may_lack_removals_ = false;
+  bool may_miss_resumes_ = false, may_lack_removals_ = false;
 };
 
 }  // namespace sidestep

@@ -34,7 +34,7 @@ std::optional<Epoch> PairAudit::common_epoch(const KnownVersion& a, const Eviden
     const Epoch epoch = granted->granted_in;
     if (epoch == 0 || granted->is_own_stop || !was_checked_against(*granted, granted == &a ? b : a)) continue;
     const std::int64_t both_ns = std::max(entry_ns(a, epoch), entry_ns(b, epoch));
-    if (std::min(a_state.alive_until_ns, b_state.alive_until_ns) >= both_ns) return epoch;
+    if (std::min(a_state.in_ledger_until_ns, b_state.in_ledger_until_ns) >= both_ns) return epoch;
   }
   // Proof by reports: both versions were executed at the same time, whatever the ledgers contained.
   if (a.is_own_stop || b.is_own_stop || !a_state.was_executed || !b_state.was_executed) return std::nullopt;
@@ -68,7 +68,7 @@ bool PairAudit::are_clocks_comparable(const AuditedRobot& a, const AuditedRobot&
 
 bool PairAudit::may_conflict(const LiveVersion& mine, const Evidence& before,
                              const LiveVersion& theirs) const {
-  const bool by_grant = before.alive_until_ns < std::max(mine.granted_by_ns, theirs.granted_by_ns);
+  const bool by_grant = before.in_ledger_until_ns < std::max(mine.granted_by_ns, theirs.granted_by_ns);
   const std::int64_t from_ns = std::max(mine.start_ns, theirs.start_ns) + 2 * clock_bound_ns_;
   const bool by_reports = std::min(before.executed_until_ns, theirs.executed_until_ns) <= from_ns + 1000 &&
                           std::min(mine.executed_until_ns, theirs.executed_until_ns) > from_ns;
@@ -129,7 +129,7 @@ void PairAudit::check_changes(const AuditedRobot& robot, std::size_t other) {
 }
 
 void PairAudit::check_new(const AuditedRobot& robot, KnownVersion& known) {
-  if (known.alive_until_ns < known.granted_by_ns)
+  if (known.in_ledger_until_ns < known.granted_by_ns)
     return;  // later reports or pages will trigger the comparison
   known.is_pair_checked = true;
   for (const AuditedRobot& other : robots_.all()) {

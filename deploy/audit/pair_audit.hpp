@@ -26,12 +26,12 @@ class PairAudit {
   /// What had been proven about a version before the current message.
   struct Evidence {
     explicit Evidence(const KnownVersion& known)
-        : alive_until_ns(known.alive_until_ns),
+        : in_ledger_until_ns(known.in_ledger_until_ns),
           executed_until_ns(known.executed_until_ns),
           was_executed(known.was_executed) {}
     bool operator==(const Evidence&) const = default;
 
-    std::int64_t alive_until_ns, executed_until_ns;
+    std::int64_t in_ledger_until_ns, executed_until_ns;
     bool was_executed;
   };
 

@@ -85,7 +85,7 @@ bool PositionAudit::is_known_to_be_displaced(std::size_t robot) const {
   const bool was_disturbed = disturbances_.was_disturbed(robot);
   // The coordinator's messages may have been missed.
   if (!run_.is_complete() && was_disturbed) return true;
-  return disturbances_.is_displaced(robot) || disturbances_.rests_where_left(robot) ||
+  return disturbances_.is_displaced(robot) || disturbances_.rests_displaced(robot) ||
          (was_disturbed && std::ranges::count(named_displaced_, robots_.all()[robot].id) > 0);
 }
 

@@ -61,14 +61,14 @@ void SeenContacts::on_missed() {
   std::erase_if(observations_, [](const auto& entry) { return entry.second < kMinObservations; });
 }
 
-std::vector<SeenContact> SeenContacts::update(const std::vector<Sight>& sights) {
+std::vector<SeenContact> SeenContacts::update(const std::vector<VisionSighting>& sights) {
   std::vector<SeenContact> began;
   seen_ = sights.size() + obstacles_.size() + 1;
   apart_ns_.resize(sights.size() * seen_, SeenContact().apart_ns);
   for (std::size_t i = 0; i < sights.size(); ++i) {
-    const Sight& a = sights[i];
+    const VisionSighting& a = sights[i];
     for (std::size_t j = i + 1; j < sights.size(); ++j) {
-      const Sight& b = sights[j];
+      const VisionSighting& b = sights[j];
       if (!a.is_new && !b.is_new) continue;
       const double later_s =
           (static_cast<double>(b.observed_at_ns) - static_cast<double>(a.observed_at_ns)) * 1e-9;

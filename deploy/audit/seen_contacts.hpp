@@ -16,7 +16,7 @@
 namespace sidestep {
 
 /// The latest observation of one robot by vision.
-struct Sight {
+struct VisionSighting {
   std::int64_t observed_at_ns = std::numeric_limits<std::int64_t>::min();
   Vec2 position_m{0, 0};
   Vec2 velocity_mps{0, 0};
@@ -42,7 +42,7 @@ class SeenContacts {
 
   /// Processes the robots in a new world state. Returns the contacts that began; each is returned once it has
   /// been observed twice.
-  [[nodiscard]] std::vector<SeenContact> update(const std::vector<Sight>& sights);
+  [[nodiscard]] std::vector<SeenContact> update(const std::vector<VisionSighting>& sights);
   /// World states were missed, so an earlier observation does not confirm a later one.
   void on_missed();
 

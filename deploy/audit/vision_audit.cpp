@@ -40,14 +40,14 @@ void VisionAudit::on_world_state(const msg::WorldState& world, const Reception& 
 }
 
 void VisionAudit::record_sights(const msg::WorldState& world) {
-  for (Sight& sight : sights_) sight.is_new = false;
+  for (VisionSighting& sight : sights_) sight.is_new = false;
   for (const msg::TrackedRobot& robot : world.robots()) {
     const auto index = robots_.index_of(robot.robot());
     if (!index || !is_sane(robot)) {
       ++findings_.totals.invalid;
       continue;
     }
-    Sight& sight = sights_[*index];
+    VisionSighting& sight = sights_[*index];
     if (robot.observed_at_ns() <= sight.observed_at_ns) continue;
     sight = {robot.observed_at_ns(),
              {robot.observed_x_m(), robot.observed_y_m()},
@@ -58,7 +58,8 @@ void VisionAudit::record_sights(const msg::WorldState& world) {
 
 bool VisionAudit::become_reference() {
   if (coverage_.is_vision()) return true;
-  if (!first_sight_at_ && std::ranges::any_of(sights_, &Sight::is_new)) first_sight_at_ = findings_.now;
+  if (!first_sight_at_ && std::ranges::any_of(sights_, &VisionSighting::is_new))
+    first_sight_at_ = findings_.now;
   if (!first_sight_at_ || findings_.now - *first_sight_at_ < kGroundTruthWait) return false;
   coverage_.use_reference(AuditReference::kVision);
   return true;
@@ -86,7 +87,7 @@ void VisionAudit::record_positions(const msg::WorldState& world) {
     const auto index = robots_.index_of(tracked.robot());
     if (!index || !is_sane(tracked)) continue;
     AuditedRobot& robot = robots[*index];
-    const Sight& sight = sights_[*index];
+    const VisionSighting& sight = sights_[*index];
     if (sight.is_new)
       robot.observation = {sight.observed_at_ns, sight.position_m.x(), sight.position_m.y(), 0};
     const double error_m = robot.distance_from_version_m(sight.position_m, sight.observed_at_ns);

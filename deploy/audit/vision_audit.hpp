@@ -40,7 +40,7 @@ class VisionAudit {
   Disturbances& disturbances_;
   ContactExcuses& excuses_;
   AuditFindings& findings_;
-  std::vector<Sight> sights_;  ///< parallel to the robots
+  std::vector<VisionSighting> sights_;  ///< parallel to the robots
   SeenContacts seen_contacts_;
   std::optional<Time> first_sight_at_;
 };

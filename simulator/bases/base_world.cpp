@@ -45,7 +45,7 @@ Scenario with_opponents(const Scenario& scenario, std::uint32_t team_size) {
 
 BaseWorld::BaseWorld(const Scenario& scenario, std::uint32_t team_size, const BaseSettings& settings,
                      Time begin)
-    : ours_(scenario.robots.size()),
+    : scenario_robot_count_(scenario.robots.size()),
       floor_(with_opponents(scenario, team_size)),
       settings_(settings),
       time_(begin),
@@ -62,7 +62,7 @@ BaseWorld::BaseWorld(const Scenario& scenario, std::uint32_t team_size, const Ba
 
 std::optional<std::size_t> BaseWorld::find(Team team, std::uint32_t number) const {
   const auto found = std::ranges::find_if(floor_.robots, [&](const RobotSpec& robot) {
-    return robot.team == team && number_of(robot.id) == number;
+    return robot.team == team && number_in_team(robot.id) == number;
   });
   if (found == floor_.robots.end()) return std::nullopt;
   return static_cast<std::size_t>(found - floor_.robots.begin());
@@ -115,9 +115,9 @@ void BaseWorld::step() {
 
 // The clearance that contacts_ measures includes the opponents.
 void BaseWorld::measure_clearance() {
-  if (ours_ == bodies_.size()) return;
-  for (std::size_t i = 0; i < ours_; ++i) {
-    for (std::size_t k = i + 1; k < ours_; ++k) {
+  if (scenario_robot_count_ == bodies_.size()) return;
+  for (std::size_t i = 0; i < scenario_robot_count_; ++i) {
+    for (std::size_t k = i + 1; k < scenario_robot_count_; ++k) {
       if (!bodies_[i].is_on_floor() || !bodies_[k].is_on_floor()) continue;
       const double distance_m = (bodies_[i].position_m() - bodies_[k].position_m()).norm();
       min_clearance_m_ = std::min(min_clearance_m_, distance_m - 2 * floor_.radius_m);
@@ -158,7 +158,8 @@ void BaseWorld::fill(msg::GroundTruth& truth) const {
                                                                       : msg::NO_ROBOT);
   }
   truth.penetration_m_s(contacts_.totals().penetration_m_s);
-  truth.min_clearance_m(ours_ == bodies_.size() ? contacts_.totals().min_clearance_m : min_clearance_m_);
+  truth.min_clearance_m(scenario_robot_count_ == bodies_.size() ? contacts_.totals().min_clearance_m
+                                                                : min_clearance_m_);
   truth.crashes(crashes_);
   truth.crashes_while_moving(moving_crashes_);
   for (std::size_t i = 0; i < std::min<std::size_t>(moving_crashes_, msg::MAX_CONTACTS); ++i)
@@ -169,7 +170,7 @@ void BaseWorld::fill(msg::GroundTruth& truth) const {
   truth.ball_x_m(ball_m.x());
   truth.ball_y_m(ball_m.y());
   truth.robots().clear();
-  for (std::size_t i = 0; i < ours_; ++i) {
+  for (std::size_t i = 0; i < scenario_robot_count_; ++i) {
     const Body& body = bodies_[i];
     if (!body.is_on_floor()) continue;
     msg::TrueRobotState robot;

@@ -51,9 +51,9 @@ class BaseWorld {
   void step();
   void measure_clearance();
   void count_contacts(const std::vector<double>& speeds_mps);
-  bool is_ours(std::size_t robot) const { return robot < ours_; }
+  bool is_ours(std::size_t robot) const { return robot < scenario_robot_count_; }
 
-  std::size_t ours_;  ///< the scenario's robots come first
+  std::size_t scenario_robot_count_;  ///< the scenario's robots come first
   Scenario floor_;
   BaseSettings settings_;
   Time time_;

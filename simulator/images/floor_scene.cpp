@@ -10,7 +10,7 @@ namespace {
 constexpr Rgb kOpponent{118, 44, 150};
 
 SceneRobot scene_robot(const RobotSpec& robot) {
-  return {robot.team, number_of(robot.id), robot.start_m, robot.start_heading_rad};
+  return {robot.team, number_in_team(robot.id), robot.start_m, robot.start_heading_rad};
 }
 
 SceneCylinder opponent(const Circle& disc) { return {disc, SceneCylinder().height_m, kOpponent}; }

@@ -65,7 +65,7 @@ league::VisionPacket LeagueFrames::detection(const msg::DetectionFrame& frame, T
 void LeagueFrames::add(const msg::RobotDetection& robot, const CameraModel& camera,
                        league::DetectionFrame& detection) const {
   league::DetectedRobot detected = detected_robot({robot.x_m(), robot.y_m()}, camera);
-  detected.number = number_of(robot.robot());
+  detected.number = number_in_team(robot.robot());
   detected.heading_rad = robot.heading_rad();
   detected.confidence = robot.confidence();
   // A ghost's id may belong to no robot of the scenario; such a ghost counts as blue.

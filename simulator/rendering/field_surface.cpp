@@ -82,7 +82,7 @@ double FieldLines::distance_m(const Vec2& p) const {
   return centre_m - marking_.line_m / 2;
 }
 
-double light_at(const RenderSpec& spec, const Field& field, const Vec2& p) {
+double light_fraction_at(const RenderSpec& spec, const Field& field, const Vec2& p) {
   const Vec2 half(field.length_m / 2, field.width_m / 2);
   const double fraction =
       spec.light_falloff == LightFalloff::kLinear ? (p.x() / half.x() + 1) / 2 : p.norm() / half.norm();
@@ -106,7 +106,7 @@ Canvas render_floor(const CameraModel& camera, const Field& field, const RenderS
       const Coverage share = floor.at_pixel(camera, *p);
       const Light seen = share.line * line + share.surface * texture * surface +
                          (1 - share.line - share.surface) * surroundings;
-      canvas(y, x) = bytes_of(static_cast<float>(light_at(spec, field, *p)) * seen);
+      canvas(y, x) = bytes_of(static_cast<float>(light_fraction_at(spec, field, *p)) * seen);
     }
   }
   return canvas;

@@ -27,7 +27,7 @@ class FieldLines {
 
 /// The fraction of full light at a point of the floor. Beyond the field's far end it is the same as at that
 /// end.
-double light_at(const RenderSpec& spec, const Field& field, const Vec2& p);
+double light_fraction_at(const RenderSpec& spec, const Field& field, const Vec2& p);
 
 /// A camera's view of the empty floor under neutral light: the field surface with its lines, its texture and
 /// a margin around the field, and a dark floor beyond.

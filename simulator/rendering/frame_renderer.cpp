@@ -63,7 +63,7 @@ void FrameRenderer::render_floor_once(const StaticScene& statics) {
 }
 
 Eigen::Vector3d FrameRenderer::gain_at(const Vec2& p) const {
-  return light_at(spec_, field_, p) * spec_.colour_gain;
+  return light_fraction_at(spec_, field_, p) * spec_.colour_gain;
 }
 
 void FrameRenderer::sort_objects(const Scene& scene) {
@@ -134,7 +134,7 @@ cv::Rect FrameRenderer::draw_visible_part(const Scene& scene, const VisibleObjec
   if (cover_.samples.empty()) return draw_object(scene, object);
   canvas_.copyTo(before_);
   const cv::Rect drawn = draw_object(scene, object);
-  if (!drawn.empty()) hide_behind(cover_, camera_, object.place_m, drawn, before_(drawn), canvas_);
+  if (!drawn.empty()) remove_hidden_parts(cover_, camera_, object.place_m, drawn, before_(drawn), canvas_);
   return drawn;
 }
 

@@ -61,7 +61,7 @@ class FrameRenderer {
   RenderSpec spec_;
   Rng rng_;
   SensorNoise noise_;
-  StaticCover cover_;
+  StaticOcclusion cover_;
   Canvas floor_;                           ///< the floor with static obstacles, under the actual light
   Canvas canvas_;                          ///< the floor with the objects drawn so far
   int blur_size_ = 1;                      ///< size of the kernel, odd

@@ -60,7 +60,7 @@ class StaticView {
   }
 
   /// Whether all rays within this reach show tops; false if uncertain.
-  bool is_all_top(const Vec2& top_m, double reach_m) const {
+  bool shows_only_tops(const Vec2& top_m, double reach_m) const {
     const Vec2 reach(reach_m, reach_m);
     return std::ranges::any_of(candidates_,
                                [&](const Shape* shape) {
@@ -119,7 +119,7 @@ class StaticPainter {
     cover_.front_m = cv::Mat1f::zeros(floor.size());
   }
 
-  StaticCover paint() {
+  StaticOcclusion paint() {
     for (int y = 0; y < floor_.rows; y += kSquare_px)
       for (int x = 0; x < floor_.cols; x += kSquare_px) paint_square({x, y, kSquare_px, kSquare_px});
     return std::move(cover_);
@@ -149,7 +149,7 @@ class StaticPainter {
     if (!slope) return;
     const Eigen::Matrix2d metres_per_pixel = slope->leftCols<2>().inverse();
     int tops = 0, sides = 0;
-    if (view_.is_all_top(*top_m, pixel_reach_m(metres_per_pixel))) {
+    if (view_.shows_only_tops(*top_m, pixel_reach_m(metres_per_pixel))) {
       tops = kSamples;
       cover_.front_m(y, x) = static_cast<float>(view_.front_m(*top_m));
     } else {
@@ -157,7 +157,7 @@ class StaticPainter {
     }
     if (tops + sides == 0) return;
     cover_.samples(y, x) = static_cast<std::uint8_t>(tops + sides);
-    const auto light = static_cast<float>(light_at(spec_, field_, *top_m));
+    const auto light = static_cast<float>(light_fraction_at(spec_, field_, *top_m));
     const Light top = light * lit(scene_.colour, {1, 1, 1});
     const auto rest = static_cast<float>(static_cast<int>(kSamples) - tops - sides);
     floor_(y, x) =
@@ -183,19 +183,19 @@ class StaticPainter {
   const RenderSpec& spec_;
   Canvas& floor_;
   StaticView view_;
-  StaticCover cover_;
+  StaticOcclusion cover_;
 };
 
 }  // namespace
 
-StaticCover draw_static(const StaticScene& scene, const CameraModel& camera, const Field& field,
-                        const RenderSpec& spec, Canvas& floor) {
+StaticOcclusion draw_static(const StaticScene& scene, const CameraModel& camera, const Field& field,
+                            const RenderSpec& spec, Canvas& floor) {
   if (scene.empty() || camera.position_m().z() <= scene.height_m) return {};
   return StaticPainter(scene, camera, field, spec, floor).paint();
 }
 
-void hide_behind(const StaticCover& cover, const CameraModel& camera, const Vec2& object_m,
-                 const cv::Rect& rect, const Canvas& before, Canvas& canvas) {
+void remove_hidden_parts(const StaticOcclusion& cover, const CameraModel& camera, const Vec2& object_m,
+                         const cv::Rect& rect, const Canvas& before, Canvas& canvas) {
   const Vec2 nadir_m = camera.position_m().head<2>();
   for (int y = rect.y; y < rect.br().y; ++y) {
     for (int x = rect.x; x < rect.br().x; ++x) {

@@ -28,7 +28,7 @@ struct StaticScene {
 inline constexpr double kBoardHalfThickness_m = 0.005;
 
 /// The regions that static obstacles hide from one camera.
-struct StaticCover {
+struct StaticOcclusion {
   cv::Mat1b samples;  ///< how many of kSamples per pixel show an obstacle
   /// The distance from the point below the camera to the point where the pixel's viewing ray meets an
   /// obstacle. Anything farther along the ray is hidden. Meaningful where `samples` is not 0.
@@ -37,12 +37,12 @@ struct StaticCover {
 
 /// Draws the obstacles over a floor under neutral light, antialiased, and returns what they hide: empty
 /// matrices if there are no obstacles. Draws nothing unless the camera is above the obstacles.
-StaticCover draw_static(const StaticScene& scene, const CameraModel& camera, const Field& field,
-                        const RenderSpec& spec, Canvas& floor);
+StaticOcclusion draw_static(const StaticScene& scene, const CameraModel& camera, const Field& field,
+                            const RenderSpec& spec, Canvas& floor);
 
 /// Removes the parts of an object that static obstacles hide, after the object was drawn over them within a
 /// rectangle. `before` contains the rectangle's pixels without the object.
-void hide_behind(const StaticCover& cover, const CameraModel& camera, const Vec2& object_m,
-                 const cv::Rect& rect, const Canvas& before, Canvas& canvas);
+void remove_hidden_parts(const StaticOcclusion& cover, const CameraModel& camera, const Vec2& object_m,
+                         const cv::Rect& rect, const Canvas& before, Canvas& canvas);
 
 }  // namespace sidestep

@@ -127,7 +127,7 @@ Time World::robot_time(std::size_t index, Time now) {
 }
 
 void World::on_host_clock_set_back(Duration by) {
-  host_behind_ += by;
+  host_setback_ += by;
   for (Robot& robot : robots_) robot.clock_error.offset -= by;
 }
 

@@ -52,9 +52,9 @@ class World {
   /// world continues.
   void on_host_clock_set_back(Duration by);
   /// The reading of the host's clock at a time of this world.
-  Time host_time(Time t) const { return t - host_behind_; }
+  Time host_time(Time t) const { return t - host_setback_; }
   /// The time of this world when the host's clock reads `shown`.
-  Time world_time(Time shown) const { return shown + host_behind_; }
+  Time world_time(Time shown) const { return shown + host_setback_; }
 
   /// Robots that have changed version, agent or epoch, or have been lifted or put down, since their last
   /// clear_pending_report(); each listed once.
@@ -125,12 +125,12 @@ class World {
   void switch_off(std::size_t robot, Time now);
   void switch_on(std::size_t robot, Time now);
   void set_clock(std::size_t robot, Duration offset, Time now);
-  void see_beside(std::size_t robot, const RobotDisturbance& disturbance, Time now);
-  bool see_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
-  void see_frozen(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  void start_seen_beside(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  bool start_seen_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  void start_seen_frozen(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void end(const ActiveDisturbance& disturbance);
   /// Whether cameras have misled the robot, and it has not yet had a fix at its true place.
-  bool is_still_misled(const ActiveDisturbance& disturbance) const;
+  bool is_misled_by_cameras(const ActiveDisturbance& disturbance) const;
   /// Whether the disturbance may take the body off its reference.
   bool affects_body(const ActiveDisturbance& disturbance) const;
   void carry(std::size_t robot, const RobotDisturbance& disturbance, Time now);
@@ -146,7 +146,7 @@ class World {
   Duration clock_bound_;
   double tracking_bound_m_;
   Time time_;
-  Duration host_behind_{0};  ///< how far the host's clock has been set back
+  Duration host_setback_{0};  ///< how far the host's clock has been set back
   std::vector<Body> bodies_;
   std::vector<VisionFault> vision_faults_;
   std::vector<Robot> robots_;

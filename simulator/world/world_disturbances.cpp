@@ -71,12 +71,12 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       carry(index, disturbance, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
-      see_beside(index, disturbance, now);
+      start_seen_beside(index, disturbance, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
-      return see_as(index, disturbance, now);
+      return start_seen_as(index, disturbance, now);
     case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
-      see_frozen(index, disturbance, now);
+      start_seen_frozen(index, disturbance, now);
       return true;
   }
   return false;
@@ -123,7 +123,7 @@ void World::set_clock(std::size_t index, Duration offset, Time now) {
   Robot& robot = robots_[index];
   const Time before = robot_time(index, now);
   switch_versions(index, before);
-  robot.clock_error = {offset - host_behind_, robot.clock_error.drift_ppm, now};
+  robot.clock_error = {offset - host_setback_, robot.clock_error.drift_ppm, now};
   const bool moves = robot.firmware.executing().trajectory.end() > before;
   if (robot.is_powered && (moves || robot.firmware.next_start() != Time::max()) &&
       std::chrono::abs(robot.clock_error.reading(now) - before) > clock_bound_)
@@ -137,12 +137,12 @@ void World::carry(std::size_t index, const RobotDisturbance& disturbance, Time n
   record_disturbance(index, now);
 }
 
-void World::see_beside(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+void World::start_seen_beside(std::size_t index, const RobotDisturbance& disturbance, Time now) {
   vision_faults_[index].offset_m = disturbance.place_m;
   start_disturbance({index, disturbance.kind, now + disturbance.duration, disturbance.place_m, 0});
 }
 
-bool World::see_as(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+bool World::start_seen_as(std::size_t index, const RobotDisturbance& disturbance, Time now) {
   const auto other = std::ranges::find(robots_, disturbance.other_robot, &Robot::id);
   if (other == robots_.end()) return false;
   const auto other_index = static_cast<std::size_t>(other - robots_.begin());
@@ -155,7 +155,7 @@ bool World::see_as(std::size_t index, const RobotDisturbance& disturbance, Time 
   return true;
 }
 
-void World::see_frozen(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+void World::start_seen_frozen(std::size_t index, const RobotDisturbance& disturbance, Time now) {
   vision_faults_[index].frozen = {bodies_[index].position_m(), bodies_[index].heading_rad()};
   start_disturbance({index, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
 }
@@ -198,13 +198,13 @@ void World::end_disturbances() {
     if (active.end > time_) return false;
     if (affects_body(active)) record_disturbance(active.robot, active.end);
     end(active);
-    if (!is_still_misled(active)) return true;
+    if (!is_misled_by_cameras(active)) return true;
     active.end = time_ + kPhysicsStep;
     return false;
   });
 }
 
-bool World::is_still_misled(const ActiveDisturbance& disturbance) const {
+bool World::is_misled_by_cameras(const ActiveDisturbance& disturbance) const {
   const Robot& robot = robots_[disturbance.robot];
   const Body& body = bodies_[disturbance.robot];
   const bool has_misled = disturbance.kind == msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE ||

@@ -21,7 +21,7 @@ using std::chrono::seconds;
 constexpr double kAtRest_mps = 0.03;
 
 /// The scenario of the two teams, which drive back and forth.
-std::string teams_to_and_fro() {
+std::string two_teams_back_and_forth() {
   std::string text;
   const std::regex robot("(.*start_m: )(\\[[^\\]]*\\])(.*goals_m: )\\[(\\[[^\\]]*\\])\\](.*)");
   std::istringstream lines(shipped_scenario("two-teams-22"));
@@ -58,7 +58,7 @@ struct Delays {
 };
 
 void check_holds(LaunchedRun& run, double extra_s) {
-  const Scenario scenario = parse_scenario(teams_to_and_fro(), "teams.yaml");
+  const Scenario scenario = parse_scenario(two_teams_back_and_forth(), "teams.yaml");
   const double braking_s = scenario.limits.speed_mps / scenario.limits.deceleration_mps2;
   OrderClient client(run.bus(), static_cast<ClientId>(Sender::kOperator));
   Delays published, entered;
@@ -91,7 +91,7 @@ void check_holds(LaunchedRun& run, double extra_s) {
 }
 
 TEST_CASE("22 robots come to rest quickly when held at full speed over DDS, 40 times", "[.long][slow]") {
-  LaunchedRun run(teams_to_and_fro());
+  LaunchedRun run(two_teams_back_and_forth());
   check_holds(run, 0);
 }
 
@@ -99,7 +99,7 @@ TEST_CASE(
     "22 robots on three hosts with 5 % packet loss come to rest quickly when held at full speed, 40 times",
     "[.long][slow]") {
   SIDESTEP_NEEDS_ROOT();
-  const auto run = LaunchedRun::on_namespaces(teams_to_and_fro());
+  const auto run = LaunchedRun::on_namespaces(two_teams_back_and_forth());
   for (const char* host : {"floor", "east", "west"}) {
     const std::string name = "sidestep-" + std::to_string(run->pid()) + "-" + host;
     REQUIRE(run->command({"fault", "link", name, "--loss", "0.05"}) == "exit code 0");

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "tests/catch.hpp"
-#include "tests/faults/late_host.hpp"
 #include "tests/faults/launched_run.hpp"
+#include "tests/faults/wrong_clock_host.hpp"
 #include "tests/sanitized.hpp"
 
 namespace sidestep::host_clock_test {
@@ -28,7 +28,7 @@ struct LateStart {
 /// restart and that all robots arrive.
 void check_recovery(const LateStart& start) {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
-  const LateHost host(start.late, start.right, start.ahead);
+  const WrongClockHost host(start.late, start.right, start.ahead);
   LaunchedRun run(shipped_scenario("crossing"), {"--hosts", host.hosts_file()});
   REQUIRE(run.wait_until([&] { return run.children().size() == 11; }));
   for (const std::string& process : start.late_processes)
@@ -86,8 +86,8 @@ TEST_CASE("setting a host's clock during a healthy run does not disturb the run"
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
   const Duration ahead = GENERATE(Duration(1h), Duration(-24h), Duration(-300ms));
   CAPTURE(to_seconds(ahead));
-  const LateHost host("processes: [coordinator], agents: [4-7]",
-                      "processes: [simulator, vision], agents: [0-3]", 0s);
+  const WrongClockHost host("processes: [coordinator], agents: [4-7]",
+                            "processes: [simulator, vision], agents: [0-3]", 0s);
   LaunchedRun run(shuttles(3, ""), {"--hosts", host.hosts_file()});
   INFO(run.output());
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
@@ -105,7 +105,8 @@ TEST_CASE("setting a host's clock during a healthy run does not disturb the run"
 TEST_CASE("`sidestep clock` lists processes whose clocks are wrong, and hosts whose clock has been set",
           "[slow]") {
   if (kIsSanitized) return;  // a sanitizer's library must be loaded before the test's
-  const LateHost host("agents: [4-7]", "processes: [simulator, vision, coordinator], agents: [0-3]", 2s);
+  const WrongClockHost host("agents: [4-7]", "processes: [simulator, vision, coordinator], agents: [0-3]",
+                            2s);
   LaunchedRun run(shuttles(20, ""), {"--hosts", host.hosts_file(), "--seconds", "20"});
   REQUIRE(run.wait_until([&] { return run.speed_mps(5) > 0.5; }));
   std::vector<std::string> clock{"clock", "--once"};

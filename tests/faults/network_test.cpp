@@ -112,17 +112,17 @@ TEST_CASE(
     CAPTURE(arguments);
     REQUIRE(run.command(fault(run, arguments)) == "exit code 0");
   };
-  const auto apply_leaving = [&](RobotId robot, std::vector<std::string> arguments) {
+  const auto apply_once_clear = [&](RobotId robot, std::vector<std::string> arguments) {
     REQUIRE(run.wait_until([&] { return is_leaving(robot); }));
     arguments.insert(arguments.begin() + 1, std::to_string(robot));
     apply(std::move(arguments));
   };
-  apply_leaving(0, {"slip", "--grip", "0.1", "--seconds", "2"});
-  apply_leaving(1, {"block", "--heading", "0.3", "--seconds", "1"});
-  apply_leaving(2, {"reboot"});
+  apply_once_clear(0, {"slip", "--grip", "0.1", "--seconds", "2"});
+  apply_once_clear(1, {"block", "--heading", "0.3", "--seconds", "1"});
+  apply_once_clear(2, {"reboot"});
   CHECK(run.wait_until([&] { return was_off[0] && was_off[1] && was_off[2]; }));
 
-  apply_leaving(3, {"clock", "--offset-ms", "400"});
+  apply_once_clear(3, {"clock", "--offset-ms", "400"});
   CHECK(run.wait_until(
       [&] { return states[3] == msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND && run.speed_mps(3) < 0.03; }));
   apply({"clock", "3", "--offset-ms", "0"});

@@ -150,12 +150,12 @@ struct Run {
 
 struct Totals {
   int cases = 0;
-  int judged = 0;          ///< robots that could stop without touching the body
-  int touched = 0;         ///< number of judged robots that touched it
-  int other_contacts = 0;  ///< number of contacts between two robots that were not displaced
-  int unnamed = 0;         ///< bodies not named within a second
-  int wrongly_named = 0;   ///< robots named before the fault
-  Duration slowest_name{0};
+  int judged = 0;             ///< robots that could stop without touching the body
+  int touched = 0;            ///< number of judged robots that touched it
+  int other_contacts = 0;     ///< number of contacts between two robots that were not displaced
+  int unnamed = 0;            ///< bodies not named within a second
+  int falsely_displaced = 0;  ///< robots named before the fault
+  Duration slowest_detection{0};
 };
 
 /// Chooses the fault in an undisturbed run. The run ends when the body begins to move.
@@ -254,12 +254,12 @@ void run_case(std::uint64_t seed, bool is_carried, Totals& totals) {
   run.system.run_until(fault.moved + from_seconds(path.end_s + 1));
 
   ++totals.cases;
-  totals.wrongly_named += static_cast<int>(named_before);
+  totals.falsely_displaced += static_cast<int>(named_before);
   const auto named = run.named.find(fault.robot);
   if (named == run.named.end() || named->second - fault.moved > std::chrono::seconds(1))
     ++totals.unnamed;
   else
-    totals.slowest_name = std::max(totals.slowest_name, named->second - fault.moved);
+    totals.slowest_detection = std::max(totals.slowest_detection, named->second - fault.moved);
   std::set<RobotId> judged;
   for (const RobotSpec& robot : scenario.robots) {
     if (robot.id != fault.robot && can_stop_clear(robot.id, undisturbed.truths, path, fault.moved, scenario))
@@ -274,8 +274,8 @@ Totals run_cases(std::uint64_t first, std::uint64_t count) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) run_case(seed, seed % 2 == 0, totals);
   WARN(totals.cases << " cases: " << totals.judged << " robots could stop clear, " << totals.touched
                     << " of them touched; " << totals.other_contacts << " other contacts; " << totals.unnamed
-                    << " not named within 1 s, slowest " << to_seconds(totals.slowest_name) << " s; "
-                    << totals.wrongly_named << " named without a fault");
+                    << " not named within 1 s, slowest " << to_seconds(totals.slowest_detection) << " s; "
+                    << totals.falsely_displaced << " named without a fault");
   return totals;
 }
 
@@ -284,7 +284,7 @@ void check(const Totals& totals) {
   CHECK(totals.touched == 0);
   CHECK(totals.other_contacts == 0);
   CHECK(totals.unnamed == 0);
-  CHECK(totals.wrongly_named == 0);
+  CHECK(totals.falsely_displaced == 0);
 }
 
 TEST_CASE(

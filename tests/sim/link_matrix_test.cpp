@@ -74,7 +74,7 @@ Matrix sample_matrix(const Scenario& scenario, Rng& rng) {
 
 /// An independent decision: whether some coordinator and all agents can exchange messages, and hear vision
 /// and robots.
-bool can_anybody_serve(const Scenario& scenario, const Matrix& matrix) {
+bool can_any_coordinator_serve(const Scenario& scenario, const Matrix& matrix) {
   const auto is_usable = [&](const std::string& from, const std::string& to) {
     const Link link = matrix.at({from, to});
     return link == Link::kGood || link == Link::kLossy;
@@ -115,7 +115,7 @@ std::optional<double> run(std::uint64_t seed) {
   const Scenario scenario = shuttles(4, 2 + static_cast<int>(rng.below(2)));
   const Duration at = from_seconds(rng.uniform(1.5, 3));
   const Matrix matrix = sample_matrix(scenario, rng);
-  if (!can_anybody_serve(scenario, matrix)) return std::nullopt;
+  if (!can_any_coordinator_serve(scenario, matrix)) return std::nullopt;
   INFO(describe(matrix));
   SimSystem system(scenario, seed);
   MotionWatch motion(system);

@@ -77,7 +77,7 @@ TEST_CASE(
   system.run_for(3s);
   CHECK_FALSE(system.is_alive(second_process("simulator")));
   CHECK(system.is_alive("simulator"));
-  CHECK_FALSE(system.was_second_simulator_believed());
+  CHECK_FALSE(system.was_second_simulator_accepted());
   CHECK(watch.has_reported(second_process("simulator"), "another simulator is running in this domain"));
   CHECK(system.run_until_arrived(system.now() + 60s));
   watch.require_safe();
@@ -90,7 +90,7 @@ TEST_CASE(
   Rng rng(seed);
   SimSystem system(circle(), seed);
   Watch watch(system);
-  system.stay_with_others();
+  system.keep_duplicates_running();
   system.run_for(from_seconds(rng.uniform(0.5, 3)));
   system.restart(second_process("simulator"));
   system.run_for(3s);
@@ -113,7 +113,7 @@ TEST_CASE("a silent robot for which only a second simulator reports causes no au
   Rng rng(seed);
   SimSystem system(circle(), seed);
   Watch watch(system);
-  system.stay_with_others();
+  system.keep_duplicates_running();
   system.run_for(from_seconds(rng.uniform(0.5, 3)));
   for (const auto kind :
        {msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF, msg::DisturbanceKind::DISTURBANCE_LIFT}) {
@@ -123,7 +123,7 @@ TEST_CASE("a silent robot for which only a second simulator reports causes no au
   system.run_for(8s);
   system.restart(second_process("simulator"));
   system.run_for(3s);
-  CHECK(system.was_second_simulator_believed());
+  CHECK(system.was_second_simulator_accepted());
   watch.require_safe();
 }
 
@@ -135,7 +135,7 @@ TEST_CASE(
   Rng rng(seed);
   SimSystem system(waiting_robots(4), seed);
   Watch watch(system);
-  system.stay_with_others();
+  system.keep_duplicates_running();
   system.run_for(from_seconds(rng.uniform(1.5, 3)));
   auto off = disturbance(3, msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF),
        on = disturbance(3, msg::DisturbanceKind::DISTURBANCE_SWITCH_ON);
@@ -166,7 +166,7 @@ TEST_CASE("two simulators on a lossy network cause no contact, even if other pro
   scenario.network = {rng.uniform(0, 0.3), 0.1, 1ms, from_seconds(rng.uniform(0.002, 0.05))};
   SimSystem system(scenario, seed);
   Watch watch(system);
-  if (rng.chance(0.5)) system.stay_with_others();
+  if (rng.chance(0.5)) system.keep_duplicates_running();
   system.run_for(from_seconds(rng.uniform(0.5, 4)));
   system.restart(second_process("simulator"));
   for (int i = 0; i < 6; ++i) {

@@ -19,7 +19,8 @@ std::size_t index_of(Team team) { return team == Team::kBlue ? 0 : 1; }
 
 LeagueSource::LeagueSource(const Scenario& scenario) {
   require_unique_numbers(scenario);
-  for (const RobotSpec& robot : scenario.robots) ids_[index_of(robot.team)][number_of(robot.id)] = robot.id;
+  for (const RobotSpec& robot : scenario.robots)
+    ids_[index_of(robot.team)][number_in_team(robot.id)] = robot.id;
   senders_.reserve(kMaxSenders);
 }
 

@@ -37,7 +37,7 @@ const league::TrackedPacket& TrackedOutput::packet_of(const msg::WorldState& wor
     if (!spec) continue;
     league::TrackedRobot tracked;
     tracked.team = spec->team;
-    tracked.number = number_of(spec->id);
+    tracked.number = number_in_team(spec->id);
     tracked.position_m = {robot.x_m(), robot.y_m()};
     tracked.heading_rad = wrapped_rad(robot.heading_rad());
     tracked.velocity_mps = {robot.vx_mps(), robot.vy_mps()};

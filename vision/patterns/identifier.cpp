@@ -8,7 +8,7 @@ namespace sidestep {
 namespace {
 
 /// Maximum distance from the expected position: the radius of a robot.
-constexpr double kRobotGate_m = 0.09;
+constexpr double kPositionGate_m = 0.09;
 constexpr double kRobotGate_rad = 0.8;  ///< maximum deviation from the expected heading
 constexpr double kMaxRobotSpeed_mps = 3;
 constexpr Duration kHistoryTimeout{500'000'000};
@@ -46,7 +46,7 @@ Identifier::RosterMask Identifier::matching_robots(const DetectedPattern& patter
 }
 
 bool Identifier::is_within_gates(const ExpectedRobot& expected, const DetectedPattern& pattern) const {
-  return (expected.pose.position_m - pattern.pose.position_m).norm() <= kRobotGate_m &&
+  return (expected.pose.position_m - pattern.pose.position_m).norm() <= kPositionGate_m &&
          std::abs(wrapped_rad(expected.pose.heading_rad - pattern.pose.heading_rad)) <= kRobotGate_rad;
 }
 
@@ -76,7 +76,7 @@ Identifier::RosterMask Identifier::narrowed_by_history(Time captured_at, const D
   const bool is_known =
       nearest != unidentified_.end() &&
       distance_m(*nearest) <=
-          std::min(kRobotGate_m,
+          std::min(kPositionGate_m,
                    kPositionTolerance_m +
                        kMaxRobotSpeed_mps * std::abs(to_seconds(captured_at - nearest->observed_at)));
   if (!is_known) {

@@ -8,9 +8,9 @@
 namespace sidestep {
 namespace {
 
-constexpr int kMaxGap_px = 2;              // between adjacent regions
-constexpr int kAround_px = 3;              // margin around a target that must show almost no colour
-constexpr std::uint32_t kMaxRest_px = 25;  // maximum number of other coloured pixels within the margin
+constexpr int kMaxGap_px = 2;                     // between adjacent regions
+constexpr int kIsolationMargin_px = 3;            // margin around a target that must show almost no colour
+constexpr std::uint32_t kMaxOtherColour_px = 25;  // maximum number of other coloured pixels within the margin
 
 bool are_adjacent(const ObstacleBlob& a, const ObstacleBlob& b) {
   return std::max(a.left_px, b.left_px) - std::min(a.right_px, b.right_px) <= kMaxGap_px &&
@@ -48,12 +48,13 @@ std::optional<Vec2> FloorBlobFinder::robot(std::span<const Region> regions) cons
 bool FloorBlobFinder::is_isolated(const ImageView& image, const ColourClasses& classes,
                                   const Region& region) const {
   std::uint32_t coloured_px = 0;
-  const int left = std::max(0, region.left_px - kAround_px), top = std::max(0, region.top_px - kAround_px);
-  const int right = std::min(image.width_px - 1, region.right_px + kAround_px);
-  const int bottom = std::min(image.height_px - 1, region.bottom_px + kAround_px);
+  const int left = std::max(0, region.left_px - kIsolationMargin_px),
+            top = std::max(0, region.top_px - kIsolationMargin_px);
+  const int right = std::min(image.width_px - 1, region.right_px + kIsolationMargin_px);
+  const int bottom = std::min(image.height_px - 1, region.bottom_px + kIsolationMargin_px);
   for (int y = top; y <= bottom; ++y)
     for (int x = left; x <= right; ++x) coloured_px += is_obstacle(pixel_at(image, x, y), classes) ? 1 : 0;
-  return coloured_px <= region.area_px + kMaxRest_px;
+  return coloured_px <= region.area_px + kMaxOtherColour_px;
 }
 
 /// The isolated region of the target's colour and size; nullopt if there is not exactly one.

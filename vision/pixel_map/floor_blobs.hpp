@@ -24,7 +24,7 @@ struct FloorBlobSettings {
   Vec2 below_camera_px{0, 0};                       ///< pixel of the floor point below the camera
   /// Distance of the highest obstacle's foot from below_camera_px, as a fraction of its top's distance,
   /// because its side may be too dark to be seen. 1: obstacles are flat.
-  double foot_share = 1;
+  double foot_distance_ratio = 1;
 };
 
 /// An obstacle in the image. All its pixels and their feet lie in the diamond and in the disc. Pixels are
@@ -57,7 +57,7 @@ class FloorBlobFinder {
   /// The pixel of the floor point below the object that a pixel shows, if the object is as high as an
   /// obstacle can be.
   Vec2 foot_of(const Vec2& pixel) const {
-    return settings_.below_camera_px + settings_.foot_share * (pixel - settings_.below_camera_px);
+    return settings_.below_camera_px + settings_.foot_distance_ratio * (pixel - settings_.below_camera_px);
   }
   /// Whether a pixel has an obstacle's colour.
   bool is_obstacle(const Yuv& pixel, const ColourClasses& classes) const;

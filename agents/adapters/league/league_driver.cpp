@@ -7,7 +7,7 @@ LeagueDriver::LeagueDriver(const Scenario& scenario, const std::vector<RobotId>&
                            const LeaguePorts& ports)
     : ports_(ports) {
   require_unique_numbers(scenario);
-  for (const RobotId id : robots) names_[id] = {find_robot(scenario, id)->team, number_of(id)};
+  for (const RobotId id : robots) names_[id] = {find_robot(scenario, id)->team, number_in_team(id)};
 }
 
 void LeagueDriver::send(std::span<const BaseCommand> commands) {

@@ -32,7 +32,7 @@ Vec2 displacement_m(const Vec2& previous_m, const Bubble& bubble, const Vec2& ne
   return length > longest ? Vec2(longest / length * sum) : sum;
 }
 
-double passage_m(const Bubble& a, const Bubble& b) {
+double passage_width_m(const Bubble& a, const Bubble& b) {
   const double distance2 = (a.centre_m - b.centre_m).squaredNorm();
   const double smaller = std::min(a.radius_m, b.radius_m), larger = std::max(a.radius_m, b.radius_m);
   if (distance2 > (a.radius_m + b.radius_m) * (a.radius_m + b.radius_m)) return 0;

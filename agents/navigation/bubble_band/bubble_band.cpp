@@ -85,14 +85,15 @@ void BubbleBand::step(const Query& free) {
   for (std::size_t i = 1; i + 1 < bubbles_.size(); ++i) {
     const Bubble &before = bubbles_[i - 1], &after = bubbles_[i + 1];
     Bubble& bubble = bubbles_[i];
-    const double least_before_m = std::min(needed_m, passage_m(before, bubble));
-    const double least_after_m = std::min(needed_m, passage_m(bubble, after));
+    const double least_before_m = std::min(needed_m, passage_width_m(before, bubble));
+    const double least_after_m = std::min(needed_m, passage_width_m(bubble, after));
     Vec2 move = displacement_m(before.centre_m, bubble, after.centre_m, robot_radius_m_);
     for (int attempt = 0; attempt < kAttempts; ++attempt, move /= 2) {
       Bubble moved = bubble;
       moved.centre_m += move;
       measure(moved, free);
-      if (passage_m(before, moved) < least_before_m || passage_m(moved, after) < least_after_m) continue;
+      if (passage_width_m(before, moved) < least_before_m || passage_width_m(moved, after) < least_after_m)
+        continue;
       bubble = moved;
       break;
     }
@@ -100,14 +101,14 @@ void BubbleBand::step(const Query& free) {
 }
 
 bool BubbleBand::is_superfluous(const Bubble& before, const Bubble& bubble, const Bubble& after) const {
-  const double without_m = passage_m(before, after), diameter_m = 2 * robot_radius_m_;
+  const double without_m = passage_width_m(before, after), diameter_m = 2 * robot_radius_m_;
   if (without_m >= kRemoveAt * diameter_m) return true;
   const double apart_m = (before.centre_m - after.centre_m).norm();
   if (without_m >= kInsertBelow * diameter_m) return apart_m <= kCrowded_radii * robot_radius_m_;
   // In narrow passages a bubble is only removed if its neighbours are so close together that insertion would
   // not put it back.
   return apart_m < 2 * kMinSpacing_radii * robot_radius_m_ &&
-         without_m >= std::min(passage_m(before, bubble), passage_m(bubble, after));
+         without_m >= std::min(passage_width_m(before, bubble), passage_width_m(bubble, after));
 }
 
 void BubbleBand::remove_superfluous() {
@@ -129,7 +130,7 @@ void BubbleBand::insert_before(const Bubble& next, const Query& free) {
     const Bubble &from = kept_.back(), &to = pending_.back();
     const double leg_m = (to.centre_m - from.centre_m).norm();
     const bool has_room = kept_.size() + pending_.size() < kMaxBubbles;
-    if (passage_m(from, to) >= wanted_m || leg_m < 2 * closest_m || !has_room) {
+    if (passage_width_m(from, to) >= wanted_m || leg_m < 2 * closest_m || !has_room) {
       kept_.push_back(to);
       pending_.pop_back();
       continue;
@@ -150,7 +151,7 @@ void BubbleBand::fit(const Query& free) {
   for (std::size_t i = 1; i < bubbles_.size(); ++i) {
     Bubble& bubble = bubbles_[i];
     bubble.path_m = bubbles_[i - 1].path_m + (bubble.centre_m - bubbles_[i - 1].centre_m).norm();
-    if (passage_m(bubbles_[i - 1], bubble) < kBrokenBelow * 2 * robot_radius_m_) is_broken_ = true;
+    if (passage_width_m(bubbles_[i - 1], bubble) < kBrokenBelow * 2 * robot_radius_m_) is_broken_ = true;
   }
 }
 

@@ -11,7 +11,7 @@ Vec2 displacement_m(const ArcMotion& motion, double seconds) {
   return {chord_m * std::cos(half_rad), chord_m * std::sin(half_rad)};
 }
 
-Vec2 seen_after(const Vec2& point_m, const ArcMotion& motion, double seconds) {
+Vec2 point_after_motion(const Vec2& point_m, const ArcMotion& motion, double seconds) {
   return rotated(point_m - displacement_m(motion, seconds), -motion.turn_rate_radps * seconds);
 }
 

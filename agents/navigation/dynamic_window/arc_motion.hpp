@@ -20,7 +20,7 @@ struct ArcMotion {
 [[nodiscard]] Vec2 displacement_m(const ArcMotion& motion, double seconds);
 
 /// The position of a fixed point in the robot's frame after the robot has moved.
-[[nodiscard]] Vec2 seen_after(const Vec2& point_m, const ArcMotion& motion, double seconds);
+[[nodiscard]] Vec2 point_after_motion(const Vec2& point_m, const ArcMotion& motion, double seconds);
 
 /// The event that a point crosses a line.
 struct Crossing {

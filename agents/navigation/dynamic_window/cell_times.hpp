@@ -44,7 +44,7 @@ struct CellTimes {
   float horizon_s = 0;         ///< represents all later times too
   std::vector<float> times_s;  ///< indexed by cell, then slot; horizon_s for velocities beyond the limits
   /// Indexed by cell: whether the outline touches the cell before it moves, so that the cell's times are 0.
-  std::vector<bool> is_on_hull;
+  std::vector<bool> touches_hull;
 
   std::span<float> of(std::size_t cell) { return std::span(times_s).subspan(cell * kSlots, kSlots); }
   std::span<const float> of(std::size_t cell) const {

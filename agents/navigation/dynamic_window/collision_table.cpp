@@ -19,7 +19,7 @@ CollisionTable::CollisionTable(const CellTimes& times, const Quantiser& quantise
     : grid_(times.grid), quantiser_(quantiser), place_(times.grid.size(), kOutOfReach) {
   std::vector<std::size_t> stored;
   for (std::size_t cell = 0; cell < grid_.size(); ++cell) {
-    if (times.is_on_hull[cell]) {
+    if (times.touches_hull[cell]) {
       place_[cell] = kOnHull;
     } else if (std::ranges::any_of(times.of(cell), [&](float t) { return t < times.horizon_s; })) {
       place_[cell] = static_cast<std::int32_t>(stored.size());

@@ -24,14 +24,14 @@ CellTimes disc_cell_times(double radius_m, double speed_mps, double cell_m, doub
   const Box area{Vec2(-reach_m, -reach_m), Vec2(reach_m, reach_m)};
   CellTimes times{ObstacleGrid::covering(area, cell_m), static_cast<float>(horizon_s), {}, {}};
   times.times_s.assign(times.grid.size() * kSlots, times.horizon_s);
-  times.is_on_hull.assign(times.grid.size(), false);
+  times.touches_hull.assign(times.grid.size(), false);
   const Vec2 origin(0, 0);
   for (int row = 0; row < times.grid.rows; ++row) {
     for (int column = 0; column < times.grid.columns; ++column) {
       const std::size_t cell = times.grid.index(column, row);
       const Shape shape = times.grid.cell(column, row);
       const double distance_m = signed_distance(origin, shape) - padded_m;
-      times.is_on_hull[cell] = distance_m <= 0;
+      times.touches_hull[cell] = distance_m <= 0;
       if (distance_m >= speed_mps * horizon_s) continue;
       for_each_velocity({{0, kGridSide - 1}, {0, kGridSide - 1}}, [&](int i, int j, std::size_t slot) {
         const Vec2 velocity = grid_velocity(i, j, speed_mps);

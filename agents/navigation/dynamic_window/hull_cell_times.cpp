@@ -28,7 +28,7 @@ class CornerTrace {
       add_crossings(corner_m, corner_m.y() - grid.corner_m(0, row).y(), Vec2(0, 1), backwards, horizon_s);
     std::ranges::sort(events_s_);
     for (std::size_t i = 0; i + 1 < events_s_.size(); ++i) {
-      const Vec2 at = seen_after(corner_m, backwards, (events_s_[i] + events_s_[i + 1]) / 2);
+      const Vec2 at = point_after_motion(corner_m, backwards, (events_s_[i] + events_s_[i + 1]) / 2);
       if (const auto cell = grid.cell_of(at)) lower(times_.of(*cell)[slot_], events_s_[i]);
     }
   }
@@ -101,7 +101,7 @@ CellTimes hull_cell_times(const DifferentialDrive& drive, const ConvexPolygon& h
                   {},
                   {}};
   times.times_s.assign(times.grid.size() * kSlots, times.horizon_s);
-  times.is_on_hull.assign(times.grid.size(), false);
+  times.touches_hull.assign(times.grid.size(), false);
   for_each_velocity({{0, kGridSide - 1}, {0, kGridSide - 1}}, [&](int row, int column, std::size_t slot) {
     const ArcMotion motion = drive.motion(drive.wheels(row, column));
     if (!drive.is_allowed(motion)) return;
@@ -111,7 +111,7 @@ CellTimes hull_cell_times(const DifferentialDrive& drive, const ConvexPolygon& h
   });
   for (int row = 0; row < times.grid.rows; ++row) {
     for (int column = 0; column < times.grid.columns; ++column)
-      times.is_on_hull[times.grid.index(column, row)] =
+      times.touches_hull[times.grid.index(column, row)] =
           overlap(times.grid.cell(column, row), outline.corners_m());
   }
   return times;

@@ -84,7 +84,7 @@ DiscDomain::DiscDomain(const ObstacleWorld& world, const Field& field, double ra
   if (const std::optional<Vec2> nearest = free_position_near(goal_m)) goal_m_ = *nearest;
 }
 
-DiscDomain::DiscDomain(ForChecks, const ObstacleWorld& world, const Field& field, double radius_m,
+DiscDomain::DiscDomain(WithoutGoal, const ObstacleWorld& world, const Field& field, double radius_m,
                        const Vec2& start_m, const DiscDomainSettings& settings)
     : world_(&world),
       field_(field),

@@ -34,9 +34,9 @@ class DiscDomain {
   DiscDomain(const ObstacleWorld& world, const Field& field, double radius_m, const Vec2& start_m,
              const Vec2& goal_m, const DiscDomainSettings& settings = {});
   /// Selects a domain without a goal: its goal is the start, and is not replaced if it is blocked.
-  struct ForChecks {};
-  DiscDomain(ForChecks, const ObstacleWorld& world, const Field& field, double radius_m, const Vec2& start_m,
-             const DiscDomainSettings& settings = {});
+  struct WithoutGoal {};
+  DiscDomain(WithoutGoal, const ObstacleWorld& world, const Field& field, double radius_m,
+             const Vec2& start_m, const DiscDomainSettings& settings = {});
 
   double distance(const Vec2& a, const Vec2& b) const {
     const double x = a.x() - b.x(), y = a.y() - b.y();

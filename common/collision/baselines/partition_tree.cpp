@@ -74,13 +74,13 @@ typename PartitionTree<kDirections>::Extents PartitionTree<kDirections>::extents
 
 template <std::size_t kDirections>
 template <typename Call>
-void PartitionTree<kDirections>::each_leaf(NodeId id, const Extents& extents, const Call& call) {
+void PartitionTree<kDirections>::for_each_leaf(NodeId id, const Extents& extents, const Call& call) {
   // Copied, because the call may add nodes.
   const std::uint32_t direction = nodes_[id].direction, low = nodes_[id].low, high = nodes_[id].high;
   const double offset_m = nodes_[id].offset_m;
   if (direction == kLeaf) return call(id);
-  if (extents.along[direction].low_m <= offset_m) each_leaf(low, extents, call);
-  if (extents.along[direction].high_m >= offset_m) each_leaf(high, extents, call);
+  if (extents.along[direction].low_m <= offset_m) for_each_leaf(low, extents, call);
+  if (extents.along[direction].high_m >= offset_m) for_each_leaf(high, extents, call);
 }
 
 template <std::size_t kDirections>
@@ -92,7 +92,7 @@ void PartitionTree<kDirections>::add(Slot slot, const Shape& shape) {
   extents_[slot] = extents_of(shape);
   is_used_[slot] = true;
   const Extents extents = extents_[slot];
-  each_leaf(0, extents, [&](NodeId leaf) {
+  for_each_leaf(0, extents, [&](NodeId leaf) {
     nodes_[leaf].slots.push_back(slot);
     // Not tried at every size, because a leaf that cannot be divided would be tried again each time.
     const std::size_t size = nodes_[leaf].slots.size();
@@ -109,7 +109,7 @@ void PartitionTree<kDirections>::replace(Slot slot, const Shape& shape) {
 
 template <std::size_t kDirections>
 void PartitionTree<kDirections>::remove(Slot slot) {
-  each_leaf(0, extents_[slot], [&](NodeId leaf) { std::erase(nodes_[leaf].slots, slot); });
+  for_each_leaf(0, extents_[slot], [&](NodeId leaf) { std::erase(nodes_[leaf].slots, slot); });
   is_used_[slot] = false;
 }
 

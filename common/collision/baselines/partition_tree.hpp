@@ -68,7 +68,7 @@ class PartitionTree {
   }
   /// Calls `call(leaf)` for each leaf whose region the extents touch.
   template <typename Call>
-  void each_leaf(NodeId id, const Extents& extents, const Call& call);
+  void for_each_leaf(NodeId id, const Extents& extents, const Call& call);
 
   /// The best line to divide a leaf's obstacles; its direction is kLeaf if none is good enough.
   Line best_line(const std::vector<Slot>& slots) const;

@@ -175,7 +175,7 @@ bool Admission::make_room(const Known& known, bool is_latest, Time now) {
   for (auto entry = participants_.begin(); entry != participants_.end(); ++entry) {
     const Participant& participant = entry->second;
     if (is_certificate_full && participant.known != &known) continue;
-    if (participant.is_proven || entry->first == self_id_) continue;
+    if (participant.is_authenticated || entry->first == self_id_) continue;
     const bool is_old = now - participant.admitted >= kMaxUnproven;
     if (!is_old && !(is_latest && participant.known == &known)) continue;
     if (oldest == participants_.end() || participant.start < oldest->second.start) oldest = entry;
@@ -213,16 +213,16 @@ const Identity* Admission::identity_of(const ParticipantId& id) const {
 
 void Admission::on_authenticated(const ParticipantId& id) {
   const auto found = participants_.find(id);
-  if (found == participants_.end() || found->second.is_proven) return;
-  found->second.is_proven = true;
+  if (found == participants_.end() || found->second.is_authenticated) return;
+  found->second.is_authenticated = true;
   displaced_.erase(id);
   if (!found->second.was_latest) found->second.known->unproven.refund();
 }
 
-std::vector<Identity> Admission::newly_unproven(Time now) {
+std::vector<Identity> Admission::newly_unauthenticated(Time now) {
   std::vector<Identity> result;
   for (auto& [id, participant] : participants_) {
-    if (participant.is_proven || participant.is_reported || now - participant.admitted < kMaxUnproven)
+    if (participant.is_authenticated || participant.is_reported || now - participant.admitted < kMaxUnproven)
       continue;
     participant.is_reported = true;
     // A participant that has since ended may have been too short-lived to authenticate.

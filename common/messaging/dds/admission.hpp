@@ -44,7 +44,7 @@ class Admission {
   static constexpr std::size_t kMaxPerCertificate = 24;
   /// Interval between admissions of participants that have not authenticated yet, beyond the first
   /// kMaxPerCertificate.
-  static constexpr Duration kUnprovenPeriod{5'000'000'000};
+  static constexpr Duration kUnauthenticatedPeriod{5'000'000'000};
   static constexpr std::size_t kMaxParticipants = 1024;
   /// A participant is forgotten after this silence. Announcements come once a second.
   static constexpr Duration kForgetAfter{10'000'000'000};
@@ -96,7 +96,7 @@ class Admission {
   void on_authenticated(const ParticipantId& id);
   /// The identities of participants that have announced themselves for kMaxUnproven without
   /// on_authenticated(). Each participant is returned once.
-  [[nodiscard]] std::vector<Identity> newly_unproven(Time now);
+  [[nodiscard]] std::vector<Identity> newly_unauthenticated(Time now);
   /// Adds serial numbers of revoked certificates. Revocations are never undone.
   void revoke(const std::set<std::string>& serials) { revoked_.insert(serials.begin(), serials.end()); }
   const std::set<std::string>& revoked() const { return revoked_; }
@@ -116,7 +116,7 @@ class Admission {
     CertifiedPrefix prefix;
     bool is_needed;
     Time not_before, not_after;
-    RateLimit unproven{kMaxPerCertificate, kUnprovenPeriod};
+    RateLimit unproven{kMaxPerCertificate, kUnauthenticatedPeriod};
     Time announced{};     ///< time of the last announcement
     Time latest_start{};  ///< latest start of an admitted participant, not ahead of the clock
   };
@@ -124,7 +124,7 @@ class Admission {
     Known* known = nullptr;
     Time admitted, last_heard, start;
     bool was_latest = false;  ///< its admission did not count against Known::unproven
-    bool is_proven = false, is_reported = false;
+    bool is_authenticated = false, is_reported = false;
   };
   struct Displaced {
     Time since, until;  ///< not admitted again before `until`

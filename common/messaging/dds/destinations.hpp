@@ -20,7 +20,7 @@ bool is_discovery(const Locator& locator) {
 /// Whether a discovery datagram is addressed to all participants: to a multicast address, or to all ports at
 /// which peers may be.
 template <typename Locators>
-bool goes_to_everybody(Locators& destinations) {
+bool is_for_all_participants(Locators& destinations) {
   constexpr std::uint8_t kFirst = 224, kLast = 239;  // first byte of multicast addresses
   std::size_t count = 0;
   for (const auto& destination : destinations) {

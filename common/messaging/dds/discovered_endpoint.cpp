@@ -36,7 +36,7 @@ bool share_partition(const DiscoveredEndpoint& writer, const DiscoveredEndpoint&
 
 }  // namespace
 
-std::string qos_in_words(const DiscoveredEndpoint& endpoint) {
+std::string qos_text(const DiscoveredEndpoint& endpoint) {
   std::string text =
       fmt::format("{}, {}, {}, ownership {}, deadline {}, liveliness {} (lease {})",
                   word(endpoint.is_reliable), word(endpoint.durability),

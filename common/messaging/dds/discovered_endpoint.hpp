@@ -35,7 +35,7 @@ enum class EndpointChange : std::uint8_t { kDiscovered, kChanged, kGone };
 
 /// Lists all policies of an endpoint, for example "best effort, volatile, keyed, liveliness automatic (no
 /// limit), …".
-[[nodiscard]] std::string qos_in_words(const DiscoveredEndpoint& endpoint);
+[[nodiscard]] std::string qos_text(const DiscoveredEndpoint& endpoint);
 
 /// The reasons why this writer and this reader of one topic do not match, in plain words; empty if they
 /// match.

@@ -87,9 +87,9 @@ DdsImageReader::DdsImageReader(EventLoop& loop, const DdsSettings& settings,
 void DdsImageReader::check_silence() {
   const Time now = EventLoop::now();
   loop_.at(now + kCheckPeriod, [this] { check_silence(); });
-  const std::optional<Time> latest_writer_since = type_mismatches_.latest_writer_since(channel_);
-  if (!latest_writer_since || last_received_ > *latest_writer_since) return;
-  if (now - std::max(*latest_writer_since, opened_at_) < silence_timeout_) return;
+  const std::optional<Time> latest_writer_found_at = type_mismatches_.latest_writer_found_at(channel_);
+  if (!latest_writer_found_at || last_received_ > *latest_writer_found_at) return;
+  if (now - std::max(*latest_writer_found_at, opened_at_) < silence_timeout_) return;
   shares_memory_ = !shares_memory_;
   log_dds(fmt::format("topic '{}': nothing received by {}, switching to {}", channel_,
                       shares_memory_ ? "UDP" : "shared memory", shares_memory_ ? "shared memory" : "UDP"));

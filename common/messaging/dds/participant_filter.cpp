@@ -70,7 +70,7 @@ std::vector<ParticipantId> ParticipantFilter::newly_refused() {
   const std::lock_guard lock(mutex_);
   read_revoked();
   const Time now = EventLoop::now();
-  for (const Identity& identity : admission_.newly_unproven(now))
+  for (const Identity& identity : admission_.newly_unauthenticated(now))
     report(fmt::format(
         "refuses a process that announces itself as {}: for {:.0f} s it has not shown a genuine private "
         "key and genuine permissions",
@@ -82,7 +82,7 @@ bool ParticipantFilter::may_send(const ParticipantId& participant, const TopicIn
                                  std::uint32_t robot, std::uint32_t sender) {
   const std::lock_guard lock(mutex_);
   const Identity* const identity = admission_.identity_of(participant);
-  if (identity && may_write(*identity, topic, robot) && may_speak_as(*identity, sender)) return true;
+  if (identity && may_write(*identity, topic, robot) && may_use_sender(*identity, sender)) return true;
   ++forged_;
   report(fmt::format("refuses messages of {} on topic '{}' in the name of {}",
                      identity ? to_text(*identity) : "an unknown participant", topic.name,

@@ -26,7 +26,7 @@ class KeyedRawType : public RawType {
   CdrKey next_key{};
 };
 
-DataWriterQos generous_qos() {
+DataWriterQos compatible_qos() {
   DataWriterQos qos = dds_writer_qos(Qos::kEvent);
   qos.durability().kind = TRANSIENT_LOCAL_DURABILITY_QOS;
   return qos;
@@ -39,7 +39,7 @@ struct DdsRawPublisher::Impl {
       : participant(settings, nullptr),
         type(new KeyedRawType(name, is_keyed)),
         support(type),
-        writer(participant.create_writer(topic, support, generous_qos(), nullptr)) {}
+        writer(participant.create_writer(topic, support, compatible_qos(), nullptr)) {}
   ~Impl() { participant.delete_writer(writer); }
 
   DdsParticipant participant;

@@ -14,7 +14,7 @@ void TypeMismatchListener::expect(const std::string& channel, const std::string&
   types_[channel] = type;
 }
 
-std::optional<Time> TypeMismatchListener::latest_writer_since(const std::string& channel) const {
+std::optional<Time> TypeMismatchListener::latest_writer_found_at(const std::string& channel) const {
   const std::lock_guard lock(mutex_);
   std::optional<Time> latest;
   const auto own = types_.find(channel);

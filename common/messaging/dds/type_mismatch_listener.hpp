@@ -22,7 +22,7 @@ class TypeMismatchListener : public fast_dds::DiscoveryListener {
   void expect(const std::string& channel, const std::string& type);
   /// Discovery time of the channel's most recently discovered writer of our type; nullopt if there is no
   /// writer.
-  std::optional<Time> latest_writer_since(const std::string& channel) const;
+  std::optional<Time> latest_writer_found_at(const std::string& channel) const;
 
   void on_endpoint(const fast_dds::rtps::GUID_t& guid, DiscoveredEndpoint&& endpoint,
                    EndpointChange change) override;

@@ -153,7 +153,7 @@ void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
   if (!update_match(writer, stream) || !arrives(from, to)) return;
   // The heartbeat tells the reader which messages are lost for good, so that the reader does not wait for
   // them.
-  give_arrived(stream, event_delay(from, to, reliable_rng_));
+  deliver_arrived(stream, event_delay(from, to, reliable_rng_));
   if (stream.waiting().empty() || !arrives(to, from)) return;
   Duration delay{0};
   for (ReliableStream::Sample& sample : stream.waiting()) {
@@ -162,10 +162,11 @@ void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
     delay = std::max(delay, event_delay(from, to, reliable_rng_));
   }
   // The delays of a heartbeat, of the reader's answer, and of the resent messages.
-  give_arrived(stream, event_delay(from, to, reliable_rng_) + event_delay(to, from, reliable_rng_) + delay);
+  deliver_arrived(stream,
+                  event_delay(from, to, reliable_rng_) + event_delay(to, from, reliable_rng_) + delay);
 }
 
-void SimNetwork::give_arrived(ReliableStream& stream, Duration delay) {
+void SimNetwork::deliver_arrived(ReliableStream& stream, Duration delay) {
   std::vector<ReliableStream::Sample> arrived;
   while (const auto next = stream.take_arrived()) arrived.push_back(*next);
   // Fast DDS passes waiting messages to a reader in this order.

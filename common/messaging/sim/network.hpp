@@ -101,7 +101,7 @@ class SimNetwork {
   /// Resends lost messages, provided that a heartbeat and the answer to it both arrive.
   void heartbeat(Writer& writer, ReliableStream& stream);
   void schedule_heartbeat(Writer& writer, const std::shared_ptr<ReliableStream>& stream);
-  void give_arrived(ReliableStream& stream, Duration delay);
+  void deliver_arrived(ReliableStream& stream, Duration delay);
   /// Updates and returns whether writer and reader know each other. If not, the waiting messages are lost.
   bool update_match(const Writer& writer, ReliableStream& stream);
   void lose_waiting(ReliableStream& stream);

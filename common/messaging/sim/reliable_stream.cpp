@@ -9,12 +9,12 @@ bool ReliableStream::update(const Reachability& reachability, Time now) {
   const bool is_forgotten = reachability.is_forgotten(now);
   if (is_forgotten || reachability.begun_anew > begin_) {
     begin_ = is_forgotten ? now : reachability.begun_anew;
-    is_anew_ = true;
+    is_rediscovery_ = true;
     is_matched_ = false;
   }
   if (is_matched_ || is_forgotten) return is_matched_;
   const Time heard_from = std::max(begin_, reachability.heard_from);
-  const Duration first_delay = is_anew_ ? delays_.anew : delays_.at_first;
+  const Duration first_delay = is_rediscovery_ ? delays_.anew : delays_.at_first;
   const Duration delay = heard_from > begin_ ? delays_.anew : first_delay;
   is_matched_ = begin_ == Time::min() || begin_ + first_delay <= reachability.last_silent_from ||
                 heard_from + delay <= std::min(now, reachability.silent_from);

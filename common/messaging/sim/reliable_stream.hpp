@@ -50,7 +50,7 @@ class ReliableStream {
   SimSubscription* reader_;
   Time begin_;
   Delays delays_;
-  bool is_anew_ = false;
+  bool is_rediscovery_ = false;
   bool is_matched_ = false;
   std::deque<Sample> waiting_;  // messages in the order of writing
 };

@@ -181,8 +181,9 @@ void RunMetrics::on_status(const msg::AgentStatus& status) {
   if (is_fencing && robot->status() && robot->authoritative != status.header().incarnation() &&
       ++robot->fencing_statuses < kSilentAfter)
     return;
-  has_had_orders_ |= robot->spec->goals.empty() && (status.agent_state() == msg::AgentState::AGENT_DRIVING ||
-                                                    status.agent_state() == msg::AgentState::AGENT_ARRIVED);
+  has_received_orders_ |=
+      robot->spec->goals.empty() && (status.agent_state() == msg::AgentState::AGENT_DRIVING ||
+                                     status.agent_state() == msg::AgentState::AGENT_ARRIVED);
   robot->authoritative = status.header().incarnation();
   robot->fencing_statuses = 0;
 }

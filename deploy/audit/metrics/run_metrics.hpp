@@ -67,7 +67,7 @@ class RunMetrics {
   /// Whether the scenario gives no robot a goal, so that clients give the orders.
   bool awaits_orders() const;
   /// Whether any robot has received a drive order from a client since the start.
-  bool has_had_orders() const { return has_had_orders_; }
+  bool has_received_orders() const { return has_received_orders_; }
   /// Whether all robots have arrived. A robot without a goal in the scenario has arrived if it has finished
   /// its orders and is at rest.
   bool all_arrived() const;
@@ -132,7 +132,7 @@ class RunMetrics {
   void record_epoch(const msg::CoordinatorState& state);
   bool has_arrived(const RobotRecord& robot) const;
   /// Why a robot has not arrived, as a clause.
-  std::string hindrance(const RobotRecord& robot) const;
+  std::string reason_not_arrived(const RobotRecord& robot) const;
   double distance_to_go_m(const RobotRecord& robot) const;
   void add_ground_truth(Report& report) const;
   void add_arrivals(Report& report) const;
@@ -145,7 +145,7 @@ class RunMetrics {
   const Scenario& scenario_;
   const Auditor* auditor_ = nullptr;
   const Bus* bus_ = nullptr;
-  bool has_had_orders_ = false;
+  bool has_received_orders_ = false;
   std::vector<RobotRecord> robots_;           ///< sorted by id
   std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each incarnation, without robots
   std::map<std::pair<std::uint32_t, Incarnation>, std::uint64_t>

@@ -68,7 +68,7 @@ void RunMetrics::add_ground_truth(Report& report) const {
     report.robot_time_s = std::max(0.0, to_seconds(*seen_at() - *granting_since_));
 }
 
-std::string RunMetrics::hindrance(const RobotRecord& robot) const {
+std::string RunMetrics::reason_not_arrived(const RobotRecord& robot) const {
   if (!robot.status()) return "its agent has sent no status";
   switch (robot.status()->agent_state()) {
     case msg::AgentState::AGENT_FENCING:
@@ -102,7 +102,7 @@ void RunMetrics::add_arrivals(Report& report) const {
   for (const RobotRecord& robot : robots_) {
     auto& arrival_s = report.arrival_s[robot.spec->id];
     if (!has_arrived(robot) && !robot.spec->goals.empty())
-      report.not_arrived[robot.spec->id] = hindrance(robot);
+      report.not_arrived[robot.spec->id] = reason_not_arrived(robot);
     if (!has_arrived(robot) || !granting_since_) continue;
     arrival_s = std::max(0.0, to_seconds(*robot.settled_since - *granting_since_));
     latest_s = std::max(latest_s, *arrival_s);

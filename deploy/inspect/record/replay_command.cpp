@@ -24,7 +24,7 @@ constexpr const char* kParticipant = "sidestep-replay";
 constexpr Duration kDiscovery{1'500'000'000};  // participants announce themselves once a second
 /// How long writers outlive the last message: when a writer disappears, readers drop those of its messages
 /// that they have not taken yet.
-constexpr Duration kLinger{300'000'000};
+constexpr Duration kWriterLinger{300'000'000};
 constexpr Duration kCheckPeriod{1'000'000'000};
 
 struct ReplayOptions {
@@ -67,7 +67,7 @@ class Replay {
     // Readers must know the writers before the first message.
     bus_.run_until(bus_.now() + kDiscovery);
     const PlaybackResult result = playback_.play();
-    bus_.run_until(bus_.now() + kLinger);
+    bus_.run_until(bus_.now() + kWriterLinger);
     fmt::print("{} messages written\n", written_);
     if (!result.damage.empty())
       fmt::print(stderr, "{}: {}; the messages before that were written\n", options_.file, result.damage);

@@ -123,7 +123,7 @@ std::string topic_details(const std::vector<DiscoveredEndpoint>& endpoints, cons
     for (const DiscoveredEndpoint* endpoint : group)
       if (endpoint->is_writer == is_writer)
         result += fmt::format("{} {}: {}\n", is_writer ? "writer" : "reader", name_of(*endpoint),
-                              qos_in_words(*endpoint));
+                              qos_text(*endpoint));
   result += mismatch_text(group);
   try {
     result += '\n' + message_schema(group.front()->type);

@@ -37,7 +37,7 @@ Duration time_to_rest(const MotionLimits& limits) {
 }
 
 /// Settings of a bus that receives everything, for audit and recording.
-DdsSettings seeing_all(DdsSettings dds) {
+DdsSettings with_keep_all(DdsSettings dds) {
   dds.keeps_all = true;
   return dds;
 }
@@ -53,7 +53,7 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       children_(processes),
       before_(std::move(before)),
       revoked_keys_(key_folder_of_process(options, "vision", scenario)),
-      bus_(seeing_all(options.dds)),
+      bus_(with_keep_all(options.dds)),
       rules_(bus_, static_cast<std::uint32_t>(Sender::kOperator), SharedRules(scenario),
              [this](const RulesMismatch& mismatch) {
                metrics_.on_mismatch(mismatch);
@@ -62,7 +62,7 @@ Launcher::Launcher(const RunOptions& options, const Scenario& scenario, const Pl
       metrics_(scenario),
       auditor_(scenario, {}) {
   metrics_.set_auditor(auditor_);
-  bus_.follow_first_senders();  // these are the processes that this launcher starts
+  bus_.trust_first_senders();  // these are the processes that this launcher starts
   auditor_.on_violation([this](const Violation& violation) {
     if (printed_violations_++ < AuditTotals::kMaxKept)
       print("audit: " + to_line(violation), LogLevel::kError);
@@ -327,7 +327,7 @@ std::string Launcher::startup_failure() const {
 bool Launcher::check_end_of_drive() {
   const Time now = bus_.now();
   const bool awaits_orders = metrics_.awaits_orders();
-  const bool may_end = !awaits_orders || (options_.until_idle && metrics_.has_had_orders());
+  const bool may_end = !awaits_orders || (options_.until_idle && metrics_.has_received_orders());
   if (!may_end || !metrics_.all_arrived())
     arrived_since_.reset();
   else if (!arrived_since_)
@@ -336,7 +336,7 @@ bool Launcher::check_end_of_drive() {
 
   const double limit_s = options_.seconds.value_or(awaits_orders ? std::numeric_limits<double>::infinity()
                                                                  : scenario_.time_limit_s);
-  if (to_seconds(now - drive_began()) > limit_s) {
+  if (to_seconds(now - drive_started_at()) > limit_s) {
     if (awaits_orders) return true;
     abort_reason_ = fmt::format("time limit of {} s", limit_s);
   } else if (is_stuck(now)) {
@@ -345,7 +345,7 @@ bool Launcher::check_end_of_drive() {
   return !abort_reason_.empty();
 }
 
-Time Launcher::drive_began() const {
+Time Launcher::drive_started_at() const {
   return before_.deaths.empty() ? *metrics_.granting_since() : began_ - before_.age;
 }
 

@@ -94,7 +94,7 @@ class Launcher {
   bool check_end_of_drive();
   std::string startup_failure() const;
   /// When the coordinator first granted; if other launchers preceded this one, when the first of them began.
-  Time drive_began() const;
+  Time drive_started_at() const;
   /// Whether nothing moves any more, and dead processes keep the remaining robots from arriving.
   bool is_stuck(Time now) const;
   bool are_all_coordinators_dead() const;

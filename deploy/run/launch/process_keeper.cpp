@@ -331,7 +331,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
         kill(director.pid, SIGTERM);
       }
       if ((keeper.has_ended_all() || !is_connected) && !idle_since) idle_since = now;
-      const bool is_stuck = (first_asked_at && now - *first_asked_at > work.max_ending) ||
+      const bool is_stuck = (first_asked_at && now - *first_asked_at > work.shutdown_timeout) ||
                             (idle_since && now - *idle_since > kMaxIdle);
       if (is_stuck) {
         group.log("the director of the run does not end and is killed");
@@ -351,7 +351,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
       continue;
     }
     (void)group.terminate(kTerminationTimeout);
-    work.on_lost(reason);
+    work.on_director_lost(reason);
     code = kExitFailure;
   }
   (void)group.terminate(kTerminationTimeout);

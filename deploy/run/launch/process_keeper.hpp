@@ -18,10 +18,10 @@ struct DirectorWork {
   std::function<int(Processes&, const std::vector<std::string>& deaths)> run;
   /// Called in this process, once all other processes have ended, if the director died after it was asked to
   /// end, or while it was ending the processes.
-  std::function<void(const std::string& reason)> on_lost;
+  std::function<void(const std::string& reason)> on_director_lost;
   /// A director that has not ended this long after it was asked to end is killed. If a signal has stopped the
   /// director, Ctrl-C takes effect only then.
-  std::chrono::milliseconds max_ending{30'000};
+  std::chrono::milliseconds shutdown_timeout{30'000};
 };
 
 /// Runs the work in a separate process, the director, which uses the network. This process does not use the

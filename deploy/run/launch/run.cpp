@@ -86,7 +86,7 @@ int run(const RunOptions& given) {
       return finish(Launcher(options, scenario, hosts.placement(), hosts.network(), processes, before).run());
     });
   };
-  work.on_lost = [&](const std::string& reason) {
+  work.on_director_lost = [&](const std::string& reason) {
     if (const auto report = written_at(report_path); report && report != former_report) {
       print_to(stdout,
                "\n{}: the process that directed the run died after its report: {}\nreport: {}\nlog: {}\n",

@@ -385,9 +385,9 @@ class TrackingStep final : public ConformanceStep {
 };
 
 /// Accelerates on a straight line, and then sends nothing that would continue the motion.
-class RunOutStep final : public ConformanceStep {
+class NoMoreCommandsStep final : public ConformanceStep {
  public:
-  RunOutStep(std::string rule, double speed_mps, bool is_silent)
+  NoMoreCommandsStep(std::string rule, double speed_mps, bool is_silent)
       : rule_(std::move(rule)), speed_mps_(speed_mps), is_silent_(is_silent) {}
 
   std::string name() const override { return rule_; }
@@ -537,10 +537,10 @@ std::unique_ptr<ConformanceStep> make_tracking_step(const Scenario& scenario) {
   return std::make_unique<TrackingStep>(scenario);
 }
 std::unique_ptr<ConformanceStep> make_lost_commands_step() {
-  return std::make_unique<RunOutStep>("lost commands", 0.3, true);
+  return std::make_unique<NoMoreCommandsStep>("lost commands", 0.3, true);
 }
 std::unique_ptr<ConformanceStep> make_braking_step(const Scenario& scenario) {
-  return std::make_unique<RunOutStep>("braking", scenario.limits.speed_mps, false);
+  return std::make_unique<NoMoreCommandsStep>("braking", scenario.limits.speed_mps, false);
 }
 std::unique_ptr<ConformanceStep> make_own_stop_step() { return std::make_unique<OwnStopStep>(); }
 

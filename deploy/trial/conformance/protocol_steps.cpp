@@ -266,7 +266,7 @@ class TakeoverStep final : public ConformanceStep {
     }
     const Time start = sent_->trajectory.start();
     // Half a lead before the start, or early enough that the lead has not begun.
-    const Duration before = is_committed_ ? robot_report.lead / 2 : robot_report.lead + kPause / 2;
+    const Duration before = starts_within_lead_ ? robot_report.lead / 2 : robot_report.lead + kPause / 2;
     if (probe.incarnation == earlier_ && probe.robot_now() >= start - before) {
       probe.version.reset();
       probe.incarnation += 1000;
@@ -277,9 +277,9 @@ class TakeoverStep final : public ConformanceStep {
     if (robot_report.valid_at < start + kAnswerTimeout) return false;
     const bool is_executed = robot_report.executing.number == sent_->number;
     const bool is_stated = acknowledged_ && acknowledged_->executing.number == robot_report.executing.number;
-    if (is_executed != is_committed_)
-      faults_ += is_committed_ ? "; a version that starts within the lead was discarded"
-                               : "; a version that starts later was executed";
+    if (is_executed != starts_within_lead_)
+      faults_ += starts_within_lead_ ? "; a version that starts within the lead was discarded"
+                                     : "; a version that starts later was executed";
     if (!acknowledged_)
       faults_ += "; the new agent was not acknowledged";
     else if (!is_stated)
@@ -290,19 +290,19 @@ class TakeoverStep final : public ConformanceStep {
     sent_.reset();
     acknowledged_.reset();
     // A robot whose motors respond at once has no lead.
-    if (!is_committed_ && robot_report.lead > 2 * probe.cycle()) {
-      is_committed_ = true;
+    if (!starts_within_lead_ && robot_report.lead > 2 * probe.cycle()) {
+      starts_within_lead_ = true;
       return false;
     }
     const std::string figures =
-        is_committed_ ? "later ones discarded, one within the lead executed" : "discarded";
+        starts_within_lead_ ? "later ones discarded, one within the lead executed" : "discarded";
     context.report.rows.push_back(
         {"pending versions", passed_if(faults_.empty()), faults_.empty() ? figures : faults_.substr(2)});
     return true;
   }
 
  private:
-  bool is_committed_ = false;  ///< the version starts within the lead when the new agent takes over
+  bool starts_within_lead_ = false;  ///< the version starts within the lead when the new agent takes over
   std::optional<Version> sent_;
   Incarnation earlier_ = 0;
   std::optional<RobotReport> acknowledged_;  ///< the first report that acknowledges the new agent

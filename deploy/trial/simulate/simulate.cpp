@@ -19,8 +19,8 @@
 #include "deploy/trial/simulate/campaign/build_commit.hpp"
 #include "deploy/trial/simulate/campaign/campaign.hpp"
 #include "deploy/trial/simulate/campaign/trial.hpp"
+#include "deploy/trial/simulate/laser_picture.hpp"
 #include "deploy/trial/simulate/run_picture.hpp"
-#include "deploy/trial/simulate/sight_picture.hpp"
 #include "deploy/trial/simulate/system/sim_log.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 
@@ -127,21 +127,21 @@ class SightRecorder {
   /// Throws UsageError if the robot does not exist or has no laser.
   SightRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options)
       : bus_(network) {
-    if (!options.sight_of) return;
+    if (!options.laser_robot) return;
     try {
-      picture_.emplace(scenario, *options.sight_of);
+      picture_.emplace(scenario, *options.laser_robot);
     } catch (const std::invalid_argument& error) {
       throw UsageError(std::string("--sight: ") + error.what());
     }
     bus_.become_observer();
-    bus_.observe<msg::LaserScan>(topics::kScan, *options.sight_of,
+    bus_.observe<msg::LaserScan>(topics::kScan, *options.laser_robot,
                                  [this](const msg::LaserScan& scan) { picture_->add(scan); });
   }
   /// nullptr: no picture was requested.
-  SightPicture* picture() { return picture_ ? &*picture_ : nullptr; }
+  LaserPicture* picture() { return picture_ ? &*picture_ : nullptr; }
 
  private:
-  std::optional<SightPicture> picture_;
+  std::optional<LaserPicture> picture_;
   SimBus bus_;
 };
 

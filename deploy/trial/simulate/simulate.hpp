@@ -10,11 +10,11 @@
 namespace sidestep {
 
 struct SimulateOptions {
-  std::string scenario_file;              ///< may be empty in simulate_trial()
-  std::string report_file;                ///< empty: reports/<scenario>-<seed>.json
-  std::string picture_file;               ///< SVG of the robots' paths; empty: no picture
-  std::optional<std::uint32_t> sight_of;  ///< the picture shows what this robot's laser sees instead
-  std::string recording_file;             ///< records all messages except images; empty: none
+  std::string scenario_file;                 ///< may be empty in simulate_trial()
+  std::string report_file;                   ///< empty: reports/<scenario>-<seed>.json
+  std::string picture_file;                  ///< SVG of the robots' paths; empty: no picture
+  std::optional<std::uint32_t> laser_robot;  ///< the picture shows what this robot's laser sees instead
+  std::string recording_file;                ///< records all messages except images; empty: none
   std::uint64_t seed = 1;
   LogLevel log_level = LogLevel::kWarning;  ///< log level of the simulated processes, which log to stderr
   std::optional<double> seconds;            ///< overrides the scenario's time limit

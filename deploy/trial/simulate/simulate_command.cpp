@@ -54,7 +54,7 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
   command.add_option("--report", run.report_file,
                      "report file [reports/<scenario>-<seed>.json; with --seeds: none]");
   const Option svg = command.add_option("--svg", run.picture_file, "draw the robots' paths to this SVG file");
-  command.add_option("--sight", run.sight_of, "draw instead what the laser of this robot shows at the end")
+  command.add_option("--sight", run.laser_robot, "draw instead what the laser of this robot shows at the end")
       .check(non_negative())
       .needs(scenario)
       .needs(svg);

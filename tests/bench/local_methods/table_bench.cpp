@@ -40,7 +40,7 @@ template <typename QuantiserOf>
 TableError table_error(const CellTimes& cells, const DifferentialDrive& drive, QuantiserOf quantiser_of) {
   TableError error;
   for (std::size_t cell = 0; cell < cells.grid.size(); ++cell) {
-    if (cells.is_on_hull[cell]) continue;
+    if (cells.touches_hull[cell]) continue;
     const auto times = cells.of(cell);
     if (std::ranges::none_of(times, [&](float t) { return t < cells.horizon_s; })) continue;
     const Quantiser& quantiser = quantiser_of(times);

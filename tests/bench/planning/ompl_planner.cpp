@@ -105,7 +105,7 @@ struct OmplPlanner::Parts {
   std::shared_ptr<Planner> make_with_goal_bias() const {
     auto planner = std::make_shared<Planner>(information);
     planner->setRange(range_m);
-    planner->setGoalBias(kNamesakeGoalBias);
+    planner->setGoalBias(kOmplGoalBias);
     return planner;
   }
 
@@ -156,7 +156,7 @@ OmplPlanner::OmplPlanner(const std::string& name, const BenchmarkWorld& world, s
   }
   space->setBounds(bounds);
   parts_->name = name;
-  parts_->range_m = namesake_range_m(world.world.field, world.world.radius_m);
+  parts_->range_m = ompl_range_m(world.world.field, world.world.radius_m);
   parts_->cell_m = Vec2(half_m[0], half_m[1]) / 10;
   parts_->space = space;
   parts_->information = std::make_shared<ob::SpaceInformation>(space);

@@ -55,7 +55,7 @@ FloorBlobSettings blob_settings(const CameraModel& camera, double height_m) {
   const Vec2 below_m = camera.position_m().head<2>();
   settings.below_camera_px =
       camera.pixel_of({below_m.x(), below_m.y(), 0}).value_or(camera.parameters().principal_point_px);
-  settings.foot_share = 1 - height_m / camera.position_m().z();
+  settings.foot_distance_ratio = 1 - height_m / camera.position_m().z();
   return settings;
 }
 

@@ -13,8 +13,8 @@ namespace sidestep {
 namespace {
 
 constexpr double kWall_m = 0.1;
-constexpr double kMinWay_m = 3;       // minimum length of the robot's path
-constexpr double kPersonApart_m = 1;  // distance from the robot's start
+constexpr double kMinPathLength_m = 3;      // minimum length of the robot's path
+constexpr double kMinPersonDistance_m = 1;  // distance from the robot's start
 constexpr int kTries = 2000;
 
 /// A wall parallel to the y axis.
@@ -118,12 +118,13 @@ std::optional<OpponentSpec> sample_person(const Scenario& scenario, const RobotS
     const std::optional<Vec2> place = finder.sample_free();
     if (!place || !finder.is_free(meeting)) return std::nullopt;
     const Vec2& hidden = *place;
-    if (finder.is_seen(robot.start_m, hidden) || (hidden - robot.start_m).norm() < kPersonApart_m) continue;
+    if (finder.is_seen(robot.start_m, hidden) || (hidden - robot.start_m).norm() < kMinPersonDistance_m)
+      continue;
     const auto walk = finder.path(hidden, meeting);
     if (!walk) continue;
     // People start anywhere on their routes, so that they meet the robot at random times.
     const Vec2 first = point_on(hidden, *walk, rng.uniform(0, 0.6));
-    if ((first - robot.start_m).norm() < kPersonApart_m) continue;
+    if ((first - robot.start_m).norm() < kMinPersonDistance_m) continue;
     if (const auto rest = finder.path(first, meeting)) {
       person.path_m = {first};
       person.path_m.insert(person.path_m.end(), rest->begin(), rest->end());
@@ -155,7 +156,8 @@ Scenario corner_scene(std::size_t kind, std::uint64_t seed) {
     robot.start_heading_rad = rng.uniform(-3, 3);
     const Vec2& goal = *end;
     const auto way = finder.path(robot.start_m, goal);
-    if (!way || (goal - robot.start_m).norm() < kMinWay_m || finder.is_seen(robot.start_m, goal)) continue;
+    if (!way || (goal - robot.start_m).norm() < kMinPathLength_m || finder.is_seen(robot.start_m, goal))
+      continue;
     robot.goals = {{goal}};
     scenario.robots = {robot};
     for (std::uint64_t i = 1 + rng.below(3); i > 0; --i)

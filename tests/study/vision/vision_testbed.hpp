@@ -18,7 +18,7 @@ inline constexpr Field kQuarterField{6, 4.5};  ///< a quarter of a division-A fi
 inline constexpr std::size_t kRobotsPerTeam = 11;
 inline constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// The number of the robot with a given pattern; the inverse of number_of().
+/// The number of the robot with a given pattern; the inverse of number_in_team().
 constexpr RobotId robot_with_pattern(Team team, std::uint32_t pattern) {
   return team == Team::kBlue ? pattern : 16 + pattern;
 }

@@ -63,7 +63,7 @@ std::vector<StudyRow> rows_of(const sidestep::StudyTable& table) {
   return rows;
 }
 
-std::vector<StudyRow> without_times(std::vector<StudyRow> rows) {
+std::vector<StudyRow> without_timings(std::vector<StudyRow> rows) {
   for (StudyRow& row : rows)
     std::erase_if(
         row, [](const auto& cell) { return cell.first.ends_with("_us") || cell.first.ends_with("_ns"); });
@@ -98,10 +98,10 @@ void check_experiment(const Experiment& experiment) {
     for (const sidestep::PlotLine& line : plot.lines) CHECK_FALSE(line.points.empty());
   }
   const auto again = [&](std::uint64_t seed) {
-    return without_times(rows_of(experiment(seed, [](auto, auto) {})));
+    return without_timings(rows_of(experiment(seed, [](auto, auto) {})));
   };
-  CHECK(again(5) == without_times(rows));
-  CHECK(again(6) != without_times(rows));
+  CHECK(again(5) == without_timings(rows));
+  CHECK(again(6) != without_timings(rows));
 }
 
 double sum_of(const std::vector<StudyRow>& rows, const std::string& column, const std::string& where,

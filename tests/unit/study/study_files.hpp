@@ -31,7 +31,7 @@ class StudyFolder {
 
 std::vector<StudyRow> rows_of(const sidestep::StudyTable& table);
 /// The rows without machine-dependent columns.
-std::vector<StudyRow> without_times(std::vector<StudyRow> rows);
+std::vector<StudyRow> without_timings(std::vector<StudyRow> rows);
 /// The number in a column of the only row with the given cells.
 double number_in(const std::vector<StudyRow>& rows, const StudyRow& cells, const std::string& column);
 

@@ -219,7 +219,7 @@ void EStar::run_kernel(std::uint32_t until, float beyond) {
     case GridKernel::kAlpha:
       return run<AlphaKernel>(until, beyond);
     case GridKernel::kLineOfSight:
-      if (is_of_one_cost_) return run<NoKernel>(until, beyond);
+      if (has_uniform_cost_) return run<NoKernel>(until, beyond);
       return run<LsmKernel>(until, beyond);
     case GridKernel::kLsm:
       return run<LsmKernel>(until, beyond);

@@ -134,7 +134,7 @@ class EStar {
   bool exact_is_stale_ = false;
   std::vector<LineOfSightDistances> line_of_sight_;  // one element or none
   // Whether all cells that are not blocked have the same cost; used only with lines of sight.
-  bool is_of_one_cost_ = true;
+  bool has_uniform_cost_ = true;
   std::uint64_t expansions_ = 0;
 };
 

@@ -63,9 +63,9 @@ void EStar::compute_sight() {
     line_of_sight_[0].set_open(cell, here < kBlocked && here == cost_there);
     is_of_one_cost = is_of_one_cost && (here == kBlocked || here == cost_there);
   }
-  if (is_of_one_cost != is_of_one_cost_)  // a different equation holds in all cells
+  if (is_of_one_cost != has_uniform_cost_)  // a different equation holds in all cells
     for (GridCell cell = 0; cell < layout_.size(); ++cell) changed_.push_back(padded(cell));
-  is_of_one_cost_ = is_of_one_cost;
+  has_uniform_cost_ = is_of_one_cost;
   line_of_sight_[0].compute(layout_.in_cells(goal_m_));
 }
 

@@ -92,7 +92,7 @@ bool McapReader::read_frame(Frame& frame) {
 
 void McapReader::check_end(Bytes data_end, std::uint32_t sum) {
   is_at_end_ = true;
-  if (is_sought_) return;
+  if (was_seek_called_) return;
   const auto expected = McapDecoder(data_end).number<std::uint32_t>();
   if (expected != 0 && expected != sum) return fail("the checksum of the data is wrong");
   // The summary. Its checksum is the last field of the footer, which ends the file together with the magic.
@@ -183,7 +183,7 @@ void McapReader::seek(const McapReader& known, std::uint64_t chunk_offset) {
   channels_ = known.channels_;
   records_ = McapDecoder({});
   is_cut_ = is_at_end_ = false;
-  is_sought_ = true;
+  was_seek_called_ = true;
   damage_.clear();
   if (std::fseek(file_.get(), static_cast<long>(chunk_offset), SEEK_SET) != 0)
     fail("cannot seek in the file");

@@ -85,7 +85,7 @@ class McapReader {
   McapDecoder records_{{}};  // records of the open chunk
   bool is_cut_ = false;      // the file ends within the open chunk
   bool is_at_end_ = false;
-  bool is_sought_ = false;  // seek() was called
+  bool was_seek_called_ = false;  // seek() was called
   std::unique_ptr<std::atomic<bool>> is_stopped_ = std::make_unique<std::atomic<bool>>(false);
   std::uint64_t chunk_offset_ = 0;
   std::string damage_;

@@ -80,7 +80,7 @@ CampaignSummary::Audited CampaignSummary::audited() const {
     if (result.is_audited)
       total.violations += result.audit_violations;
     else
-      ++total.trials_without, total.violations_without += result.audit_violations;
+      ++total.skipped_trials, total.skipped_violations += result.audit_violations;
   }
   return total;
 }
@@ -122,12 +122,12 @@ std::string CampaignSummary::text() const {
       "violations\n",
       seeds(), failed(), hours, distance_m / 1000, contacts(), audit.violations,
       sum(&TrialResult::firmware_violations));
-  if (audit.trials_without > 0) {
+  if (audit.skipped_trials > 0) {
     text += fmt::format(
         "{} trials are not judged by the audit, because a process accepted a second simulator; it reported "
         "{} "
         "violations there\n",
-        audit.trials_without, audit.violations_without);
+        audit.skipped_trials, audit.skipped_violations);
   }
   text += fmt::format("{} excused contacts", sum(&TrialResult::excused_contacts));
   for (const auto& [cause, excused] : excused_by_cause())
@@ -171,8 +171,8 @@ std::string CampaignSummary::json() const {
   json["trials_by_fault"] = trials_by_fault();
   json["excused_time_share"] = excused_time_share();
   json["audit_violations"] = audited().violations;
-  json["unaudited_trials"] = audited().trials_without;
-  json["unaudited_violations"] = audited().violations_without;
+  json["unaudited_trials"] = audited().skipped_trials;
+  json["unaudited_violations"] = audited().skipped_violations;
   json["firmware_violations"] = sum(&TrialResult::firmware_violations);
   json["contacts_per_robot_hour_95"] = upper_bound_95(contacts(), robot_hours());
   json["trials"] = Json::array();

@@ -24,8 +24,8 @@ class CampaignSummary {
   std::map<std::string, std::uint64_t> trials_by_fault() const;
   struct Audited {
     std::uint64_t violations = 0;          ///< number in trials that the audit judges
-    std::uint64_t trials_without = 0;      ///< number of trials that the audit does not judge
-    std::uint64_t violations_without = 0;  ///< number of violations in those trials
+    std::uint64_t skipped_trials = 0;      ///< number of trials that the audit does not judge
+    std::uint64_t skipped_violations = 0;  ///< number of violations in those trials
   };
   Audited audited() const;
   /// Fraction of the time of all pairs of robots in which a contact would have been excused.

@@ -27,11 +27,11 @@ Duration sample_large_offset(Rng& rng) {
 
 class ClockSampler {
  public:
-  ClockSampler(Scenario& scenario, FaultPlan& plan, Duration duration, bool have_robots_clocks, Rng& rng)
+  ClockSampler(Scenario& scenario, FaultPlan& plan, Duration duration, bool robots_have_clocks, Rng& rng)
       : scenario_(scenario),
         plan_(plan),
         duration_(duration),
-        have_robots_clocks_(have_robots_clocks),
+        have_robots_clocks_(robots_have_clocks),
         // The robot and the coordinator each get half of the bound.
         half_bound_s_(0.499 * scenario.clock_bound_s),
         rng_(rng) {}
@@ -102,7 +102,8 @@ class ClockSampler {
   void drift_away(RobotSpec& robot) {
     const double drift_ppm = rng_.uniform(0.5, 1) * kMaxDrift_ppm;
     robot.clock_drift_ppm = rng_.chance(0.5) ? drift_ppm : -drift_ppm;
-    plan_.ends[robot.id] = end_of_clock(from_seconds(1e-6 * drift_ppm * to_seconds(duration_)), scenario_);
+    plan_.ends[robot.id] =
+        final_clock_state(from_seconds(1e-6 * drift_ppm * to_seconds(duration_)), scenario_);
   }
 
   Scenario& scenario_;
@@ -138,16 +139,16 @@ void sample_clock_jumps(const Scenario& scenario, const FaultTimes& times, Fault
   }
 }
 
-RobotEnd end_of_clock(Duration error, const Scenario& scenario) {
+RobotEnd final_clock_state(Duration error, const Scenario& scenario) {
   // Without faults, the interval of a measured offset is narrower than this.
   constexpr Duration kMaxInterval = std::chrono::milliseconds(3);
   const bool is_detected = std::chrono::abs(error) > from_seconds(2 * scenario.clock_bound_s) + kMaxInterval;
   return is_detected ? RobotEnd::kClockLeftBound : RobotEnd::kClockBeyondBound;
 }
 
-void sample_clocks(Scenario& scenario, FaultPlan& plan, Duration duration, bool have_robots_clocks,
+void sample_clocks(Scenario& scenario, FaultPlan& plan, Duration duration, bool robots_have_clocks,
                    Rng& rng) {
-  ClockSampler(scenario, plan, duration, have_robots_clocks, rng).sample();
+  ClockSampler(scenario, plan, duration, robots_have_clocks, rng).sample();
 }
 
 }  // namespace sidestep

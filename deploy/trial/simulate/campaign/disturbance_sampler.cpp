@@ -140,7 +140,7 @@ class DisturbanceSampler {
     if (rng_.chance(0.75) && right_at > at)
       add_clock(right_at, robot, Duration{0});
     else
-      plan_.ends[robot.id] = end_of_clock(error, scenario_);
+      plan_.ends[robot.id] = final_clock_state(error, scenario_);
   }
   void add_clock(Duration at, const RobotSpec& robot, Duration error) {
     RobotDisturbance disturbance;

@@ -64,7 +64,7 @@ void FaultPlayer::end(std::size_t fault) {
 void FaultPlayer::apply(const Partition& partition, const TimedFault& timed) {
   links_.begin(partition);
   if (timed.duration || !clients_) return;
-  for (const std::string& process : partition.to) clients_->expect_nothing_of(process);
+  for (const std::string& process : partition.to) clients_->stop_judging(process);
 }
 
 void FaultPlayer::apply(const Pause& pause, const TimedFault& timed) {
@@ -115,7 +115,7 @@ void FaultPlayer::play(Time until) {
 
 void FaultPlayer::heal() {
   is_healed_ = true;
-  operator_.resume_held();
+  operator_.resume_held_robots();
   while (schedule_.next() < Time::max()) schedule_.apply_next(*this);
   set_qualities(processes_, processes_, between_hosts());
 }

@@ -24,7 +24,7 @@ class FloorOperator {
   /// From now on, resumes all robots whenever any is held, because coordinators that have all been restarted
   /// hold all robots until an operator resumes them. Their orders are then lost, so the operator sends robots
   /// without an order to the scenario's goals again.
-  void resume_held() { resumes_ = true; }
+  void resume_held_robots() { resumes_ = true; }
 
   /// When the operator acts next; nullopt if there is nothing to do.
   std::optional<Time> due() const;

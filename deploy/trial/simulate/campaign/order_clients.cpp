@@ -65,7 +65,7 @@ void OrderClients::give(const Order& order) {
   }
 }
 
-void OrderClients::expect_nothing_of(const std::string& coordinator) {
+void OrderClients::stop_judging(const std::string& coordinator) {
   if (const auto process = process_id(coordinator)) excused_.insert(*process);
 }
 

@@ -34,7 +34,7 @@ class OrderClients {
 
   void give(const Order& order);
   /// Stops judging a coordinator that can no longer hear some process.
-  void expect_nothing_of(const std::string& coordinator);
+  void stop_judging(const std::string& coordinator);
   /// The failures, in words.
   std::vector<std::string> failures() const;
 

@@ -42,7 +42,7 @@ std::map<RobotId, RobotEnd> robot_ends(const FaultPlan& plan, const Scenario& sc
     const bool is_clock = end == RobotEnd::kClockLeftBound || end == RobotEnd::kClockBeyondBound;
     if (is_clock) {
       const Duration error = clock_error(plan, *find_robot(scenario, robot), simulator_started, duration);
-      ends[robot] = end_of_clock(error, scenario);
+      ends[robot] = final_clock_state(error, scenario);
     } else if (end != RobotEnd::kLifted ||
                last_disturbance(plan, robot, msg::DisturbanceKind::DISTURBANCE_LIFT, simulator_started)) {
       ends[robot] = end;

@@ -214,7 +214,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   if (hooks.on_end) hooks.on_end();
   const Report final_report = system.metrics().report();
   copy_metrics(final_report, meter, result);
-  result.is_audited = !system.was_second_simulator_believed();
+  result.is_audited = !system.was_second_simulator_accepted();
   Trial judged = trial;
   judged.plan.ends =
       robot_ends(trial.plan, trial.scenario, system.started_at("simulator") - system.begin(), trial.duration);

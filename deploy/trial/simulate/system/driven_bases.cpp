@@ -8,7 +8,7 @@ namespace sidestep {
 void DirectDriver::send(std::span<const BaseCommand> commands) {
   BaseWorld& world = bases_.world_now();
   for (const BaseCommand& command : commands) {
-    const auto robot = world.find(find_robot(scenario_, command.robot)->team, number_of(command.robot));
+    const auto robot = world.find(find_robot(scenario_, command.robot)->team, number_in_team(command.robot));
     world.command(*robot, {command.velocity.linear_mps, command.velocity.turn_radps}, bases_.simulated_now());
   }
 }

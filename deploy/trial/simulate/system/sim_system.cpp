@@ -8,7 +8,7 @@
 #include "agents/agent/agent_node.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/role_watch.hpp"
-#include "common/messaging/sole_sender.hpp"
+#include "common/messaging/single_writer_guard.hpp"
 #include "common/protocol/senders.hpp"
 #include "coordinator/coordinator_node.hpp"
 #include "deploy/trial/simulate/system/driven_bases.hpp"
@@ -60,8 +60,8 @@ struct SimSystem::Process {
   Process(SimNetwork& network, const SimProcessSpec& spec, std::uint32_t id, const SharedRules& shared)
       : bus(network, spec),
         rules(bus, id, shared, [this](const RulesMismatch& m) { report(LogLevel::kWarning, describe(m)); }) {
-    bus.watch_contests([this](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
-      report(LogLevel::kError, describe_contest(topic, robot, header));
+    bus.watch_conflicts([this](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+      report(LogLevel::kError, describe_conflict(topic, robot, header));
     });
   }
   void report(LogLevel level, const std::string& text) const {
@@ -104,8 +104,8 @@ SimSystem::SimSystem(const Scenario& scenario, std::uint64_t seed, std::map<std:
       order_writer_(observer_bus_.advertise(topics::kOrder)) {
   for (auto& [process, clock] : clocks_) clock.since = begin_;
   observer_bus_.become_observer();
-  observer_bus_.follow_first_senders();
-  watch_beliefs(observer_bus_);
+  observer_bus_.trust_first_senders();
+  watch_second_simulators(observer_bus_);
   metrics_.set_auditor(auditor_);
   listen(observer_bus_, scenario_, auditor_);
   observer_bus_.subscribe<msg::GroundTruth>(topics::kTruth, [this](const auto& truth) {
@@ -143,8 +143,8 @@ void SimSystem::start(const std::string& name) {
   const Scenario& scenario = other != scenarios_.end() ? other->second : scenario_;
   auto process = std::make_unique<Process>(network_, spec_of(name), id, SharedRules(scenario));
   SimBus& bus = process->bus;
-  watch_beliefs(bus);
-  if (now() > begin_) bus.listen_first();
+  watch_second_simulators(bus);
+  if (now() > begin_) bus.listen_before_trusting();
   // As over DDS, the incarnation is the process's clock reading. It seeds the process's random numbers, so it
   // must depend on the seed.
   Incarnation& incarnation = incarnations_[name];
@@ -171,20 +171,20 @@ void SimSystem::start(const std::string& name) {
   observe(name);
 }
 
-void SimSystem::watch_beliefs(SimBus& bus) {
+void SimSystem::watch_second_simulators(SimBus& bus) {
   bus.watch_headers([this](const TopicInfo& topic, const msg::Header& header) {
     // A simulator's robots use its incarnation, and raise it when their clocks are set back.
     const auto is_of = [&](Incarnation second) {
-      return header.incarnation() >= second && header.incarnation() - second <= SoleSender::kMaxRaise;
+      return header.incarnation() >= second && header.incarnation() - second <= SingleWriterGuard::kMaxRaise;
     };
-    if (topic.is_sole && std::ranges::any_of(second_simulators_, is_of))
-      was_second_simulator_believed_ = true;
+    if (topic.is_single_writer && std::ranges::any_of(second_simulators_, is_of))
+      was_second_simulator_accepted_ = true;
   });
 }
 
 void SimSystem::on_other(const std::string& name, std::uint32_t id, Incarnation own, Incarnation other) {
   processes_.at(name)->report(LogLevel::kError, describe_other(id, own, other));
-  if (stays_with_others_ || !must_be_alone(id) || own < other) return;
+  if (keeps_duplicates_running_ || !must_be_alone(id) || own < other) return;
   // The process is not destroyed at once, because this is a callback of its own bus.
   observer_bus_.at(now(), [this, name] { processes_.erase(name); });
 }

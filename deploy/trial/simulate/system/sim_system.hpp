@@ -54,13 +54,13 @@ class SimSystem {
   void restart(const std::string& process);
   /// From now on, processes that should run alone continue when they hear an earlier process of their kind,
   /// as a third-party program might.
-  void stay_with_others() { stays_with_others_ = true; }
+  void keep_duplicates_running() { keeps_duplicates_running_ = true; }
   bool is_alive(const std::string& process) const { return processes_.count(process) > 0; }
   /// When the process was last started.
   Time started_at(const std::string& process) const { return started_at_.at(process); }
   /// Whether some process, or the observer, has accepted messages of a second simulator or one of its robots,
-  /// because it had not heard the first simulator for SoleSender::kGoneAfter or had never heard it.
-  bool was_second_simulator_believed() const { return was_second_simulator_believed_; }
+  /// because it had not heard the first simulator for SingleWriterGuard::kGoneAfter or had never heard it.
+  bool was_second_simulator_accepted() const { return was_second_simulator_accepted_; }
   /// Pauses a process as if by SIGSTOP and SIGCONT; see SimBus::pause. No effect if it is dead.
   void pause(const std::string& process, Duration duration, std::size_t max_queued);
   /// Disturbs a robot on an operator's behalf.
@@ -99,7 +99,7 @@ class SimSystem {
   void start(const std::string& process);
   void observe(const std::string& process);
   /// Records whether the process of this bus accepts messages of a second simulator.
-  void watch_beliefs(SimBus& bus);
+  void watch_second_simulators(SimBus& bus);
   void on_other(const std::string& process, std::uint32_t id, Incarnation own, Incarnation other);
 
   const Scenario scenario_;
@@ -127,9 +127,9 @@ class SimSystem {
   std::function<void(const msg::GroundTruth&)> on_truth_;
   LogLevel min_level_ = LogLevel::kOff;
   OnProcessEvent on_event_;
-  bool stays_with_others_ = false;
+  bool keeps_duplicates_running_ = false;
   std::vector<Incarnation> second_simulators_;
-  bool was_second_simulator_believed_ = false;
+  bool was_second_simulator_accepted_ = false;
 };
 
 }  // namespace sidestep

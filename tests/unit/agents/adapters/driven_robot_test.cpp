@@ -125,7 +125,7 @@ TEST_CASE("with odometry a driven robot knows its position even if its base does
   scene.run(1500ms);
   scene.desired_heading_rad = 0.4;
   // Dead reckoning from the commands alone would be off by 7 mm at the end.
-  scene.obeyed_part = 0.995;
+  scene.obeyed_fraction = 0.995;
   scene.sees = false;
   int periods = 0;
   const auto report = [&] {

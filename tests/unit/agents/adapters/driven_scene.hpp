@@ -24,7 +24,7 @@ class DrivenScene {
     commanded.add(now, command);
     const double s = to_seconds(DrivenRobot::kPeriod);
     const BodyVelocity obeyed = commanded.mean(now - DrivenRobot::kPeriod, now);
-    velocity_mps = obeyed_part * rotated(obeyed.linear_mps, heading_rad + 0.5 * s * obeyed.turn_radps);
+    velocity_mps = obeyed_fraction * rotated(obeyed.linear_mps, heading_rad + 0.5 * s * obeyed.turn_radps);
     turn_radps = obeyed.turn_radps;
     position_m += s * velocity_mps;
     heading_rad += s * turn_radps;
@@ -75,8 +75,8 @@ class DrivenScene {
   double heading_rad = 0.4;
   Vec2 velocity_mps{0, 0};  ///< mean over the last period
   double turn_radps = 0;
-  double obeyed_part = 1;  ///< fraction of the commanded velocity that the base executes
-  bool sees = true;        ///< vision sees the robot, and the agent forwards its observations
+  double obeyed_fraction = 1;  ///< fraction of the commanded velocity that the base executes
+  bool sees = true;            ///< vision sees the robot, and the agent forwards its observations
 
  private:
   static DriveSettings settings_of(Duration latency) {

@@ -153,30 +153,31 @@ OrderPage told_by(std::uint32_t process, Incarnation incarnation, OrderPage page
 TEST_CASE("an agent knows whether a coordinator has announced every order that it remembers") {
   constexpr std::uint32_t kActive = kCoordinator, kStandby = kCoordinator + 1;
   Robot r;
-  CHECK(r.assignment.remembers_nothing());
+  CHECK(r.assignment.has_no_orders());
   r.hear(told_by(kActive, 1, memory({hold_of(8, 5)})));
-  CHECK_FALSE(r.assignment.remembers_nothing());
-  CHECK(r.assignment.is_told_by(kActive, 1));
-  CHECK_FALSE(r.assignment.is_told_by(kActive, 2));  // a restarted coordinator has forgotten all orders
-  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  CHECK_FALSE(r.assignment.has_no_orders());
+  CHECK(r.assignment.has_announced_all_orders(kActive, 1));
+  CHECK_FALSE(
+      r.assignment.has_announced_all_orders(kActive, 2));  // a restarted coordinator has forgotten all orders
+  CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   // The standby was partitioned in the meantime. It claims that its memory is complete.
   r.hear(told_by(kStandby, 1, memory({})));
-  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   REQUIRE(r.assignment.take_missing().size() == 1);
   r.hear(told_by(kStandby, 1, memory({})));
-  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   CHECK(r.assignment.take_missing().size() == 1);  // the orders are announced again
   r.hear(told_by(kStandby, 1, memory({hold_of(8, 5)})));
-  CHECK(r.assignment.is_told_by(kStandby, 1));
+  CHECK(r.assignment.has_announced_all_orders(kStandby, 1));
   CHECK(r.assignment.take_missing().empty());
   // If one coordinator announces a new order, the other may not have received it.
   r.hear(told_by(kActive, 1, change(hold_of(9, 6))));
-  CHECK(r.assignment.is_told_by(kActive, 1));
-  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
+  CHECK(r.assignment.has_announced_all_orders(kActive, 1));
+  CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   r.hear(told_by(kActive, 1, memory({hold_of(8, 5), hold_of(9, 6), hold_of(10, 7)})));
   r.hear(told_by(kStandby, 1, memory({hold_of(8, 5), hold_of(9, 6)})));
-  CHECK_FALSE(r.assignment.is_told_by(kStandby, 1));
-  CHECK(r.assignment.is_told_by(kActive, 1));
+  CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
+  CHECK(r.assignment.has_announced_all_orders(kActive, 1));
 }
 
 TEST_CASE("an agent's memory survives successive coordinators that have forgotten everything") {
@@ -263,16 +264,16 @@ TEST_CASE("an agent knows whether another robot is held and where it still has t
   drive.progress = {msg::OrderState::ORDER_DRIVING, 1};
   r.hear(memory({drive, of_kind(msg::OrderKind::ORDER_HOLD, kClient, 6)}));
   CHECK_FALSE(r.assignment.other(8).is_held);
-  CHECK(r.assignment.other(8).has_to_go);
+  CHECK(r.assignment.other(8).has_drive_order);
   CHECK(r.assignment.other(8).goal_m == Vec2(6, 0));
-  CHECK_FALSE(r.assignment.other(9).has_to_go);
+  CHECK_FALSE(r.assignment.other(9).has_drive_order);
   r.hear(change(of_other(of_kind(msg::OrderKind::ORDER_HOLD, kOperator, 7))));
   CHECK(r.assignment.other(8).is_held);
   drive.progress.state = msg::OrderState::ORDER_ARRIVED;
   r.hear(change(drive));
-  CHECK_FALSE(r.assignment.other(8).has_to_go);
+  CHECK_FALSE(r.assignment.other(8).has_drive_order);
   r.hear(change(of_other(scenario_order())));
-  CHECK(r.assignment.other(8).has_to_go);
+  CHECK(r.assignment.other(8).has_drive_order);
   CHECK_FALSE(r.assignment.other(8).goal_m);
 }
 

@@ -183,21 +183,21 @@ TEST_CASE("a superseded agent queries its robot only when the robot has fallen s
   NegotiationFixture f;
   f.become_ready();
   for (int cycle = 0; cycle < 40; ++cycle) f.n.close_cycle(at_s(1));
-  CHECK_FALSE(f.n.must_ask_robot());
+  CHECK_FALSE(f.n.must_query_robot());
   for (int cycle = 0; cycle < 40; ++cycle) {
     f.n.on_robot_report(make_report(f.initial, 2 + 0.01 * cycle, f.n.incarnation() + 1));
     f.n.close_cycle(at_s(2));
     REQUIRE(f.n.is_superseded());
-    CHECK_FALSE(f.n.must_ask_robot());
+    CHECK_FALSE(f.n.must_query_robot());
   }
   int cycles = 1;  // cycles since the last fact
-  for (; !f.n.must_ask_robot() && cycles < 100; ++cycles) f.n.close_cycle(at_s(3));
+  for (; !f.n.must_query_robot() && cycles < 100; ++cycles) f.n.close_cycle(at_s(3));
   CHECK(cycles == 30);  // half a second
   CHECK(f.n.is_superseded());
   CHECK_FALSE(f.n.may_propose(at_s(3)));
   CHECK_FALSE(f.n.needs_registration());
   f.n.on_robot_report(make_report(f.initial, 4, f.n.incarnation() + 1));
-  CHECK_FALSE(f.n.must_ask_robot());
+  CHECK_FALSE(f.n.must_query_robot());
 }
 
 TEST_CASE("an agent continues although a wrong clock made a version start much later") {
@@ -218,21 +218,21 @@ TEST_CASE("an agent continues although a wrong clock made a version start much l
 
 TEST_CASE("an agent asks for another coordinator if it hears none or is not served") {
   NegotiationFixture f;
-  CHECK_FALSE(f.n.is_unserved(at_s(0.5)));
+  CHECK_FALSE(f.n.needs_other_coordinator(at_s(0.5)));
   SECTION("no coordinator was ever heard") {
     f.n.on_robot_report(make_report(f.initial, 0.5, kSelf, 0));
-    CHECK_FALSE(f.n.is_unserved(at_s(2.4)));
-    CHECK(f.n.is_unserved(at_s(2.5)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(2.4)));
+    CHECK(f.n.needs_other_coordinator(at_s(2.5)));
   }
   SECTION("heartbeats stop") {
     f.become_ready();
-    CHECK_FALSE(f.n.is_unserved(at_s(1.3)));
-    CHECK(f.n.is_unserved(at_s(1.4)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(1.3)));
+    CHECK(f.n.needs_other_coordinator(at_s(1.4)));
     f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.4));
-    CHECK_FALSE(f.n.is_unserved(at_s(1.5)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(1.5)));
     // The last heartbeat came while the clock was ahead.
     f.n.on_coordinator_state(heartbeat(kEpoch), at_s(100));
-    CHECK(f.n.is_unserved(at_s(2)));
+    CHECK(f.n.needs_other_coordinator(at_s(2)));
     CHECK(f.n.wait_reason(at_s(2)) == WaitReason::kNoCoordinator);
   }
   SECTION("answers stop") {
@@ -240,17 +240,17 @@ TEST_CASE("an agent asks for another coordinator if it hears none or is not serv
     const Proposal first = f.propose(1.1, 1.0);
     (void)f.propose(1.2, 1.1);
     f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.3));
-    CHECK_FALSE(f.n.is_unserved(at_s(1.39)));
-    CHECK(f.n.is_unserved(at_s(1.4)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(1.39)));
+    CHECK(f.n.needs_other_coordinator(at_s(1.4)));
     (void)f.n.on_verdict(verdict_on(first), at_s(1.41));
-    CHECK_FALSE(f.n.is_unserved(at_s(1.42)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(1.42)));
     f.n.on_request(at_s(1.5));
     f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.8));
-    CHECK(f.n.is_unserved(at_s(1.9)));
+    CHECK(f.n.needs_other_coordinator(at_s(1.9)));
     Verdict registered = verdict_on(first);
     registered.proposal_number = 0;
     (void)f.n.on_verdict(registered, at_s(1.9));
-    CHECK_FALSE(f.n.is_unserved(at_s(1.9)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(1.9)));
   }
   SECTION("the coordinator does not hear the robot") {
     f.become_ready();
@@ -258,22 +258,22 @@ TEST_CASE("an agent asks for another coordinator if it hears none or is not serv
     for (int i = 0; i < 8; ++i) {
       const double now = 1 + 0.05 * i;
       f.n.on_coordinator_state(heartbeat(kEpoch), at_s(now));
-      CHECK_FALSE(f.n.is_unserved(at_s(now)));
+      CHECK_FALSE(f.n.needs_other_coordinator(at_s(now)));
       Verdict verdict = verdict_on(f.propose(now + 0.1, now));
       verdict.reasons.fill(reason);
       (void)f.n.on_verdict(verdict, at_s(now));
     }
     f.n.on_coordinator_state(heartbeat(kEpoch), at_s(1.4));
-    CHECK(f.n.is_unserved(at_s(1.4)));
+    CHECK(f.n.needs_other_coordinator(at_s(1.4)));
     Verdict conflict = verdict_on(f.propose(1.6, 1.45));
     conflict.reasons.fill(msg::Reason::REASON_CONFLICT);
     (void)f.n.on_verdict(conflict, at_s(1.45));
-    CHECK_FALSE(f.n.is_unserved(at_s(1.45)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(1.45)));
   }
   SECTION("the robot does not acknowledge the epoch, which is not the coordinator's fault") {
     f.become_ready();
     f.n.on_coordinator_state(heartbeat(kEpoch + 8), at_s(1));
-    CHECK_FALSE(f.n.is_unserved(at_s(9)));
+    CHECK_FALSE(f.n.needs_other_coordinator(at_s(9)));
   }
 }
 

@@ -72,18 +72,18 @@ TEST_CASE("a robot in motion has not arrived") {
 
 TEST_CASE("only the coordinator in charge of the epoch can announce all orders") {
   OrderedRobot robot;
-  CHECK(robot.orders.is_told_all_orders(7));
+  CHECK(robot.orders.coordinator_knows_all_orders(7));
   (void)robot.orders.on_page(scenario_orders());
-  CHECK_FALSE(robot.orders.is_told_all_orders(7));
+  CHECK_FALSE(robot.orders.coordinator_knows_all_orders(7));
   CoordinatorHeartbeat heartbeat;
   heartbeat.sender = kCoordinator;
   heartbeat.epoch = 7;
   robot.orders.on_heartbeat(heartbeat);
-  CHECK(robot.orders.is_told_all_orders(7));
-  CHECK_FALSE(robot.orders.is_told_all_orders(8));
+  CHECK(robot.orders.coordinator_knows_all_orders(7));
+  CHECK_FALSE(robot.orders.coordinator_knows_all_orders(8));
   heartbeat.incarnation = 5;
   robot.orders.on_heartbeat(heartbeat);
-  CHECK_FALSE(robot.orders.is_told_all_orders(7));
+  CHECK_FALSE(robot.orders.coordinator_knows_all_orders(7));
 }
 
 }  // namespace sidestep::order_execution_test

@@ -27,7 +27,7 @@ TEST_CASE("right of way: in passages the older order goes first, except in every
   int reversed = 0;
   for (int period = 0; period < 400; ++period) {
     CAPTURE(period);
-    const bool is_older_first = may_pass_first({9, 100}, {2, 101}, in_period(period), kPeriod);
+    const bool is_older_first = other_passes_first({9, 100}, {2, 101}, in_period(period), kPeriod);
     if (period % 4 != 0) CHECK(is_older_first);
     reversed += is_older_first ? 0 : 1;
   }
@@ -46,7 +46,7 @@ TEST_CASE("right of way: robots in passages agree on one order in each period") 
     for (const PassageContender& self : contenders) {
       int count = 0;
       for (const PassageContender& other : contenders)
-        if (other.robot != self.robot) count += may_pass_first(other, self, t, kPeriod) ? 1 : 0;
+        if (other.robot != self.robot) count += other_passes_first(other, self, t, kPeriod) ? 1 : 0;
       ahead.push_back(count);
     }
     std::ranges::sort(ahead);
@@ -60,7 +60,7 @@ TEST_CASE("right of way: among robots with equally old orders in a passage, each
     for (RobotId robot = 0; robot < 6; ++robot) {
       bool is_first = true;
       for (RobotId other = 0; other < 6; ++other)
-        if (other != robot && may_pass_first({other, 1}, {robot, 1}, in_period(period), kPeriod))
+        if (other != robot && other_passes_first({other, 1}, {robot, 1}, in_period(period), kPeriod))
           is_first = false;
       if (is_first) ++first[robot];
     }

@@ -41,7 +41,7 @@ TEST_CASE("warm perception does not allocate") {
     tracks.update(beams, grid, {&scene.map()});
     grid.update(beams);
     visibility.update(beams, [&](const Vec2& p, double within_m) { return walls.nearest_m(p, within_m); });
-    sum += visibility.is_before_frontiers(robot.at_m());
+    sum += visibility.is_enclosed_by_frontiers(robot.at_m());
     grid.for_each_occupied({{-1, -1}, {1, 1}}, [&](const Cell&) { sum += 1; });
     sum += static_cast<double>(tracks.tracks().size());
     if (i >= 300) allocations += allocation_count() - before;

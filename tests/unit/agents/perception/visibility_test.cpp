@@ -247,7 +247,7 @@ TEST_CASE("unseen sectors and empty scans count as frontiers") {
   CHECK_FALSE(blind.was_seen_free({1, 1}));
   REQUIRE(blind.frontiers().size() == 1);
   CHECK(blind.frontiers()[0].segment.from_m == Vec2(1, 1));
-  CHECK_FALSE(blind.is_before_frontiers({1, 1}));
+  CHECK_FALSE(blind.is_enclosed_by_frontiers({1, 1}));
 }
 
 TEST_CASE("the border encloses the scanner without gaps") {

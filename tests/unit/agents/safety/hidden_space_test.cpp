@@ -89,7 +89,7 @@ struct Crowd {
     const Vec2 along = rotated({1, 0}, rng.uniform(-kPi, kPi));
     const double speed_mps = rng.chance(0.2) ? 0 : rng.uniform(0, 2.5);
     Vec2 from = scanned_at + rng.uniform(0, 0.2) * along;
-    if (!scene.is_free(scanned_at, from, radius_m) || !visibility.is_before_frontiers(from))
+    if (!scene.is_free(scanned_at, from, radius_m) || !visibility.is_enclosed_by_frontiers(from))
       from = scanned_at;
     const Vec2 acceleration = rotated({rng.uniform(0, 3), 0}, rng.uniform(-kPi, kPi));
     return accelerate_then_stop(kCapture + from_seconds(rng.uniform(0, 0.15)), {from, speed_mps * along},
@@ -122,7 +122,7 @@ TEST_CASE("no hidden person can touch a robot that moves as the check permits") 
   int allowed = 0, refused = 0, touched = 0, walls = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     Crowd crowd(seed);
-    if (!crowd.visibility.is_before_frontiers(crowd.scanned_at)) continue;
+    if (!crowd.visibility.is_enclosed_by_frontiers(crowd.scanned_at)) continue;
     for (int i = 0; i < 6; ++i) {
       CAPTURE(seed, i);
       const Trajectory motion = crowd.random_motion();
@@ -146,7 +146,7 @@ TEST_CASE("no hidden person can touch a robot that moves as the check permits") 
 }
 
 /// Slow reference: the smallest clearance over many instants, by the formula in Visibility.
-double slow_room_m(const Trajectory& motion, const HiddenSpace& hidden) {
+double reference_clearance_m(const Trajectory& motion, const HiddenSpace& hidden) {
   double room_m = 1e9;
   constexpr int kSteps = 2000;
   for (int i = 0; i <= kSteps; ++i) {
@@ -171,7 +171,7 @@ TEST_CASE("the check agrees with distances sampled at many instants") {
     for (int i = 0; i < 4; ++i) {
       CAPTURE(seed, i);
       const Trajectory motion = crowd.random_motion();
-      const double room_m = slow_room_m(motion, crowd.hidden);
+      const double room_m = reference_clearance_m(motion, crowd.hidden);
       const bool is_safe = is_passively_safe_from_hidden(motion, crowd.hidden, crowd.radius_m);
       if (is_safe) CHECK(room_m > crowd.radius_m);
       if (!is_safe) CHECK(room_m < crowd.radius_m + 0.002);
@@ -299,7 +299,7 @@ TEST_CASE("no person in a doorway can touch a robot that moves as the check perm
                        doorway.speed_mps};
     hidden.heading_error_rad = doorway.errors.heading_error_rad;
     hidden.observed_from_m = sight.beams().at_m();
-    if (!sight.visibility().is_before_frontiers(doorway.robot_m)) continue;
+    if (!sight.visibility().is_enclosed_by_frontiers(doorway.robot_m)) continue;
     for (int i = 0; i < 8; ++i) {
       CAPTURE(seed, i);
       const Trajectory motion = doorway.random_motion();

@@ -77,18 +77,18 @@ TEST_CASE("a robot may pass before the body if it would be hit where it stops") 
   const Trajectory stop = driving({1.2, -0.25}, {0, 1.6}, 0), across = driving({1.2, -0.25}, {0, 1.6}, 0.3);
   REQUIRE(std::abs(stop.rest_position_m().y()) < 0.1);
   REQUIRE(across.rest_position_m().y() > 0.4);
-  CHECK(spare_distance_m(stop, kNow, body) < 0);
-  CHECK(spare_distance_m(across, kNow, body) >= 0);
+  CHECK(excess_distance_m(stop, kNow, body) < 0);
+  CHECK(excess_distance_m(across, kNow, body) >= 0);
   CHECK_FALSE(is_passively_safe(across, body.reach, kSeparation_m - 0.09));
   CHECK(may_follow(across, stop, body));
   // This also holds if only a later version takes the robot across.
   const Trajectory shorter = driving({1.2, -0.25}, {0, 1.6}, 0.05);
-  CHECK(spare_distance_m(shorter, kNow, body) < 0);
+  CHECK(excess_distance_m(shorter, kNow, body) < 0);
   CHECK(may_follow(shorter, stop, body));
   // The robot may not pass if it can stop short of the path.
   const Trajectory short_stop = driving({1.2, -0.6}, {0, 1.6}, 0),
                    passing = driving({1.2, -0.6}, {0, 1.6}, 0.52);
-  REQUIRE(spare_distance_m(short_stop, kNow, body) >= 0);
+  REQUIRE(excess_distance_m(short_stop, kNow, body) >= 0);
   CHECK_FALSE(may_follow(passing, short_stop, body));
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("a robot that cannot avoid a body completely may drive where the conta
   // The body hits the robot wherever it drives, but not equally deeply.
   const UncontrolledBody body = moving({2, 0});
   const Trajectory stop = driving({0.6, -0.2}, {0, 1.6}, 0);
-  const double stop_m = spare_distance_m(stop, kNow, body);
+  const double stop_m = excess_distance_m(stop, kNow, body);
   REQUIRE(stop_m < -0.1);
   bool has_better = false;
   for (double y_mps = -1.6; y_mps <= 1.6; y_mps += 0.1) {
@@ -109,7 +109,7 @@ TEST_CASE("a robot that cannot avoid a body completely may drive where the conta
       longer.append(from_seconds(1.0 / 60), Vec2(0, 10 * y_mps));
       longer.append(from_seconds(longer_s), Vec2(0, 0));
       append_stop(longer, 5);
-      best_m = std::max(best_m, spare_distance_m(longer, kNow, body));
+      best_m = std::max(best_m, excess_distance_m(longer, kNow, body));
     }
     CAPTURE(y_mps, stop_m, best_m);
     if (best_m > stop_m + 0.011 && best_m < 0) has_better |= may_follow(candidate, stop, body);
@@ -135,7 +135,7 @@ TEST_CASE("a trajectory that avoids a body stays clear of it at every sampled in
       const Vec2 body_m = body.reach.position_m + to_seconds(at - body.reach.observed_at) * body.velocity_mps;
       least = std::min(least, (robot.state_at(at).position_m - body_m).norm());
     }
-    if (spare_distance_m(robot, kNow, body) >= 0) {
+    if (excess_distance_m(robot, kNow, body) >= 0) {
       ++avoided;
       REQUIRE(least > kSeparation_m);
     } else {

@@ -19,9 +19,9 @@ Scenario scenario_of(const std::vector<std::pair<RobotId, Team>>& robots) {
 
 TEST_CASE("a robot is found by its team and number") {
   const Scenario scenario = scenario_of({{3, Team::kBlue}, {16, Team::kYellow}, {19, Team::kYellow}});
-  CHECK(number_of(3) == 3);
-  CHECK(number_of(16) == 0);
-  CHECK(number_of(1023) == 15);
+  CHECK(number_in_team(3) == 3);
+  CHECK(number_in_team(16) == 0);
+  CHECK(number_in_team(1023) == 15);
   REQUIRE(find_robot(scenario, Team::kBlue, 3));
   CHECK(find_robot(scenario, Team::kBlue, 3)->id == 3);
   CHECK(find_robot(scenario, Team::kYellow, 3)->id == 19);

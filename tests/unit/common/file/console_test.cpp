@@ -59,7 +59,7 @@ TEST_CASE("an opened file does not become stdin, stdout or stderr if these are c
       return std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor), error).string();
     };
     const std::string output = target(1);
-    open_closed_streams();
+    reopen_standard_streams();
     if (target(0) != "/dev/null" || target(1) != output || target(2) != "/dev/null") return 1;
     return open("/dev/zero", O_RDONLY) > 2 ? 0 : 2;
   });

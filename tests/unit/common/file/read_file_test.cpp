@@ -31,9 +31,9 @@ TEST_CASE("anything but a regular file is rejected at once") {
 }
 
 TEST_CASE("a path may begin with the user's home folder") {
-  CHECK(with_home("~").starts_with("/"));
-  CHECK(with_home("~/maps/a.yaml") == with_home("~") + "/maps/a.yaml");
-  for (const char* path : {"", "a~", "~other/a", "/~/a", "./~"}) CHECK(with_home(path) == path);
+  CHECK(expand_home("~").starts_with("/"));
+  CHECK(expand_home("~/maps/a.yaml") == expand_home("~") + "/maps/a.yaml");
+  for (const char* path : {"", "a~", "~other/a", "/~/a", "./~"}) CHECK(expand_home(path) == path);
 }
 
 }  // namespace sidestep::read_file_test

@@ -68,7 +68,7 @@ TEST_CASE("no identity may speak for another process") {
   const auto spoken_for = [&](const char* text) {
     std::set<std::uint32_t> result;
     for (const std::uint32_t sender : senders)
-      if (may_speak_as(identity(text), sender)) result.insert(sender);
+      if (may_use_sender(identity(text), sender)) result.insert(sender);
     return result;
   };
   const auto number = [](Sender sender) { return static_cast<std::uint32_t>(sender); };

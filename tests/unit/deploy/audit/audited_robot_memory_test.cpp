@@ -319,20 +319,20 @@ TEST_CASE("a robot on a new floor keeps only its id and the epochs of the former
   robot.last_report.emplace();
   robot.reset();
   CHECK(robot.id == 7);
-  CHECK(robot.forgotten_in == 5);
+  CHECK(robot.forgotten_until_epoch == 5);
   CHECK(robot.versions.empty());
   CHECK(robot.find_proposal(3) == nullptr);
   CHECK_FALSE(robot.last_report);
   CHECK_FALSE(robot.registered);
   robot.registered.emplace().epoch = 4;
   robot.reset();
-  CHECK(robot.forgotten_in == 5);
+  CHECK(robot.forgotten_until_epoch == 5);
   robot.registered.emplace().epoch = 6;
   robot.reset();
-  CHECK(robot.forgotten_in == 6);
+  CHECK(robot.forgotten_until_epoch == 6);
   AuditedRobot unregistered;
   unregistered.reset();
-  CHECK(unregistered.forgotten_in == 0);
+  CHECK(unregistered.forgotten_until_epoch == 0);
 }
 
 }  // namespace sidestep::audited_robot_memory_test

@@ -154,9 +154,9 @@ TEST_CASE("executed versions stay counted even after they are forgotten") {
   robot.registered.emplace().epoch = 7;
   robot.reset();
   check();
-  CHECK(robot.forgotten_in == 7);
+  CHECK(robot.forgotten_until_epoch == 7);
   robot.reset();
-  CHECK(robot.forgotten_in == 7);
+  CHECK(robot.forgotten_until_epoch == 7);
 }
 
 TEST_CASE("a robot's initial rest does not count as an agent's version, but version 1 does") {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tests/catch.hpp"
-#include "tests/unit/deploy/audit/shown.hpp"
+#include "tests/unit/deploy/audit/ground_truth_stage.hpp"
 
 namespace sidestep::auditor_contacts_test {
 
@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 constexpr AuditInput kIncomplete{};
 
 TEST_CASE("contacts are reported one by one in the order of the ground truth") {
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   shown.touch(0, 1);
   shown.run(20ms);
@@ -31,7 +31,7 @@ TEST_CASE("contacts are reported one by one in the order of the ground truth") {
 
 TEST_CASE("the robots of the last eight simultaneous contacts are known") {
   const auto [added, unidentified] = GENERATE(table<int, std::uint64_t>({{8, 0}, {9, 1}, {20, 12}}));
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   for (int i = 0; i < added; ++i) shown.touch(0, 1);
   shown.run(20ms);
@@ -40,7 +40,7 @@ TEST_CASE("the robots of the last eight simultaneous contacts are known") {
 }
 
 TEST_CASE("crashes of moving robots are reported, and crashes beyond the list are reported together") {
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   SECTION("one crash") {
     shown.crash(1);
@@ -78,7 +78,7 @@ TEST_CASE("crashes of moving robots are reported, and crashes beyond the list ar
 }
 
 TEST_CASE("an auditor that joins a run judges only what happens from then on") {
-  Shown shown(kIncomplete);
+  GroundTruthStage shown(kIncomplete);
   for (int i = 0; i < 100; ++i) (void)shown.header("truth", 30'000, shown.incarnation);
   shown.touch(0, 1);
   shown.crash(0);
@@ -96,7 +96,7 @@ TEST_CASE("an auditor that joins a run judges only what happens from then on") {
 }
 
 TEST_CASE("a contact is undecided if the disturbance that excuses it may have been missed") {
-  Shown shown(kIncomplete);
+  GroundTruthStage shown(kIncomplete);
   shown.run(50ms);
   shown.push(0);
   shown.run(30ms);
@@ -121,7 +121,7 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
 
 TEST_CASE("robots up to a millimetre apart may be in contact and push each other") {
   const double apart_m = GENERATE(0.1805, 0.1815);
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   shown.push(0);
   shown.truth.robots()[0].x_m(1 - apart_m);
@@ -135,7 +135,7 @@ TEST_CASE("robots up to a millimetre apart may be in contact and push each other
 }
 
 TEST_CASE("every simulator's counters start at zero") {
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(20ms);
   shown.touch(0, 1);
   shown.crash(1);

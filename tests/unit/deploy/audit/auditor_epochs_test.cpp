@@ -219,7 +219,7 @@ TEST_CASE(
   const bool was_silent = GENERATE(true, false);
   CAPTURE(is_near, was_silent);
   Stage stage;
-  const Incarnation before = Stage::kLife + 1'000'000 - (is_near ? 100'000 : 100'001);
+  const Incarnation before = Stage::kProcessIncarnation + 1'000'000 - (is_near ? 100'000 : 100'001);
   const auto report = [&](Incarnation robot_incarnation, double x_m) {
     msg::Feedback robot_report = stage.robot_reports[0];
     robot_report.header(stage.header("feedback", 0, robot_incarnation));
@@ -227,7 +227,7 @@ TEST_CASE(
     robot_report.executing().x_m(x_m);
     stage.auditor.on_robot_report(robot_report, stage.now);
   };
-  report(Stage::kLife + 1'000'000, -1);
+  report(Stage::kProcessIncarnation + 1'000'000, -1);
   stage.advance(was_silent ? 1s : 999ms);
   // If the report counts, a robot at rest elsewhere must be on another floor.
   report(before, -2);
@@ -244,7 +244,7 @@ TEST_CASE("a robot of a later simulator is on a new floor, but a robot with rest
   Stage stage;
   stage.begin();
   msg::Feedback robot_report = stage.robot_reports[0];
-  robot_report.header(stage.header("feedback", 0, Stage::kLife + later));
+  robot_report.header(stage.header("feedback", 0, Stage::kProcessIncarnation + later));
   robot_report.valid_at_ns(to_ns(stage.now));
   robot_report.executing().x_m(-2);
   stage.auditor.on_robot_report(robot_report, stage.now);

@@ -361,7 +361,7 @@ TEST_CASE("nothing is granted to a held robot except the place where it is put d
     stage.advance(1ms);
   };
   remember();
-  const std::int64_t told_ns = to_ns(stage.now) - 1'000'000;
+  const std::int64_t announced_ns = to_ns(stage.now) - 1'000'000;
   bool is_place = false, is_late = true;
   msg::Version version = stage.next(stage.rest(0), 1, 2001ms);
   SECTION("the version moves") { version = moving(version, 0.1); }
@@ -369,7 +369,7 @@ TEST_CASE("nothing is granted to a held robot except the place where it is put d
   SECTION("the version rests on another base") { version.base(9); }
   SECTION("the version starts so soon that it may have been granted before the hold") {
     version = moving(version, 0.1);
-    version.start_ns(told_ns + 2'000'000'000);
+    version.start_ns(announced_ns + 2'000'000'000);
     is_late = false;
   }
   stage.grant(version);

@@ -102,7 +102,7 @@ TEST_CASE("an auditor on a bus hears every topic from every robot on the roster"
 }
 
 /// Orders that robot 1's agent announces to the second coordinator.
-struct Succession : Listening {
+struct CoordinatorSuccession : Listening {
   template <typename Message>
   Message from(std::uint32_t sender) {
     bus.advance(1ms);
@@ -172,7 +172,7 @@ struct Succession : Listening {
 };
 
 TEST_CASE("an auditor on a bus hears orders and which processes remember them") {
-  Succession run;
+  CoordinatorSuccession run;
   std::uint64_t expected = 1;
   SECTION("an agent reports being held") {
     run.report(false);

@@ -74,7 +74,7 @@ TEST_CASE(
 
 TEST_CASE("two agents may use the same proposal number, even if an auditor hears only one of them") {
   History history = crossing();
-  const Switch s = example_switch(history);
+  const Switch s = first_moving_switch(history);
   // Adds a restarted agent that proposes the same number and is granted its second candidate.
   std::optional<ReceivedMessage> grant;
   for (const ReceivedMessage& received : history.messages) {

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 TEST_CASE("each firmware breach is reported under its rule") {
   SECTION("the robot executes a version that was never sent") {
     require_violation(AuditRule::kSent, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.remove_if<msg::Command>([&](const msg::Command& c) {
         return c.robot() == s.robot && c.has_version() && c.version().version_number() == s.number;
       });
@@ -21,13 +21,13 @@ TEST_CASE("each firmware breach is reported under its rule") {
   }
   SECTION("the robot switches from a version other than the base") {
     require_violation(AuditRule::kSwitch, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
     });
   }
   SECTION("the robot switches after the start has passed") {
     require_violation(AuditRule::kLateSwitch, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       msg::Feedback* last = nullptr;
       h.each<msg::Feedback>([&](msg::Feedback& f, Time) {
         if (f.robot() == s.robot && f.executing().version_number() == s.before) last = &f;
@@ -37,7 +37,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
   }
   SECTION("the robot executes a version of a superseded agent") {
     require_violation(AuditRule::kStaleIncarnation, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
         if (f.robot() == s.robot && to_ns(at) > s.start_ns - 30'000'000)
           f.obeyed_incarnation(f.obeyed_incarnation() + 1);
@@ -46,7 +46,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
   }
   SECTION("the robot executes a version of a superseded epoch") {
     require_violation(AuditRule::kStaleEpoch, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
         if (f.robot() == s.robot && to_ns(at) > s.start_ns) f.obeyed_epoch(f.obeyed_epoch() + 1);
       });
@@ -60,7 +60,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
         [](msg::Feedback& f, const msg::Feedback&) { f.obeyed_incarnation(f.obeyed_incarnation() - 1); },
         [](msg::Feedback& f, const msg::Feedback&) { f.obeyed_epoch(f.obeyed_epoch() - 1); });
     require_violation(AuditRule::kFacts, [&](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       std::optional<msg::Feedback> old;
       bool is_done = false;
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
@@ -74,7 +74,7 @@ TEST_CASE("each firmware breach is reported under its rule") {
   }
   SECTION("the robot's own stop does not end at rest") {
     require_violation(AuditRule::kOffReference, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       bool is_done = false;
       h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
         if (is_done || f.robot() != s.robot || to_ns(at) < s.start_ns) return;
@@ -92,8 +92,8 @@ TEST_CASE("an own stop that takes longer than braking needs is reported") {
   const auto [factor, is_reported] =
       GENERATE(table<double, bool>({{1.0, false}, {1.005, false}, {1.2, true}}));
   CAPTURE(factor);
-  const AuditTotals totals = audit_of_tampered([longer = factor](History& h) {
-    const Switch s = example_switch(h);
+  const AuditTotals totals = audit_tampered_crossing([longer = factor](History& h) {
+    const Switch s = first_moving_switch(h);
     const double speed_mps = 1, braking_s = speed_mps / h.scenario.limits.deceleration_mps2;
     bool is_done = false;
     h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
@@ -124,7 +124,7 @@ TEST_CASE("a robot whose distance from its reference exceeds the budget is repor
                                               {0.006, 0ms, false},
                                               {0.006, 20ms, true}}));
   CAPTURE(error_m, to_seconds(duration), is_reported);
-  const AuditTotals totals = audit_of_tampered([&, off_m = error_m, until = duration](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([&, off_m = error_m, until = duration](History& h) {
     std::optional<Time> first;
     h.each<msg::Feedback>([&](msg::Feedback& f, Time at) {
       if (f.robot() != 2 || at < h.messages.front().at + 1500ms) return;
@@ -150,7 +150,7 @@ TEST_CASE("ground truth also shows robots beyond the tracking bound in a live ru
 }
 
 TEST_CASE("a robot whose reference jumps because its clock is set breaks no rule") {
-  const AuditTotals totals = audit_of_tampered([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](History& h) {
     int count = 0;
     h.each<msg::Feedback>([&](msg::Feedback& f, Time) {
       if (f.robot() != 2 || ++count != 100) return;
@@ -196,7 +196,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     const double shift_m = GENERATE(0.007, 0.02);
     CAPTURE(shift_m);
     require_violation(AuditRule::kPosition, [shift_m](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time) {
         for (msg::TrueRobotState& robot : truth.robots()) {
           if (robot.robot() == s.robot) robot.x_m(robot.x_m() + shift_m);
@@ -209,9 +209,9 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     const auto [pushed, late, is_reported] = GENERATE(
         table<int, Duration, bool>({{-1, 0ms, true}, {2, 0ms, false}, {2, 1200ms, true}, {3, 0ms, true}}));
     CAPTURE(pushed, to_seconds(late), is_reported);
-    const AuditTotals totals = audit_of_tampered([&, robot_pushed = pushed, after = late](History& h) {
+    const AuditTotals totals = audit_tampered_crossing([&, robot_pushed = pushed, after = late](History& h) {
       const Time push = h.messages.front().at + 1500ms;
-      const RobotId moved = example_switch(h).robot;
+      const RobotId moved = first_moving_switch(h).robot;
       h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {
         if (at < push + after || at > push + after + 500ms) return;
         for (msg::TrueRobotState& robot : truth.robots()) {
@@ -245,7 +245,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
         GENERATE(table<RobotId, RobotId, std::uint64_t, std::uint64_t>(
             {{4, 5, 3, 0}, {0, 1, 2, 1}, {5, msg::NO_ROBOT, 3, 0}, {1, msg::NO_ROBOT, 2, 1}}));
     CAPTURE(first, second);
-    const AuditTotals totals = audit_of_tampered([a = first, b = second](History& h) {
+    const AuditTotals totals = audit_tampered_crossing([a = first, b = second](History& h) {
       const Time push = h.messages.front().at + 1500ms;
       h.push(2, push);
       h.each<msg::GroundTruth>([&](msg::GroundTruth& truth, Time at) {

@@ -76,7 +76,7 @@ TEST_CASE("the inflations of both robots add to the distance that their versions
 TEST_CASE("each wrong grant is reported under its rule") {
   SECTION("one version number has two trajectories") {
     require_violation(AuditRule::kUniqueVersion, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       bool is_done = false;
       h.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
         for (msg::Version& v : page.versions()) {
@@ -89,28 +89,28 @@ TEST_CASE("each wrong grant is reported under its rule") {
   }
   SECTION("the base is unknown") {
     require_violation(AuditRule::kBase, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.base(s.before - 1); });
     });
   }
   SECTION("the version does not continue its base") {
     require_violation(AuditRule::kContinuity, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(v.x_m() + 1e-5); });
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.x_m(v.x_m() + 1e-5); });
     });
   }
   SECTION("the acceleration is too high") {
     require_violation(AuditRule::kLimits, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [](msg::Version& v) {
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [](msg::Version& v) {
         for (msg::MotionPhase& phase : v.phases()) phase.ax_mps2(phase.ax_mps2() + 6);
       });
     });
   }
   SECTION("the version accelerates at D once its velocity has reversed") {
     require_violation(AuditRule::kLimits, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [](msg::Version& v) {
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [](msg::Version& v) {
         const Vec2 velocity(v.vx_mps(), v.vy_mps());
         const double d_mps2 = 4.9, braking_s = velocity.norm() / d_mps2;
         REQUIRE(braking_s > 0.02);
@@ -131,27 +131,27 @@ TEST_CASE("each wrong grant is reported under its rule") {
   }
   SECTION("the version does not brake at the end") {
     require_violation(AuditRule::kRest, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number,
-                     [](msg::Version& v) { v.phase_count(static_cast<std::uint8_t>(v.phase_count() - 1)); });
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number,
+                      [](msg::Version& v) { v.phase_count(static_cast<std::uint8_t>(v.phase_count() - 1)); });
     });
   }
   SECTION("the version leaves the field") {
     require_violation(AuditRule::kField, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(h.scenario.field.length_m / 2); });
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.x_m(h.scenario.field.length_m / 2); });
     });
   }
   SECTION("the version leads through an obstacle") {
     require_violation(AuditRule::kObstacle, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       const Vec2 centre_m = sidestep::centre_m(h.scenario.obstacles.front());
-      h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(centre_m.x()), v.y_m(centre_m.y()); });
+      h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.x_m(centre_m.x()), v.y_m(centre_m.y()); });
     });
   }
   SECTION("the version leads through a blocked map cell") {
     require_violation(AuditRule::kObstacle, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       const Vec2 at_m(h.scenario.field.length_m / 4, h.scenario.field.width_m / 4);
       MapGrid grid;
       grid.columns = grid.rows = 400, grid.resolution_m = 0.05, grid.origin_m = {-10, -10};
@@ -160,24 +160,24 @@ TEST_CASE("each wrong grant is reported under its rule") {
       blocked.set(cell.column, cell.row);
       h.scenario.obstacles.clear();
       h.scenario.map = std::make_shared<const FloorMap>(OccupancyMap(grid, blocked));
-      h.each_mention(s.robot, s.number, [&](msg::Version& v) { v.x_m(at_m.x()), v.y_m(at_m.y()); });
+      h.for_each_copy(s.robot, s.number, [&](msg::Version& v) { v.x_m(at_m.x()), v.y_m(at_m.y()); });
     });
   }
   SECTION("the version has an inflation that its base does not have") {
     require_violation(AuditRule::kInflation, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [](msg::Version& v) { v.inflation_m(0.001); });
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [](msg::Version& v) { v.inflation_m(0.001); });
     });
   }
   SECTION("the base has a higher number than the version") {
     require_violation(AuditRule::kVersionOrder, [](History& h) {
-      const Switch s = example_switch(h);
-      h.each_mention(s.robot, s.number, [](msg::Version& v) { v.base(v.version_number() + 1); });
+      const Switch s = first_moving_switch(h);
+      h.for_each_copy(s.robot, s.number, [](msg::Version& v) { v.base(v.version_number() + 1); });
     });
   }
   SECTION("the version was not proposed") {
     require_violation(AuditRule::kProposed, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::Verdict>([&](msg::Verdict& v, Time) {
         if (v.robot() == s.robot && v.granted_version() == s.number) v.granted_version(s.number + 100);
       });
@@ -206,7 +206,7 @@ TEST_CASE("each wrong grant is reported under its rule") {
   }
   SECTION("two coordinators grant in one epoch") {
     require_violation(AuditRule::kSingleCoordinator, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::Verdict>([&](msg::Verdict& v, Time) {
         if (v.robot() == s.robot && v.granted_version() == s.number)
           v.header().incarnation(v.header().incarnation() + 1);
@@ -215,7 +215,7 @@ TEST_CASE("each wrong grant is reported under its rule") {
   }
   SECTION("the ledger drops a version that no robot report has excluded") {
     require_violation(AuditRule::kLedgerPage, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::LedgerPage>([&](msg::LedgerPage& page, Time) {
         std::erase_if(page.versions(), [&](const msg::Version& v) {
           return v.robot() == s.robot && v.version_number() == s.number;
@@ -253,7 +253,7 @@ TEST_CASE("each breach by an agent is reported under its rule") {
   }
   SECTION("the agent sends a command that was not granted") {
     require_violation(AuditRule::kForwarded, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::Command>([&](msg::Command& c, Time) {
         if (c.robot() == s.robot && c.has_version() && c.version().version_number() == s.number)
           c.version().version_number(s.number + 1000);
@@ -262,7 +262,7 @@ TEST_CASE("each breach by an agent is reported under its rule") {
   }
   SECTION("the agent sends another candidate than the granted one, in an incomplete history") {
     History history = crossing();
-    const Switch s = example_switch(history);
+    const Switch s = first_moving_switch(history);
     history.each<msg::Verdict>([&](msg::Verdict& v, Time) {
       if (v.robot() == s.robot && v.granted_version() == s.number) v.granted_version(s.number + 1);
     });
@@ -272,7 +272,7 @@ TEST_CASE("each breach by an agent is reported under its rule") {
   }
   SECTION("the agent sends commands under a lower epoch") {
     require_violation(AuditRule::kEpochRegression, [](History& h) {
-      const Switch s = example_switch(h);
+      const Switch s = first_moving_switch(h);
       h.each<msg::Command>([&](msg::Command& c, Time at) {
         if (c.robot() == s.robot && to_ns(at) > s.start_ns) c.epoch(c.epoch() - 1);
       });
@@ -281,8 +281,8 @@ TEST_CASE("each breach by an agent is reported under its rule") {
 }
 
 TEST_CASE("a verdict that is repeated much later breaks no rule") {
-  const AuditTotals totals = audit_of_tampered([](History& h) {
-    const Switch s = example_switch(h);
+  const AuditTotals totals = audit_tampered_crossing([](History& h) {
+    const Switch s = first_moving_switch(h);
     const auto is_grant = [&](const ReceivedMessage& m) {
       const auto* verdict = std::get_if<msg::Verdict>(&m.message);
       return verdict && verdict->robot() == s.robot && verdict->granted_version() == s.number;
@@ -300,8 +300,8 @@ TEST_CASE("a verdict that is repeated much later breaks no rule") {
 TEST_CASE("a granted version stays granted even if a later agent's proposal with its number is denied") {
   // A restarted agent may reuse the last numbers of its predecessor.
   const std::uint64_t numbers_before = GENERATE(0u, 2u);
-  const AuditTotals totals = audit_of_tampered([&](History& h) {
-    const Switch s = example_switch(h);
+  const AuditTotals totals = audit_tampered_crossing([&](History& h) {
+    const Switch s = first_moving_switch(h);
     std::optional<msg::Proposal> proposal;
     h.each<msg::Proposal>([&](msg::Proposal& p, Time) {
       if (p.robot() == s.robot && p.candidates().front().version_number() == s.number) proposal = p;
@@ -334,7 +334,7 @@ TEST_CASE("a granted version stays granted even if a later agent's proposal with
 }
 
 TEST_CASE("an operator's attestation of absence replaces a robot's registration") {
-  const AuditTotals totals = audit_of_tampered([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](History& h) {
     h.remove_if<msg::Registration>([](const msg::Registration& r) { return r.robot() == 3; });
     h.remove_if<msg::Feedback>([](const msg::Feedback& f) { return f.robot() == 3; });
     h.messages.insert(h.messages.begin(), {h.messages.front().at, attestation_of(3)});
@@ -346,7 +346,7 @@ TEST_CASE("an operator's attestation of absence replaces a robot's registration"
 TEST_CASE("an attested absence stays valid in its epoch even if the agent registers in an older epoch") {
   const bool is_in_time = GENERATE(true, false);
   CAPTURE(is_in_time);
-  const AuditTotals totals = audit_of_tampered([&](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([&](History& h) {
     std::optional<msg::Registration> late;
     h.each<msg::Registration>([&](const msg::Registration& r, Time) {
       if (r.robot() == 3) late = r;
@@ -374,7 +374,7 @@ TEST_CASE("an attested absence stays valid in its epoch even if the agent regist
 }
 
 TEST_CASE("a coordinator that resumes after many epochs still knows what was registered with it") {
-  const AuditTotals totals = audit_of_tampered([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](History& h) {
     // Adds forty successive coordinators with which every agent registers.
     std::vector<ReceivedMessage> messages;
     for (const ReceivedMessage& received : h.messages) {
@@ -412,7 +412,7 @@ TEST_CASE("an epoch memory holds the highest epochs and knows which lower ones i
 }
 
 TEST_CASE("invalid messages are counted and otherwise ignored") {
-  const AuditTotals totals = audit_of_tampered([](History& h) {
+  const AuditTotals totals = audit_tampered_crossing([](History& h) {
     int number = 0;
     h.each<msg::Feedback>([&](msg::Feedback& f, Time) {
       if (++number % 100 == 0) f.x_m(std::nan(""));

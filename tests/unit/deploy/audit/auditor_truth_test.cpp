@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "tests/catch.hpp"
-#include "tests/unit/deploy/audit/shown.hpp"
+#include "tests/unit/deploy/audit/ground_truth_stage.hpp"
 
 namespace sidestep::auditor_truth_test {
 
@@ -17,7 +17,7 @@ TEST_CASE("a robot farther from its reference than the tracking bound plus its i
   const auto [excess_m, is_reported] =
       GENERATE(table<double, bool>({{-0.004, false}, {0.9e-5, false}, {1.1e-5, true}, {0.01, true}}));
   CAPTURE(is_complete, inflation_m, excess_m);
-  Shown shown(is_complete ? kComplete : kIncomplete, inflation_m);
+  GroundTruthStage shown(is_complete ? kComplete : kIncomplete, inflation_m);
   shown.run(50ms);
   const double error_m = shown.scenario.tracking_bound_m + inflation_m + excess_m;
   shown.truth.robots()[0].reference_error_m(error_m);
@@ -33,7 +33,7 @@ TEST_CASE("a robot farther from its reference than the tracking bound plus its i
 
 TEST_CASE("a robot is compared with its reference only if it certainly had one throughout") {
   const bool is_complete = GENERATE(true, false);
-  Shown shown(is_complete ? kComplete : kIncomplete);
+  GroundTruthStage shown(is_complete ? kComplete : kIncomplete);
   shown.run(50ms);
   REQUIRE(shown.violations.empty());
   shown.truth.robots()[0].x_m(-1.5);
@@ -77,7 +77,7 @@ TEST_CASE("a robot is compared with its reference only if it certainly had one t
 }
 
 TEST_CASE("a robot report is not compared with later ground truth") {
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   shown.truth.robots()[0].x_m(-1.5);
   shown.show(shown.now + 20ms);
@@ -92,7 +92,7 @@ TEST_CASE("a robot report is not compared with later ground truth") {
 TEST_CASE("a moving robot's position is compared with its version at that time by its own clock") {
   const Duration clock_ahead = GENERATE(0ms, 400ms, -400ms);
   CAPTURE(to_seconds(clock_ahead));
-  Shown shown;
+  GroundTruthStage shown;
   msg::Version version = shown.next(shown.rest(0), 1, 500ms);
   version.phase_count(2);
   version.phases()[0].duration_ns(1'000'000'000);
@@ -123,7 +123,7 @@ TEST_CASE("a moving robot's position is compared with its version at that time b
 }
 
 TEST_CASE("a robot whose clock jumps is not compared at that moment") {
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   shown.truth.robots()[0].x_m(-1.5);
   shown.show();
@@ -135,7 +135,7 @@ TEST_CASE("a robot whose clock jumps is not compared at that moment") {
 
 TEST_CASE("a robot without a reference in the simulator may be out of place for 300 ms, as with vision") {
   const double unknown = GENERATE(-1.0, -0.01);
-  Shown shown;
+  GroundTruthStage shown;
   for (msg::TrueRobotState& robot : shown.truth.robots()) robot.reference_error_m(unknown);
   shown.run(100ms);
   CHECK(shown.violations.empty());
@@ -148,7 +148,7 @@ TEST_CASE("a robot without a reference in the simulator may be out of place for 
 
 TEST_CASE("only the displacement of a disturbed robot is excused") {
   const bool is_disturbed = GENERATE(true, false);
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   if (is_disturbed) shown.push(0);
   shown.truth.robots()[0].x_m(-1.2);
@@ -162,7 +162,7 @@ TEST_CASE("a robot that a coordinator names as displaced is excused if it was ev
   const auto [was_disturbed, named, is_excused] =
       GENERATE(table<bool, RobotId, bool>({{true, 0, true}, {false, 0, false}, {true, 1, false}}));
   CAPTURE(was_disturbed, named);
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   if (was_disturbed) shown.push(0);
   // The robot is back in place, and moved a second time without any disturbance.
@@ -184,7 +184,7 @@ TEST_CASE("a robot that a coordinator names as displaced is excused if it was ev
 
 TEST_CASE("a moving robot is excused until it has had time to hear of a disturbance and brake") {
   const auto is_excused_after = [](Duration duration) {
-    Shown shown;
+    GroundTruthStage shown;
     shown.truth.robots()[1].vx_mps(1);
     shown.run(50ms);
     shown.push(0);
@@ -201,7 +201,7 @@ TEST_CASE("a moving robot is excused until it has had time to hear of a disturba
 }
 
 TEST_CASE("positions that are not finite or belong to unknown robots are not used") {
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   msg::TrueRobotState& robot = shown.truth.robots()[0];
   robot.x_m(-1.5);
@@ -217,7 +217,7 @@ TEST_CASE("a robot is back in place only within the tracking bound of a version 
   // Contacts of robots that are back in place are no longer excused.
   const auto [off_m, is_in_place] = GENERATE(table<double, bool>({{0.004, true}, {0.006, false}}));
   CAPTURE(off_m);
-  Shown shown;
+  GroundTruthStage shown;
   shown.run(50ms);
   shown.push(0);
   shown.truth.robots()[0].x_m(-1 + off_m);

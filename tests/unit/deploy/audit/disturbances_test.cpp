@@ -62,8 +62,8 @@ TEST_CASE("a robot counts as resting where a disturbance left it until it moves 
   floor.push(0);
   floor.run(60s);
   CHECK_FALSE(floor.disturbances.is_displaced(0));
-  CHECK(floor.disturbances.rests_where_left(0));
-  CHECK_FALSE(floor.disturbances.rests_where_left(1));
+  CHECK(floor.disturbances.rests_displaced(0));
+  CHECK_FALSE(floor.disturbances.rests_displaced(1));
   SECTION("the robot moves") {
     floor.robots[0]->speed_mps = 0.2;
     floor.run(20ms);
@@ -73,7 +73,7 @@ TEST_CASE("a robot counts as resting where a disturbance left it until it moves 
   floor.run(20ms);
   floor.robots[0]->is_in_place = false;
   floor.run(20ms);
-  CHECK_FALSE(floor.disturbances.rests_where_left(0));
+  CHECK_FALSE(floor.disturbances.rests_displaced(0));
 }
 
 TEST_CASE("a robot whose clock has jumped is excused until it rests, even if it drives on its reference") {

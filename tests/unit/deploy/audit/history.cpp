@@ -47,8 +47,8 @@ void History::touch(RobotId first, std::optional<RobotId> second, Time at) {
   });
 }
 
-void History::each_mention(RobotId robot, VersionNumber number,
-                           const std::function<void(msg::Version&)>& use) {
+void History::for_each_copy(RobotId robot, VersionNumber number,
+                            const std::function<void(msg::Version&)>& use) {
   each_version([&](msg::Version& version) {
     if (version.robot() == robot && version.version_number() == number) use(version);
   });
@@ -56,7 +56,7 @@ void History::each_mention(RobotId robot, VersionNumber number,
 
 HistoryRecorder::HistoryRecorder(SimSystem& system, History& history) : bus_(system.network()) {
   bus_.become_observer();
-  bus_.follow_first_senders();
+  bus_.trust_first_senders();
   bus_.use_rules(SharedRules(history.scenario).fingerprint(), [](const TopicInfo&, const msg::Header&) {});
   const auto collect = [this, &history]<typename Message>(const Topic<Message>& topic, RobotId robot) {
     bus_.subscribe<Message>(topic, robot, [this, &history](const Message& message) {

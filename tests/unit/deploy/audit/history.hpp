@@ -47,7 +47,7 @@ struct History {
   /// an obstacle.
   void touch(RobotId first, std::optional<RobotId> second, Time at);
   /// Visits every copy of this version in any message.
-  void each_mention(RobotId robot, VersionNumber number, const std::function<void(msg::Version&)>& use);
+  void for_each_copy(RobotId robot, VersionNumber number, const std::function<void(msg::Version&)>& use);
   /// Visits every version in any message.
   void each_version(const std::function<void(msg::Version&)>& use);
 };

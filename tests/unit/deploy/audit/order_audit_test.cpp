@@ -61,7 +61,7 @@ void confirm(History& h, const msg::RememberedOrder& order) {
 }
 
 std::uint64_t violations(AuditRule rule, const std::function<void(History&)>& tamper) {
-  const AuditTotals totals = audit_of_tampered(tamper);
+  const AuditTotals totals = audit_tampered_crossing(tamper);
   UNSCOPED_INFO(lines(totals));
   return count(totals, rule);
 }
@@ -74,7 +74,7 @@ TEST_CASE("a grant to a robot while its coordinator remembers a hold of it break
     return remembered(msg::OrderKind::ORDER_RESUME, robot, client, number);
   };
   const auto held = [](std::vector<msg::RememberedOrder> orders) {
-    const AuditTotals totals = audit_of_tampered([&](History& h) { remember(h, orders); });
+    const AuditTotals totals = audit_tampered_crossing([&](History& h) { remember(h, orders); });
     std::set<RobotId> robots;
     for (const Violation& violation : totals.first) {
       if (violation.rule == AuditRule::kHeld) robots.insert(violation.robot);

@@ -7,7 +7,7 @@ namespace sidestep::order_memory_test {
 
 /// An order that the first coordinator has confirmed and an agent has announced to the second one, which does
 /// not remember it.
-struct Succession : Run {
+struct CoordinatorSuccession : Run {
   using Run::Run;
   void begin() { confirm(kFirst, lost); }
   void learn() { audit.on_memory(page(4, {lost})); }
@@ -24,7 +24,7 @@ struct Succession : Run {
 };
 
 TEST_CASE("a new coordinator that does not remember an order announced to it is reported") {
-  Succession run;
+  CoordinatorSuccession run;
   run.begin();
   run.learn();
   run.succeed();
@@ -37,7 +37,7 @@ TEST_CASE("a new coordinator that does not remember an order announced to it is 
 
 TEST_CASE("a new coordinator is reported only if an agent has certainly announced the order to it") {
   const bool is_complete = GENERATE(true, false);
-  Succession run(is_complete);
+  CoordinatorSuccession run(is_complete);
   run.begin();
   std::size_t expected = 0;
   SECTION("no agent knows the order") { run.succeed(); }
@@ -123,7 +123,7 @@ TEST_CASE("a new coordinator is reported only if an agent has certainly announce
 
 TEST_CASE("an agent that follows a drive order remembers it") {
   const bool is_complete = GENERATE(true, false);
-  Succession run(is_complete);
+  CoordinatorSuccession run(is_complete);
   run.lost = order(msg::OrderKind::ORDER_GO, 4, kClient, 100);
   run.begin();
   SECTION("the agent names the order") {
@@ -142,7 +142,7 @@ TEST_CASE("an agent that follows a drive order remembers it") {
 
 TEST_CASE("an agent that reports being held remembers the only hold sent to it since it was last free") {
   const bool is_complete = GENERATE(true, false);
-  Succession run(is_complete);
+  CoordinatorSuccession run(is_complete);
   run.status(4, false);
   bool is_known = true;
   SECTION("only this hold was sent") { run.begin(); }
@@ -194,7 +194,7 @@ TEST_CASE("an agent that reports being held remembers the only hold sent to it s
 }
 
 TEST_CASE("a status report that is late or not from the robot's agent proves nothing") {
-  Succession run;
+  CoordinatorSuccession run;
   run.status(4, false);
   SECTION("an earlier report arrives late") {
     msg::OrderStatus late;
@@ -218,7 +218,7 @@ TEST_CASE("a status report that is late or not from the robot's agent proves not
 }
 
 TEST_CASE("what counts is the time at which the restarted agent learned an order") {
-  Succession run;
+  CoordinatorSuccession run;
   run.begin();
   run.learn();
   ++run.incarnations[4];
@@ -228,7 +228,7 @@ TEST_CASE("what counts is the time at which the restarted agent learned an order
 }
 
 TEST_CASE("an agent knows an order from the time at which it first announced it") {
-  Succession run;
+  CoordinatorSuccession run;
   run.begin();
   run.learn();
   run.register_agent(4, 8);

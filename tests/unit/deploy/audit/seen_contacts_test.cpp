@@ -47,7 +47,7 @@ TEST_CASE("a contact states when the robots were last seen apart, if ever") {
     std::vector<SeenContact> began;
     for (int i = 0; i < 2; ++i) {
       frames.at_ns += kFrame_ns;
-      const Sight first{frames.at_ns, Vec2(0, 2.82), Vec2(0, 0), true};
+      const VisionSighting first{frames.at_ns, Vec2(0, 2.82), Vec2(0, 0), true};
       for (const SeenContact& contact :
            frames.contacts.update({first, {frames.at_ns - 1, second_m, Vec2(0, 0), true}}))
         began.push_back(contact);

@@ -17,8 +17,8 @@ Scenario stage_scenario();
 /// auditor receives immediately. By default everything follows the protocol.
 class Stage {
  public:
-  static constexpr std::uint32_t kCoordinator = 10'000;  ///< the sender's id
-  static constexpr Incarnation kLife = 500;              ///< of every process except the agents
+  static constexpr std::uint32_t kCoordinator = 10'000;    ///< the sender's id
+  static constexpr Incarnation kProcessIncarnation = 500;  ///< of every process except the agents
   static constexpr Incarnation kAgent = 700;
 
   explicit Stage(Scenario staged = stage_scenario(), const AuditInput& input = kComplete);
@@ -48,7 +48,8 @@ class Stage {
   void show_page(const std::vector<msg::Version>& versions);
 
   /// The next message of a sender on a topic, sent now.
-  msg::Header header(std::string_view topic, std::uint32_t sender, Incarnation incarnation = kLife);
+  msg::Header header(std::string_view topic, std::uint32_t sender,
+                     Incarnation incarnation = kProcessIncarnation);
   std::uint64_t count(AuditRule rule) const;
   /// The violations, one per line.
   std::string lines() const;
@@ -57,7 +58,7 @@ class Stage {
   Time now{std::chrono::seconds(1000)};
   Epoch epoch = 5;  ///< of all messages except robot reports
   std::uint32_t coordinator = kCoordinator;
-  Incarnation coordinator_incarnation = kLife;
+  Incarnation coordinator_incarnation = kProcessIncarnation;
   std::array<msg::Feedback, 2> robot_reports;  ///< what each robot reports next
   std::vector<Violation> violations;
   Auditor auditor;

@@ -22,7 +22,7 @@ std::uint64_t count(const AuditTotals& totals, AuditRule rule) {
   return totals.by_rule[static_cast<std::size_t>(rule)];
 }
 
-Switch example_switch(History& history) {
+Switch first_moving_switch(History& history) {
   std::map<RobotId, std::vector<msg::Version>> executed;
   history.each<msg::Feedback>([&](msg::Feedback& f, Time) {
     auto& list = executed[f.robot()];
@@ -35,14 +35,14 @@ Switch example_switch(History& history) {
   return {2, to.version_number(), list[49].version_number(), to.start_ns(), to};
 }
 
-AuditTotals audit_of_tampered(const std::function<void(History&)>& tamper) {
+AuditTotals audit_tampered_crossing(const std::function<void(History&)>& tamper) {
   History history = crossing();
   tamper(history);
   return audit_of(history, kComplete);
 }
 
 void require_violation(AuditRule rule, const std::function<void(History&)>& tamper) {
-  const AuditTotals totals = audit_of_tampered(tamper);
+  const AuditTotals totals = audit_tampered_crossing(tamper);
   INFO(audit_rule(rule).name << " expected; found:\n" << lines(totals));
   REQUIRE(count(totals, rule) > 0);
 }

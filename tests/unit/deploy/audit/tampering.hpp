@@ -22,10 +22,10 @@ struct Switch {
   std::int64_t start_ns;
   msg::Version version;
 };
-Switch example_switch(History& history);
+Switch first_moving_switch(History& history);
 
 /// The audit of a copy of crossing() after `tamper` has modified it.
-AuditTotals audit_of_tampered(const std::function<void(History&)>& tamper);
+AuditTotals audit_tampered_crossing(const std::function<void(History&)>& tamper);
 
 /// Fails the test unless the audit of the modified history reports the rule.
 void require_violation(AuditRule rule, const std::function<void(History&)>& tamper);

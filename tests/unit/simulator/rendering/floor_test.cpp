@@ -25,13 +25,13 @@ TEST_CASE("light falls off to the specified fraction at the far end") {
   RenderSpec spec;
   spec.far_light = 0.6;
   const Field field{12, 9};
-  CHECK(light_at(spec, field, Vec2(-6, 2)) == Approx(1));
-  CHECK(light_at(spec, field, Vec2(0, -4)) == Approx(0.8));
-  CHECK(light_at(spec, field, Vec2(6, 0)) == Approx(0.6));
-  CHECK(light_at(spec, field, Vec2(9, 0)) == Approx(0.6));
+  CHECK(light_fraction_at(spec, field, Vec2(-6, 2)) == Approx(1));
+  CHECK(light_fraction_at(spec, field, Vec2(0, -4)) == Approx(0.8));
+  CHECK(light_fraction_at(spec, field, Vec2(6, 0)) == Approx(0.6));
+  CHECK(light_fraction_at(spec, field, Vec2(9, 0)) == Approx(0.6));
   spec.light_falloff = LightFalloff::kRadial;
-  CHECK(light_at(spec, field, Vec2(0, 0)) == Approx(1));
-  CHECK(light_at(spec, field, Vec2(6, -4.5)) == Approx(0.6));
+  CHECK(light_fraction_at(spec, field, Vec2(0, 0)) == Approx(1));
+  CHECK(light_fraction_at(spec, field, Vec2(6, -4.5)) == Approx(0.6));
 }
 
 TEST_CASE("a white line in the image runs where the camera projects it") {

@@ -108,7 +108,7 @@ TEST_CASE("a pixel of static obstacles shows what many rays through it hit") {
     Rng texture(1);
     const Canvas empty = render_floor(camera, field, plain_spec(), texture);
     Canvas canvas = empty.clone();
-    const StaticCover cover = draw_static(scene, camera, field, plain_spec(), canvas);
+    const StaticOcclusion cover = draw_static(scene, camera, field, plain_spec(), canvas);
     for (int i = 0; i < 250; ++i) {
       const auto x = static_cast<int>(rng.below(kWidth_px)), y = static_cast<int>(rng.below(kHeight_px));
       constexpr int kGrid = 12;
@@ -140,7 +140,7 @@ TEST_CASE("the outside of a map and all its blocked cells are drawn over the who
   scene.map = std::make_shared<FloorMap>(OccupancyMap(MapGrid{1, 1, 0.5, {-10, -10}}, BitGrid(1, 1)));
   const CameraModel camera = small_camera();
   Canvas canvas(kHeight_px, kWidth_px, cv::Vec3b(0, 0, 0));
-  const StaticCover cover = draw_static(scene, camera, Field{12, 9}, plain_spec(), canvas);
+  const StaticOcclusion cover = draw_static(scene, camera, Field{12, 9}, plain_spec(), canvas);
   for (int y = 0; y < kHeight_px; ++y)
     for (int x = 0; x < kWidth_px; ++x) REQUIRE(cover.samples(y, x) == 128);
 }

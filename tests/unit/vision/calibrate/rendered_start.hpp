@@ -25,7 +25,7 @@ inline DetectorSettings settings_of(const Scenario& scenario, const std::vector<
   settings.boxes = boxes;
   settings.layout = butterfly();
   for (const RobotSpec& robot : scenario.robots)
-    settings.roster.push_back({robot.id, robot.team, *butterfly().find(number_of(robot.id))});
+    settings.roster.push_back({robot.id, robot.team, *butterfly().find(number_in_team(robot.id))});
   return settings;
 }
 

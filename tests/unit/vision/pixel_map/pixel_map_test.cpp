@@ -24,7 +24,7 @@ CameraModel camera_over_field() {
 FloorBlobSettings settings_of(const CameraModel& camera) {
   FloorBlobSettings settings;
   settings.below_camera_px = *camera.pixel_of({0, 0, 0});
-  settings.foot_share = 1 - SceneCylinder{}.height_m / camera.position_m().z();
+  settings.foot_distance_ratio = 1 - SceneCylinder{}.height_m / camera.position_m().z();
   return settings;
 }
 

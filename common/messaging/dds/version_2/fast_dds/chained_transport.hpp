@@ -45,7 +45,7 @@ class ChainedTransport : public transport::ChainingTransport {
       transport::Locators from(destinations.begin()), to(destinations.end());
       return sender->send(bytes, count, &from, &to, timeout);
     };
-    if (!goes_to_everybody(destinations)) return send_to_all(data, size);
+    if (!is_for_all_participants(destinations)) return send_to_all(data, size);
     const std::vector<std::uint8_t> first = before_announcement({data, size});
     if (!first.empty()) send_to_all(first.data(), static_cast<std::uint32_t>(first.size()));
     return send_to_all(data, size);

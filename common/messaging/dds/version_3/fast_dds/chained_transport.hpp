@@ -46,7 +46,7 @@ class ChainedTransport : public transport::ChainingTransport {
       transport::Locators from(destinations.begin()), to(destinations.end());
       return sender->send(parts, count, &from, &to, timeout);
     };
-    if (!goes_to_everybody(destinations)) return send_to_all(buffers, size);
+    if (!is_for_all_participants(destinations)) return send_to_all(buffers, size);
     const std::vector<std::uint8_t> first =
         before_announcement({static_cast<const std::uint8_t*>(buffers[0].buffer), buffers[0].size});
     const auto first_size = static_cast<std::uint32_t>(first.size());

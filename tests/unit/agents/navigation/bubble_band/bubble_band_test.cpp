@@ -93,10 +93,10 @@ TEST_CASE("the passage between bubbles is as wide as the largest disc that fits 
       }
       least = std::min(least, is_inside ? room : 0.0);
     }
-    CHECK(passage_m(a, b) == Approx(2 * least).margin(0.02));
+    CHECK(passage_width_m(a, b) == Approx(2 * least).margin(0.02));
   }
-  CHECK(passage_m({{0, 0}, 1, {0, 0}, 0}, {{0, 0}, 0.5, {0, 0}, 0}) == 1);
-  CHECK(passage_m({{0, 0}, 1, {0, 0}, 0}, {{3, 0}, 1, {0, 0}, 0}) == 0);
+  CHECK(passage_width_m({{0, 0}, 1, {0, 0}, 0}, {{0, 0}, 0.5, {0, 0}, 0}) == 1);
+  CHECK(passage_width_m({{0, 0}, 1, {0, 0}, 0}, {{3, 0}, 1, {0, 0}, 0}) == 0);
 }
 
 TEST_CASE("a band made from a planned path stays free and gets no longer than the path") {
@@ -130,7 +130,7 @@ TEST_CASE("a band made from a planned path stays free and gets no longer than th
       REQUIRE(bubbles.front().centre_m == start);
       REQUIRE(bubbles.back().centre_m == goal);
       for (std::size_t i = 1; i < bubbles.size(); ++i)
-        REQUIRE(passage_m(bubbles[i - 1], bubbles[i]) >= 2 * kRadius_m);
+        REQUIRE(passage_width_m(bubbles[i - 1], bubbles[i]) >= 2 * kRadius_m);
       REQUIRE(clearance_m(band, points) >= kRadius_m - 1e-5);
       band.update(start, free);
     }

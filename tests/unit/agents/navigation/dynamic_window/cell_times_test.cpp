@@ -24,7 +24,7 @@ void compare_with_points(const CellTimes& times, Rng& rng, Exact exact) {
     const int u = static_cast<int>(rng.below(kGridSide)), v = static_cast<int>(rng.below(kGridSide));
     const std::size_t cell = times.grid.index(column, row);
     const double stored_s = static_cast<double>(times.of(cell)[slot_of(u, v)]);
-    if (times.is_on_hull[cell] || exact(Vec2(0, 0), u, v) < 0) continue;
+    if (times.touches_hull[cell] || exact(Vec2(0, 0), u, v) < 0) continue;
     double least_s = kHorizon_s;
     const Box box = times.grid.cell(column, row);
     // The first point of a cell to collide lies on its boundary.
@@ -123,7 +123,7 @@ TEST_CASE("tables give the minimum over the cells of all points, and are never l
       std::size_t on_hull = 0;
       for (const Vec2& point : points) {
         const auto cell = table.grid().cell_of(point);
-        on_hull += cell && cells.is_on_hull[*cell] ? 1 : 0;
+        on_hull += cell && cells.touches_hull[*cell] ? 1 : 0;
       }
       CHECK(exact.size() == on_hull);
       for_each_velocity(kAll, [&](int row, int column, std::size_t slot) {
@@ -133,7 +133,7 @@ TEST_CASE("tables give the minimum over the cells of all points, and are never l
         double exact_s = kHorizon_s;
         for (const Vec2& point : points) {
           const auto cell = table.grid().cell_of(point);
-          if (cell && cells.is_on_hull[*cell]) continue;
+          if (cell && cells.touches_hull[*cell]) continue;
           if (cell) stored = std::min(stored, table.time_s(*cell, slot).value());
           if (point.allFinite()) exact_s = std::min(exact_s, outline.time_to_collision_s(point, motion));
         }

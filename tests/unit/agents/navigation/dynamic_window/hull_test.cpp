@@ -29,7 +29,7 @@ TEST_CASE("a point's position in the moving robot's frame agrees with integratin
   const ArcMotion motion = random_motion(rng);
   const Vec2 point = random_point(rng, 2);
   step(point, motion, [&](double t, const Vec2& seen) {
-    REQUIRE((seen_after(point, motion, t) - seen).norm() < 1e-5);
+    REQUIRE((point_after_motion(point, motion, t) - seen).norm() < 1e-5);
     return true;
   });
 }
@@ -61,7 +61,7 @@ TEST_CASE("exact times to collision agree with dense time steps") {
     }
     // At that time the point is on the outline. Soon after it is inside, unless it only grazes the outline.
     ++hits;
-    const Vec2 entry = seen_after(point, motion, time_s);
+    const Vec2 entry = point_after_motion(point, motion, time_s);
     REQUIRE(std::abs(signed_distance(entry, hull.corners_m)) < 1e-8);
   }
   CHECK(hits > 100);

@@ -279,7 +279,7 @@ TEST_CASE("replayed announcements delay a genuine restart by a bounded time") {
     static_cast<void>(f.admission.newly_refused(f.now));
   }
   INFO("waited " << waited_s << " s");
-  // With a wrong clock, in the worst case every stranger is admitted first, one per kUnprovenPeriod.
+  // With a wrong clock, in the worst case every stranger is admitted first, one per kUnauthenticatedPeriod.
   CHECK(waited_s <= (is_clock_right ? 0 : strangers <= 40 ? 20 : 5 * strangers));
 }
 
@@ -369,11 +369,11 @@ TEST_CASE("a displaced participant waits longer each time, until it has proved g
   CHECK(f.admission.newly_refused(f.now).front() == slow);
   const Duration first = wait();
   CHECK(first >= Admission::kFirstWait);
-  CHECK(first <= Admission::kFirstWait + Admission::kUnprovenPeriod);
+  CHECK(first <= Admission::kFirstWait + Admission::kUnauthenticatedPeriod);
   displace();
   const Duration second = wait();
   CHECK(second >= 2 * Admission::kFirstWait);
-  CHECK(second <= 2 * Admission::kFirstWait + Admission::kUnprovenPeriod);
+  CHECK(second <= 2 * Admission::kFirstWait + Admission::kUnauthenticatedPeriod);
   f.admission.on_authenticated(slow);
   for (int i = 0; i < 100; ++i, f.now += 1s) {
     REQUIRE(f.admission.admits(slow, f.now));
@@ -430,10 +430,10 @@ TEST_CASE("a participant that cannot prove that its certificate is its own is re
   f.now += Admission::kMaxUnproven - 1s;
   for (const Certificate* certificate : {&genuine, &impostor, &self})
     CHECK(f.admission.admits(id_with(*certificate), f.now));
-  CHECK(f.admission.newly_unproven(f.now).empty());
+  CHECK(f.admission.newly_unauthenticated(f.now).empty());
   f.now += 1s;
-  CHECK(f.admission.newly_unproven(f.now) == std::vector{identity("agent 4")});
-  CHECK(f.admission.newly_unproven(f.now).empty());
+  CHECK(f.admission.newly_unauthenticated(f.now) == std::vector{identity("agent 4")});
+  CHECK(f.admission.newly_unauthenticated(f.now).empty());
 }
 
 TEST_CASE("refusals are described in plain words") {

@@ -173,7 +173,7 @@ TEST_CASE("a subscription gets no messages from a sender that may not write the 
       CAPTURE(topic.name, sender);
       const std::uint32_t robot = sender < kMaxRobots ? sender : 0;
       const bool may = std::ranges::any_of(identities, [&](const Identity& identity) {
-        return may_write(identity, topic, robot) && may_speak_as(identity, sender);
+        return may_write(identity, topic, robot) && may_use_sender(identity, sender);
       });
       SimNetwork net(1, kBegin, {});
       SimBus from(net), to(net);

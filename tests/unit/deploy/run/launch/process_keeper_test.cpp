@@ -49,14 +49,14 @@ struct Fixture {
   std::string text(const std::string& name) const { return text_of(file(name)); }
   int keep(std::function<int(Processes&, const Deaths&)> run) {
     DirectorWork work{std::move(run), [this](const std::string& reason) { lost = reason; }};
-    if (max_ending) work.max_ending = *max_ending;
+    if (shutdown_timeout) work.shutdown_timeout = *shutdown_timeout;
     return keep_processes(group, work);
   }
 
   TemporaryFolder folder;
   ProcessGroup group{folder.file("log")};
   std::string lost;
-  std::optional<std::chrono::milliseconds> max_ending;  // of directors; nullopt: default
+  std::optional<std::chrono::milliseconds> shutdown_timeout;  // of directors; nullopt: default
 };
 
 }  // namespace
@@ -189,7 +189,7 @@ TEST_CASE("a director that hangs after it has ended its processes is killed", "[
 
 TEST_CASE("a stopped director that is asked to end is killed and reported, and its processes end") {
   Fixture f;
-  f.max_ending = 500ms;
+  f.shutdown_timeout = 500ms;
   const pid_t self = getpid();
   const int code = f.keep([&](Processes& processes, const Deaths&) {
     obey_sigterm();  // the signal may come before the next line but one
@@ -203,7 +203,7 @@ TEST_CASE("a stopped director that is asked to end is killed and reported, and i
   CHECK(f.group.running() == 0);
   CHECK_FALSE(is_alive(std::stoi(f.text("pid"))));
   CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
-  CHECK(DirectorWork{}.max_ending <= 30s);
+  CHECK(DirectorWork{}.shutdown_timeout <= 30s);
 }
 
 TEST_CASE("a director that dies before it has started anything is not restarted") {

@@ -23,7 +23,7 @@ struct Trial {
     clients.give(order);
   }
   /// A resume by an operator of whom the judge does not know.
-  void resume_secretly() {
+  void resume_unknown_to_judge() {
     system.send(
         {msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator, static_cast<OrderNumber>(to_ns(system.now()))});
   }
@@ -40,7 +40,7 @@ TEST_CASE("a trial fails if a held robot moves, but not if it was resumed") {
   if (is_resumed)
     trial.give(msg::OrderKind::ORDER_RESUME, 0, kClient);
   else
-    trial.resume_secretly();
+    trial.resume_unknown_to_judge();
   trial.give(msg::OrderKind::ORDER_GO, 0, kOther, {{{1, 1}}});
   trial.system.run_for(3s);
   CHECK(trial.clients.failures().empty() == is_resumed);
@@ -146,7 +146,7 @@ TEST_CASE("a trial does not fail because a permanently isolated coordinator neve
   clients.give(order);
   system.run_for(1500ms);
   CHECK(clients.failures().size() == 1);
-  clients.expect_nothing_of("coordinator 1");
+  clients.stop_judging("coordinator 1");
   CHECK(clients.failures().empty());
 }
 

@@ -15,12 +15,13 @@ namespace sidestep {
 /// `sidestep run --driver league` on a floor that another process simulates. The run communicates with the
 /// simulator only by the league's protocol, over UDP on the loopback interface. The simulator is Sidestep's,
 /// so that there is ground truth. No process outlives this object.
-class ForeignFloor {
+class ExternalSimulatorRun {
  public:
   /// `has_truth`: the run receives the ground truth. Otherwise it is judged from vision, as with a
   /// third-party simulator.
-  explicit ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options = {},
-                        const std::vector<std::string>& run_options = {}, bool has_truth = true);
+  explicit ExternalSimulatorRun(const std::string& scenario,
+                                const std::vector<std::string>& simulator_options = {},
+                                const std::vector<std::string>& run_options = {}, bool has_truth = true);
 
   LaunchedRun& run() { return *run_; }
   void start_simulator();

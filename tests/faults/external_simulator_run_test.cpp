@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0 Robots in a separate simulator, driven over the Small Size League's
 // simulation protocol.
-#include "tests/faults/foreign_floor.hpp"
+#include "tests/faults/external_simulator_run.hpp"
 
 #include <csignal>
 
@@ -72,7 +72,7 @@ TEST_CASE("robots of a third-party simulator all arrive without contact, even wi
                                                      {"crossing", 8, "0.05"},
                                                      {"two-teams-22", 22, "0"},
                                                      {"two-teams-22", 22, "0.05"}}));
-  ForeignFloor floor(shipped_scenario("league/" + name), {"--loss", loss});
+  ExternalSimulatorRun floor(shipped_scenario("league/" + name), {"--loss", loss});
   const std::string ended = floor.run().wait_for_end();
   INFO(floor.run().output());
   CHECK(ended == "exit code 0");
@@ -85,7 +85,7 @@ TEST_CASE("robots of a third-party simulator all arrive without contact, even wi
 
 TEST_CASE("without ground truth, arrivals are judged from agents' reports and contacts from vision",
           "[both-cores]") {
-  ForeignFloor floor(shipped_scenario("league/crossing"), {}, {}, false);
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"), {}, {}, false);
   const std::string ended = floor.run().wait_for_end();
   INFO(floor.run().output());
   CHECK(ended == "exit code 0");
@@ -98,7 +98,7 @@ TEST_CASE("without ground truth, arrivals are judged from agents' reports and co
 }
 
 TEST_CASE("robots continue after the process that drives them is killed and restarted", "[both-cores]") {
-  ForeignFloor floor(shipped_scenario("league/crossing") + "restart: [robots]\n");
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing") + "restart: [robots]\n");
   LaunchedRun& run = floor.run();
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   const pid_t robots = run.pid_of("robots");
@@ -120,7 +120,7 @@ TEST_CASE(
     "[both-cores]") {
   const int signal = GENERATE(SIGINT, SIGKILL);
   CAPTURE(signal);
-  ForeignFloor floor(shipped_scenario("league/crossing"));
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"));
   LaunchedRun& run = floor.run();
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   const pid_t robots = run.pid_of("robots");
@@ -139,7 +139,7 @@ TEST_CASE(
 }
 
 TEST_CASE("robots continue after the third-party simulator is killed and restarted", "[both-cores]") {
-  ForeignFloor floor(shipped_scenario("league/crossing"));
+  ExternalSimulatorRun floor(shipped_scenario("league/crossing"));
   LaunchedRun& run = floor.run();
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   floor.kill_simulator();
@@ -159,7 +159,8 @@ TEST_CASE("our robots never touch each other, and are at rest before randomly dr
           "[both-cores]") {
   const std::uint64_t seed = 1 + static_cast<std::uint64_t>(time(nullptr)) % 1000;
   CAPTURE(seed);
-  ForeignFloor floor(shipped_scenario("league/eleven-blue"), {"--team-size", "11"}, {"--seconds", "60"});
+  ExternalSimulatorRun floor(shipped_scenario("league/eleven-blue"), {"--team-size", "11"},
+                             {"--seconds", "60"});
   LaunchedRun& run = floor.run();
   RandomTeam opponents(floor.yellow(), 11, 1.4, seed);
   const bool has_begun = run.wait_until([&] { return run.max_speed_mps() > 0.3; });

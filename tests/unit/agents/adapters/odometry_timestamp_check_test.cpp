@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "agents/adapters/odometry_dates.hpp"
+#include "agents/adapters/odometry_timestamp_check.hpp"
 
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
-namespace sidestep::odometry_dates_test {
+namespace sidestep::odometry_timestamp_check_test {
 
 using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
 TEST_CASE("after a report that arrived on time, timestamps are trusted for a limited time") {
-  OdometryDates dates(4ms);
+  OdometryTimestampCheck dates(4ms);
   CHECK_FALSE(dates.admit(kBegin, kBegin + 10ms));
   CHECK(dates.admit(kBegin + 20ms, kBegin + 24ms));
   CHECK(dates.admit(kBegin + 30ms, kBegin + 50ms));
@@ -21,7 +21,7 @@ TEST_CASE("after a report that arrived on time, timestamps are trusted for a lim
 }
 
 TEST_CASE("a report from the future is refused and ends the trust until another report arrives on time") {
-  OdometryDates dates(4ms);
+  OdometryTimestampCheck dates(4ms);
   CHECK(dates.admit(kBegin, kBegin));
   CHECK(dates.admit(kBegin + 14ms, kBegin + 10ms));
   CHECK_FALSE(dates.admit(kBegin + 25ms, kBegin + 20ms));
@@ -40,7 +40,7 @@ TEST_CASE("a base whose clock is off by more than the error plus the delay is ne
     const bool is_ahead = rng.chance(0.5);
     // If the clock is ahead, the delay hides part of the offset.
     const Duration offset = is_ahead ? max_error + least_delay + jitter + behind : -max_error - behind;
-    OdometryDates dates(max_error);
+    OdometryTimestampCheck dates(max_error);
     Time now = kBegin;
     for (int i = 0; i < 300; ++i) {
       now += 20ms;
@@ -50,4 +50,4 @@ TEST_CASE("a base whose clock is off by more than the error plus the delay is ne
   }
 }
 
-}  // namespace sidestep::odometry_dates_test
+}  // namespace sidestep::odometry_timestamp_check_test

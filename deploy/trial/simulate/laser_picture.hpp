@@ -14,10 +14,10 @@ namespace sidestep {
 
 /// Draws as SVG how a robot interprets its laser scans: the last scan, its local grid, where people may step
 /// out, and which people move.
-class SightPicture {
+class LaserPicture {
  public:
   /// The scenario must outlive the picture. Throws std::invalid_argument if it has no laser or no such robot.
-  SightPicture(const Scenario& scenario, RobotId robot);
+  LaserPicture(const Scenario& scenario, RobotId robot);
 
   /// Adds the robots' positions, for the picture and to recognise hits on robots.
   void add(const msg::GroundTruth& truth);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/trial/simulate/sight_picture.hpp"
+#include "deploy/trial/simulate/laser_picture.hpp"
 
 #include <fmt/format.h>
 #include <stdexcept>
@@ -35,19 +35,19 @@ std::string svg_square(const Box& box, const char* colour, double opacity) {
 
 }  // namespace
 
-SightPicture::SightPicture(const Scenario& scenario, RobotId robot)
+LaserPicture::LaserPicture(const Scenario& scenario, RobotId robot)
     : scenario_(scenario),
       robot_(robot),
       rules_(floor_rules(scenario)),
       decoder_(robot, laser_of(scenario, robot).settings),
       sight_(*scenario.laser, rules_, {.position_error_m = scenario.tracking_bound_m}) {}
 
-void SightPicture::add(const msg::GroundTruth& truth) {
+void LaserPicture::add(const msg::GroundTruth& truth) {
   for (const msg::TrueRobotState& robot : truth.robots())
     robots_m_[robot.robot()] = {robot.x_m(), robot.y_m()};
 }
 
-void SightPicture::add(const msg::LaserScan& message) {
+void LaserPicture::add(const msg::LaserScan& message) {
   const auto scan = decoder_.decode(message, time_from_ns(message.header().stamp_ns()));
   if (!scan) return;
   std::vector<Circle> others;
@@ -56,7 +56,7 @@ void SightPicture::add(const msg::LaserScan& message) {
   sight_.update(*scan, others);
 }
 
-std::string SightPicture::svg_grid() const {
+std::string LaserPicture::svg_grid() const {
   std::string svg;
   const LocalGrid& grid = sight_.grid();
   const Box floor{{-scenario_.field.length_m / 2, -scenario_.field.width_m / 2},
@@ -68,7 +68,7 @@ std::string SightPicture::svg_grid() const {
   return svg;
 }
 
-std::string SightPicture::svg_scan() const {
+std::string LaserPicture::svg_scan() const {
   const LaserBeams& beams = sight_.beams();
   std::string points;
   for (const Beam& beam : beams.all()) {
@@ -81,7 +81,7 @@ std::string SightPicture::svg_scan() const {
   return svg;
 }
 
-std::string SightPicture::svg_people() const {
+std::string LaserPicture::svg_people() const {
   std::string svg;
   for (const LaserTrack& track : sight_.tracks()) {
     const char* colour = track.is_moving ? "#bf8700" : "#8b949e";
@@ -92,7 +92,7 @@ std::string SightPicture::svg_people() const {
   return svg;
 }
 
-std::string SightPicture::svg() const {
+std::string LaserPicture::svg() const {
   std::string svg = svg_floor(scenario_);
   if (sight_.captured_at() != Time{}) svg += svg_scan() + svg_grid() + svg_people();
   for (const RobotSpec& robot : scenario_.robots)

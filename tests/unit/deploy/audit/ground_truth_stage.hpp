@@ -6,8 +6,8 @@
 namespace sidestep {
 
 /// A stage whose simulator shows both robots in place unless a test changes that.
-struct Shown : Stage {
-  explicit Shown(const AuditInput& input = kComplete, double inflation_m = 0)
+struct GroundTruthStage : Stage {
+  explicit GroundTruthStage(const AuditInput& input = kComplete, double inflation_m = 0)
       : Stage(stage_scenario(), input) {
     truth.robots().resize(2);
     for (RobotId robot = 0; robot < 2; ++robot) {

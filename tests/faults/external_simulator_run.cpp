@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/faults/foreign_floor.hpp"
+#include "tests/faults/external_simulator_run.hpp"
 
 #include <csignal>
 #include <fmt/format.h>
@@ -8,8 +8,9 @@
 
 namespace sidestep {
 
-ForeignFloor::ForeignFloor(const std::string& scenario, const std::vector<std::string>& simulator_options,
-                           const std::vector<std::string>& run_options, bool has_truth)
+ExternalSimulatorRun::ExternalSimulatorRun(const std::string& scenario,
+                                           const std::vector<std::string>& simulator_options,
+                                           const std::vector<std::string>& run_options, bool has_truth)
     : simulator_options_(simulator_options), has_truth_(has_truth) {
   std::vector<std::string> options{
       "--driver", "league",
@@ -20,7 +21,7 @@ ForeignFloor::ForeignFloor(const std::string& scenario, const std::vector<std::s
   start_simulator();
 }
 
-void ForeignFloor::start_simulator() {
+void ExternalSimulatorRun::start_simulator() {
   std::vector<std::string> arguments{
       "--scenario",     run_->scenario_file(), "--league", "--ssl-vision",  endpoints_.text(0),
       "--control",      to_text(control()),    "--blue",   to_text(blue()), "--yellow",
@@ -34,7 +35,7 @@ void ForeignFloor::start_simulator() {
   simulator_ = run_->start(fmt::format("foreign simulator {}", ++starts_), "sidestep-simulator", arguments);
 }
 
-void ForeignFloor::kill_simulator() {
+void ExternalSimulatorRun::kill_simulator() {
   REQUIRE(kill(simulator_, SIGKILL) == 0);
   const std::string name = fmt::format("foreign simulator {}", starts_);
   REQUIRE(run_->wait_until([&] { return run_->exit_reason(name).has_value(); }));

@@ -7,24 +7,24 @@
 
 namespace sidestep {
 
-/// Guards a channel that only one process at a time may write (TopicInfo::is_sole), such as a robot's
-/// feedback. Two processes that speak for the same robot contradict each other, and nothing shows which one
-/// is right. Therefore all messages of both are ignored while both are heard. For the protocol these messages
-/// are lost, which stops robots and is safe.
-class SoleSender {
+/// Guards a channel that only one process at a time may write (TopicInfo::is_single_writer), such as a
+/// robot's feedback. Two processes that speak for the same robot contradict each other, and nothing shows
+/// which one is right. Therefore all messages of both are ignored while both are heard. For the protocol
+/// these messages are lost, which stops robots and is safe.
+class SingleWriterGuard {
  public:
-  enum class Outcome : std::uint8_t { kCounts, kRefused, kNewlyContested };
+  enum class Outcome : std::uint8_t { kCounts, kRefused, kNewConflict };
   /// Silence after which a process counts as gone, so that another may take its place. The longer time
   /// applies if the two have been heard alternately.
   static constexpr Duration kGoneAfter{1'000'000'000};
-  static constexpr Duration kGoneAfterContest{6'000'000'000};
+  static constexpr Duration kGoneAfterConflict{6'000'000'000};
   /// A process that starts while others are running listens for this long before it trusts a sender.
   /// Otherwise it would take the first one heard for the only one.
   static constexpr Duration kListening{300'000'000};
 
-  SoleSender() = default;
+  SingleWriterGuard() = default;
   /// Messages within the time `listening` after the first one are ignored.
-  explicit SoleSender(Duration listening) : listening_(listening) {}
+  explicit SingleWriterGuard(Duration listening) : listening_(listening) {}
 
   /// Maximum increase of the incarnation within one process: a robot whose clock is set back raises its
   /// incarnation by one. Incarnations of different processes are clock readings in nanoseconds.
@@ -38,7 +38,7 @@ class SoleSender {
 
  private:
   /// Times later than `now` were read before this process's clock was set back; they are replaced by `now`.
-  void forget_future(Time now);
+  void clamp_future_times(Time now);
   /// Handles a message in the listening period: any process heard besides the first one proves a conflict.
   Outcome listen(std::uint64_t incarnation, Time now);
 
@@ -47,7 +47,7 @@ class SoleSender {
   bool has_sender_ = false, is_reported_ = false;
   std::uint64_t sender_ = 0;  // incarnation of the process that was heard first
   Duration listening_{0};
-  Time heard_at_{}, other_heard_at_{}, believes_from_{};
+  Time heard_at_{}, other_heard_at_{}, trusts_from_{};
   std::uint32_t others_ = 0;       // messages from other processes since their last silence
   std::uint32_t interleaved_ = 0;  // messages from the sender in that time
   Duration gone_after_ = kGoneAfter;

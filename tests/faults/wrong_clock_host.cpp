@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/faults/late_host.hpp"
+#include "tests/faults/wrong_clock_host.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-std::filesystem::path late_host_folder() {
+std::filesystem::path wrong_clock_folder() {
   std::string name = (std::filesystem::temp_directory_path() / "sidestep-late-XXXXXX").string();
   if (!mkdtemp(name.data())) throw std::runtime_error("cannot create a temporary folder");
   return name;
@@ -20,8 +20,8 @@ std::filesystem::path late_host_folder() {
 
 }  // namespace
 
-LateHost::LateHost(const std::string& processes, const std::string& others, Duration ahead)
-    : folder_(late_host_folder()) {
+WrongClockHost::WrongClockHost(const std::string& processes, const std::string& others, Duration ahead)
+    : folder_(wrong_clock_folder()) {
   set_clock(ahead);
   for (const char* name :
        {"sidestep-agent", "sidestep-coordinator", "sidestep-vision", "sidestep-simulator"}) {
@@ -38,12 +38,12 @@ LateHost::LateHost(const std::string& processes, const std::string& others, Dura
       others, folder_.string(), processes);
 }
 
-LateHost::~LateHost() {
+WrongClockHost::~WrongClockHost() {
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
 }
 
-void LateHost::set_clock(Duration ahead) const {
+void WrongClockHost::set_clock(Duration ahead) const {
   const std::int64_t ns = ahead.count();
   const int file = open((folder_ / "clock").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   const bool is_written = file >= 0 && pwrite(file, &ns, sizeof ns, 0) == sizeof ns;

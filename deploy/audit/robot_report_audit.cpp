@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/audit/fact_audit.hpp"
+#include "deploy/audit/robot_report_audit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,9 +41,9 @@ const char* reason_of(Exclusion exclusion) {
 
 }  // namespace
 
-std::optional<AuditedRobot::ReceivedReport> FactAudit::check(AuditedRobot& robot,
-                                                             const msg::Feedback& feedback,
-                                                             const Reception& reception) {
+std::optional<AuditedRobot::ReceivedReport> RobotReportAudit::check(AuditedRobot& robot,
+                                                                    const msg::Feedback& feedback,
+                                                                    const Reception& reception) {
   if (!is_sane(feedback)) {
     ++findings_.totals.invalid;
     return std::nullopt;
@@ -65,7 +65,7 @@ std::optional<AuditedRobot::ReceivedReport> FactAudit::check(AuditedRobot& robot
   return robot_report;
 }
 
-void FactAudit::keep(AuditedRobot& robot, const ReceivedReport& robot_report) {
+void RobotReportAudit::keep(AuditedRobot& robot, const ReceivedReport& robot_report) {
   if (!robot.last_report) robot.traceable_from_ns = robot_report.at_ns + kMaxLead_ns;
   robot.last_report = robot_report;
   robot.heard_at = findings_.now;
@@ -73,7 +73,7 @@ void FactAudit::keep(AuditedRobot& robot, const ReceivedReport& robot_report) {
   robot.forget(to_ns(findings_.now) - kRetention_ns);
 }
 
-bool FactAudit::accept_incarnation(AuditedRobot& robot, std::uint64_t incarnation) {
+bool RobotReportAudit::accept_incarnation(AuditedRobot& robot, std::uint64_t incarnation) {
   if (!robot.last_report || incarnation == robot.last_report->robot_incarnation) return true;
   const bool is_setback = incarnation - robot.last_report->robot_incarnation <= kMaxSetbacks;
   const bool is_late = robot.last_report->robot_incarnation - incarnation <= kMaxSetbacks ||
@@ -86,8 +86,9 @@ bool FactAudit::accept_incarnation(AuditedRobot& robot, std::uint64_t incarnatio
   return true;
 }
 
-AuditedRobot::ReceivedReport FactAudit::report_of(const AuditedRobot& robot, const msg::Feedback& feedback,
-                                                  const Reception& reception) const {
+AuditedRobot::ReceivedReport RobotReportAudit::report_of(const AuditedRobot& robot,
+                                                         const msg::Feedback& feedback,
+                                                         const Reception& reception) const {
   ReceivedReport robot_report;
   robot_report.robot_incarnation = feedback.header().incarnation();
   robot_report.at_ns = feedback.valid_at_ns();
@@ -105,7 +106,7 @@ AuditedRobot::ReceivedReport FactAudit::report_of(const AuditedRobot& robot, con
   return robot_report;
 }
 
-bool FactAudit::is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const {
+bool RobotReportAudit::is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const {
   const std::int64_t bound_ns = run_.clock_bound_ns() + 1000;
   // A report's time is by the robot's own clock; its header's stamp is by the clock of the sending process.
   const bool is_dated_as_sent = std::abs(feedback.valid_at_ns() - feedback.header().stamp_ns()) <= bound_ns;
@@ -114,9 +115,9 @@ bool FactAudit::is_clock_sound(const msg::Feedback& feedback, const Reception& r
          reception.latest_ns - feedback.valid_at_ns() <= bound_ns + run_.latency_bound().count();
 }
 
-void FactAudit::check_executing(AuditedRobot& robot, KnownVersion& executing,
-                                const ReceivedReport& robot_report, const msg::Feedback& feedback,
-                                const Reception& reception) {
+void RobotReportAudit::check_executing(AuditedRobot& robot, KnownVersion& executing,
+                                       const ReceivedReport& robot_report, const msg::Feedback& feedback,
+                                       const Reception& reception) {
   check_switch(robot, executing, robot_report);
   check_sent(robot, executing);
   motion_.check_tracking(robot, executing, robot_report, feedback, reception);
@@ -136,8 +137,8 @@ void FactAudit::check_executing(AuditedRobot& robot, KnownVersion& executing,
     content_.check_against_base(robot, executing);
 }
 
-void FactAudit::check_order(const AuditedRobot& robot, const ReceivedReport& robot_report,
-                            std::int64_t start_ns, bool is_next) {
+void RobotReportAudit::check_order(const AuditedRobot& robot, const ReceivedReport& robot_report,
+                                   std::int64_t start_ns, bool is_next) {
   if (!robot.last_report) return;
   const AuditedRobot::ReceivedReport& last = *robot.last_report;
   const auto fail = [&](const std::string& detail) {
@@ -160,8 +161,8 @@ void FactAudit::check_order(const AuditedRobot& robot, const ReceivedReport& rob
     fail(fmt::format("reports its initial rest after it has executed version {}", last.executing));
 }
 
-void FactAudit::check_switch(const AuditedRobot& robot, const KnownVersion& to,
-                             const ReceivedReport& robot_report) {
+void RobotReportAudit::check_switch(const AuditedRobot& robot, const KnownVersion& to,
+                                    const ReceivedReport& robot_report) {
   if (!robot.last_report || to.number == robot.last_report->executing || robot_report.is_off_reference)
     return;
   if (to.exclusion != Exclusion::kNone) {
@@ -184,7 +185,7 @@ void FactAudit::check_switch(const AuditedRobot& robot, const KnownVersion& to,
                    step->version.base(), from);
 }
 
-void FactAudit::check_sent(AuditedRobot& robot, KnownVersion& executing) {
+void RobotReportAudit::check_sent(AuditedRobot& robot, KnownVersion& executing) {
   if (!executing.was_executed && run_.is_complete() && !executing.is_own_stop &&
       executing.number > robot.max_evicted_version && executing.sent_ns == kNever &&
       !executing.is_reported_unsent) {
@@ -193,8 +194,8 @@ void FactAudit::check_sent(AuditedRobot& robot, KnownVersion& executing) {
   }
 }
 
-void FactAudit::exclude(AuditedRobot& robot, const ReceivedReport& robot_report,
-                        const Reception& reception) const {
+void RobotReportAudit::exclude(AuditedRobot& robot, const ReceivedReport& robot_report,
+                               const Reception& reception) const {
   for (std::size_t i = robot.first_recent; i < robot.versions.size(); ++i) {
     KnownVersion& known = robot.versions[i];
     if (known.exclusion != Exclusion::kNone) continue;
@@ -206,7 +207,7 @@ void FactAudit::exclude(AuditedRobot& robot, const ReceivedReport& robot_report,
     // If no report was missed, this is the first one that excludes the version, and no component could know
     // earlier.
     if (known.exclusion == Exclusion::kNone || reception.is_next)
-      known.alive_until_ns = std::max(known.alive_until_ns, reception.earliest_ns);
+      known.in_ledger_until_ns = std::max(known.in_ledger_until_ns, reception.earliest_ns);
   }
 }
 

@@ -11,10 +11,10 @@
 namespace sidestep {
 
 /// Checks what robots report: the order of their reports, and the versions that they execute.
-class FactAudit {
+class RobotReportAudit {
  public:
-  FactAudit(const AuditedRun& run, RobotRecords& robots, EpochAudit& epochs, ContentAudit& content,
-            PairAudit& pairs, AuditFindings& findings)
+  RobotReportAudit(const AuditedRun& run, RobotRecords& robots, EpochAudit& epochs, ContentAudit& content,
+                   PairAudit& pairs, AuditFindings& findings)
       : run_(run),
         robots_(robots),
         epochs_(epochs),

@@ -10,14 +10,14 @@ namespace sidestep {
 
 /// A host of a run, simulated on this machine, whose clock a test can set. The run's other host has the right
 /// clock.
-class LateHost {
+class WrongClockHost {
  public:
   /// `processes` run on this host and `others` on the other host, both as in a hosts file, e.g. "processes:
   /// [vision], agents: [0-3]". `ahead` is how far this host's clock is ahead at the start.
-  LateHost(const std::string& processes, const std::string& others, Duration ahead);
-  ~LateHost();
-  LateHost(const LateHost&) = delete;
-  LateHost& operator=(const LateHost&) = delete;
+  WrongClockHost(const std::string& processes, const std::string& others, Duration ahead);
+  ~WrongClockHost();
+  WrongClockHost(const WrongClockHost&) = delete;
+  WrongClockHost& operator=(const WrongClockHost&) = delete;
 
   std::string hosts_file() const { return (folder_ / "hosts.yaml").string(); }
   /// Sets the host's clock so that it is this far ahead.

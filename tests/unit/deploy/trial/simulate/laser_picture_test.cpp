@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/trial/simulate/sight_picture.hpp"
+#include "deploy/trial/simulate/laser_picture.hpp"
 
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
-namespace sidestep::sight_picture_test {
+namespace sidestep::laser_picture_test {
 
 using namespace std::chrono_literals;
 
@@ -31,7 +31,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 TEST_CASE("a picture of a laser's view shows the scan, where people may step out, and moving objects") {
   const Scenario scenario = scene();
   SimSystem system(scenario, 1);
-  SightPicture picture(scenario, 7);
+  LaserPicture picture(scenario, 7);
   SimBus listener(system.network());
   listener.use_rules(SharedRules(scenario).fingerprint(), [](const auto&, const auto&) {});
   listener.subscribe<msg::LaserScan>(topics::kScan, 7,
@@ -51,9 +51,9 @@ TEST_CASE("a picture of a laser's view shows the scan, where people may step out
 
 TEST_CASE("a robot without a laser has no picture of its view") {
   Scenario scenario = scene();
-  CHECK_THROWS_WITH(SightPicture(scenario, 8), "the scenario has no robot 8");
+  CHECK_THROWS_WITH(LaserPicture(scenario, 8), "the scenario has no robot 8");
   scenario.laser.reset();
-  CHECK_THROWS_WITH(SightPicture(scenario, 7), "the scenario's robots have no laser");
+  CHECK_THROWS_WITH(LaserPicture(scenario, 7), "the scenario's robots have no laser");
 }
 
-}  // namespace sidestep::sight_picture_test
+}  // namespace sidestep::laser_picture_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/messaging/sole_sender.hpp"
+#include "common/messaging/single_writer_guard.hpp"
 
 #include "common/messaging/role_watch.hpp"
 #include "common/messaging/sim/bus.hpp"
@@ -8,32 +8,32 @@
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"
 
-namespace sidestep::sole_sender_test {
+namespace sidestep::single_writer_guard_test {
 
 using namespace std::chrono_literals;
-using Outcome = SoleSender::Outcome;
+using Outcome = SingleWriterGuard::Outcome;
 const Time kBegin = time_from_ns(1'000'000'000'000);
 constexpr Duration kCycle = 16ms;
 // Incarnations of different processes.
 constexpr std::uint64_t kOne = 1'000'000, kTwo = 2'000'000, kThree = 3'000'000;
 
 TEST_CASE("all messages from a single process are used, even after breaks") {
-  SoleSender sender;
+  SingleWriterGuard sender;
   for (const Duration at : {0ms, 16ms, 500ms, 3000ms, 20000ms})
     CHECK(sender.receive(7, kBegin + at) == Outcome::kCounts);
 }
 
 TEST_CASE("messages from a second process are refused until the first has been silent for a second") {
-  SoleSender sender;
+  SingleWriterGuard sender;
   CHECK(sender.receive(kOne, kBegin) == Outcome::kCounts);
   Time now = kBegin + 100ms;
-  for (; now < kBegin + SoleSender::kGoneAfter; now += kCycle)
+  for (; now < kBegin + SingleWriterGuard::kGoneAfter; now += kCycle)
     CHECK(sender.receive(kTwo, now) == Outcome::kRefused);
   for (int i = 0; i < 100; ++i) CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kCounts);
 }
 
 TEST_CASE("a single message from another process has no effect") {
-  SoleSender sender;
+  SingleWriterGuard sender;
   for (int i = 0; i < 100; ++i) {
     const Time now = kBegin + kCycle * i;
     CHECK(sender.receive(kOne, now) == Outcome::kCounts);
@@ -43,7 +43,7 @@ TEST_CASE("a single message from another process has no effect") {
 
 TEST_CASE("messages from two competing processes are ignored until one of them is gone") {
   const std::uint64_t first = GENERATE(kOne, kThree);
-  SoleSender sender;
+  SingleWriterGuard sender;
   Time now = kBegin;
   CHECK(sender.receive(first, now) == Outcome::kCounts);
   int counted = 0, reported = 0;
@@ -51,7 +51,7 @@ TEST_CASE("messages from two competing processes are ignored until one of them i
     const Outcome outcome = sender.receive(incarnation, now);
     CHECK((outcome != Outcome::kCounts || incarnation == first));
     counted += outcome == Outcome::kCounts;
-    reported += outcome == Outcome::kNewlyContested;
+    reported += outcome == Outcome::kNewConflict;
   };
   for (int i = 0; i < 600; ++i) {
     now += kCycle;
@@ -62,14 +62,14 @@ TEST_CASE("messages from two competing processes are ignored until one of them i
   CHECK(reported == 1);
   SECTION("the later process is gone") {
     const Time gone_at = now;
-    while (now < gone_at + SoleSender::kGoneAfter - kCycle)
+    while (now < gone_at + SingleWriterGuard::kGoneAfter - kCycle)
       CHECK(sender.receive(first, now += kCycle) == Outcome::kRefused);
     now += kCycle;
     CHECK(sender.receive(first, now += kCycle) == Outcome::kCounts);
   }
   SECTION("the earlier process is gone") {
     const Time gone_at = now;
-    while (now < gone_at + SoleSender::kGoneAfterContest - kCycle)
+    while (now < gone_at + SingleWriterGuard::kGoneAfterConflict - kCycle)
       CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kRefused);
     now += kCycle;
     CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kCounts);
@@ -77,9 +77,9 @@ TEST_CASE("messages from two competing processes are ignored until one of them i
 }
 
 TEST_CASE("a process that has just started trusts no sender until it has listened for a while") {
-  SoleSender sender(SoleSender::kListening);
+  SingleWriterGuard sender(SingleWriterGuard::kListening);
   Time now = kBegin;
-  for (; now < kBegin + SoleSender::kListening; now += kCycle)
+  for (; now < kBegin + SingleWriterGuard::kListening; now += kCycle)
     CHECK(sender.receive(1, now) == Outcome::kRefused);
   for (int i = 0; i < 100; ++i) CHECK(sender.receive(1, now += kCycle) == Outcome::kCounts);
 }
@@ -88,7 +88,7 @@ TEST_CASE("a process that starts while two others send trusts neither, whichever
   const auto seed = GENERATE(range(1u, 101u));
   CAPTURE(seed);
   Rng rng(seed);
-  SoleSender sender(SoleSender::kListening);
+  SingleWriterGuard sender(SingleWriterGuard::kListening);
   int reported = 0;
   for (int cycle = 0; cycle < 600; ++cycle) {
     for (const std::uint64_t incarnation : {1u, 2u}) {
@@ -97,33 +97,33 @@ TEST_CASE("a process that starts while two others send trusts neither, whichever
       const Time now = kBegin + kCycle * cycle + from_seconds(rng.uniform(0, 0.001));
       const Outcome outcome = sender.receive(incarnation, now);
       CHECK(outcome != Outcome::kCounts);
-      reported += outcome == Outcome::kNewlyContested;
+      reported += outcome == Outcome::kNewConflict;
     }
   }
   CHECK(reported == 1);
 }
 
 TEST_CASE("a receiver whose clock was set back still trusts and follows senders") {
-  const Duration listening = GENERATE(Duration{0}, SoleSender::kListening);
+  const Duration listening = GENERATE(Duration{0}, SingleWriterGuard::kListening);
   CAPTURE(to_seconds(listening));
   const Duration ahead = 436s;
   {
-    SoleSender sender(listening);
+    SingleWriterGuard sender(listening);
     (void)sender.receive(kOne, kBegin + ahead);
     Time now = kBegin;
     for (; now < kBegin + listening; now += kCycle) (void)sender.receive(kOne, now);
     CHECK(sender.receive(kOne, now + kCycle) == Outcome::kCounts);
     // The process ends, and another one takes its place.
-    now += SoleSender::kGoneAfter + kCycle;
+    now += SingleWriterGuard::kGoneAfter + kCycle;
     (void)sender.receive(kTwo, now);
     CHECK(sender.receive(kTwo, now + listening + kCycle) == Outcome::kCounts);
   }
   {
-    SoleSender sender;
+    SingleWriterGuard sender;
     for (int i = 0; i < 10; ++i)
       for (const std::uint64_t process : {kOne, kTwo}) (void)sender.receive(process, kBegin + ahead);
     CHECK(sender.receive(kOne, kBegin) != Outcome::kCounts);
-    CHECK(sender.receive(kOne, kBegin + SoleSender::kGoneAfter + kCycle) == Outcome::kCounts);
+    CHECK(sender.receive(kOne, kBegin + SingleWriterGuard::kGoneAfter + kCycle) == Outcome::kCounts);
   }
 }
 
@@ -131,7 +131,7 @@ TEST_CASE("messages from three or more competing processes are ignored too") {
   const auto seed = GENERATE(range(1u, 51u));
   CAPTURE(seed);
   Rng rng(seed);
-  SoleSender sender;
+  SingleWriterGuard sender;
   (void)sender.receive(kOne, kBegin);
   for (int i = 0; i < 1000; ++i) {
     const std::uint64_t incarnation = kOne * (1 + rng.below(5));
@@ -141,17 +141,17 @@ TEST_CASE("messages from three or more competing processes are ignored too") {
 }
 
 TEST_CASE("a robot that raises its incarnation is heard at once, and its older messages are refused") {
-  SoleSender sender;
+  SingleWriterGuard sender;
   Time now = kBegin;
   for (std::uint64_t incarnation = 0; incarnation < 5; ++incarnation) {
     for (int i = 0; i < 10; ++i) CHECK(sender.receive(kOne + incarnation, now += kCycle) == Outcome::kCounts);
     CHECK(sender.receive(kOne + incarnation + 1, now += 1ms) == Outcome::kCounts);
     CHECK(sender.receive(kOne + incarnation, now += 1ms) == Outcome::kRefused);
-    now += SoleSender::kGoneAfter;
+    now += SingleWriterGuard::kGoneAfter;
   }
   // A process that began much later is another one, and so is one that began earlier.
   CHECK(sender.receive(kOne + 5, now) == Outcome::kCounts);
-  CHECK(sender.receive(kOne + 5 + SoleSender::kMaxRaise + 1, now) == Outcome::kRefused);
+  CHECK(sender.receive(kOne + 5 + SingleWriterGuard::kMaxRaise + 1, now) == Outcome::kRefused);
   CHECK(sender.receive(kOne - 1, now) != Outcome::kCounts);
 }
 
@@ -162,9 +162,9 @@ TEST_CASE(
   auto one = first.advertise(topics::kFeedback, 3), two = second.advertise(topics::kFeedback, 3);
   int received = 0, contests = 0;
   reader.subscribe(topics::kFeedback, 3, [&](const msg::Feedback&) { ++received; });
-  reader.watch_contests([&](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
+  reader.watch_conflicts([&](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
     ++contests;
-    CHECK(describe_contest(topic, robot, header) ==
+    CHECK(describe_conflict(topic, robot, header) ==
           "two processes send 'feedback/3' as robot 3; the messages of both are ignored on this topic "
           "until one of them ends");
   });
@@ -258,4 +258,4 @@ TEST_CASE("several processes may use the same agent's id") {
   CHECK_FALSE(must_be_alone(3));
 }
 
-}  // namespace sidestep::sole_sender_test
+}  // namespace sidestep::single_writer_guard_test
