@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -78,7 +80,7 @@ std::string to_json_line(const Violation& v) {
   }
   if (v.epoch != 0) json["epoch"] = v.epoch;
   json["detail"] = v.detail;
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace sidestep

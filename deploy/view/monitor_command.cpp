@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/json/json_text.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
@@ -134,7 +135,7 @@ class MonitorServer {
   }
 
   void send_plan(WebSocket& socket) {
-    socket.send_state(0, {std::make_shared<const std::string>(planning_[&socket].json().dump()), false});
+    socket.send_state(0, {std::make_shared<const std::string>(json_text(planning_[&socket].json())), false});
   }
 
   void remove(WebSocket& socket) {
@@ -173,7 +174,7 @@ class MonitorServer {
     const auto robot = number_in(std::string_view(request.path).substr(kBegin.size()));
     if (!robot) return std::nullopt;
     return WebResponse{200, "application/json",
-                       parts_.fields->json(*robot, monitor_.floor(), monitor_.now()).dump()};
+                       json_text(parts_.fields->json(*robot, monitor_.floor(), monitor_.now()))};
   }
 
   /// Answers GET /api/cameras/0.jpg.

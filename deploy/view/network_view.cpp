@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "deploy/inspect/topic/graph.hpp"
 
@@ -22,7 +23,7 @@ std::string NetworkView::json() {
     hosts.back()["participants"].push_back(process.name);
   }
   const nlohmann::ordered_json json{{"hosts", hosts}, {"mismatches", graph.mismatches}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace sidestep

@@ -11,6 +11,7 @@
 #include <thread>
 #include <unistd.h>
 
+#include "common/json/json_text.hpp"
 #include "tests/unit/deploy/view/server/web_client.hpp"
 
 namespace sidestep {
@@ -80,8 +81,8 @@ Browser::~Browser() {
 Json Browser::call(const std::string& method, const std::string& path, const Json& body) {
   const std::string target = session_.empty() ? path : "/session/" + session_ + path;
   const HttpAnswer answer = http_request(port_, method, target, {{"Content-Type", "application/json"}},
-                                         method == "GET" ? std::string() : body.dump());
-  const Json json = Json::parse(answer.body, nullptr, false);
+                                         method == "GET" ? std::string() : json_text(body));
+  const Json json = parse_json(answer.body, false);
   if (answer.status != 200 || !json.is_object())
     throw std::runtime_error(fmt::format("browser: {} {}: {} {}", method, path, answer.status, answer.body));
   return json.at("value");

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <thread>
 
+#include "common/json/json_text.hpp"
 #include "deploy/inspect/topic/describe.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
@@ -106,7 +107,7 @@ TEST_CASE("a Cyclone DDS program reads five topics field by field") {
   std::map<std::string, int> read;
   for (std::string channel, message; lines >> channel && std::getline(lines, message);) {
     CAPTURE(channel);
-    const auto fields = nlohmann::ordered_json::parse(message);
+    const auto fields = parse_ordered_json(message);
     const auto& described =
         publisher.described(channel, fields["header"]["message_number"].get<std::uint64_t>());
     REQUIRE(described.is_object());

@@ -4,6 +4,7 @@
 
 #include <csignal>
 
+#include "common/json/json_text.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
 
@@ -14,10 +15,10 @@ namespace {
 using namespace std::chrono_literals;
 
 std::string outcome(const nlohmann::json& report) {
-  return "makespan " + report["makespan_s"].dump() + " s, minimum clearance " +
-         report["min_clearance_m"].dump() + " m, " + report["denials"].dump() + " of " +
-         report["proposals"].dump() + " proposals denied, missed " + report["missed_cycles"].dump() + " of " +
-         report["cycles"].dump() + " cycles";
+  return "makespan " + json_text(report["makespan_s"]) + " s, minimum clearance " +
+         json_text(report["min_clearance_m"]) + " m, " + json_text(report["denials"]) + " of " +
+         json_text(report["proposals"]) + " proposals denied, missed " + json_text(report["missed_cycles"]) +
+         " of " + json_text(report["cycles"]) + " cycles";
 }
 
 /// Drives the yellow team at random, up to a maximum speed, during this object's lifetime.

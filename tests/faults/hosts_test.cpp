@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/json/json_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/launched_run.hpp"
 #include "tests/needs_root.hpp"
@@ -20,8 +21,9 @@ bool has_namespaces(pid_t launcher) {
 }
 
 std::string figures(const nlohmann::json& report) {
-  return "makespan " + report["makespan_s"].dump() + " s, missed " + report["missed_cycles"].dump() + " of " +
-         report["cycles"].dump() + " cycles, negotiation " + report["negotiation_us"].dump() + " us";
+  return "makespan " + json_text(report["makespan_s"]) + " s, missed " + json_text(report["missed_cycles"]) +
+         " of " + json_text(report["cycles"]) + " cycles, negotiation " +
+         json_text(report["negotiation_us"]) + " us";
 }
 
 }  // namespace
@@ -81,7 +83,7 @@ TEST_CASE("22 robots on three hosts without multicast all arrive without contact
   std::size_t silent = 0;
   for (std::size_t at = 0; (at = sent.find("packets 0 bytes 0", at)) != std::string::npos; ++at) ++silent;
   CHECK(silent == 3);
-  WARN("22 robots, three hosts, no multicast: started after " << report["wall_clock"]["startup_s"].dump()
+  WARN("22 robots, three hosts, no multicast: started after " << json_text(report["wall_clock"]["startup_s"])
                                                               << " s, " << figures(report));
   std::filesystem::remove(file);
 }

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "common/geometry/vec2.hpp"
+#include "common/json/json_text.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "deploy/audit/audit_totals.hpp"
 #include "deploy/run/launch/hosts/hosts_file.hpp"
@@ -201,9 +202,7 @@ double LaunchedRun::max_speed_mps(const std::vector<RobotId>& robots) const {
   return max_mps;
 }
 
-nlohmann::json LaunchedRun::report() const {
-  return nlohmann::json::parse(text_of(folder_ / "report.json"), nullptr, false);
-}
+nlohmann::json LaunchedRun::report() const { return parse_json(text_of(folder_ / "report.json"), false); }
 
 std::string three_hosts_file() {
   return SIDESTEP_SOURCE_DIR "/deploy/run/launch/hosts/three-namespaces.yaml";
@@ -256,7 +255,7 @@ void require_no_violations(const nlohmann::json& report) {
   REQUIRE(report.is_object());
   CHECK(report["contacts"] == 0);
   CHECK(report["firmware_violations"] == 0);
-  INFO(report["audit"].dump(2));
+  INFO(json_text(report["audit"], 2));
   CHECK(report["audit"]["violations"] == 0);
   CHECK(report["audit"]["verdict"] != "failed");
   CHECK(report["audit"]["received"] > 0);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/json/json_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/monitored_run.hpp"
 #include "tests/faults/process_usage.hpp"
@@ -37,7 +38,7 @@ void seek_back(double back_s) {
         std::memcpy(&time_s, message->text.data(), sizeof time_s);
         return time_s;
       }
-      const Json json = Json::parse(message->text);
+      const Json json = parse_json(message->text);
       if (json.at("type") != "time") continue;
       begin_s = json.at("begin_s");
       end_s = json.at("end_s");
@@ -125,7 +126,7 @@ TEST_CASE("a run serves its page to the browser, and continues without the monit
   }
   LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port), "--seconds", "4"});
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
-  CHECK(Json::parse(http_request(port, "GET", "/api/state").body).at("robots").size() == 3);
+  CHECK(parse_json(http_request(port, "GET", "/api/state").body).at("robots").size() == 3);
   CHECK(http_request(port, "GET", "/").body.find("<title>Sidestep monitor</title>") != std::string::npos);
   CHECK(run.wait_for_end() == "exit code 0");
   // If the port is taken, the run reports that and continues.

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "common/file/temporary_folder.hpp"
+#include "common/json/json_text.hpp"
 #include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/browser.hpp"
@@ -86,7 +87,7 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   // The monitor knows the robot's goal once it has received the order.
   Json fields;
   REQUIRE(run.wait_until([&] {
-    fields = Json::parse(http_request(monitor.port(), "GET", "/api/fields/1").body);
+    fields = parse_json(http_request(monitor.port(), "GET", "/api/fields/1").body);
     return fields.contains("navigation");
   }));
   CHECK(fields.at("navigation").at("values").size() > 1000);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "common/json/json_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/view/server/web_client.hpp"
 
@@ -28,7 +29,7 @@ std::string MonitorProcess::url() const {
 }
 
 nlohmann::json MonitorProcess::state() const {
-  return nlohmann::json::parse(http_request(port_, "GET", "/api/state").body);
+  return parse_json(http_request(port_, "GET", "/api/state").body);
 }
 
 std::function<void()> polling(LaunchedRun& run) {

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <unistd.h>
 
+#include "common/json/json_text.hpp"
 #include "deploy/audit/audit_totals.hpp"
 #include "deploy/trial/simulate/building/building.hpp"
 #include "tests/catch.hpp"
@@ -89,8 +90,8 @@ TEST_CASE(
   require_no_violations(report);
   CHECK(report["arrived"] == 7);
   REQUIRE(report["deaths"].size() == 1);
-  CHECK(report["deaths"][0].dump().find("agent 2") != std::string::npos);
-  CHECK(report["deaths"][0].dump().find("SIGKILL") != std::string::npos);
+  CHECK(json_text(report["deaths"][0]).find("agent 2") != std::string::npos);
+  CHECK(json_text(report["deaths"][0]).find("SIGKILL") != std::string::npos);
 }
 
 TEST_CASE("after kill -9 of the coordinator, all robots stop, and reach their goals after its restart") {
@@ -110,7 +111,7 @@ TEST_CASE("after kill -9 of the coordinator, all robots stop, and reach their go
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);
-  CHECK(report["deaths"][0].dump().find("coordinator") != std::string::npos);
+  CHECK(json_text(report["deaths"][0]).find("coordinator") != std::string::npos);
 }
 
 TEST_CASE("if a robot is silent when an epoch begins, the others wait until an operator attests its absence",
@@ -139,11 +140,11 @@ TEST_CASE("if a robot is silent when an epoch begins, the others wait until an o
   CHECK(run.wait_for_end() == "exit code 1");
   CHECK(run.logged("an operator attests that robot 7 is absent"));
   const auto report = run.report();
-  INFO(report["audit"].dump(2));
+  INFO(json_text(report["audit"], 2));
   // Robot 7 rolls on when it is switched off, and may touch a neighbour.
   CHECK(report["contacts"] == report["audit"]["excused_contacts"]);
   for (const auto& excused : report["audit"]["excused"]) {
-    CHECK(excused["robots"].dump().find('7') != std::string::npos);
+    CHECK(json_text(excused["robots"]).find('7') != std::string::npos);
   }
   CHECK(report["audit"]["violations"] == 0);
 }
@@ -278,6 +279,6 @@ TEST_CASE("a standby with an outdated scenario is refused and logged, and never 
   INFO(run.output());
   CHECK(ended == "exit code 1");
   require_no_violations(run.report());
-  CHECK(run.report()["failure"].dump().find("coordinator died") != std::string::npos);
+  CHECK(json_text(run.report()["failure"]).find("coordinator died") != std::string::npos);
   CHECK(run.report()["mismatches"].contains("coordinator 1"));
 }

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/ros/ros_messages.hpp"
 #include "tests/catch.hpp"
 #include "tests/faults/keyed_run.hpp"
@@ -117,7 +118,7 @@ TEST_CASE(
   CHECK(report["arrived"] == 4);
   reader.check();
   WARN("four bases, odometry 2 % off, vision at 10 Hz: makespan "
-       << report["makespan_s"].dump() << " s, minimum clearance " << report["min_clearance_m"].dump()
+       << json_text(report["makespan_s"]) << " s, minimum clearance " << json_text(report["min_clearance_m"])
        << " m");
 }
 

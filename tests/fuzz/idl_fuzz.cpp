@@ -2,6 +2,7 @@
 // defines. An input is IDL, a zero byte, and a message.
 #include <algorithm>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/message_schema.hpp"
 #include "deploy/inspect/topic/idl/idl_decoder.hpp"
 #include "deploy/inspect/topic/idl/idl_encoder.hpp"
@@ -43,7 +44,7 @@ void check_again(const IdlType& type, const Json& json) {
 bool try_message(const IdlType& type, View bytes) {
   try {
     const Json json = decode_by_idl(type, bytes);
-    (void)json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    (void)json_text(json);
     check_again(type, json);
     return true;
   } catch (const IdlDecodingError&) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/json/json_text.hpp"
 #include "common/protocol/process_names.hpp"
 #include "deploy/audit/metrics/report.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
@@ -130,9 +131,9 @@ TEST_CASE("equal seeds give equal reports, and different seeds give different re
   const auto report_of = [](std::uint64_t seed) {
     MonitoredSystem run(shipped("crossing-noisy"), seed);
     (void)run.system.run_until_arrived(run.system.begin() + from_seconds(20));
-    auto json = nlohmann::json::parse(to_json(run.system.metrics().report()));
+    auto json = parse_json(to_json(run.system.metrics().report()));
     json.erase("wall_clock");
-    return json.dump();
+    return json_text(json);
   };
   const auto first = report_of(5);
   CHECK(first == report_of(5));
@@ -253,7 +254,7 @@ TEST_CASE("the report lists each epoch with its reason, and processes log the sa
   CHECK_THAT(report.epochs[1].reason, ContainsSubstring("no heartbeat of coordinator 0 for 1"));
   CHECK(report.epochs[1].at_s.value_or(0) > 0.3);
   CHECK_THAT(summary(report), ContainsSubstring("coordinator 1 began epoch"));
-  const auto json = nlohmann::json::parse(to_json(report));
+  const auto json = parse_json(to_json(report));
   CHECK(json["epochs"][1]["reason"] == report.epochs[1].reason);
   const std::string second = std::to_string(report.epochs[1].epoch);
   CHECK(reported("coordinator 1: begins epoch " + second + ": no heartbeat of coordinator 0 for 1"));

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/file/write_file.hpp"
+#include "common/json/json_text.hpp"
 
 namespace sidestep {
 namespace {
@@ -65,7 +66,7 @@ Json audit_json(const AuditTotals& audit) {
   }
   json["first"] = Json::array();
   for (const Violation& violation : audit.first)
-    json["first"].push_back(Json::parse(to_json_line(violation)));
+    json["first"].push_back(parse_ordered_json(to_json_line(violation)));
   json["received"] = audit.received;
   json["missed"] = audit.missed;
   json["invalid"] = audit.invalid;
@@ -259,7 +260,7 @@ std::string to_json(const Report& r) {
                                  {"max_memory_mb", rounded(use.max_memory_mb)}};
     }
   }
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 std::string summary(const Report& r) {

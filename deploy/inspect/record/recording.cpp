@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "common/json/json_text.hpp"
 #include "common/map/map_file.hpp"
 #include "common/messaging/cdr.hpp"
 #include "common/messaging/message_schema.hpp"
@@ -87,7 +88,7 @@ std::uint16_t RecordingWriter::json_channel(const std::string& topic, const std:
 
 void RecordingWriter::add_scene(Time now, const FloorState& floor, double radius_m) {
   const auto add = [&](const char* topic, const char* type, const nlohmann::json& json) {
-    const std::string text = json.dump();
+    const std::string text = json_text(json);
     const std::uint64_t at_ns = unsigned_ns(to_ns(now));
     mcap_.add_message({json_channel(topic, type), scenes_, at_ns, at_ns},
                       [&](McapBytes& bytes) { bytes.insert(bytes.end(), text.begin(), text.end()); });

@@ -7,6 +7,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/json/json_text.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -14,8 +16,7 @@ using Json = nlohmann::ordered_json;
 
 /// Text without quotes, anything else as JSON. Invalid UTF-8 must not throw.
 std::string text_of(const Json& value) {
-  return value.is_string() ? value.get<std::string>()
-                           : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return value.is_string() ? value.get<std::string>() : json_text(value);
 }
 
 std::string csv_cell(const std::string& text) {
@@ -93,7 +94,7 @@ void MessagePrinter::add(const Json& message) {
     if (printed_ == 0) print_(line.names);
     print_(line.cells);
   } else {
-    print_(message.dump(-1, ' ', false, Json::error_handler_t::replace));
+    print_(json_text(message));
   }
   ++printed_;
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "common/messaging/dds/raw_publisher.hpp"
 #include "common/messaging/message_schema.hpp"
@@ -56,7 +57,7 @@ std::string announced_type_name(const TopicOptions& options, const DdsListener& 
 }  // namespace
 
 int publish_topic(const TopicOptions& options) {
-  const auto json = nlohmann::ordered_json::parse(options.message, nullptr, false);
+  const auto json = parse_ordered_json(options.message, false);
   if (json.is_discarded()) throw std::invalid_argument("MESSAGE: is not valid JSON");
   const IdlTypes types = options.idl_file.empty() ? parse_idl(kIdlText, "idl") : load_idl(options.idl_file);
   std::optional<std::string> name = known_type_name(options);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/protocol/disturbance_text.hpp"
@@ -27,7 +28,7 @@ class BodyError : public std::invalid_argument {
 };
 
 WebResponse json_response(unsigned status, const Json& json) {
-  return {status, "application/json", json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"};
+  return {status, "application/json", json_text(json) + "\n"};
 }
 WebResponse error_response(unsigned status, const std::string& error) {
   return json_response(status, {{"error", error}});
@@ -67,12 +68,12 @@ double number_from(const Json& json, const std::string& name, double min, double
   const double value = json.is_number() ? json.get<double>() : std::nan("");
   if (!(value >= min && value <= max))
     throw BodyError(
-        fmt::format("{}: expected a number from {:g} to {:g}, got {}", name, min, max, json.dump()));
+        fmt::format("{}: expected a number from {:g} to {:g}, got {}", name, min, max, json_text(json)));
   return value;
 }
 
 double heading_from(const Json& json, const std::string& name) {
-  if (!json.is_number()) throw BodyError(fmt::format("{}: expected radians, got {}", name, json.dump()));
+  if (!json.is_number()) throw BodyError(fmt::format("{}: expected radians, got {}", name, json_text(json)));
   const auto heading_rad = json.get<double>();
   if (const std::string problem = heading_problem(heading_rad); !problem.empty())
     throw BodyError(fmt::format("{}: {}", name, problem));

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/message_schema.hpp"
 #include "deploy/inspect/floor/foxglove_scene.hpp"
 #include "deploy/view/server/viewer_json.hpp"
@@ -37,8 +38,7 @@ std::optional<std::uint32_t> id_in(const Json& json, const char* key) {
 
 WebMessage text_message(const Json& json) {
   // A text that a viewer has sent may contain invalid UTF-8.
-  return {std::make_shared<const std::string>(json.dump(-1, ' ', false, Json::error_handler_t::replace)),
-          false};
+  return {std::make_shared<const std::string>(json_text(json)), false};
 }
 
 }  // namespace
@@ -149,8 +149,8 @@ void FoxgloveServer::publish(const AnyMessage& message, Time now) {
 void FoxgloveServer::publish_scene(const FloorState& floor, double radius_m, Time now) {
   if (clients_.empty()) return;
   const ChannelId scene = channels_.at(kSceneTopic), transforms = channels_.at(kTransformsTopic);
-  if (is_subscribed(scene)) send(scene, 0, now, scene_update(floor, radius_m, now).dump());
-  if (is_subscribed(transforms)) send(transforms, 0, now, frame_transforms(floor, now).dump());
+  if (is_subscribed(scene)) send(scene, 0, now, json_text(scene_update(floor, radius_m, now)));
+  if (is_subscribed(transforms)) send(transforms, 0, now, json_text(frame_transforms(floor, now)));
 }
 
 }  // namespace sidestep

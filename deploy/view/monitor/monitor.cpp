@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/shared_rules.hpp"
+#include "common/json/json_text.hpp"
 #include "deploy/inspect/topic/describe.hpp"
 #include "deploy/view/monitor/floor_frame.hpp"
 #include "deploy/view/monitor/panels.hpp"
@@ -26,9 +27,7 @@ constexpr std::size_t kHistoryBytes = 512 << 20;
 /// The panels of larger fleets are too long to be sent every half second.
 constexpr std::size_t kLargeFleet = 200;
 
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string text_of(const Json& json) { return json_text(json); }
 std::shared_ptr<const std::string> shared_text(const Json& json) {
   return std::make_shared<const std::string>(text_of(json));
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <variant>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/topics.hpp"
 #include "deploy/inspect/time_range.hpp"
 #include "deploy/inspect/topic/describe.hpp"
@@ -56,7 +57,7 @@ std::vector<std::string> RecordedMessages::between(const std::string& channel, T
     const Json json = describe_cdr(*topic, message->payload.subspan(kEncapsulation));
     if (json.is_null()) continue;
     const Json entry{{"at_s", unix_seconds(at)}, {"message", json}};
-    messages.push_back(entry.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    messages.push_back(json_text(entry));
     bytes += messages.back().size();
     for (; bytes > kMaxBytes && messages.size() > 1; messages.pop_front()) bytes -= messages.front().size();
   }

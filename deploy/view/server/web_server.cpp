@@ -20,9 +20,13 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
-using asio::ip::tcp;
 using ErrorCode = boost::system::error_code;
-using Stream = websocket::stream<beast::tcp_stream>;
+// The types name their executor and leave compression out, because both would double the time of compiling.
+using Protocol = asio::ip::tcp;
+using Executor = asio::io_context::executor_type;
+using Socket = asio::basic_stream_socket<Protocol, Executor>;
+using TcpStream = beast::basic_stream<Protocol, Executor>;
+using Stream = websocket::stream<TcpStream, false>;
 
 constexpr auto kRequestTimeout = std::chrono::seconds(20);
 /// Timeout for a viewer that answers no pings, e.g. because its machine is asleep.
@@ -48,7 +52,7 @@ struct Server {
 
 class SocketSession : public WebSocket, public std::enable_shared_from_this<SocketSession> {
  public:
-  SocketSession(Server& server, beast::tcp_stream&& stream) : server_(server), stream_(std::move(stream)) {
+  SocketSession(Server& server, TcpStream&& stream) : server_(server), stream_(std::move(stream)) {
     ++server_.connections;
   }
   ~SocketSession() override { --server_.connections; }
@@ -152,7 +156,7 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(Server& server, tcp::socket&& socket) : server_(server), stream_(std::move(socket)) {
+  HttpSession(Server& server, Socket&& socket) : server_(server), stream_(std::move(socket)) {
     ++server_.connections;
   }
   ~HttpSession() { --server_.connections; }
@@ -218,12 +222,12 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       if (error || self->server_.is_stopped) return;
       if (message->keep_alive()) return self->read();
       ErrorCode ignored;
-      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+      self->stream_.socket().shutdown(Socket::shutdown_send, ignored);
     });
   }
 
   Server& server_;
-  beast::tcp_stream stream_;
+  TcpStream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
 };
@@ -233,10 +237,10 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 struct WebServer::Impl {
   Server server;
   asio::io_context context{1};
-  tcp::acceptor acceptor{context};
+  asio::basic_socket_acceptor<Protocol, Executor> acceptor{context};
 
   void listen() {
-    const tcp::endpoint endpoint(asio::ip::make_address(server.access.address), server.access.port);
+    const Protocol::endpoint endpoint(asio::ip::make_address(server.access.address), server.access.port);
     acceptor.open(endpoint.protocol());
     acceptor.set_option(asio::socket_base::reuse_address(true));
     acceptor.bind(endpoint);
@@ -246,11 +250,11 @@ struct WebServer::Impl {
   }
 
   void accept() {
-    acceptor.async_accept([this](ErrorCode error, tcp::socket socket) {
+    acceptor.async_accept([this](ErrorCode error, Socket socket) {
       if (server.is_stopped) return;
       if (!error) {
         ErrorCode ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
+        socket.set_option(Protocol::no_delay(true), ignored);
         socket.set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
         std::make_shared<HttpSession>(server, std::move(socket))->read();
       }

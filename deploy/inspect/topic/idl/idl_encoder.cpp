@@ -11,6 +11,8 @@
 #include <string>
 #include <utility>
 
+#include "common/json/json_text.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -82,9 +84,8 @@ class Encoder {
 
  private:
   [[noreturn]] static void fail(const std::string& name, const std::string& expected, const Json& json) {
-    throw IdlEncodingError(
-        fmt::format("{}: expected {}, got {}", name.empty() ? "the message" : name, expected,
-                    json.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 60)));
+    throw IdlEncodingError(fmt::format("{}: expected {}, got {}", name.empty() ? "the message" : name,
+                                       expected, json_text(json).substr(0, 60)));
   }
 
   static const Json* find(const Json* json, const std::string& name) {

@@ -5,6 +5,8 @@
 #include <cctype>
 #include <string_view>
 
+#include "common/json/json_text.hpp"
+
 namespace sidestep {
 namespace {
 
@@ -92,7 +94,7 @@ void ReadableForm::apply(Json& message) const {
     case Change::kWord:
       message = message.is_string()
                     ? word_of(std::string_view(message.get_ref<const std::string&>()).substr(prefix_size_))
-                    : "unknown " + message.dump();
+                    : "unknown " + json_text(message);
       return;
     case Change::kElements:
       for (Json& element : message) element_.front().apply(element);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "common/json/json_text.hpp"
 #include "deploy/trial/simulate/campaign/build_commit.hpp"
 #include "deploy/trial/simulate/campaign/trial_result.hpp"
 
@@ -177,7 +178,7 @@ std::string CampaignSummary::json() const {
   json["contacts_per_robot_hour_95"] = upper_bound_95(contacts(), robot_hours());
   json["trials"] = Json::array();
   for (const auto& [seed, result] : results_) json["trials"].push_back(to_json(result));
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace sidestep

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
+
 namespace sidestep {
 
 using Json = nlohmann::ordered_json;
@@ -31,10 +33,10 @@ Json to_json(const TrialResult& r) {
           {"wall_s", r.wall_s}};
 }
 
-std::string to_line(const TrialResult& result) { return to_json(result).dump(); }
+std::string to_line(const TrialResult& result) { return json_text(to_json(result)); }
 
 TrialResult parse_trial_result(const std::string& line) {
-  const Json json = Json::parse(line);
+  const Json json = parse_ordered_json(line);
   TrialResult r;
   json.at("seed").get_to(r.seed);
   json.at("failures").get_to(r.failures);

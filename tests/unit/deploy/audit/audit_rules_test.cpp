@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/json/json_text.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::audit_rules_test {
@@ -33,7 +34,7 @@ TEST_CASE("a line of text states everything known about a violation") {
 TEST_CASE("a line of JSON contains everything known about a violation") {
   Violation v = violation();
   v.version = 7;
-  const auto json = [&] { return nlohmann::json::parse(to_json_line(v)); };
+  const auto json = [&] { return parse_json(to_json_line(v)); };
   CHECK(json() == nlohmann::json{{"rule", "base"},
                                  {"reference", "ledger rule 1"},
                                  {"detected_ns", 2'500'000'000},

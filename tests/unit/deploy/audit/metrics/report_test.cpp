@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "common/json/json_text.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::report_test {
@@ -33,7 +34,7 @@ Report example() {
 
 TEST_CASE("a report's JSON has the keys that readers rely on in a stable order") {
   const std::string text = to_json(example());
-  const auto json = nlohmann::ordered_json::parse(text);
+  const auto json = parse_ordered_json(text);
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   CHECK(keys == std::vector<std::string>{"program",
@@ -88,10 +89,10 @@ TEST_CASE("a report's JSON has the keys that readers rely on in a stable order")
   CHECK(json["negotiation_us"]["max"] == 10000.0);
   CHECK(json["negotiation_us"]["p50"] >= 5000.0);
   CHECK(json["negotiation_us"]["p50"] < 5700.0);
-  CHECK(json["conflicts"].dump() == "[[3,7]]");
+  CHECK(json_text(json["conflicts"]) == "[[3,7]]");
   CHECK_THAT(summary(example()), ContainsSubstring("brought robots 3 and 7 into conflict"));
   CHECK(json["deaths"][0]["process"] == "agent 7");
-  CHECK(json["mismatches"].dump() ==
+  CHECK(json_text(json["mismatches"]) ==
         R"({"agent 3":{},"vision":{"margin_m":{"run":"0.01","process":"0.02"}}})");
   CHECK_THAT(summary(example()), ContainsSubstring("vision was refused because it has different rules: "
                                                    "margin_m is 0.02 instead of 0.01"));
@@ -103,9 +104,9 @@ TEST_CASE("the report of a run over DDS contains its version, startup time and r
   Report report = example();
   report.fast_dds = "3.1.2";
   report.processes["agent 3"] = {0.25, 21.5};
-  CHECK(nlohmann::json::parse(to_json(report))["wall_clock"]["startup_s"].is_null());
+  CHECK(parse_json(to_json(report))["wall_clock"]["startup_s"].is_null());
   report.startup_s = 1.5;
-  const auto wall = nlohmann::json::parse(to_json(report))["wall_clock"];
+  const auto wall = parse_json(to_json(report))["wall_clock"];
   CHECK(wall["fast_dds"] == "3.1.2");
   CHECK(wall["startup_s"] == 1.5);
   CHECK(wall["processes"]["agent 3"]["cpu_s"] == 0.25);
@@ -117,8 +118,7 @@ TEST_CASE("reports of one run on machines of different speed differ only under w
   slow.duration_s = 9;
   slow.plan.add(std::chrono::milliseconds(5));
   slow.search.add(std::chrono::milliseconds(5));
-  auto a = nlohmann::ordered_json::parse(to_json(example())),
-       b = nlohmann::ordered_json::parse(to_json(slow));
+  auto a = parse_ordered_json(to_json(example())), b = parse_ordered_json(to_json(slow));
   CHECK(a != b);
   a.erase("wall_clock");
   b.erase("wall_clock");
@@ -146,7 +146,7 @@ TEST_CASE("writing a report creates its folder or fails with the reason") {
   const std::string path = (folder / "deep" / "r.json").string();
   write_report(example(), path);
   std::ifstream file(path);
-  CHECK(nlohmann::json::parse(file)["scenario"] == "crossing");
+  CHECK(parse_json(file)["scenario"] == "crossing");
   std::filesystem::remove_all(folder);
   CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"), ContainsSubstring("cannot write /dev/null"));
 }
@@ -174,7 +174,7 @@ TEST_CASE("a crash of a moving robot fails a run, but a crash of a robot at rest
 TEST_CASE("audit violations fail a run and are included in its report") {
   Report report = example();
   report.arrived = report.robots;
-  CHECK(nlohmann::json::parse(to_json(report))["audit"].is_null());
+  CHECK(parse_json(to_json(report))["audit"].is_null());
   report.audit = AuditTotals{};
   CHECK(report.failure_reason().empty());
   Violation violation;
@@ -186,7 +186,7 @@ TEST_CASE("audit violations fail a run and are included in its report") {
   report.audit->by_rule[static_cast<std::size_t>(AuditRule::kLateSwitch)] = 1;
   report.audit->first.push_back(violation);
   CHECK(report.failure_reason() == "1 audit violations, the first of rule late-switch");
-  const auto audit = nlohmann::json::parse(to_json(report))["audit"];
+  const auto audit = parse_json(to_json(report))["audit"];
   CHECK(audit["violations"] == 1);
   CHECK(audit["by_rule"]["late-switch"] == 1);
   CHECK(audit["first"][0]["robot"] == 3);
@@ -225,13 +225,13 @@ TEST_CASE("a run whose audit covered too little neither passes nor fails") {
   report.arrived = report.robots;
   report.audit = covered();
   CHECK(report.verdict() == AuditVerdict::kPassed);
-  CHECK(nlohmann::json::parse(to_json(report))["passed"] == true);
+  CHECK(parse_json(to_json(report))["passed"] == true);
   CHECK_THAT(summary(report), ContainsSubstring("audit: passed (coverage 100.0 %)") && EndsWith("passed\n"));
 
   report.audit->coverage.messages = 0.66;
   CHECK(report.failure_reason().empty());
   CHECK(report.verdict() == AuditVerdict::kNotJudged);
-  const auto json = nlohmann::json::parse(to_json(report));
+  const auto json = parse_json(to_json(report));
   CHECK(json["passed"] == false);
   CHECK(json["failure"] == "not judged: 34.0 % of the messages were missed");
   CHECK_THAT(summary(report), ContainsSubstring("audit: not judged: 34.0 % of the messages were missed") &&
@@ -239,7 +239,7 @@ TEST_CASE("a run whose audit covered too little neither passes nor fails") {
 
   report.arrived = 1;
   CHECK(report.verdict() == AuditVerdict::kFailed);
-  CHECK(nlohmann::json::parse(to_json(report))["failure"] == "1 of 2 arrived");
+  CHECK(parse_json(to_json(report))["failure"] == "1 of 2 arrived");
   CHECK_THAT(summary(report), EndsWith("\nfailed: 1 of 2 arrived\n"));
 }
 
@@ -251,13 +251,13 @@ TEST_CASE("a report states the audit's coverage and reference, and what it excus
   report.audit->excused = {{"push", 2, 5, 3}, {"slip", 7, std::nullopt, 1}};
   report.audit->pair_s = 200;
   report.audit->excused_pair_s = 3;
-  const auto audit = nlohmann::ordered_json::parse(to_json(report))["audit"];
+  const auto audit = parse_ordered_json(to_json(report))["audit"];
   CHECK(audit["verdict"] == "passed");
-  CHECK(audit["coverage"].dump() == R"({"share":0.96,"messages":0.99,"versions":0.98,"pairs":0.97,)"
-                                    R"("time":0.96,"reference":1.0,"minimum":0.95,"run_s":5.0})");
+  CHECK(json_text(audit["coverage"]) == R"({"share":0.96,"messages":0.99,"versions":0.98,"pairs":0.97,)"
+                                        R"("time":0.96,"reference":1.0,"minimum":0.95,"run_s":5.0})");
   CHECK(audit["reference"] == "ground truth");
-  CHECK(audit["excused"].dump() == R"([{"cause":"push","robots":[2,5],"contacts":3},)"
-                                   R"({"cause":"slip","robots":[7],"contacts":1}])");
+  CHECK(json_text(audit["excused"]) == R"([{"cause":"push","robots":[2,5],"contacts":3},)"
+                                       R"({"cause":"slip","robots":[7],"contacts":1}])");
   CHECK(audit["excused_time_share"] == 0.015);
   CHECK_THAT(summary(report),
              ContainsSubstring("4 contacts are excused by disturbances, which excuse 1.50 %") &&

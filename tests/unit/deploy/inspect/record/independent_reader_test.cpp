@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/file/temporary_folder.hpp"
+#include "common/json/json_text.hpp"
 #include "deploy/inspect/record/recording.hpp"
 #include "deploy/inspect/topic/describe.hpp"
 #include "tests/catch.hpp"
@@ -39,9 +40,7 @@ TEST_CASE("an independent reader of recordings agrees on every field of every to
         const auto message = random_message<Message>(rng, has_sequence, elements);
         writer.add(time_from_ns(++now_ns), topic, channels.at(topic.per_robot ? i % 3 : 0), message.header(),
                    &message);
-        lines << describe(topic, &message)
-                     .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-              << '\n';
+        lines << json_text(describe(topic, &message)) << '\n';
       }
     });
     writer.close();

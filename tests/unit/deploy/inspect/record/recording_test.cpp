@@ -8,6 +8,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/temporary_folder.hpp"
+#include "common/json/json_text.hpp"
 #include "common/messaging/cdr.hpp"
 #include "common/random/rng.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
@@ -211,7 +212,8 @@ TEST_CASE("a recording shows the robots in other programs' 3-D panels") {
     if (message == nullptr || reader.channel(*message).topic != "scene_update") continue;
     CHECK(reader.channel(*message).message_encoding == "json");
     CHECK(reader.schema(reader.channel(*message))->name == "foxglove.SceneUpdate");
-    const auto json = nlohmann::json::parse(message->payload.begin(), message->payload.end());
+    const auto json =
+        parse_json({reinterpret_cast<const char*>(message->payload.data()), message->payload.size()});
     if (++scenes == 6)
       CHECK(json.at("entities").at(0).at("cylinders").size() == load_scenario(kScenario).robots.size());
   }

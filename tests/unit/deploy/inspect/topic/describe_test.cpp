@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/json/json_text.hpp"
 #include "common/messaging/histogram_codec.hpp"
 #include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/drop_reasons.hpp"
@@ -142,7 +143,7 @@ TEST_CASE("a description has the message's members in IDL order with the generat
   feedback.has_moved(true);
   feedback.activated(13);
   feedback.lead_ns(14);
-  CHECK(describe(topics::kFeedback, &feedback).dump() ==
+  CHECK(json_text(describe(topics::kFeedback, &feedback)) ==
         std::string(R"({"robot":3,"header":)") + kSomeHeader +
             R"(,"obeyed_incarnation":76,"obeyed_epoch":5,"valid_at_ns":8,"executing":)" + kSomeVersion +
             R"(,"is_off_reference":false,"is_lifted":true,"command_stamp_ns":9,"command_received_at_ns":10,)"
@@ -168,7 +169,7 @@ TEST_CASE("a description has the used elements of arrays and all elements of seq
   frame.robots().resize(2);
   frame.robots()[0].robot(7);
   frame.robots()[1].heading_rad(-1.5);
-  CHECK(describe(topics::kDetections, &frame).dump() ==
+  CHECK(json_text(describe(topics::kDetections, &frame)) ==
         std::string(R"({"camera":2,"header":)") + kSomeHeader +
             R"(,"captured_at_ns":6,"ball_count":1,"balls":[{"x_m":0.5,"y_m":1.0,"confidence":0.75}],)"
             R"("obstacles_complete_within_m":1000000000.0,"obstacle_count":2,)"
@@ -186,7 +187,7 @@ TEST_CASE("arrays without a count are described completely") {
   verdict.request_stamp_ns(7);
   verdict.reasons()[1] = msg::Reason::REASON_CONFLICT;
   verdict.blockers()[1] = 9;
-  CHECK(describe(topics::kVerdict, &verdict).dump() ==
+  CHECK(json_text(describe(topics::kVerdict, &verdict)) ==
         std::string(R"({"robot":3,"header":)") + kSomeHeader +
             R"(,"epoch":5,"proposal_number":6,"request_stamp_ns":7,"granted_version":0,)"
             R"("reasons":["granted","conflict","granted","granted","granted"],"blockers":[0,9,0,0,0]})");

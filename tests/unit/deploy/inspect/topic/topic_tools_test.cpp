@@ -7,6 +7,7 @@
 
 #include "common/file/temporary_folder.hpp"
 #include "common/file/write_file.hpp"
+#include "common/json/json_text.hpp"
 #include "common/messaging/message_schema.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -312,7 +313,7 @@ TEST_CASE("topic echo prints the requested number of messages, each as a line of
   std::istringstream lines(outcome.out);
   int count = 0;
   for (std::string line; std::getline(lines, line); ++count) {
-    CHECK(nlohmann::json::parse(line)["frames"] == 77);
+    CHECK(parse_json(line)["frames"] == 77);
   }
   CHECK(count == 2);
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/json/json_text.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
 
@@ -37,8 +38,8 @@ struct ControlledRun {
     return api.respond({method, path, {}, body, refusal}).value_or(WebResponse{404, "", ""});
   }
   std::string phase(const WebResponse& answer) {
-    const auto order = std::to_string(Json::parse(answer.body).at("order").get<int>());
-    return Json::parse(request("GET", "/api/orders/" + order).body).at("phase");
+    const auto order = std::to_string(parse_json(answer.body).at("order").get<int>());
+    return parse_json(request("GET", "/api/orders/" + order).body).at("phase");
   }
   double x_m(std::size_t index) const { return truth.robots()[index].x_m(); }
 };
@@ -87,11 +88,11 @@ TEST_CASE("zones are set and removed and faults are caused by HTTP") {
   CHECK(run.x_m(1) > 2.02);
   CHECK(run.request("POST", "/api/bookmark", R"({"text": "here"})").status == 200);
   CHECK(run.bookmarks == "here");
-  CHECK(Json::parse(run.request("POST", "/api/recording/start").body).at("file") == "a.mcap");
+  CHECK(parse_json(run.request("POST", "/api/recording/start").body).at("file") == "a.mcap");
   CHECK(run.request("POST", "/api/recording/stop").status == 200);
   CHECK(run.recordings == "begin end ");
   run.recordings = "full";
-  CHECK(Json::parse(run.request("POST", "/api/recording/start").body).at("error") == "the disk is full");
+  CHECK(parse_json(run.request("POST", "/api/recording/start").body).at("error") == "the disk is full");
 }
 
 TEST_CASE("requests without the right to command have no effect") {
@@ -100,7 +101,7 @@ TEST_CASE("requests without the right to command have no effect") {
        {"/api/robots/3/order", "/api/hold", "/api/zones/1", "/api/robots/3/fault", "/api/bookmark"}) {
     const WebResponse answer = run.request("POST", path, R"({"goals": [[0, 0]], "text": "x"})", "no token");
     CHECK(answer.status == 401);
-    CHECK(Json::parse(answer.body).at("error") == "no token");
+    CHECK(parse_json(answer.body).at("error") == "no token");
   }
   run.system.run_for(2s);
   CHECK(run.x_m(0) == Approx(-2).margin(0.01));
@@ -112,7 +113,7 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   const auto error = [&](const std::string& path, const std::string& body) {
     const WebResponse answer = run.request("POST", path, body);
     CHECK(answer.status >= 400);
-    return Json::parse(answer.body).value("error", "");
+    return parse_json(answer.body).value("error", "");
   };
   CHECK(error("/api/robots/3/order", "") ==
         "the body: expected a JSON object, nested no deeper than 16 times");

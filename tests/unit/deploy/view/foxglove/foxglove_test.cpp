@@ -9,6 +9,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/temporary_folder.hpp"
+#include "common/json/json_text.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "deploy/view/foxglove/foxglove_server.hpp"
 #include "deploy/view/monitor/monitor.hpp"
@@ -23,7 +24,7 @@ using Json = nlohmann::json;
 class FakeClient : public WebSocket {
  public:
   void send_state(unsigned, WebMessage message) override { received.push_back(*message.payload); }
-  void send_event(WebMessage message) override { texts.push_back(Json::parse(*message.payload)); }
+  void send_event(WebMessage message) override { texts.push_back(parse_json(*message.payload)); }
 
   std::vector<std::string> received;
   std::vector<Json> texts;
@@ -74,7 +75,7 @@ TEST_CASE("Lichtblick's client library decodes the messages of a run by the sche
   client.join();
   INFO(output("out"));
   REQUIRE(status == 0);
-  const Json arrived = Json::parse(output("out"));
+  const Json arrived = parse_json(output("out"));
   CHECK(arrived.size() == all_topics().size() - 1 + 2);  // no images, but scene and transforms
   for (const char* topic :
        {"world", "truth", "feedback", "command", "proposal", "verdict", "ledger", "coordinator", "status"}) {
@@ -106,7 +107,7 @@ TEST_CASE("a client gets messages only from channels that it subscribes to") {
   for (const Json& channel : client.texts[1].at("channels"))
     if (channel.at("topic") == "feedback") feedback = channel.at("id");
   const auto subscribe =
-      Json{{"op", "subscribe"}, {"subscriptions", {{{"id", 9}, {"channelId", feedback}}}}}.dump();
+      json_text(Json{{"op", "subscribe"}, {"subscriptions", {{{"id", 9}, {"channelId", feedback}}}}});
   msg::Feedback message;
   const auto publish = [&] {
     server.publish({topics::kFeedback, 1, "feedback/0", message.header(), &message},

@@ -5,6 +5,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/temporary_folder.hpp"
+#include "common/json/json_text.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "deploy/view/monitor/monitor.hpp"
@@ -93,7 +94,7 @@ TEST_CASE("the messages of a channel of a recording are found in any interval") 
         recorded.between("feedback/1", received[from].first, received[to].first);
     REQUIRE(found.size() == to - from);
     for (std::size_t i = 0; i < found.size(); ++i)
-      CHECK(nlohmann::json::parse(found[i]).at("message").at("x_m") == Approx(received[from + 1 + i].second));
+      CHECK(parse_json(found[i]).at("message").at("x_m") == Approx(received[from + 1 + i].second));
   }
   CHECK(recorded.between("feedback/1", received.back().first, received.back().first + 1h).empty());
   CHECK(recorded.between("feedback/x", Time{}, received.back().first).empty());

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/json/json_text.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "deploy/view/monitor/floor_frame.hpp"
 #include "tests/catch.hpp"
@@ -23,13 +24,13 @@ class FakeViewer : public WebSocket {
       ++frames;
       return;
     }
-    const Json json = Json::parse(*message.payload);
+    const Json json = parse_json(*message.payload);
     (void)slot;
     states[json.at("type")] = json;
     if (json.at("type") == "messages") inspected += json.at("messages").size();
   }
   void send_event(WebMessage message) override {
-    const Json json = Json::parse(*message.payload);
+    const Json json = parse_json(*message.payload);
     if (json.at("type") == "event")
       events.push_back(json);
     else
@@ -225,11 +226,11 @@ TEST_CASE("the state, the events and the scene are available over HTTP") {
   const auto get = [&](const std::string& path, std::map<std::string, std::string> query = {}) {
     return run.monitor.respond({"GET", path, std::move(query), "", ""});
   };
-  CHECK(Json::parse(get("/api/state")->body).at("robots").size() == run.scenario.robots.size());
-  CHECK(Json::parse(get("/api/scene")->body).at("radius_m") == run.scenario.radius_m);
-  const Json events = Json::parse(get("/api/events")->body);
+  CHECK(parse_json(get("/api/state")->body).at("robots").size() == run.scenario.robots.size());
+  CHECK(parse_json(get("/api/scene")->body).at("radius_m") == run.scenario.radius_m);
+  const Json events = parse_json(get("/api/events")->body);
   REQUIRE(events.size() >= 3);
-  CHECK(Json::parse(get("/api/events", {{"since", std::to_string(events.size() - 1)}})->body).size() == 1);
+  CHECK(parse_json(get("/api/events", {{"since", std::to_string(events.size() - 1)}})->body).size() == 1);
   CHECK(get("/api/events", {{"since", "x"}})->status == 400);
   CHECK_FALSE(get("/api/map"));
   CHECK_FALSE(get("/api/nothing"));

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace sidestep {
+
+// nlohmann's own functions would be compiled again in each source file that calls them, which takes seconds.
+
+/// The text of a value: on one line, or indented by this number of spaces a level. Bytes that are not UTF-8
+/// become U+FFFD.
+[[nodiscard]] std::string json_text(const nlohmann::json& json, int indent = -1);
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
+/// Throws nlohmann::json::parse_error if the text is not JSON, or returns a discarded value if
+/// `throws_errors` is false.
+[[nodiscard]] nlohmann::json parse_json(std::string_view text, bool throws_errors = true);
+[[nodiscard]] nlohmann::ordered_json parse_ordered_json(std::string_view text, bool throws_errors = true);
+
+}  // namespace sidestep
