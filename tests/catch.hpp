@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
+// A guard instead of #pragma once: this file is in a precompiled header, which a cache may have made from a
+// copy of another date, and g++ takes copies of different dates for different files.
+#ifndef SIDESTEP_TESTS_CATCH_HPP
+#define SIDESTEP_TESTS_CATCH_HPP
 
 // Catch2 2 or 3, whichever is installed, with the names of version 3. Only this file knows which one it is.
 
@@ -29,3 +32,5 @@ using Catch::Matchers::EndsWith;
 using Catch::Matchers::Equals;
 using Catch::Matchers::Matches;
 using Catch::Matchers::StartsWith;
+
+#endif  // SIDESTEP_TESTS_CATCH_HPP

@@ -18,6 +18,8 @@ constexpr std::size_t kMaxMoving = 4;      ///< number of moving obstacles consi
 constexpr double kMovingRange_m = 1.5;     ///< moving obstacles farther away are ignored
 /// Positions and radii of moving obstacles are rounded to this grid to avoid replanning in every cycle.
 constexpr double kMovingGrid_m = 0.05;
+// A lag changes when an obstacle was observed, which routes do not depend on.
+constexpr Duration kNoLag{0};
 constexpr Duration kMovingHorizon{150'000'000};  ///< radii are enlarged by the motion over this time
 
 }  // namespace
@@ -77,9 +79,9 @@ std::vector<Circle> RouteSurroundings::find_moving(const Vec2& target, Time now,
     for (const LaserTrack& track : laser->sight().tracks())
       add({track.position_m, std::max(0.05, track.radius_m - less_m), track.seen_at, 0});
   } else {
-    for (const MovingObstacle& obstacle : observations.obstacles().recent(now)) add(obstacle);
+    for (const MovingObstacle& obstacle : observations.obstacles().recent(now, kNoLag)) add(obstacle);
   }
-  for (const UncontrolledBody& body : observations.displaced().recent(now)) add(body.reach);
+  for (const UncontrolledBody& body : observations.displaced().recent(now, kNoLag)) add(body.reach);
   std::ranges::sort(found, {}, [&](const Circle& c) { return (c.centre_m - position).squaredNorm(); });
   if (found.size() > kMaxMoving) found.resize(kMaxMoving);
   std::ranges::sort(found, {}, [](const Circle& c) { return std::pair(c.centre_m.x(), c.centre_m.y()); });

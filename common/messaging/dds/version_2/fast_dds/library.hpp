@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
+// A guard instead of #pragma once: this file is in a precompiled header, which a cache may have made from a
+// copy of another date, and g++ takes copies of different dates for different files.
+#ifndef SIDESTEP_FAST_DDS_LIBRARY_HPP
+#define SIDESTEP_FAST_DDS_LIBRARY_HPP
 
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -61,3 +64,5 @@ inline void disable_intraprocess_delivery() {
 inline void disable_type_propagation(dds::DomainParticipantQos&) {}
 
 }  // namespace sidestep::fast_dds
+
+#endif  // SIDESTEP_FAST_DDS_LIBRARY_HPP
