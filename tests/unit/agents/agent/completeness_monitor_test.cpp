@@ -7,6 +7,7 @@
 namespace sidestep::completeness_monitor_test {
 
 constexpr Duration kSlack{1'000'000};
+constexpr Duration kNoLag{0};
 
 Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
@@ -23,7 +24,7 @@ ObstacleObservations list(double valid_at, double complete_within_m, Incarnation
 
 struct Fixture {
   CompletenessMonitor monitor{1.5, kSlack};
-  SeenRegion seen(Duration max_lag = Duration{0}) const { return monitor.seen(at_s(10), max_lag); }
+  SeenRegion seen(Duration max_lag = kNoLag) const { return monitor.seen(at_s(10), max_lag); }
 };
 
 TEST_CASE("nothing counts as seen before the first list") {
@@ -105,17 +106,17 @@ TEST_CASE(
   Fixture f;
   f.monitor.on_list(list(10, kCompleteEverywhere_m));
   f.monitor.on_forgotten({{0, 0}, 3, at_s(10), 1.5}, at_s(11));
-  CHECK(f.monitor.seen(at_s(10.5)).radius_m == 3);
+  CHECK(f.monitor.seen(at_s(10.5), kNoLag).radius_m == 3);
   f.monitor.on_forgotten({{1, 0}, 2.5, at_s(10.2), 1.5}, at_s(11.2));
   // Of the first region, a radius of 3 m - 0.2 s * 1.5 m/s - 1 m remains around the new centre.
-  CHECK(f.monitor.seen(at_s(10.5)).centre_m == Vec2(1, 0));
-  CHECK(f.monitor.seen(at_s(10.5)).radius_m == Approx(1.7));
+  CHECK(f.monitor.seen(at_s(10.5), kNoLag).centre_m == Vec2(1, 0));
+  CHECK(f.monitor.seen(at_s(10.5), kNoLag).radius_m == Approx(1.7));
   f.monitor.on_world_state(world(10.4, {1, 0.5}));
   f.monitor.on_list(list(10.4, 1));
-  CHECK(f.monitor.seen(at_s(10.5)).centre_m == Vec2(1, 0.5));
-  CHECK(f.monitor.seen(at_s(10.5)).radius_m == Approx(1.7 - 0.5 - 0.199 * 1.5));
-  CHECK(f.monitor.seen(at_s(11.1)).radius_m < 1);
-  CHECK(f.monitor.seen(at_s(11.3)).radius_m == 1);
+  CHECK(f.monitor.seen(at_s(10.5), kNoLag).centre_m == Vec2(1, 0.5));
+  CHECK(f.monitor.seen(at_s(10.5), kNoLag).radius_m == Approx(1.7 - 0.5 - 0.199 * 1.5));
+  CHECK(f.monitor.seen(at_s(11.1), kNoLag).radius_m < 1);
+  CHECK(f.monitor.seen(at_s(11.3), kNoLag).radius_m == 1);
 }
 
 }  // namespace sidestep::completeness_monitor_test

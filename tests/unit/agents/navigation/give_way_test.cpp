@@ -24,7 +24,9 @@ OtherRobot coming_from(double x_m, double goal_x_m) {
 }
 
 struct Robot {
-  GiveWay give_way{{kField, kRadius_m, kRequired_m, kSeparation_m}};
+  Robot() : give_way(GiveWayFloor{kField, kRadius_m, kRequired_m, kSeparation_m}, GiveWaySettings{}) {}
+
+  GiveWay give_way;
   Rng rng{1};
   double decided_s = 0;
 

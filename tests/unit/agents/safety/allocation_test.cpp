@@ -166,8 +166,8 @@ TEST_CASE("decoding, storing and avoiding listed obstacles does not allocate") {
           for (msg::TrackedObstacle& obstacle : list.obstacles()) obstacle.observed_at_ns(to_ns(now));
           obstacles.on_list(*decoder.decode(list), {0, 0}, now);
           SearchQuery query{now, {{0, 0}, {1, 0}}, random_vector(rng, 3), kCycle};
-          query.moving = obstacles.recent(now);
-          query.seen = obstacles.seen(now);
+          query.moving = obstacles.recent(now, Duration{0});
+          query.seen = obstacles.seen(now, Duration{0});
           stored += query.moving.size();
           found += search.search(query, empty_index, rng).count;
         }) == 0);

@@ -2,12 +2,12 @@
 #include "deploy/audit/metrics/report.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "common/json/json_text.hpp"
 #include "tests/catch.hpp"
+#include "tests/text_of.hpp"
 
 namespace sidestep::report_test {
 
@@ -145,8 +145,7 @@ TEST_CASE("writing a report creates its folder or fails with the reason") {
   const auto folder = std::filesystem::temp_directory_path() / ("report-" + std::to_string(getpid()));
   const std::string path = (folder / "deep" / "r.json").string();
   write_report(example(), path);
-  std::ifstream file(path);
-  CHECK(parse_json(file)["scenario"] == "crossing");
+  CHECK(parse_json(text_of(path))["scenario"] == "crossing");
   std::filesystem::remove_all(folder);
   CHECK_THROWS_WITH(write_report(example(), "/dev/null/r.json"), ContainsSubstring("cannot write /dev/null"));
 }
