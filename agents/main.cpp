@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   program.description = "Drives one robot: plans its route and negotiates every motion with the coordinator.";
   program.add_options = [&](const CliCommand& app) {
     app.add_option("--robot", robot, "id of the robot in the scenario").required();
-    app.add_option("--planner", planner, "planner of the robot's paths [the scenario's]")
+    app.add_option("--planner", planner, "path planner of the robot [the scenario's]")
         .check(one_of(driving_planners()));
   };
   program.participant = [&] { return "agent-" + std::to_string(robot); };

@@ -81,8 +81,8 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
     record.registered = true;
     record.attested = false;
   } else {
-    // The robot is registered already, so the ledger contains its versions. A new agent must not add others
-    // without checks.
+    // The robot is registered already, so the ledger contains its versions. A new agent must not add other
+    // versions without checks.
     const auto known = [&](const Version& v) {
       return std::ranges::any_of(ledger_.versions(robot),
                                  [&](const Version& w) { return w.number == v.number; });

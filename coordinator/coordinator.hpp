@@ -31,7 +31,7 @@ class Coordinator {
   /// The answer to a proposal. nullopt while standing by, or if the robot is not on the roster.
   [[nodiscard]] std::optional<Verdict> on_proposal(const Proposal& proposal);
   /// The answer to a registration. It has proposal_number 0, and REASON_GRANTED if the agent is now
-  /// registered. nullopt in the same cases as for on_proposal().
+  /// registered. nullopt while standing by, or if the robot is not on the roster.
   std::optional<Verdict> on_registration(const Registration& registration);
   /// Processes a fact from a robot. Returns false if it contradicts the ledger; the robot is then
   /// quarantined, that is, nothing is granted to it until it is lifted or a new agent registers it.
@@ -40,8 +40,8 @@ class Coordinator {
   /// `is_whole` means that no observation of the world state was dropped. A world state does not count as
   /// supervision if any observation was dropped or cannot be compared.
   void on_world_state(std::span<const RobotObservation> robots, Time now, bool is_whole = true);
-  /// The operator attests that a robot is not on the floor, for this epoch. Returns false if the coordinator
-  /// is not waiting for the robot's registration.
+  /// Records the operator's attestation, valid in this epoch, that a robot is not on the floor. Returns false
+  /// if the coordinator is not waiting for the robot's registration.
   bool on_attestation(RobotId robot);
 
   /// Holds or releases a robot, also in later epochs. Nothing is granted to a held robot, so it stops as its
@@ -59,8 +59,8 @@ class Coordinator {
   const Ledger& ledger() const { return ledger_; }
   const DisplacedRobots& displaced() const { return displaced_; }
   /// Whether a robot that should be moving is silent: no fact has arrived for the longest of kMaxSilence,
-  /// kMissedReports report periods and twice the longest recent gap, so that a slow network does not make
-  /// robots silent. A robot also counts as silent if all its versions start later than that from now.
+  /// kMissedReports report periods and twice the longest recent gap, so robots do not count as silent on a
+  /// slow network. A robot also counts as silent if all its versions start farther in the future than that.
   bool is_silent(RobotId robot) const { return records_[robot].silent; }
   static constexpr Duration kMaxSilence{50'000'000};
   static constexpr int kMissedReports = 3;

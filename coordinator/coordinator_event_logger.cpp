@@ -37,7 +37,7 @@ void CoordinatorEventLogger::update(const msg::CoordinatorState& state, std::spa
 void CoordinatorEventLogger::report_granting(const msg::CoordinatorState& state, Time now) {
   const bool is_granting = state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING;
   if (is_granting && !was_granting_)
-    events_.report(LogLevel::kInfo, {}, "grants in epoch {}: no registration is missing", state.epoch());
+    events_.report(LogLevel::kInfo, {}, "granting in epoch {}: no registration is missing", state.epoch());
   was_granting_ = is_granting;
   const bool is_registering = state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_REGISTERING;
   if (!is_registering) {
@@ -46,7 +46,7 @@ void CoordinatorEventLogger::report_granting(const msg::CoordinatorState& state,
     registering_since_ = now;
   } else if (now - *registering_since_ >= kRegistrationTime) {
     registering_since_ = now;
-    events_.report(LogLevel::kWarning, {}, "waits for the registrations of robots {}",
+    events_.report(LogLevel::kWarning, {}, "waiting for robots {} to register",
                    fmt::join(missing_robots(state), ", "));
   }
 }

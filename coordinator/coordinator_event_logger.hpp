@@ -23,7 +23,7 @@ class CoordinatorEventLogger {
 
   explicit CoordinatorEventLogger(const EventReporter& events) : events_(events) {}
 
-  /// Reports what has changed since the last call.
+  /// Reports the changes since the last call.
   void update(const msg::CoordinatorState& state, std::span<const Conflict> conflicts, Time now);
   /// Forgets the last state, because a new epoch has begun or this coordinator has become a standby.
   void reset();

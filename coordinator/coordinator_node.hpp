@@ -16,7 +16,7 @@
 
 namespace sidestep {
 
-/// Connects a coordinator to the bus: decodes messages and counts invalid ones, answers proposals and
+/// Connects a coordinator to the bus: decodes messages and counts invalid messages, answers proposals and
 /// registrations immediately, publishes the ledger every cycle and heartbeats, and takes over from other
 /// coordinators.
 class CoordinatorNode {
@@ -25,8 +25,8 @@ class CoordinatorNode {
   CoordinatorNode(const CoordinatorNode&) = delete;
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 
-  /// Sets a callback for events of at least a level. It is called immediately with the reason for this
-  /// coordinator's role.
+  /// Sets a callback for events of level `min_level` or higher. It is called immediately with the reason for
+  /// this coordinator's role.
   void on_event(LogLevel min_level, OnLogEvent callback);
 
   const Coordinator& coordinator() const { return coordinator_; }

@@ -29,7 +29,7 @@ class DiscGrid {
   Vec2 low_m_;
   double cell_m_;
   std::size_t columns_, rows_;
-  std::vector<std::vector<std::uint32_t>> cells_;  // by cell; the last one has the discs larger than a cell
+  std::vector<std::vector<std::uint32_t>> cells_;  // indexed by cell; the last one holds the larger discs
   std::vector<Circle> circles_;
   std::vector<std::uint32_t> cell_of_;
 };

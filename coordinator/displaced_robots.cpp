@@ -12,7 +12,7 @@ constexpr double kObservationError_m = 0.01;
 // Random errors exceed six standard deviations once in 10^8 observations.
 constexpr double kSigmas = 6;
 // Random errors of 0.5 mm turn the direction by 1/20 rad over the short baseline, and by 1/200 rad over the
-// long one.
+// long baseline.
 constexpr double kLongBaseline_m = 0.15;
 constexpr double kShortBaseline_m = 0.015;
 constexpr Duration kMaxBaseline{700'000'000};

@@ -11,21 +11,21 @@ namespace sidestep {
 
 /// Finds robots that vision sees where none of their versions can have taken them: robots that coast without
 /// power, robots that a person carries, and robots on the floor that count as absent. A robot is displaced
-/// from the first such observation until kObservationsUntilBack consecutive ones agree with the ledger again.
-/// A single observation may have an error. But a resting robot also counts as displaced if the mean of its
-/// observations is away from its version: it may be unable to use observations itself, and would stay in the
-/// wrong place for ever.
+/// from the first such observation until kObservationsUntilBack consecutive observations agree with the
+/// ledger again. A single observation may have an error. But a resting robot also counts as displaced if the
+/// mean of its observations is away from its version: it may be unable to use observations itself, and would
+/// stay in the wrong place forever.
 class DisplacedRobots {
  public:
   static constexpr int kObservationsUntilBack = 3;
   static constexpr std::size_t kObservationsOfRest = 30;  // half a second at 60 Hz
 
-  /// `margin_m` is the safety margin. Half of it covers a robot's tracking error and its clock.
+  /// `margin_m` is the safety margin. Half of it covers the errors of a robot's tracking and of its clock.
   explicit DisplacedRobots(double margin_m) : margin_m_(margin_m) {}
 
-  /// Compares an observation with the ledger. An observation that is older than the robot's last one changes
-  /// nothing. Returns whether the robot's last observation was compared; it is not if the ledger does not
-  /// reach back to its time.
+  /// Compares an observation with the ledger. An observation that is older than the robot's last observation
+  /// changes nothing. Returns whether the robot's last observation was compared; it is not if the ledger does
+  /// not reach back to its time.
   bool observe(const RobotObservation& observation, const Ledger& ledger);
   bool contains(RobotId robot) const;
   bool any() const { return count_ > 0; }

@@ -10,9 +10,9 @@ namespace {
 
 // Time that is added to the longest recent gap between heartbeats.
 constexpr Duration kHeartbeatTimeout{100'000'000};
-// Time that is added per coordinator number, so that standbys do not take over simultaneously.
+// Time that is added per coordinator number to keep standbys from taking over simultaneously.
 constexpr Duration kTimeoutStagger{25'000'000};
-// A standby that has just started may not have been discovered by the others yet.
+// A standby that has just started may not have been discovered by the other coordinators yet.
 constexpr Duration kStartTimeout{1'000'000'000};
 constexpr Duration kStartTimeoutStagger{200'000'000};
 // After a pause of this length, unprocessed heartbeats may be queued.
@@ -32,11 +32,11 @@ constexpr Duration kServiceGap{60'000'000};
 constexpr Duration kUnheardService{500'000'000};
 constexpr Duration kMaxPauseOfService{1'000'000'000};
 // A superseded coordinator has failed if an agent has asked it for this long; an agent that only measures the
-// clock asks for less.
+// clock asks for a shorter time.
 constexpr Duration kMinRequest{150'000'000};
 // An active coordinator that has served for this long has not failed.
 constexpr Duration kProbation{1'000'000'000};
-// If two instances with the same number both begin an epoch above the same known one, they choose different
+// If two instances with the same number begin epochs above the same known epoch, they choose different
 // epochs, because each adds its incarnation modulo this number.
 constexpr Epoch kEpochSpread = 1'000'003;
 
@@ -133,9 +133,9 @@ void Failover::on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId 
   const RoleCause cause{holder == EpochHolder::kRobot ? msg::RoleReason::ROLE_EPOCH_OF_ROBOT
                                                       : msg::RoleReason::ROLE_EPOCH_OF_AGENT,
                         robot, Duration{0}, epoch};
-  // Once after becoming active, a coordinator begins a new epoch above the obeyed one. If it already grants,
-  // has waited for registrations in vain, or is superseded again, it has a rival whose heartbeats do not
-  // arrive. It then stands by, each time for twice as long.
+  // Once after becoming active, a coordinator begins a new epoch above the obeyed epoch. If it already
+  // grants, has waited for registrations in vain, or is superseded again, it has a rival whose heartbeats do
+  // not arrive. It then stands by, each time for twice as long.
   const bool is_new = now - active_since_ <= kRegistrationTime && !has_begun_above_obeyed_;
   if (is_active() && !is_granting && is_new) {
     has_begun_above_obeyed_ = true;
@@ -154,7 +154,7 @@ RoleCause Failover::takeover_cause(Time now) const {
 
 Duration Failover::takeover_timeout() const {
   if (is_starting_) return kStartTimeout + kStartTimeoutStagger * self_.number;
-  // Earlier failures of this coordinator do not matter while it hears another one.
+  // Earlier failures of this coordinator do not matter while it hears another coordinator.
   const int failures = has_heartbeat_ ? 0 : std::min(failures_, kMaxBackoffExponent);
   const Duration longest_gap = *std::max_element(gaps_.begin(), gaps_.end());
   return (kHeartbeatTimeout + kTimeoutStagger * self_.number +
@@ -207,7 +207,7 @@ std::optional<RobotId> Failover::unserved_robot(Time now) const {
   if (highest_ == 0 || now - last_deaf_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
   for (const RobotId robot : missing_)
     if (is_request_overdue(robot, kRegistrationTime, now)) return robot;
-  // Another coordinator may be serving the other agents, so this one must be likely to serve all of them.
+  // Another coordinator may be serving the other agents, so this coordinator must hear all of them.
   if (!reception_.hears_agents(roster_, now) || !reception_.hears_vision(now)) return std::nullopt;
   for (const RobotId robot : roster_)
     if (is_request_overdue(robot, kServiceTime, now)) return robot;

@@ -37,10 +37,10 @@ struct FleetSpec {
   Duration report_period{16'666'667};  ///< period at which robots report facts
 };
 
-/// Decides whether this coordinator is active. It stands by while it receives heartbeats of another one,
-/// takes over when they stop, and stands by again when it learns of a higher epoch. It also takes over if the
-/// active one does not serve an agent that repeatedly asks for a coordinator. A coordinator that does not
-/// hear the robots never takes over. Its clock affects only when robots move again, not safety: two
+/// Decides whether this coordinator is active. It stands by while it receives heartbeats of another
+/// coordinator, takes over when they stop, and stands by again when it learns of a higher epoch. It also
+/// takes over if the active coordinator does not serve an agent that repeatedly asks for one. It never takes
+/// over while it does not hear the robots. Its clock affects only when robots move again, not safety: two
 /// coordinators that both consider themselves active have different epochs, and robots obey the higher one.
 class Failover {
  public:
@@ -62,10 +62,10 @@ class Failover {
   /// Processes a heartbeat of any coordinator, including this one.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat, Time now);
   /// Processes a report that a robot or its agent obeys this epoch. `is_granting` tells whether this
-  /// coordinator is granting now. Such reports are repeated and may be forged, so only a burst of four and
-  /// then one every five seconds count.
+  /// coordinator is granting now. Such reports are repeated and may be forged, so only a burst of four, and
+  /// then one report every five seconds, count.
   void on_obeyed_epoch(Epoch epoch, bool is_granting, Time now, RobotId robot, EpochHolder holder);
-  /// The record of what arrives from robots and their agents.
+  /// The record of messages from robots and their agents.
   FleetReception& reception() { return reception_; }
   /// Takes over if that is due. `is_granting` tells whether this coordinator is granting now.
   void update(Time now, bool is_granting = false);
@@ -82,7 +82,7 @@ class Failover {
   std::uint64_t too_frequent() const { return too_frequent_; }
 
  private:
-  /// Begins a new epoch, higher than all known ones.
+  /// Begins a new epoch, higher than all known epochs.
   void begin_epoch(Time now, const RoleCause& cause);
   /// Yields if this coordinator is active. Then restarts the timeout.
   void stand_by(Time now, const RoleCause& cause);
@@ -96,7 +96,7 @@ class Failover {
   std::optional<RobotId> unserved_robot(Time now) const;
   /// Whether the agent has asked long enough for this coordinator to take over.
   bool is_request_overdue(RobotId robot, Duration first, Time now) const;
-  /// Whether any agent has asked for a coordinator for this long.
+  /// Whether any agent has asked for a coordinator for at least `min`.
   bool is_any_unserved(Duration min, Time now) const;
 
   CoordinatorIdentity self_;
@@ -107,7 +107,7 @@ class Failover {
   Time last_deaf_at_;                    // last time at which this coordinator did not hear the robots
   std::optional<Time> serving_since_;    // start of the time in which it grants and serves all agents
   bool has_served_ = false;              // whether serving_since_ was ever set since it became active
-  bool has_begun_above_obeyed_ = false;  // since it became active, it has begun an epoch above an obeyed one
+  bool has_begun_above_obeyed_ = false;  // whether it has begun an epoch above an obeyed epoch while active
   int failures_ = 0;                     // number of consecutive times that it was active without serving
   Epoch epoch_ = 0, highest_ = 0;        // own epoch; highest known epoch
   RoleCause cause_;

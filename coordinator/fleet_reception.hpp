@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Records what a coordinator hears from robots and their agents, whether it is active or a standby. A
+/// Records the messages that a coordinator, active or standby, receives from robots and their agents. A
 /// coordinator that does not hear them cannot serve them. All times are by the coordinator's clock.
 class FleetReception {
  public:
@@ -32,14 +32,14 @@ class FleetReception {
   void on_registration(RobotId robot, Time now);
 
   /// Whether facts arrive from at least half of the robots that sent any in the last ten seconds. False if no
-  /// robot did.
+  /// robot has sent any.
   bool hears_robots(Time now) const;
   /// Whether each of these agents has sent a message recently.
   bool hears_agents(const std::vector<RobotId>& robots, Time now) const;
   /// Whether a world state has arrived recently.
   bool hears_vision(Time now) const;
-  /// Whether robots have begun to execute granted versions in this time, which means that some coordinator
-  /// grants.
+  /// Whether any robot has begun to execute a granted version within `lately`, which means that some
+  /// coordinator grants.
   bool is_fleet_served(Duration lately, Time now) const { return served_at_ && now - *served_at_ < lately; }
   /// When a robot last began to execute a granted version; nullopt if never.
   std::optional<Time> served_at() const { return served_at_; }

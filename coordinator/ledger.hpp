@@ -39,7 +39,7 @@ using Conflict = std::pair<RobotId, RobotId>;
 /// ledger". Invariant: every version of one robot is clear of every version of every other robot, except for
 /// the pairs in conflicts(), which external events have brought too close; no grant brings those closer. A
 /// robot without versions is not on the floor. A robot that has reported a version that it was never granted
-/// is quarantined: the ledger keeps all its versions and the reported one, until kReportsUntilReleased
+/// is quarantined: the ledger keeps all its versions and the reported version, until kReportsUntilReleased
 /// consecutive facts agree with the ledger.
 class Ledger {
  public:
@@ -57,12 +57,12 @@ class Ledger {
   /// last.
   std::span<const Version> versions(RobotId robot) const;
   bool is_quarantined(RobotId robot) const;
-  /// Whether the versions include the one that the quarantined robot reported last. Precondition:
+  /// Whether the versions include the version that the quarantined robot reported last. Precondition:
   /// is_quarantined().
   bool lists_reported(RobotId robot, std::span<const Version> versions) const;
 
-  /// Replaces the robot's versions, without checks, by the given ones, which the robot may execute. Used when
-  /// an epoch begins, and when a registration ends the robot's quarantine. Precondition: the robot is on the
+  /// Replaces the robot's versions, without checks, by `versions`, which the robot may execute. Used when an
+  /// epoch begins, and when a registration ends the robot's quarantine. Precondition: the robot is on the
   /// roster.
   void register_robot(RobotId robot, std::span<const Version> versions);
 
@@ -70,8 +70,8 @@ class Ledger {
   [[nodiscard]] Ruling grant(const Version& candidate);
 
   /// Rules 2, 3 and 6, for the fact "executing f at time t". A robot off its reference executes an own stop,
-  /// which replaces all older versions without checks. `robot_incarnation` is that of the process that
-  /// speaks for the robot.
+  /// which replaces all older versions without checks. `robot_incarnation` is the incarnation of the process
+  /// that reports for the robot.
   [[nodiscard]] ReportOutcome on_executing(const Version& executing, Time at, bool is_off_reference,
                                            Incarnation robot_incarnation = 0);
   /// The outcome that on_executing() would return, without applying the fact.
@@ -84,12 +84,12 @@ class Ledger {
   /// The pairs of robots in conflict, in no particular order.
   std::span<const Conflict> conflicts() const { return conflicts_; }
 
-  /// Distance from a position to the nearest place to which the robot's versions, including former ones, may
-  /// have taken it at a time by the robot's clock, minus the version's inflation. Infinite for a robot that
-  /// was not on the floor then; nullopt if the ledger does not reach back that far. Conservative: never
+  /// Distance from a position to the nearest place to which the robot's versions, including former versions,
+  /// may have taken it at a time by the robot's clock, minus the version's inflation. Infinite for a robot
+  /// that was not on the floor then; nullopt if the ledger does not reach back that far. Conservative: never
   /// overestimated while the robot's clock differs by at most `max_clock_difference`.
   std::optional<double> distance_from_versions_m(RobotId robot, const Vec2& position_m, Time at) const;
-  /// Whether all versions that the robot may have executed since that time had ended by then, so that it
+  /// Whether every version that the robot may have executed after `since` had ended by `since`: the robot
   /// rests. False for a robot without versions.
   bool rests_since(RobotId robot, Time since) const;
 
@@ -113,7 +113,7 @@ class Ledger {
     std::span<const Version> versions() const { return quarantined.empty() ? set.versions() : quarantined; }
     void quarantine(const Version& reported);
     void release() { quarantined.clear(); }
-    /// Counts a fact that agrees with the set. Returns whether the robot is not, or no longer, quarantined.
+    /// Counts a fact that agrees with the set. Returns whether the robot is not in quarantine afterwards.
     bool count_agreement();
   };
   std::size_t index_of(RobotId robot) const;
@@ -128,7 +128,7 @@ class Ledger {
   bool are_in_conflict(const Entry& a, const Entry& b) const;
   /// Recomputes the robot's conflicts.
   void find_conflicts(RobotId robot);
-  /// Removes those conflicts of the robot that have ended.
+  /// Removes the conflicts of the robot that have ended.
   void end_conflicts(RobotId robot);
 
   FloorRules rules_;

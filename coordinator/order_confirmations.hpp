@@ -12,13 +12,13 @@
 namespace sidestep {
 
 /// Accepted orders whose clients have not been answered yet. An order is confirmed once another process
-/// remembers it, so that it survives the death of this process. Until then the client gets no answer, so it
+/// remembers it and it therefore survives the death of this process. Until then the client gets no answer and
 /// repeats the order, also to the next coordinator.
 /// - Most orders are confirmed when an agent or another coordinator lists them in its memory.
 /// - A hold is confirmed once the agent of one of its robots has reported that the robot is held, and the
 /// robot has afterwards reported that it obeys this coordinator. This proves that the agent remembered the
 /// hold before it registered with any later coordinator. So a coordinator that takes over learns of the hold,
-/// even if this one was cut off.
+/// even if this coordinator was cut off.
 class OrderConfirmations {
  public:
   /// Adds an order that is in force in the order book.

@@ -58,7 +58,7 @@ bool OrderKeeper::on_page(const OrderPage& page) {
   bool is_new = false;
   for (const RememberedOrder& order : page.orders) is_new |= merge_of_other(order);
   if (page.count == 0 || is_complete_) return is_new;
-  // The pages of a process arrive in order, but this process may have missed the first ones.
+  // The pages of a process arrive in order, but this process may have missed the first pages.
   std::uint32_t& next = next_page_[page.process];
   next = page.is_complete && (page.index == 0 || page.index == next) ? page.index + 1 : 0;
   if (next == page.count) complete();

@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kPeriod{1'000'000'000};
 // Minimum interval between announcements to new agents.
 constexpr Duration kMinPeriod{50'000'000};
-// Interval of announcements while agents wait to hear all orders that they remember before they register.
+// Interval of announcements while agents have yet to register; see announce_to_registering_agents().
 constexpr Duration kRegisteringPeriod{200'000'000};
 
 }  // namespace
@@ -49,8 +49,8 @@ void OrderService::on_order(const msg::Order& message) {
 
 void OrderService::on_page(const OrderPage& page) {
   if (page.process == process_of(self_.number)) return;
-  // Of the agents, only those of robots on the roster confirm orders, because a later coordinator need not
-  // hear the others.
+  // Only agents of robots on the roster confirm orders, because a later coordinator need not hear other
+  // agents.
   if (coordinator_.ledger().has_robot(page.process) || is_coordinator(page.process))
     confirmations_.on_page(page);
   confirm();
@@ -97,7 +97,7 @@ void OrderService::update_memory() {
   if (!orders_.update(coordinator_.is_granting(), has_history_, bus_.now())) return;
   if (has_history_)
     events_.report(LogLevel::kWarning, {},
-                   "no process remembers what was ordered: holds all robots until an operator resumes");
+                   "no process remembers the orders: holding all robots until an operator resumes them");
   apply();
   apply_holds();
   announce_all();

@@ -28,7 +28,7 @@ class OrderService {
   /// Announces all orders now, and then every second.
   void announce_periodically();
   void on_order(const msg::Order& message);
-  /// Processes a page of another process's memory. A page of its own is ignored.
+  /// Processes a page of another process's memory. Ignores this coordinator's own pages.
   void on_page(const OrderPage& page);
   /// Processes the state of a robot's order, as reported by its agent.
   void on_report(const OrderReport& report);
@@ -55,7 +55,7 @@ class OrderService {
 
  private:
   void answer(ClientId client, OrderNumber number, msg::OrderResult result);
-  /// Answers the clients whose orders another process remembers too.
+  /// Answers the clients whose orders another process also remembers.
   void confirm();
   void apply_holds();
   /// Applies changes of the orders, and announces them if the coordinator is active. Returns whether it has
@@ -78,7 +78,7 @@ class OrderService {
   OrderBook unheard_;                 // orders to be announced again
   bool has_history_ = false;          // a robot registered in this epoch may have received orders before
   std::optional<Time> announced_at_;  // when all orders were last announced
-  bool has_learned_ = false;          // learned an order from another process since announced_at_
+  bool has_learned_ = false;          // has learned an order from another process since announced_at_
   Writer<msg::OrderAnswer> answer_writer_;
   Writer<msg::OrderMemory> memory_writer_;
   DropCounters drops_;

@@ -11,9 +11,9 @@
 namespace sidestep {
 namespace {
 
-// The values suit bases that follow their commands as the league's simulators do.
+// These values suit bases that follow commands as accurately as the league's simulators.
 constexpr double kVelocityNoise_mps = 0.05;  ///< standard deviation of a base's velocity from its command
-/// Standard deviation of a base's own motion measurement, if it has one.
+/// Standard deviation of a velocity that the base itself has measured.
 constexpr double kOdometryNoise_mps = 0.01;
 constexpr double kPositionGain_ps = 4;
 /// Maximum speed that is added to the reference's speed to return to it.
@@ -25,10 +25,10 @@ using std::chrono::milliseconds;
 
 // A base stops within this time after its last command, whichever process sent it.
 constexpr Duration kStoppingTime = milliseconds(500);
-// The first fixes of a robot at rest agree if all lie within this many standard deviations, plus this
-// distance, of a single fix.
+// The first fixes of a robot at rest agree if all lie within kAgreement standard deviations plus
+// kMinAgreement_m of a single fix.
 constexpr double kAgreement = 5, kMinAgreement_m = 0.003;
-// After a longer pause of this process, the base's motion in the meantime is unknown.
+// If this process pauses for longer, the base's motion during the pause is unknown.
 constexpr Duration kMaxPause = milliseconds(200);
 // Odometry that is older than this is no longer used.
 constexpr Duration kOdometryTimeout = milliseconds(150);
@@ -121,7 +121,7 @@ void DrivenRobot::on_odometry(const OdometryReport& report, Time now) {
 
 void DrivenRobot::on_malformed_command(Time now) { side_.on_malformed_command(to_ns(now)); }
 
-// A single fix may be wrong, and a base that is being pushed has no settled position.
+// Several fixes must agree: a single fix may be wrong, and a base that is being pushed changes its position.
 void DrivenRobot::add_first_fix(const PoseFix& fix, Time now) {
   const bool is_usable =
       fix.captured_at > moved_at_ && fix.captured_at <= now &&

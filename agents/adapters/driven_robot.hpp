@@ -29,9 +29,9 @@ DriveSettings drive_settings(const Scenario& scenario, Duration latency);
 
 /// A robot that a driver moves. It consists of the robot's side of the protocol in single precision, the
 /// estimate of its pose, and the control of its velocity. The base obeys after a latency, so the robot
-/// predicts where it will be by then and steers towards its reference's position at that time. It refuses
-/// versions that arrive too late for this. It starts without a pose, and stays at rest until vision's pose
-/// fixes agree on where it is. All times are by the process's clock, which never goes back.
+/// predicts its position after the latency and steers towards its reference's position at that time. It
+/// refuses versions that arrive too late for this. It starts without a pose, and stays at rest until vision's
+/// pose fixes agree on where it is. All times are by the process's clock, which never goes back.
 class DrivenRobot {
  public:
   /// Period of the control loop.
@@ -95,7 +95,7 @@ class DrivenRobot {
   /// Oldest fix that is waiting for the odometry of its capture time, which arrives later.
   std::optional<PoseFix> waiting_fix_;
   double target_heading_rad_ = 0;
-  Time moved_at_;                         ///< while the pose is unknown: when the robot may last have moved
+  Time moved_at_;  ///< while the pose is unknown: latest time at which the robot may have moved
   std::array<PoseFix, 3> first_fixes_{};  ///< while the pose is unknown: the latest fixes that agree
   std::size_t first_fix_count_ = 0;
 };

@@ -24,7 +24,7 @@ struct BaseCommand {
   BodyVelocity velocity;
 };
 
-/// A base's measurement of its own motion, in its own frame, in which errors accumulate.
+/// A base's pose according to its own measurement of its motion, in its odometry frame. Errors accumulate.
 struct OdometryReport {
   RobotId robot = 0;
   Time measured_at{};

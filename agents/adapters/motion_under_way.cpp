@@ -28,10 +28,10 @@ constexpr Duration kMinPart = std::chrono::milliseconds(2);
 /// precision.
 constexpr double kMaxPartAcceleration_mps2 = 0.9 * kMaxAcceleration_mps2;
 
-using Ends = std::array<std::size_t, kMaxParts + 1>;  ///< ends of the parts, as points of the path
+using Ends = std::array<std::size_t, kMaxParts + 1>;  ///< ends of the parts, as indices of points of the path
 using Weights = Eigen::Matrix<double, static_cast<int>(kMaxParts) + 1, 1>;
 
-/// The distance moved is a weighted sum of the velocities at the ends of the parts.
+/// Weights of the velocities at the ends of the parts; the displacement up to `point` is their weighted sum.
 Weights weights_at(std::span<const PathPoint> path, const Ends& ends, std::size_t parts, std::size_t point) {
   Weights weights = Weights::Zero();
   for (std::size_t part = 0; part < parts && path[ends[part]].after < path[point].after; ++part) {
@@ -77,9 +77,9 @@ UnderWay fitted(std::span<const PathPoint> path, const Vec2& last_velocity_mps, 
   return motion;
 }
 
-/// Between two points the path is straight with constant velocity. With the acceleration a and the time t
-/// between the points, the motion deviates by at most a t² / 8 from the straight line through its own
-/// positions.
+/// Upper bound of the distance between the path and the motion. Between two points the path is straight with
+/// constant velocity. With acceleration a and time t between the points, the motion deviates by at most a t²
+/// / 8 from the straight line through its own positions.
 double max_error_m(std::span<const PathPoint> path, const Ends& ends, const UnderWay& motion) {
   double largest_m = 0, error_m = 0;
   Vec2 place_m = path.front().position_m, velocity_mps(motion.from_mps.x, motion.from_mps.y);

@@ -48,7 +48,7 @@ RobotDriverNode::RobotDriverNode(Bus& bus, const Scenario& scenario, const std::
   bus.at(begin, [this] { tick(); });
 }
 
-// This clock never goes back, so that earlier reports stay true.
+// This clock never goes back; otherwise earlier reports could become untrue.
 Time RobotDriverNode::clock() { return clock_ = std::max(clock_, bus_.now()); }
 
 void RobotDriverNode::tick() {

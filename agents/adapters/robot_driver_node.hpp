@@ -26,15 +26,15 @@ class RobotDriverNode {
   RobotDriverNode(const RobotDriverNode&) = delete;
   RobotDriverNode& operator=(const RobotDriverNode&) = delete;
 
-  /// Sets a callback for events of at least a level.
+  /// Sets a callback for events of level `min_level` or higher.
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
   void count_drops(DropCounters& drops) const;
-  /// Whether any robot obeys an agent, by this process's clock.
+  /// Whether any robot obeys an agent.
   bool is_commanded() const;
-  /// From now on accepts no commands, so that all robots come to rest at the ends of their versions. Returns
-  /// whether they have done so.
+  /// Stops accepting commands, so all robots come to rest at the ends of their versions. Returns whether all
+  /// robots are at rest.
   bool come_to_rest();
   const DrivenRobot& robot(std::size_t index) const { return *robots_[index].robot; }
 

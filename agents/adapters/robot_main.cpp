@@ -27,7 +27,7 @@ struct Options {
 };
 
 void add_options(const CliCommand& app, Options& options) {
-  app.add_option("--driver", options.driver, "what moves the robots: league, velocity")
+  app.add_option("--driver", options.driver, "driver that moves the robots: league, velocity")
       .check(one_of({"league", "velocity"}))
       .required();
   app.add_option("--robots", options.robots, "numbers and ranges of the scenario's robots, such as 0-10,16")
@@ -36,7 +36,7 @@ void add_options(const CliCommand& app, Options& options) {
       .check(in_range(0, static_cast<double>(to_seconds(CommandedMotion::kMaxLatency) * 1e3)))
       .show_default();
   app.add_option("--memory", options.memory_folder,
-                 "folder for what the robots must remember across restarts of this program")
+                 "folder for the robots' memories, which must survive restarts of this program")
       .show_default();
   add_bases_bus_options(app, "driver velocity", options.bases);
   app.add_option("--blue", options.blue, "driver league: ADDRESS:PORT for the blue team's commands")

@@ -39,7 +39,7 @@ class MemoryReader {
  private:
   [[noreturn]] void fail(const std::string& expected) const {
     throw std::runtime_error(
-        fmt::format("{}:{}: expected \"{}\", found \"{}\"; a robot that has forgotten whom it "
+        fmt::format("{}:{}: expected \"{}\", found \"{}\"; a robot that has forgotten which agent it "
                     "obeys must not drive",
                     path_, line_number_, expected, line_));
   }

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// A lock held by the only process that drives a robot, until the process ends in any way.
+/// A lock held by the only process that drives a robot. It is released whenever that process ends.
 class MemoryLock {
  public:
   /// Throws std::runtime_error if another process holds it.
@@ -27,7 +27,7 @@ class RobotMemory final : public robot::StableMemory {
  public:
   /// Reads the file if it exists, and creates the folder. Throws std::runtime_error with the file, the line
   /// and the reason if the file cannot be read or is not a robot's memory, because a robot that has forgotten
-  /// which agent it obeys must not drive. Also throws if another process has this robot's memory, because
+  /// which agent it obeys must not drive. Also throws if another process holds this robot's memory, because
   /// only one process may drive a robot.
   RobotMemory(const std::string& folder, RobotId robot);
 

@@ -63,7 +63,7 @@ class Agent {
   bool needs_registration() const { return negotiation_.needs_registration(); }
   bool is_fenced() const { return negotiation_.is_fenced(); }
   /// Whether the active coordinator has announced all orders that this agent remembers. The agent registers
-  /// only then, so that no remembered order is lost.
+  /// only after that, so no remembered order is lost.
   bool coordinator_knows_all_orders() const {
     return orders_.coordinator_knows_all_orders(negotiation_.epoch());
   }
@@ -76,7 +76,7 @@ class Agent {
   bool needs_other_coordinator(Time now) const;
   /// See Negotiation.
   Registration epoch_notice() const { return negotiation_.epoch_notice(); }
-  /// The earliest start for a new version: the next cycle, or a later one on a slow network.
+  /// The earliest start for a new version: the next cycle, or a later cycle on a slow network.
   Time earliest_start(Time next_cycle) const { return next_cycle + cycle_ * (negotiation_.lead() - 1); }
   /// The start of the version to propose at the start of a cycle; nullopt if there is nothing to propose.
   std::optional<Time> start_to_propose(Time now, Time next_cycle) const;
@@ -89,13 +89,13 @@ class Agent {
   /// The proposal for a plan. Returns nullopt if the search finds no clear candidate; the robot then brakes.
   [[nodiscard]] std::optional<Proposal> search(const MotionPlan& plan, Time now);
 
-  /// Why plan() returns nothing now. Does not consider the robot's own versions.
+  /// The reason why plan() returns nullopt now. Does not consider the robot's own versions.
   WaitReason wait_reason(Time now) const;
   AgentActivity activity(Time now) const;
 
-  /// Whether the robot is off the floor, and a version at rest may be proposed where it will be put down.
+  /// Whether the robot is off the floor and a rest version may be proposed where it will be put down.
   bool needs_rest_version(Time now) const;
-  /// The proposal for that rest version. Precondition: needs_rest_version().
+  /// Proposes a rest version where the robot will be put down. Precondition: needs_rest_version().
   [[nodiscard]] Proposal propose_rest_version(Time now, Time start);
 
   /// The command of this cycle. It fences the robot, forwards the latest observation, and repeats a granted
@@ -103,7 +103,7 @@ class Agent {
   Command command(Time now);
 
   const Assignment& assignment() const { return orders_.assignment(); }
-  /// Starts the next order if the robot has finished one.
+  /// Starts the next order if the robot has finished its order.
   void choose_order();
   /// See Assignment.
   std::vector<RememberedOrder> take_missing_orders() { return orders_.take_missing(); }
@@ -121,7 +121,7 @@ class Agent {
   }
 
  private:
-  /// Checks in a report whether the robot has reached its goal. Precondition: the robot is fenced.
+  /// Starts the next goal if the robot has reached its goal. Precondition: the robot is fenced.
   void update_goal(const RobotReport& robot_report);
 
   const RobotSpec robot_;
@@ -133,8 +133,8 @@ class Agent {
   MotionPlanner planner_;
   ProposalSearch search_;
   Rng rng_;
-  std::optional<Version> forwarded_;  // granted, and not started yet
-  std::optional<Vec2> placement_m_;   // where the robot will be put down
+  std::optional<Version> forwarded_;  // granted version that has not started yet
+  std::optional<Vec2> placement_m_;   // place where the robot will be put down
 };
 
 }  // namespace sidestep

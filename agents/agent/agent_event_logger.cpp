@@ -16,7 +16,7 @@ namespace {
 /// A new limit is reported if it differs from the reported one by more than this fraction.
 constexpr double kLimitChange = 0.2;
 
-/// Whether something last reported at `last` may be reported again. If so, records the time.
+/// Whether an event last reported at `last` may be reported again. If so, sets `last` to `now`.
 bool may_report(std::optional<Time>& last, Time now) {
   if (last && now - *last < AgentEventLogger::kMinInterval) return false;
   last = now;
@@ -39,9 +39,9 @@ void AgentEventLogger::report_protocol(const AgentActivity& activity) {
     events_.report(LogLevel::kWarning, robot_,
                    "superseded: a later agent drives this robot; this agent stays silent");
   if (!activity.is_superseded && last_.is_superseded)
-    events_.report(LogLevel::kWarning, robot_, "the robot obeys this agent after all");
+    events_.report(LogLevel::kWarning, robot_, "no longer superseded: the robot obeys this agent");
   if (activity.is_fenced && !last_.is_fenced)
-    events_.report(LogLevel::kInfo, robot_, "the robot obeys this agent, with incarnation {}",
+    events_.report(LogLevel::kInfo, robot_, "the robot obeys this agent (incarnation {})",
                    activity.incarnation);
   const bool was_registered = last_.is_registered && last_.epoch == activity.epoch;
   if (activity.is_registered && !was_registered)
@@ -52,11 +52,11 @@ void AgentEventLogger::report_motion(const AgentActivity& activity, Time now) {
   if (activity.goal_index > last_.goal_index)
     events_.report(LogLevel::kInfo, robot_, "arrived at goal {}", last_.goal_index);
   if (activity.has_arrived && !last_.has_arrived)
-    events_.report(LogLevel::kInfo, robot_, "arrived at goal {}, the last one", activity.goal_index);
+    events_.report(LogLevel::kInfo, robot_, "arrived at goal {}, the last goal", activity.goal_index);
   if (activity.is_escaping && !last_.is_escaping && may_report(escape_reported_at_, now))
-    events_.report(LogLevel::kInfo, robot_, "escapes from a conflict: no candidate has full clearance");
+    events_.report(LogLevel::kInfo, robot_, "escaping from a conflict: no candidate has full clearance");
   if (activity.is_recovering && !last_.is_recovering && may_report(recovery_reported_at_, now))
-    events_.report(LogLevel::kInfo, robot_, "is blocked: turns right to resolve the deadlock");
+    events_.report(LogLevel::kInfo, robot_, "blocked: turning right to resolve the deadlock");
 }
 
 void AgentEventLogger::report_wait(WaitReason reason, Time now) {
@@ -67,9 +67,9 @@ void AgentEventLogger::report_wait(WaitReason reason, Time now) {
   if (reason == reported_wait_ || now - waits_since_ < kSettlingTime) return;
   reported_wait_ = reason;
   if (reason == WaitReason::kNone)
-    events_.report(LogLevel::kInfo, robot_, "no longer waits");
+    events_.report(LogLevel::kInfo, robot_, "no longer waiting");
   else
-    events_.report(LogLevel::kInfo, robot_, "waits for {}", to_text(reason));
+    events_.report(LogLevel::kInfo, robot_, "waiting for {}", to_text(reason));
 }
 
 void AgentEventLogger::report_speed_limit(const ClockSpeedLimit& limit, Time now) {
@@ -98,7 +98,7 @@ void AgentEventLogger::on_robot_report(const RobotReport& robot_report) {
   if (robot_report.is_off_reference && robot_report.executing.number > own_stop_) {
     own_stop_ = robot_report.executing.number;
     events_.report(LogLevel::kWarning, robot_,
-                   "the robot is off its reference and makes its own stop, version {}", own_stop_);
+                   "the robot is off its reference and makes its own stop (version {})", own_stop_);
   }
   if (was_off_reference_ && !robot_report.is_off_reference && !robot_report.is_lifted)
     events_.report(LogLevel::kInfo, robot_, "the robot is back on a granted version");
@@ -118,9 +118,9 @@ void AgentEventLogger::report_restart(std::uint64_t activated) {
 
 void AgentEventLogger::on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinator) {
   if (coordinator)
-    events_.report(LogLevel::kInfo, robot_, "adopts epoch {} of {}", epoch, process_name(*coordinator));
+    events_.report(LogLevel::kInfo, robot_, "adopted epoch {} of {}", epoch, process_name(*coordinator));
   else
-    events_.report(LogLevel::kInfo, robot_, "adopts epoch {}, which the robot obeys already", epoch);
+    events_.report(LogLevel::kInfo, robot_, "adopted epoch {}, which the robot already obeys", epoch);
 }
 
 void AgentEventLogger::on_denial(const Verdict& verdict) {

@@ -46,7 +46,7 @@ class AgentEventLogger {
   void update(const AgentActivity& activity, const ClockSpeedLimit& limit, Time now);
   /// Processes a report of a robot that obeys the agent.
   void on_robot_report(const RobotReport& robot_report);
-  /// Logs that the agent has adopted an epoch announced by `coordinator`; nullopt: by its robot.
+  /// Logs that the agent has adopted an epoch announced by `coordinator` or, if nullopt, by its robot.
   void on_epoch(Epoch epoch, std::optional<std::uint32_t> coordinator);
   /// Processes the denial of a proposal.
   void on_denial(const Verdict& verdict);
@@ -78,7 +78,7 @@ class AgentEventLogger {
   // Number of denials since the last report, by reason.
   std::array<std::uint64_t, static_cast<std::size_t>(msg::Reason::REASON_HELD) + 1> denials_{};
   std::uint64_t denial_count_ = 0;
-  RobotId blocker_ = 0;  // the other robot of the latest conflict
+  RobotId blocker_ = 0;  // the other robot in the latest conflict
   Time denials_reported_at_{};
 };
 

@@ -19,7 +19,7 @@ constexpr int kCyclesBetweenRegistrations = 3;
 // Registrations that only measure a clock are less frequent than registrations that ask for another
 // coordinator; see FleetReception::kMaxRequestGap.
 constexpr Duration kBetweenMeasurements{500'000'000};
-// An agent may have to ask for another coordinator for a long time.
+// The interval is long, because an agent may have to ask for another coordinator for a long time.
 constexpr int kCyclesBetweenRequests = 6;
 
 /// Offset of the robot's cycles from multiples of the cycle time.
@@ -108,7 +108,7 @@ void AgentNode::on_verdict(const msg::Verdict& message) {
 
 void AgentNode::on_world_state(const msg::WorldState& message) {
   WorldObservations world = world_.decode(message);
-  // If the robot's clock is beyond the bound, the robot would take this position for its position at a wrong
+  // If the robot's clock is beyond the bound, the robot would treat this position as its position at a wrong
   // time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
   agent_.on_world_state(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
@@ -253,7 +253,7 @@ void AgentNode::measure_coordinator_clock(Duration since_last) {
 
 bool AgentNode::update_clocks() {
   clocks_.on_epoch(agent_.epoch());
-  // The agent keeps asking as long as no coordinator answers.
+  // The agent repeats the request until a coordinator answers.
   if (clocks_.is_measurement_due(bus_.now())) measure_coordinator_clock(kCyclesBetweenRegistrations * cycle_);
   return clocks_.allows_motion(bus_.now());
 }
@@ -273,7 +273,7 @@ void AgentNode::negotiate(Time start) {
   const auto plan =
       timed(plan_durations_, [&] { return agent_.plan(robot_now(), start, max_speed_mps, max_lag); });
   if (!plan) return;
-  // More measurements narrow the interval, so that the robot may drive faster.
+  // More measurements narrow the offset's interval, which allows the robot to drive faster.
   if (max_speed_mps < max_speed_mps_) measure_coordinator_clock(kBetweenMeasurements);
   const auto proposal = timed(search_durations_, [&] { return agent_.search(*plan, robot_now()); });
   if (proposal) publish_proposal(*proposal);

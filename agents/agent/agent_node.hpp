@@ -26,13 +26,13 @@ class AgentNode {
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;
 
-  /// Sets a callback for events of at least a level.
+  /// Sets a callback for events of level `min_level` or higher.
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
   void count_drops(DropCounters& drops) const;
   /// Whether this agent must keep its own clock after the host's clock has been set. It must if it can drive
-  /// its robot by its own clock, or if a restart would make it a later agent than the one that its robot
+  /// its robot by its own clock, or if a restart would make it a later agent than the agent that its robot
   /// obeys.
   bool uses_clock() const {
     return agent_.is_superseded() || clocks_.robot_coordinator_offset(bus_.now()).has_value();
@@ -60,7 +60,7 @@ class AgentNode {
   void begin_cycle();
   void register_if_due();
   /// Registers again, because the coordinator's answer measures its clock. Does nothing if the last
-  /// registration is more recent than `since_last`.
+  /// registration is less than `since_last` ago.
   void measure_coordinator_clock(Duration since_last);
   /// Requests a measurement of the clocks if one is due. Returns whether the clocks allow proposals.
   bool update_clocks();

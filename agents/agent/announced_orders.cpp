@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-// If there are more pages of changes, they are merged into one page.
+// More pages of changes than this are merged into one page.
 constexpr std::size_t kMaxPages = msg::MAX_MEMORY_ORDERS * 8;
 
 }  // namespace

@@ -23,7 +23,7 @@ class AnnouncedOrders {
 
   /// Processes orders that a coordinator remembers.
   void on_page(std::shared_ptr<const OrderPage> page, const OrderBook& own);
-  /// Records that the robot has progressed since the last memory was heard.
+  /// Records that the robot has progressed since the last memory of a coordinator arrived.
   void on_progress() { has_progressed_ = true; }
 
   /// Whether a coordinator that remembers all orders has been heard.
@@ -31,9 +31,9 @@ class AnnouncedOrders {
   bool is_empty() const { return told_.empty() && changes_.empty(); }
   /// All orders, including `own`.
   OrderBook with(const OrderBook& own) const;
-  /// The announced orders of one robot and those of all robots.
+  /// The announced orders to one robot, including orders to all robots.
   OrderBook of(RobotId robot) const;
-  /// Removes and returns the orders of all robots that were missing in the latest memory heard from a
+  /// Removes and returns the orders of all robots that were missing in the latest memory received from a
   /// coordinator.
   std::vector<RememberedOrder> take_missing() { return std::exchange(missing_, {}); }
   /// Whether the coordinator process with this incarnation has announced every order that is remembered here.
@@ -55,7 +55,7 @@ class AnnouncedOrders {
   bool is_known_ = false;
   Round told_;                                    // the latest complete memory of a coordinator
   Round changes_;                                 // orders that told_ lacks, and later changes
-  bool has_progressed_ = false;                   // since that memory was heard
+  bool has_progressed_ = false;                   // whether the robot has progressed since told_ arrived
   std::map<std::uint32_t, Round> rounds_;         // by coordinator: memories whose pages are still arriving
   std::map<std::uint32_t, Incarnation> told_by_;  // see has_announced_all_orders()
   std::vector<RememberedOrder> missing_;

@@ -35,8 +35,8 @@ class Assignment {
   void on_page(std::shared_ptr<const OrderPage> page);
   /// Records that the robot is at rest at its goal. Precondition: goal() is not null.
   void on_arrival();
-  /// Chooses the order to carry out. A finished order remains the robot's order until this is called, so that
-  /// its completion can be reported.
+  /// Chooses the order to carry out. A finished order remains the robot's order until this call, so that its
+  /// completion can be reported.
   void choose();
 
   /// Whether a coordinator that remembers all orders has been heard. Until then the robot has no orders.
@@ -60,7 +60,7 @@ class Assignment {
   std::uint64_t zone_revision() const { return zone_revision_; }
   /// What is known about another robot's orders.
   OtherAssignment other(RobotId robot) const;
-  /// Whether the other robot goes first where the two cannot pass each other; see other_passes_first().
+  /// Whether the other robot goes first where robots cannot pass each other; see other_passes_first().
   bool yields_to(const PassageContender& other, Time t, Duration period) const;
 
   /// All orders, including those of other robots.
@@ -87,7 +87,7 @@ class Assignment {
   OrderBook book_;  // the robot's orders, including orders to all robots
   AnnouncedOrders announced_;
   bool is_held_ = false;
-  // The order that the robot carries out or has carried out last.
+  // The order that the robot carries out, or the last order that it has carried out.
   ClientId client_ = 0;
   OrderNumber number_ = 0;
   std::vector<Goal> goals_;

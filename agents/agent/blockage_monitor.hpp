@@ -18,7 +18,7 @@ class BlockageMonitor {
   /// Call it when the goal can be reached, or has changed.
   void clear();
   void on_blocked(const Blockage& blockage, Time now);
-  /// Restarts the measurement of time, because the robot's clock was set back.
+  /// Restarts the timer, because the robot's clock was set back.
   void restart() { since_.reset(); }
 
   bool is_blocked() const { return since_.has_value(); }

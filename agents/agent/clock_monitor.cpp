@@ -48,7 +48,7 @@ void ClockMonitor::on_verdict(const Verdict& verdict, Time received) {
   arrived(received);
   const Time asked = verdict.request_sent_at;
   if (verdict.epoch != epoch_ || asked == Time{}) return;
-  if (std::ranges::find(requests_, asked) == requests_.end()) return;  // another agent's request, or too old
+  if (std::ranges::find(requests_, asked) == requests_.end()) return;  // not this agent's request, or too old
   // Coordinators have consecutive sender numbers, so each has an element of its own.
   coordinator_ = verdict.sender % coordinators_.size();
   CoordinatorClock& clock = coordinators_[*coordinator_];

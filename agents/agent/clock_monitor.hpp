@@ -31,10 +31,10 @@ class ClockMonitor {
   void on_robot_report(const RobotReport& robot_report, Incarnation own, Time received);
   /// Records the send time of a request that the coordinator will answer.
   void on_request_sent(Time sent);
-  /// A new epoch may belong to another coordinator with another clock. There is no measurement until the
-  /// first verdict of the epoch shows which coordinator it is.
+  /// Starts a new epoch, which may belong to another coordinator with another clock. That clock has no
+  /// measurement until the first verdict of the epoch shows which coordinator it is.
   void on_epoch(Epoch epoch);
-  /// Uses answers to recorded requests, if they belong to the current epoch.
+  /// Uses the answer to a recorded request if it belongs to the current epoch.
   void on_verdict(const Verdict& verdict, Time received);
 
   /// Whether both clocks have recent measurements, and these are consistent with an offset within the bound.
@@ -73,7 +73,7 @@ class ClockMonitor {
     ClockOffset offset;  // relative to the agent's clock
   };
   Duration bound() const { return from_seconds(budget_.clock_bound_s); }
-  /// Records the time of an arrival. If this process's clock was set back, discards earlier exchanges.
+  /// Records when a message arrived. If this process's clock was set back, discards earlier exchanges.
   void arrived(Time received);
   /// Whether this process's clock has been set back since the last arrival.
   bool is_before_arrivals(Time now) const;

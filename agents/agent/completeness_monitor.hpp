@@ -52,7 +52,7 @@ class CompletenessMonitor {
 
   double max_speed_mps_;
   Duration max_clock_difference_;
-  std::array<OwnPosition, 16> positions_{};  // own positions in the world states of a quarter second
+  std::array<OwnPosition, 16> positions_{};  // own positions in the world states of the last quarter second
   std::size_t position_count_ = 0;           // number of positions stored so far
   std::optional<Pending> pending_;
   SeenRegion seen_;

@@ -11,7 +11,7 @@ constexpr Duration kCoordinatorTimeout{500'000'000};
 // After this time an answer to a request is overdue, even on slow networks.
 constexpr Duration kMaxAnswerTime{400'000'000};
 
-/// Records when a state began. A time in the future means that a clock has been set.
+/// Sets `since` to `now` unless it holds an earlier time. A future time means that a clock has been set.
 void begin(std::optional<Time>& since, Time now) {
   if (!since || *since > now) since = now;
 }

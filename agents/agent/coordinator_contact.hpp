@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// What the agent hears from the coordinator of its epoch, and whether that coordinator serves it.
+/// Records the messages from the coordinator of the agent's epoch, and decides whether it serves the agent.
 class CoordinatorContact {
  public:
   /// Forgets everything about the previous epoch.
@@ -27,7 +27,7 @@ class CoordinatorContact {
   bool is_robot_missing() const { return is_robot_missing_; }
   /// Whether the coordinator grants proposals, according to the last heartbeat.
   bool is_granting() const { return is_granting_; }
-  /// Whether, for too long, no heartbeat or no answer has arrived, or the coordinator has not known which
+  /// Whether for too long the coordinator has sent no heartbeat, has not answered, or has not known which
   /// versions the robot executes.
   bool is_failing(Time now) const;
 

@@ -26,7 +26,7 @@ struct IntentToFollow {
 /// The acceleration with which a robot follows its intent at up to `max_speed_mps`.
 [[nodiscard]] AccelerationCommand follow(const IntentToFollow& followed, double max_speed_mps);
 
-/// The acceleration towards a place at this displacement from the robot.
+/// The acceleration towards a place at `displacement_m` from the robot.
 [[nodiscard]] inline AccelerationCommand hold_towards(const Vec2& displacement_m, const Vec2& velocity_mps,
                                                       const MotionLimits& limits, const HoldBounds& hold) {
   return desired_acceleration(displacement_m, velocity_mps, limits, hold.min, hold.max);

@@ -5,9 +5,9 @@ namespace sidestep {
 namespace {
 
 // After this many consecutive reports of the robot's earlier incarnation, the report of a later incarnation
-// must have been false. There are never as many delayed reports.
+// must have been false: delayed reports are never this many.
 constexpr int kReportsOfOneIncarnation = 60;
-// If two agents both choose a new incarnation above the same one, they add different increments below this
+// If two agents choose new incarnations above the same incarnation, they add different increments below this
 // bound.
 constexpr Incarnation kIncarnationSpread = 1'000'003;
 constexpr Duration kMaxUnheard{500'000'000};

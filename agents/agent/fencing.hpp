@@ -8,11 +8,11 @@
 
 namespace sidestep {
 
-/// Which agent the robot obeys, according to its reports. An agent may register and propose only for a robot
-/// that obeys it (coordinator/PROTOCOL.md, "Robots fence epochs").
+/// Determines from the robot's reports which agent the robot obeys. An agent may register and propose only
+/// for a robot that obeys it (coordinator/PROTOCOL.md, "Robots fence epochs").
 class Fencing {
  public:
-  /// What a report of the robot means for the agent.
+  /// The consequences of a robot's report for the agent.
   struct ReportUse {
     bool is_acknowledged = false;     ///< the robot obeys this agent
     bool is_first = false;            ///< this is the first report that acknowledges this agent
@@ -35,7 +35,7 @@ class Fencing {
   bool is_fenced() const { return fenced_at_.has_value(); }
   /// When the robot acknowledged this agent, by the robot's clock.
   std::optional<Time> fenced_at() const { return fenced_at_; }
-  /// Whether the robot obeys a later agent, so that this agent stays silent.
+  /// Whether the robot obeys a later agent. If so, this agent stays silent.
   bool is_superseded() const { return superseded_at_.has_value(); }
   /// Whether the robot's last report acknowledged a later agent, and the robot has been silent for half a
   /// second since. Commands continue in this case, because they carry the pose fixes without which a robot

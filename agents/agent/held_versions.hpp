@@ -10,10 +10,10 @@ namespace sidestep {
 /// corrected by the robot's reports.
 class HeldVersions {
  public:
-  /// What a report changed.
+  /// The effect of a report.
   struct ReportEffect {
-    bool is_late = false;       ///< the report changed nothing, because a later report was applied before
-    bool is_unknown = false;    ///< the agent did not know the executed version; only it is held now
+    bool is_late = false;     ///< the report changed nothing, because a later report was applied before
+    bool is_unknown = false;  ///< the agent did not know the executed version, which is now the only one held
     bool has_switched = false;  ///< the robot has switched to another held version
     int lost = 0;               ///< number of forwarded versions that the robot did not activate
   };
@@ -28,7 +28,7 @@ class HeldVersions {
   void begin(const RobotReport& robot_report);
   /// Applies a later report. `is_current`: it belongs to the robot's current incarnation.
   ReportEffect apply(const RobotReport& robot_report, bool is_current);
-  /// Accepts the next report whatever its time. Times of different robot incarnations cannot be compared.
+  /// Accepts the next report regardless of its time. Times of different incarnations cannot be compared.
   void forget_report_times() { latest_report_ = Time::min(); }
   /// Adds a granted version. Precondition: not is_full().
   void add(const Version& version) { versions_.add(version); }

@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-/// Lower ids have the right of way for this long, then higher ids for the same time, and so on.
+/// Lower ids and higher ids alternately have the right of way, each for this long.
 constexpr Duration kRightOfWayPeriod{10'000'000'000};
 /// A robot whose intended speed is below this fraction of the limit counts as waiting.
 constexpr double kWaitingSpeedFraction = 0.5;
@@ -29,7 +29,7 @@ State state_if_continued(const Trajectory& trajectory, Time t) {
   return state;
 }
 
-/// The rest of a version's intent at a time; nullopt if the robot will stay at its goal.
+/// The part of a version's intent that remains at a time; nullopt if the robot will stay at its goal.
 std::optional<Intent> intent_at(const Version& version, Time t) {
   if (!version.intent) return std::nullopt;
   const bool is_at_rest = t >= version.trajectory.end();

@@ -24,7 +24,7 @@ class IntentPlanner {
     State at_start;       ///< the robot's state at `start`
     Time start{};         ///< when the motion starts
     Route route;          ///< the next step of `routes`
-    Duration max_hold{};  ///< how long an acceleration may be held
+    Duration max_hold{};  ///< maximum time for which an acceleration may be held
   };
 
   /// `rules` and `steering` must outlive this object. `steering` is working memory. `local`: the
@@ -41,7 +41,7 @@ class IntentPlanner {
 
   /// Whether the robot turns aside because it is blocked.
   bool is_recovering() const { return recovery_.is_active(); }
-  /// Number of choices that did not continue the previous one.
+  /// Number of choices that did not continue the previous choice.
   std::uint64_t changes() const { return last_choice_.changes; }
 
  private:

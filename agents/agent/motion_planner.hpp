@@ -23,7 +23,7 @@ namespace sidestep {
 struct MotionPlan {
   SearchQuery query;
   VersionNumber base = 0;  ///< the version that the motion continues
-  Intent intent;           ///< what the robot intends after the motion
+  Intent intent;           ///< the robot's intent after the motion
 };
 
 /// Plans a robot's motion from its target to the query for the safety search: whether to give way, the route,
@@ -60,7 +60,7 @@ class MotionPlanner {
   bool is_kept_out(const Vec2& position_m) const;
   bool is_recovering() const { return intents_.is_recovering(); }
   std::uint64_t route_changes() const { return intents_.changes(); }
-  /// What prevents the robot from reaching its goal, once that has lasted long enough.
+  /// The blockage that prevents the robot from reaching its goal; nullopt until it has lasted long enough.
   std::optional<Blockage> lasting_blockage() const { return blockage_.lasting(last_plan_); }
   /// Estimated time to reach all remaining goals; nullopt: unknown.
   std::optional<double> remaining_s(const Assignment& assignment, bool has_arrived) const;
@@ -70,13 +70,13 @@ class MotionPlanner {
   void restart_timers(Time now);
   /// The robot's target: the place where it gives way, its goal, or the end of its base.
   Vec2 target_m(const Query& query) const;
-  /// The route to the target; nullopt if the robot is there, or no route is known in this cycle.
+  /// The route to the target; nullopt if the robot is at the target, or no route is known in this cycle.
   std::optional<Route> find_route(const Query& query, const Vec2& target_m);
   void update_blockage(const Route& route, Time now);
   /// The plan that follows the intent; nullopt if the laser has not seen the floor where the robot is.
   std::optional<MotionPlan> follow_intent(const Query& query, const Intent& intent, const State& at_start,
                                           const Route& route);
-  /// Lets routes avoid a corner at which the robot has come to a standstill.
+  /// Makes routes avoid a corner at which the robot has come to a standstill.
   void update_corners(const OccludedCorners::Approach& approach, const RobotLaser& laser, Time now);
   /// The lowest of the speeds that the clocks, the goal and the zones allow.
   double max_speed_mps(const Query& query, const State& at_start) const;

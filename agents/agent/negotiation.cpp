@@ -54,7 +54,7 @@ void Negotiation::adopt_epoch(Epoch epoch) {
 }
 
 void Negotiation::on_coordinator_state(const CoordinatorHeartbeat& heartbeat, Time now) {
-  if (heartbeat.epoch == 0) return;  // the coordinator is a standby
+  if (heartbeat.epoch == 0) return;  // the coordinator is on standby
   if (heartbeat.epoch < epoch_) {
     ++counts_.old_epochs;
     // This coordinator does not know the highest epoch, and no other coordinator is alive: a registration

@@ -47,13 +47,13 @@ class Negotiation {
   /// robot has acknowledged this agent.
   Incarnation incarnation() const { return fencing_.incarnation(); }
   Epoch epoch() const { return epoch_; }
-  /// The epoch sent with commands: 0 before the robot has acknowledged this agent, so that the
-  /// acknowledgement shows which epoch the robot obeyed before.
+  /// The epoch sent with commands. It is 0 until the robot has acknowledged this agent; the acknowledgement
+  /// therefore shows which epoch the robot obeyed before.
   Epoch command_epoch() const { return is_fenced() ? epoch_ : 0; }
   bool is_fenced() const { return fencing_.is_fenced(); }
   /// Whether the robot is off the floor and executes nothing. It may still accept a rest version.
   bool is_absent() const { return is_fenced() && !held_.is_executing(); }
-  /// Whether the robot obeys a later agent, so that this agent stays silent.
+  /// Whether the robot obeys a later agent. If so, this agent stays silent.
   bool is_superseded() const { return fencing_.is_superseded(); }
   bool must_query_robot() const { return fencing_.must_query_robot(cycle_); }
   /// Whether the agent must register. It registers only after the robot has acknowledged the epoch. So an

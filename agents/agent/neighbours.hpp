@@ -31,7 +31,7 @@ class Neighbours {
   /// The newest version of each robot that has versions within `horizon_m`. Valid until the next page or
   /// call.
   std::span<const Version* const> newest(const Vec2& centre_m, double horizon_m);
-  /// A robot at rest, and its intended destination; nullptr if it has none.
+  /// A robot at rest. `intent` is nullptr if the robot has no destination.
   struct Stationary {
     RobotId robot = 0;
     Vec2 position_m{0, 0};

@@ -15,7 +15,7 @@
 
 namespace sidestep {
 
-/// Everything that an agent knows about its robot and what is around it. Inputs: reports of the robot,
+/// Everything that an agent knows about its robot and the robot's surroundings. Inputs: reports of the robot,
 /// world states and lists of obstacles from vision, scans of the robot's laser, and ledger pages and
 /// heartbeats from the coordinator. Outputs: the latest state of each of these, and which of them is too old
 /// to drive by. All times are by the robot's clock; `now` is an upper bound of the time.
@@ -26,7 +26,7 @@ class Observations {
 
   void on_robot_report(const RobotReport& robot_report);
   /// Processes a world state. If the robot's clock has not been measured yet, the observation is only
-  /// forwarded, because a robot that has lost its pose reports nothing until it gets one.
+  /// forwarded, because a robot that has lost its pose reports nothing until it gets a pose.
   void on_world_state(const WorldObservations& world, Time now, bool is_robot_clock_known);
   void on_obstacles(const ObstacleObservations& list, Time now) {
     obstacles_.on_list(list, own_.estimate().position_m, now);
@@ -45,7 +45,7 @@ class Observations {
   /// Whether the robot is at rest at the end of `base`, and vision agrees with the robot's own position
   /// estimate. A version that starts there needs no inflation.
   bool may_end_inflation(const Version& base, Time start) const;
-  /// Returns the latest observation of the robot, once.
+  /// Removes and returns the latest observation of the robot.
   std::optional<PoseFix> take_fix() { return std::exchange(fix_, std::nullopt); }
 
   const OwnReports& own() const { return own_; }
@@ -58,7 +58,7 @@ class Observations {
   void count_drops(DropCounters& drops) const;
 
  private:
-  Duration max_clock_difference_;  // between two clocks that both stay within the clock bound
+  Duration max_clock_difference_;  // of two clocks that both stay within the clock bound
   double page_horizon_m_;
   OwnReports own_;
   Neighbours neighbours_;
@@ -68,7 +68,7 @@ class Observations {
   std::optional<PoseFix> fix_;  // observed but not yet forwarded
   Time last_fix_{};
   Vec2 last_fix_m_{0, 0};
-  Time watched_until_{};       // when the coordinator last compared the robots' positions with their versions
+  Time watched_until_{};       // last time at which the coordinator compared robots with their versions
   std::uint64_t invalid_ = 0;  // number of observations from the future
 };
 

@@ -12,10 +12,10 @@
 namespace sidestep {
 
 /// The latest observations of obstacles that do not take part in the protocol, and the region for which they
-/// are complete. An observation is kept until a newer one of the same track replaces it, because an occluded
-/// obstacle may still approach. It is dropped after kMaxObservationAge, because a false track must not stop
-/// all robots: by then the obstacle could be anywhere on half of the field, and about sixty frames of vision
-/// have not confirmed it. Allocates only in the constructor.
+/// are complete. An observation is kept until a newer observation of its track replaces it, because an
+/// occluded obstacle may still approach. It is dropped after kMaxObservationAge, because a false track must
+/// not stop all robots: by then the obstacle could be anywhere on half of the field, and about sixty frames
+/// of vision have not confirmed it. Allocates only in the constructor.
 class ObservedObstacles {
  public:
   static constexpr std::size_t kCapacity = std::size_t{2} * msg::MAX_OBSTACLES;
@@ -34,7 +34,7 @@ class ObservedObstacles {
   std::span<const MovingObstacle> recent(Time now, Duration max_lag);
   /// The region in which there are no obstacles except the recent obstacles.
   SeenRegion seen(Time now, Duration max_lag) const { return completeness_.seen(now, max_lag); }
-  /// The time at which the agent knew that region; Time{} if never.
+  /// The latest time at which the agent knew the region that seen() describes; Time{} if never.
   Time complete_at() const { return completeness_.complete_at(); }
   /// Number of lists and observations with times in the future.
   std::uint64_t invalid() const { return invalid_; }

@@ -8,8 +8,8 @@
 namespace sidestep {
 namespace {
 
-// A corner that stops the robot for longer than this is avoided for a while, if the robot has not moved
-// farther away in the meantime.
+// A corner that stops the robot for longer than kOccludedAfter is avoided for kOccludedCornerMemory, if the
+// robot has not moved farther away in the meantime.
 constexpr Duration kOccludedAfter{3'000'000'000}, kOccludedCornerMemory{20'000'000'000};
 constexpr double kOccludedRange_m = 0.4;
 /// If a person or robot is this near, the robot's stop is not attributed to a corner.

@@ -10,7 +10,7 @@
 namespace sidestep {
 
 /// The corners that a robot with a laser cannot pass at any speed, because a person may appear from behind
-/// them. Input: where and since when the robot has crept without getting anywhere. Output: the corners that
+/// them. Input: where and since when the robot has crept without making progress. Output: the corners that
 /// routes avoid for a while.
 class OccludedCorners {
  public:
@@ -19,9 +19,9 @@ class OccludedCorners {
   /// How a robot approaches a corner.
   struct Approach {
     State at_start;            ///< the robot's state when its next motion starts
-    Time start{};              ///< that time
-    Vec2 waypoint_m{0, 0};     ///< where the robot wants to go
-    bool is_creeping = false;  ///< no speed is safe
+    Time start{};              ///< time at which that motion starts
+    Vec2 waypoint_m{0, 0};     ///< next waypoint of the robot
+    bool is_creeping = false;  ///< no speed is safe, so the robot creeps
   };
   /// Forgets old corners. Remembers the nearest corner ahead if the robot has crept near one place for a
   /// while, unless a person or another robot is at the corner, because these will leave. Returns whether it
@@ -40,7 +40,7 @@ class OccludedCorners {
  private:
   struct Corner {
     Vec2 at_m{0, 0};
-    Time until{};  // routes avoid it until then
+    Time until{};  // time until which routes avoid the corner
   };
   /// A place at which no speed was safe, and the time since which the robot has not moved away from it.
   struct Standstill {

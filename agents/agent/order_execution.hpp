@@ -10,12 +10,12 @@
 
 namespace sidestep {
 
-/// The order that a robot carries out, and how far it has got. Inputs: the orders that coordinators remember,
-/// what the robot executes, and which coordinator is in charge. Outputs: the goal, the heading, whether the
-/// robot has arrived, and whether the coordinator in charge knows all orders.
+/// The order that a robot carries out, and its progress. Inputs: the orders that coordinators remember, what
+/// the robot executes, and which coordinator is in charge. Outputs: the goal, the heading, whether the robot
+/// has arrived, and whether the coordinator in charge knows all orders.
 class OrderExecution {
  public:
-  /// What a page of orders has changed for the robot.
+  /// The changes that a page of orders has made for the robot.
   struct Changes {
     bool goal = false;
     bool zones = false;
@@ -32,7 +32,7 @@ class OrderExecution {
   void on_absence() { has_arrived_ = false; }
   /// Processes a heartbeat of the active coordinator in the agent's epoch.
   void on_heartbeat(const CoordinatorHeartbeat& heartbeat);
-  /// Starts the next order if the robot has finished one. Returns whether the goal has changed.
+  /// Starts the next order if the robot has finished its order. Returns whether the goal has changed.
   bool choose();
   /// See Assignment.
   std::vector<RememberedOrder> take_missing() { return assignment_.take_missing(); }
@@ -45,7 +45,7 @@ class OrderExecution {
   bool coordinator_knows_all_orders(Epoch epoch) const;
 
  private:
-  /// The coordinator that was last heard in its epoch.
+  /// The active coordinator from which the last heartbeat arrived.
   struct CoordinatorInCharge {
     std::uint32_t coordinator = 0;
     Incarnation incarnation = 0;

@@ -12,7 +12,7 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kStatusPeriod{1'000'000'000};
-// Announced orders are repeated to the coordinator at once, but at most at this interval.
+// Announced orders are repeated to the coordinator immediately, but at most at this interval.
 constexpr Duration kConfirmationPeriod{100'000'000};
 
 }  // namespace
@@ -38,7 +38,7 @@ void OrderPublisher::on_page(const OrderPage& page, Agent& agent) {
     const bool concerns = order.order.robot == robot_ || order.order.robot == kAllRobots;
     return concerns && order.order.kind == msg::OrderKind::ORDER_HOLD;
   };
-  // The coordinator confirms a hold only after an agent has reported that it remembers it.
+  // The coordinator confirms a hold only after an agent has reported that it remembers the hold.
   if (page.count == 0 && std::ranges::any_of(page.orders, holds)) published_at_ = {};
   publish_status(agent);
 }

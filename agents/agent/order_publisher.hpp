@@ -9,16 +9,16 @@
 
 namespace sidestep {
 
-/// Publishes what the agent knows about orders: the orders that coordinators lack, the orders that
-/// coordinators have announced, and the progress of its robot's own order.
+/// Publishes the agent's knowledge of orders: the orders that coordinators lack, the orders that coordinators
+/// have announced, and the progress of its robot's own order.
 class OrderPublisher {
  public:
   OrderPublisher(Bus& bus, RobotId robot);
 
-  /// Processes a coordinator's page that the agent has already handled, and publishes what it requires.
+  /// Publishes the agent's reply to a coordinator's page. Precondition: the agent has processed the page.
   void on_page(const OrderPage& page, Agent& agent);
-  /// Repeats the orders that coordinators have announced, because they answer a client only once another
-  /// process remembers its order.
+  /// Repeats the orders that coordinators have announced, because coordinators answer a client only once
+  /// another process remembers its order.
   void confirm_orders(const Agent& agent);
   /// Publishes the order's status if it has changed, and once a second.
   void publish_status(const Agent& agent);

@@ -7,20 +7,20 @@
 
 namespace sidestep {
 
-/// What a robot reports about itself: its estimate of its own state, how far it may rely on that estimate,
-/// and how often it has stopped because it was off its reference. Input: the robot's reports.
+/// A robot's reports about itself: its estimate of its own state, how far it may rely on that estimate, and
+/// how often it has stopped because it was off its reference. Input: the robot's reports.
 class OwnReports {
  public:
-  /// `start` is the robot's state before its first report. `drift_bound_m` is the largest difference between
-  /// its estimate and its true position that is allowed (drift_bound_m() of the scenario).
+  /// `start` is the robot's state before its first report. `drift_bound_m` is the maximum permitted
+  /// difference between its estimate and its true position (drift_bound_m() of the scenario).
   OwnReports(const State& start, double drift_bound_m) : drift_bound_m_(drift_bound_m), estimate_(start) {}
 
   void on_robot_report(const RobotReport& robot_report);
 
   /// The robot's own estimate of its state.
   const State& estimate() const { return estimate_; }
-  /// How far the robot may drive on from a position ahead of it without being observed again. It must come to
-  /// rest before its drift exceeds the tracking bound.
+  /// The distance that the robot may drive beyond a position ahead of it without being observed again. It
+  /// must come to rest before its drift exceeds the tracking bound.
   double dead_reckoning_m(const Vec2& from_m) const;
   /// Whether the estimate is close enough to an observed position. The robot may not have received the
   /// observation yet.

@@ -12,8 +12,7 @@ namespace {
 // Where robots cannot pass each other, a robot has the right of way for the time that it needs to drive this
 // far, plus a fixed time.
 constexpr double kPassage_m = 40, kPassage_s = 10;
-/// Longest trip of another robot that is considered as a whole; of longer trips, only the way to the next
-/// waypoint.
+/// Longer trips of other robots are considered only up to the next waypoint.
 constexpr double kLongestTrip_m = 20;
 
 }  // namespace

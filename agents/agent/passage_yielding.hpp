@@ -22,7 +22,7 @@ class PassageYielding {
   /// Call it once per planning.
   void update(Time now, Observations& observations, const Assignment& assignment, const RouteToTarget& route,
               Rng& rng);
-  /// Measures the robot's progress towards its target by a new route.
+  /// Measures the robot's progress from the length of a new route to its target.
   void on_route(const Route& route);
   /// Forgets the place, because the robot has another goal or its clock was set back.
   void restart(Time now) { give_way_.restart(now); }

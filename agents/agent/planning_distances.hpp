@@ -7,12 +7,12 @@
 
 namespace sidestep {
 
-/// Preferred clearance in addition to the required one.
+/// Preferred clearance in addition to the required clearance.
 inline constexpr double kExtraClearance_m = 0.03;
 /// Preferred additional clearances of robots with lasers, in descending order. The wider a robot passes a
 /// corner, the earlier it sees what is behind it.
 inline constexpr std::array<double, 4> kClearancesInSight_m{0.35, 0.2, 0.1, 0.03};
-/// A robot whose version ends this close to its goal stays there.
+/// A robot whose version ends this close to its goal stays at that place.
 inline constexpr double kAtGoal_m = 0.001;
 /// A neighbour at rest this close to its goal is assumed to stay.
 inline constexpr double kNeighbourAtGoal_m = 0.02;

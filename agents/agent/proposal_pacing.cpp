@@ -9,7 +9,7 @@ namespace {
 // Half a second at 60 cycles per second.
 constexpr int kMaxLead = 30;
 constexpr int kMaxSpare = 6;
-// A single late version is no reason to propose earlier.
+// A spare cycle is added only after this many late versions in a row.
 constexpr int kLateBeforeSpare = 2;
 constexpr int kTakenBeforeRelease = 10;
 

@@ -18,7 +18,7 @@ class ProposalPacing {
   void on_round_trip(Duration duration);
   void on_version_taken();
   void on_version_late();
-  /// Sets how long before a version's start the robot must have received it.
+  /// Sets the minimum time from a version's arrival at the robot to the version's start.
   void set_robot_lead(Duration lead);
   /// Forgets all measured round trips, because another coordinator now answers.
   void reset();
@@ -36,7 +36,7 @@ class ProposalPacing {
   Duration robot_lead_{0};
   std::array<Duration, kHistorySize> round_trips_{};
   std::size_t count_ = 0;
-  Duration slow_round_trip_{0};  // exceeded by at most one in eight round trips; 0 before the first one
+  Duration slow_round_trip_{0};  // exceeded by at most one in eight round trips; 0: no round trip yet
   int taken_in_a_row_ = 0, late_in_a_row_ = 0;
   int spare_cycles_ = 0;
   int lead_ = 1;

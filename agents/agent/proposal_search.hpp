@@ -8,8 +8,8 @@
 namespace sidestep {
 
 /// Searches for the candidates of a proposal. Inputs: a desired motion, the version that it continues, and
-/// the versions of nearby robots. Output: motions that are clear of all of them, or, if the robot is already
-/// in a conflict, motions out of it.
+/// the versions of nearby robots. Output: motions that are clear of these versions, or, if the robot is
+/// already in a conflict, motions that resolve it.
 class ProposalSearch {
  public:
   /// `scratch` is working memory, and must outlive this object.

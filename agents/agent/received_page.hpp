@@ -11,7 +11,7 @@
 namespace sidestep {
 
 /// A received page of the ledger. Its header is decoded and checked. Its versions are decoded on demand,
-/// because most pages are out of an agent's range. Valid as long as the message exists.
+/// because most pages are out of an agent's range. Valid while the message exists.
 class ReceivedPage {
  public:
   /// Returns nullopt if the untrusted page is not from a coordinator, its index is out of range, or its epoch
@@ -29,7 +29,7 @@ class ReceivedPage {
   /// it may be wrong or NaN.
   const Box& bounds_m() const { return bounds_m_; }
 
-  /// Replaces `decoded` with the decoded form of this page. Uses the shared copy if there is one. Otherwise
+  /// Replaces `decoded` with the decoded form of this page. Uses the shared copy if it exists. Otherwise
   /// decodes the page, in the memory of the old `decoded` if that has no other readers.
   void update(std::shared_ptr<DecodedLedgerPage>& decoded) const;
 

@@ -12,7 +12,7 @@
 
 namespace sidestep {
 
-/// What the agent knows from its robot's laser. Inputs: scans, and the versions of nearby robots, which
+/// The agent's knowledge from its robot's laser. Inputs: scans, and the versions of nearby robots, which
 /// explain part of what the laser sees. Outputs: the interpreted scan, and the floor that the laser did not
 /// see.
 class RobotLaser {
@@ -29,8 +29,8 @@ class RobotLaser {
   std::span<const Circle> robots() const { return robots_; }
   /// The floor that the laser did not see in its last scan.
   HiddenSpace hidden_space() const;
-  /// How far a person walks until the robot reacts to the scan after the next one. `reaction` is the time
-  /// from a scan to the robot's motion.
+  /// The distance that a person can walk before the robot reacts to the scan after the next one. `reaction`
+  /// is the time from a scan to the robot's motion.
   double approach_m(Duration reaction) const {
     return max_person_speed_mps_ * to_seconds(2 * scan_period_ + reaction);
   }

@@ -31,7 +31,7 @@ bool RouteObstacles::set_temporary(std::span<const TemporaryObstacle> obstacles)
   if (std::ranges::equal(obstacles, temporary_, is_same, {}, &Temporary::obstacle)) return false;
   std::vector<Temporary> before = std::exchange(temporary_, {});
   for (const TemporaryObstacle& obstacle : obstacles) {
-    // Any obstacle of the same size can be moved there.
+    // Any previous obstacle of the same size can be moved to the new place.
     const auto found = std::ranges::find_if(before, [&](const Temporary& other) {
       return other.obstacle.circle.radius_m == obstacle.circle.radius_m;
     });

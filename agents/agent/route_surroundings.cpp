@@ -13,8 +13,8 @@ namespace {
 
 /// A robot at rest for longer than this counts as an obstacle.
 constexpr Duration kStationaryAfter{500'000'000};
-constexpr std::size_t kMaxStationary = 8;  ///< number of stationary robots considered, the nearest ones first
-constexpr std::size_t kMaxMoving = 4;      ///< number of moving obstacles considered, the nearest ones first
+constexpr std::size_t kMaxStationary = 8;  ///< number of nearest stationary robots that are considered
+constexpr std::size_t kMaxMoving = 4;      ///< number of nearest moving obstacles that are considered
 constexpr double kMovingRange_m = 1.5;     ///< moving obstacles farther away are ignored
 /// Positions and radii of moving obstacles are rounded to this grid to avoid replanning in every cycle.
 constexpr double kMovingGrid_m = 0.05;
@@ -92,8 +92,8 @@ bool RouteSurroundings::will_stay(const Neighbours::Stationary& other, const Ass
                                   const Vec2& position) const {
   const OtherAssignment orders = assignment.other(other.robot);
   if (orders.is_held || !orders.has_drive_order) return true;
-  // The other robot waits as near to its goal as it can get. But if this robot is what blocks it, one of the
-  // two must move.
+  // The other robot waits as near to its goal as it can get. But if this robot blocks the other robot's way,
+  // one of the robots must move.
   const bool waits = other.intent && (other.position_m - other.intent->goal_m).norm() < kNeighbourAtGoal_m;
   return waits && orders.goal_m &&
          (position - *orders.goal_m).norm() > rules_.radius_m + planning_separation_m(rules_);

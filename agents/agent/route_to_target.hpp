@@ -12,7 +12,7 @@
 namespace sidestep {
 
 /// The robot's route to its target, around static obstacles, zones and temporary obstacles. A route that is
-/// still free is kept for a while, even if there might be a shorter one. Inputs: the zones, and once per
+/// still free is kept for a while, even if there might be a shorter route. Inputs: the zones, and once per
 /// cycle the target, the robot's place and the temporary obstacles. Output: the route.
 class RouteToTarget {
  public:
@@ -23,8 +23,8 @@ class RouteToTarget {
     Time now{};
   };
 
-  /// `extra_clearances_m` are the preferred clearances from obstacles beyond the required one, in descending
-  /// order. They and `rules` must outlive this object.
+  /// `extra_clearances_m` are the preferred clearances from obstacles beyond the required clearance, in
+  /// descending order. They and `rules` must outlive this object.
   RouteToTarget(NamedPlanner planner, const FloorRules& rules, std::span<const double> extra_clearances_m);
   RouteToTarget(const RouteToTarget&) = delete;
   RouteToTarget& operator=(const RouteToTarget&) = delete;
@@ -62,8 +62,8 @@ class RouteToTarget {
   }
 
  private:
-  /// Starts a new route if the target or the zones have changed. Also starts one if temporary obstacles have
-  /// changed, unless the last route is free and recent.
+  /// Starts a new route if the target or the zones have changed. Also starts a new route if temporary
+  /// obstacles have changed, unless the last route is free and recent.
   void replan_if_due(const Query& query, std::span<const TemporaryObstacle> temporary);
 
   const NamedPlanner planner_;

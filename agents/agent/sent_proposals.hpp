@@ -26,7 +26,7 @@ struct SentProposal {
   const Version* find(VersionNumber number) const;
 };
 
-/// The agent's latest proposals, as long as verdicts may arrive for them.
+/// The agent's latest proposals for which verdicts may still arrive.
 class SentProposals {
  public:
   /// Adds a proposal for this start. The caller fills in the candidates.
@@ -43,13 +43,13 @@ class SentProposals {
 
   /// Closes all proposals: grants of them are no longer forwarded.
   void close();
-  /// Closes the proposals that continue a version to which the robot can no longer switch. Returns whether
-  /// there were any.
+  /// Closes the proposals that continue a version to which the robot can no longer switch. Returns whether it
+  /// closed any.
   bool close_unreachable(const HeldVersions& held);
   /// Closes the proposals whose start has passed, because their verdicts would arrive too late. Returns the
   /// lead, in cycles, of the last proposal that it closed; 0 if it closed none.
   int close_started(Time now);
-  /// Forgets all proposals, so that later verdicts on them are unexpected.
+  /// Forgets all proposals. Later verdicts on them count as unexpected.
   void discard();
 
  private:

@@ -32,39 +32,39 @@ constexpr const char* to_text(WaitReason reason) {
     case WaitReason::kNone:
       return "nothing";
     case WaitReason::kNotFenced:
-      return "the robot's acknowledgement of this agent";
+      return "the robot to acknowledge this agent";
     case WaitReason::kSuperseded:
       return "the robot, which obeys a later agent";
     case WaitReason::kNoCoordinator:
-      return "a coordinator: none is heard";
+      return "a coordinator: no heartbeat arrives";
     case WaitReason::kEpochNotObeyed:
-      return "the robot's acknowledgement of the epoch";
+      return "the robot to acknowledge the epoch";
     case WaitReason::kNotRegistered:
-      return "its registration";
+      return "the coordinator to confirm the registration";
     case WaitReason::kOthersNotRegistered:
-      return "the registrations of other robots";
+      return "other robots to register";
     case WaitReason::kRobotSilent:
-      return "reports from the robot: it is silent";
+      return "reports from the robot";
     case WaitReason::kTooManyVersions:
-      return "a report that shows which versions the robot has left";
+      return "a report that shows which versions the robot no longer executes";
     case WaitReason::kOrdersUnknown:
-      return "the orders that coordinators remember";
+      return "a coordinator that remembers all orders";
     case WaitReason::kHeld:
-      return "an order to resume: it is held";
+      return "an order to resume: the robot is held";
     case WaitReason::kNoOrder:
       return "an order";
     case WaitReason::kNotSeen:
-      return "vision: it does not see the robot";
+      return "vision to see the robot";
     case WaitReason::kNoScan:
       return "a scan of the robot's laser";
     case WaitReason::kNoObstacleList:
-      return "vision: no complete list of obstacles arrives";
+      return "a complete list of obstacles from vision";
     case WaitReason::kNotWatched:
-      return "the coordinator: it has no world state";
+      return "the coordinator to receive a world state";
     case WaitReason::kClockNotMeasured:
       return "a measurement of the clocks";
     case WaitReason::kClockOutOfBound:
-      return "the clocks: they differ by more than the bound";
+      return "the clocks to agree: they differ by more than the bound";
   }
   return "?";
 }

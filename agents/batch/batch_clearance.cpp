@@ -8,7 +8,7 @@
 namespace sidestep::batch {
 namespace {
 
-// Larger than all rounding errors, both here and in the exact clearance, and much smaller than the margin.
+// Larger than all rounding errors of this file and of the exact clearance, and much smaller than the margin.
 constexpr double kRounding_m = 1e-6;
 // Position and start time of unused lanes.
 constexpr double kFarAway_m = 1e6;

@@ -44,8 +44,8 @@ struct SeparationBlock {
 /// separation minus `blocked_slack_m`. Both tests also allow for the largest deviation of the motion from its
 /// chords.
 struct ComparisonSettings {
-  double begin_s, step_s;    ///< on the lanes' time axis
-  double acceleration_mps2;  ///< upper bound for the motion that the lanes are compared with
+  double begin_s, step_s;    ///< start and step, on the lanes' time axis
+  double acceleration_mps2;  ///< upper bound of the reference motion's acceleration
   double clear_slack_m, blocked_slack_m;
 };
 
@@ -54,7 +54,7 @@ struct GapBlock {
   Row clear, blocked;
 };
 
-/// Accelerations and their squared distance from the desired one. An infinite distance excludes the lane.
+/// Accelerations and their squared distances from the desired acceleration. Infinite distances exclude lanes.
 struct AccelerationBlock {
   Row x, y, distance2;
 };

@@ -11,8 +11,8 @@ namespace {
 constexpr Number kBrakingShare = 0.8F;
 // Lower bound of the approach speed, unless the goal is less than a step away.
 constexpr Number kMinApproachSpeed_mps = 0.5F;
-// A robot brakes if its desired squared speed is below this fraction of the current one. Otherwise it turns
-// or accelerates.
+// A robot brakes if its desired squared speed is below this fraction of its current squared speed. Otherwise
+// it turns or accelerates.
 constexpr Number kSlowdownRatio2 = 0.9F;
 constexpr Number kEpsilon = 1e-9F;
 constexpr Number kEpsilon_s = 1e-4F;  // exceeds rounding errors
@@ -20,7 +20,7 @@ constexpr Number kEpsilon_s = 1e-4F;  // exceeds rounding errors
 /// Predicted states, with each robot's offset and distance to its next target and its remaining path length.
 struct Rollout {
   Vector x, y, vx, vy;
-  Vector past_waypoint;  // 1 or 0
+  Vector past_waypoint;  // 1 once the robot has passed its waypoint, otherwise 0
   Vector to_go_x, to_go_y, to_go, remaining;
 };
 

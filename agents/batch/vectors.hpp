@@ -45,8 +45,7 @@ inline unsigned less_equal_bits(const Vector& a, const Vector& b) {
   const auto is = a <= b;
   unsigned bits = 0;
   for (std::size_t i = 0; i < kWidth; ++i) {
-    // Kept separate from the shift: with -fsanitize=shift, g++ 12 selects a wrong lane if both are one
-    // expression.
+    // Separate from the shift: in a single expression, g++ 12 with -fsanitize=shift selects a wrong lane.
     const auto lane = static_cast<unsigned>(is[i] & 1);
     bits |= lane << i;
   }

@@ -10,7 +10,7 @@ namespace {
 /// A robot that was denied its desired motion is blocked below this speed.
 constexpr double kBlockedSpeed_mps = 0.3;
 
-// Upper bound of the time that one decision accounts for.
+// Upper bound of the time by which a single decision changes the angle.
 constexpr double kMaxStep_s = 0.1;
 
 }  // namespace

@@ -66,7 +66,7 @@ FreeDistance ObstaclePoints::nearest(const Vec2& at_m, float masked2_m2) const {
   const Vec2 at = at_m - origin_m_;
   const auto x = static_cast<float>(at.x()), y = static_cast<float>(at.y());
   const FourFloats none = kNone_m2 - FourFloats{};
-  NearestFour found[2];  // two, so that the processor need not wait for the previous comparison
+  NearestFour found[2];  // two: the processor need not wait for the previous comparison
   FourInts number{};
   for (const Block& block : blocks_) {
     for (std::size_t half = 0; half < 2; ++half) {

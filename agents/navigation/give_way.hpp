@@ -28,7 +28,7 @@ struct OtherRobot {
   bool has_right_of_way = false;
 };
 
-/// Lets a robot back out of a passage in which two robots cannot pass each other. This concerns a robot that
+/// Makes a robot back out of a passage in which robots cannot pass each other. This applies to a robot that
 /// makes no progress and blocks the route of a robot that has the right of way and no way around it. The
 /// blocking robot drives to the nearest reachable place off the routes of all robots with the right of way,
 /// for example a bay, and stays there until they have passed. Safety does not depend on it.
@@ -40,8 +40,8 @@ class GiveWay {
   /// way. Call it once per decision, with the length of the robot's route to its goal, or infinity if there
   /// is none. Robots that block each other move back and forth, which does not count as progress.
   [[nodiscard]] bool track_progress(Time now, double remaining_m);
-  /// Whether a search has begun, so that search() must be called. Otherwise call begin_search() if
-  /// track_progress() says so.
+  /// Whether a search has begun. If so, call search(). Otherwise call begin_search() if track_progress()
+  /// returns true.
   bool is_searching() const { return search_.is_active(); }
   /// Starts a search. `others`: all robots nearby, and the robots in yields_to() that are still under way.
   /// `fixed`: all obstacles except robots.
@@ -68,7 +68,7 @@ class GiveWay {
   GiveWaySettings settings_;
   GiveWaySearch search_;
   double remaining_m_ = kInfinity_m;  // remaining length of the last route
-  double shortest_m_ = kInfinity_m;   // shortest since the last search in which it blocked no robot
+  double shortest_m_ = kInfinity_m;   // minimum of remaining_m_ since the robot last blocked no other robot
   Time progress_at_{}, checked_at_{}, began_at_{};
   Time called_at_{};
   double range_m_;

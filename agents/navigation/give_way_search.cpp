@@ -130,7 +130,7 @@ std::optional<Vec2> GiveWaySearch::next_place() {
       std::ranges::pop_heap(candidates_, is_farther);
       const Vec2 place = candidates_.back().second;
       candidates_.pop_back();
-      // Everything connected with an unreachable place is unreachable too.
+      // All places connected with an unreachable place are also unreachable.
       const bool is_unreachable = std::ranges::any_of(
           unreachable_, [&](const Vec2& other) { return !fixed_.touches(other, place, floor_.required_m); });
       if (!is_unreachable) return place;

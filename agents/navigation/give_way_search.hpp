@@ -33,7 +33,7 @@ struct GiveWayQuery {
 
 /// Determines whether a robot is in the way of others that cannot drive around it. If so, finds the nearest
 /// place off their routes that the robot can reach. The search is divided into steps, each of which plans at
-/// most one path and examines a limited number of places, so that it fits into a control cycle.
+/// most one path and examines a limited number of places, to fit into a control cycle.
 class GiveWaySearch {
  public:
   /// Spacing of the examined places, as a fraction of the robot's radius.
@@ -50,8 +50,8 @@ class GiveWaySearch {
   void step(Rng& rng);
 
   // Results, available once no search is active.
-  /// Whether the robot, where it is, blocks another robot that cannot drive around it and all others. If the
-  /// robot already gives way: whether it would block another robot anywhere along `way`.
+  /// Whether the robot at its position blocks another robot that cannot drive around it and all other robots.
+  /// If the robot already gives way: whether it would block another robot anywhere along `way`.
   bool is_in_the_way() const { return is_in_the_way_; }
   /// The path to the place; empty if no place is needed or no place was found.
   const std::vector<Vec2>& way() const { return way_; }
@@ -85,7 +85,7 @@ class GiveWaySearch {
   std::size_t next_ = 0;     // index of the next trip or route
   bool is_in_the_way_ = false;
   Way way_;
-  // The accepted places as a heap, nearest first, and what has been examined.
+  // The accepted places, as a heap with the nearest place on top.
   std::vector<std::pair<double, Vec2>> candidates_;
   std::set<std::pair<long, long>> taken_;
   std::vector<Vec2> unreachable_;

@@ -26,7 +26,7 @@ constexpr double kBand_m = 10;  ///< only the beginning of a longer path becomes
 /// On a path chosen by a planner, the heading matters most. The table would only round times down.
 constexpr DiscWindowSettings kDrivingWindow{.method = CollisionMethod::kExact,
                                             .weights = {.distance = 0.2, .heading = 0.5, .speed = 0.3}};
-/// Turns right around obstacles ahead, so that two robots that meet do not push each other back and forth.
+/// Turns right around obstacles ahead: robots that meet must not push each other back and forth.
 constexpr PotentialFieldSettings kDrivingField{.reach_m = 0.4, .rotation = 0.6};
 
 // Paths may touch the obstacles that they lead around.

@@ -54,7 +54,7 @@ class LocalDriver {
   /// Whether the band still leads to a place that is far enough ahead on the path, without a long detour.
   bool fits_path(const LocalQuery& query) const;
   Vec2 target_m(const LocalQuery& query) const;
-  /// Fills points_m_ with the first obstacles on the rays, relative to the robot.
+  /// Fills points_m_ with the first obstacle point on each ray, relative to the robot.
   void cast_rays(const LocalQuery& query);
   void choose_velocity(const LocalQuery& query, double length_m, LocalChoice& choice);
   void follow_force(const LocalQuery& query, LocalChoice& choice) const;

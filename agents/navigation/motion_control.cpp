@@ -14,7 +14,7 @@ AccelerationCommand desired_acceleration(const Vec2& displacement_m, const Vec2&
   const double seconds = to_seconds(hold);
   if (profile.along().duration_s() > seconds)
     return {(profile.velocity_after(seconds) - velocity_mps) / seconds, hold};
-  // The velocity between two accelerations after which the robot rests at the displacement.
+  // The velocity between the two accelerations that bring the robot to rest at the displacement.
   Vec2 between_mps = displacement_m / seconds - 0.5 * velocity_mps;
   // A robot that would have to turn back first comes to rest: the limit on accelerating after the turn would
   // also weaken the braking before it.

@@ -23,8 +23,8 @@ enum class ReplanReason {
   kRobotLeftPlan,   ///< the robot is too far from the path
 };
 
-/// Follows a path by the carrot method, and decides when to plan a new one: only when the target or the robot
-/// has left the plan. Assumes that obstacles do not move.
+/// Follows a path by the carrot method, and requests a new path when the target or the robot has left the
+/// plan. Assumes that obstacles do not move.
 class PathFollower {
  public:
   explicit PathFollower(const PathFollowerSettings& settings = {}) : settings_(settings) {}

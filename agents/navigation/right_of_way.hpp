@@ -9,7 +9,7 @@ namespace sidestep {
 
 /// Whether `self` must yield to `other` while both drive. All robots must agree on who yields: if every robot
 /// yields to every other, their choices oscillate. In alternating periods, lower ids or higher ids have the
-/// right of way, so that no robot always yields.
+/// right of way, so no robot always yields.
 [[nodiscard]] bool has_right_of_way(RobotId other, RobotId self, Time t, Duration period);
 
 /// A robot that wants to pass, with the number of its order. The number is a clock reading, so older orders

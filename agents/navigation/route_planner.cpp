@@ -13,13 +13,13 @@ namespace {
 constexpr double kReplanIncrease_m = 0.05;
 // A waypoint that the robot must pass is reached at this distance.
 constexpr double kReached_m = 0.1;
-// A path that keeps clear of obstacles is straightened by at most this.
+// Maximum deviation when a path that keeps clear of obstacles is straightened.
 constexpr double kAside_m = 0.02;
-// Random samples cost more than expanded states, and a planner spends all of them if there is no path.
+// Random samples cost more than expanded states, and a planner uses all its samples if there is no path.
 constexpr std::size_t kMaxRandomSamples = 1500;
 // Maximum number of nodes of roadmaps, which would otherwise grow with each query that they do not solve.
 constexpr std::size_t kMaxRandomNodes = 2000;
-// Changes nearby do not affect the part of the last route that is farther away than this.
+// Nearby changes do not affect the part of the last route that is farther away than this.
 constexpr double kFar_m = 20;
 
 }  // namespace

@@ -20,14 +20,14 @@ struct Route {
   double length_m = 0;         ///< length of the remaining route
   Vec2 end_m{0, 0};            ///< the goal, or the nearest place that can be reached
   bool reaches_goal = true;
-  /// Leads straight out of several overlapping obstacles, regardless of what is in between.
+  /// Whether the route leads straight out of several overlapping obstacles, through everything in between.
   bool is_way_out = false;
 };
 
 /// Plans routes around obstacles, once per control cycle. A route is kept while it is free and its remaining
 /// length does not grow, so that the robot does not alternate between two routes of equal length. Grids miss
 /// narrow passages, and so may random samples. Therefore, if the planner finds no path, the lazy visibility
-/// graph decides whether there is one. If obstacles cover or enclose the goal, routes lead to the nearest
+/// graph decides whether a path exists. If obstacles cover or enclose the goal, routes lead to the nearest
 /// place that can be reached. On large floors, the search for a route may take several cycles, and a new
 /// route around changed obstacles keeps the part of the last route that is far away.
 class RoutePlanner {
@@ -77,15 +77,15 @@ class RoutePlanner {
   bool replan(const NamedPlanner& planner, const Vec2& start_m, double clearance_m, Rng& rng);
   /// Like replan(), but for a goal that is nearer to an obstacle than this distance.
   bool replan_to_tight_goal(const NamedPlanner& planner, const Vec2& start_m, double clearance_m, Rng& rng);
-  /// Plans a new route with the largest possible clearance. Returns whether there is one.
+  /// Plans a new route with the largest possible clearance. Returns whether it found a route.
   bool find_route(const NamedPlanner& planner, const Vec2& start_m, Rng& rng);
   void remember_route();
   /// Plans a route that leads around changes nearby and then along the last route. Returns whether it
   /// succeeded; it requires a long last route.
   bool find_detour(const NamedPlanner& planner, const Vec2& start_m, Rng& rng);
   bool replan_until(const NamedPlanner& planner, const Vec2& start_m, std::size_t waypoint, Rng& rng);
-  /// The waypoint at which the last route may be joined: the first one far away, if the route is free from
-  /// there on.
+  /// The waypoint at which the last route may be joined: the first distant waypoint, if the route beyond it
+  /// is free.
   std::optional<std::size_t> far_waypoint(const Vec2& start_m) const;
   /// Whether a search in this cycle has spent its budget and may be continued with a larger one in the next.
   bool may_continue_search() const { return is_cut_short_ && samples_ < kMaxTotalSamples; }
@@ -117,7 +117,7 @@ class RoutePlanner {
   const ObstacleWorld* world_;
   Field field_;
   double radius_m_;
-  double required_m_;                // distance of the robot's centre from obstacles
+  double required_m_;                // required distance of the robot's centre from obstacles
   std::vector<double> preferred_m_;  // preferred distances, descending
   double clearance_m_;               // distance that the last route keeps
   bool has_tight_end_ = false;       // the last leg of the route keeps only the required distance

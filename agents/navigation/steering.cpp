@@ -14,10 +14,10 @@ using batch::kPredictionSamples;
 
 constexpr int kTurnsPerSide = 9;
 constexpr double kTurn_rad = 12 * std::numbers::pi / 180;
-// Times for which candidate velocities are held. For kSlowDuration_s, slow velocities are candidates too.
+// Times for which candidate velocities are held. For kSlowDuration_s, slow velocities are also candidates.
 constexpr std::array kDurations_s{0.18, 0.37, 0.87};
 constexpr double kSlowDuration_s = kDurations_s[1];
-constexpr double kSlowFraction = 0.38;  // as a fraction of the speed limit
+constexpr double kSlowFraction = 0.38;  // speed of slow velocities, as a fraction of the speed limit
 // Via points lie at these fractions of the distance to the goal, along the line to it and to either side.
 constexpr std::array kViaAlong{0.3, 0.5, 0.7};
 constexpr std::array kViaLateral{0.06, 0.12, 0.18, 0.25, 0.33, 0.45};
@@ -28,11 +28,11 @@ constexpr double kMinViaDistance_m = 1.25 * batch::kWaypointRadius_m;
 constexpr double kDanger_s = 1;
 /// Danger at the end of the prediction, as a fraction of kDanger_s.
 constexpr double kFinalDangerFraction = 0.08;
-constexpr double kDangerDecayExponent = 1.75;  ///< shape of the decay between the two
+constexpr double kDangerDecayExponent = 1.75;  ///< shape of the decay of danger over time
 /// Cost of turning left: robots that all turn right can pass each other.
 constexpr double kLeftTurnPenalty_s = 0.16;
 constexpr double kSwitchPenalty_s = 0.06;  ///< cost of giving up the previous detour for another candidate
-/// Below this, the previous detour is kept without comparing others.
+/// The previous detour is kept without a comparison if its danger is below this.
 constexpr double kTolerableDanger_s = 0.02;
 // Preferred clearances beyond the minimum separation.
 constexpr double kMovingClearance_m = 0.035, kStationaryClearance_m = 0.016;

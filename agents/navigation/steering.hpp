@@ -13,14 +13,14 @@ namespace sidestep {
 /// A robot's previous choice.
 struct LastChoice {
   std::optional<Intent> detour;  ///< a velocity that is held, or a via point; nullopt: the direct path
-  std::uint64_t changes = 0;     ///< number of choices that did not continue the previous one
+  std::uint64_t changes = 0;     ///< number of choices that did not continue the previous choice
 };
 
-/// Chooses a robot's intent among other robots. The direct path is chosen as long as it is predicted to be
-/// free. Otherwise candidate detours (velocities held for some time, and via points) are predicted together
-/// with the other robots' intents. They are compared by time to goal and by danger, that is, how near they
-/// come to others and how soon. The choice is published as the robot's own intent. Safety does not depend on
-/// it. Does not allocate once warm.
+/// Chooses a robot's intent among other robots. The direct path is chosen if it is predicted to be free.
+/// Otherwise candidate detours (velocities held for some time, and via points) are predicted together with
+/// the other robots' intents. They are compared by time to goal and by danger, that is, how near they come to
+/// others and how soon. The choice is published as the robot's own intent. Safety does not depend on it. Does
+/// not allocate once warm.
 class Steering {
  public:
   Steering(const Field& field, double radius_m, const MotionLimits& limits,

@@ -14,7 +14,7 @@ constexpr double kTurn_rad = 2 * std::numbers::pi;
 LaserBeams::LaserBeams(const LaserSettings& settings, double robot_tolerance_m)
     : scanner_(settings), robot_tolerance_m_(robot_tolerance_m) {
   if (!(robot_tolerance_m >= 0 && std::isfinite(robot_tolerance_m)))
-    throw std::invalid_argument("the tolerance of robots in a scan is negative or not finite");
+    throw std::invalid_argument("the tolerance of robots in a scan must be finite and not negative");
   beams_.resize(static_cast<std::size_t>(settings.beams));
   const int last = settings.beams - 1;
   spacing_rad_ =
@@ -36,13 +36,13 @@ Beam LaserBeams::interpreted(float range_m, const Vec2& direction, std::span<con
 
 void LaserBeams::read(const LaserScan& scan, std::span<const Circle> robots) {
   if (!scan.at_m.allFinite() || !std::isfinite(scan.heading_rad))
-    throw std::invalid_argument("the pose of a scan is not finite");
+    throw std::invalid_argument("the pose of a scan must be finite");
   if (scan.ranges_m.size() != beams_.size())
-    throw std::invalid_argument(
-        fmt::format("{} ranges in a scan of {} beams", scan.ranges_m.size(), beams_.size()));
+    throw std::invalid_argument(fmt::format("got a scan with {} ranges, expected one for each of {} beams",
+                                            scan.ranges_m.size(), beams_.size()));
   for (const Circle& robot : robots) {
     if (!robot.centre_m.allFinite() || !std::isfinite(robot.radius_m) || robot.radius_m < 0)
-      throw std::invalid_argument("a robot in a scan is not finite or has a negative radius");
+      throw std::invalid_argument("a robot in a scan must be finite, with a radius that is not negative");
   }
   at_m_ = scan.at_m;
   captured_at_ = scan.captured_at;

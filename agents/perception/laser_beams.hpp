@@ -49,7 +49,7 @@ class LaserBeams {
   const Vec2& at_m() const { return at_m_; }
   Time captured_at() const { return captured_at_; }
   const LaserSettings& settings() const { return scanner_.settings(); }
-  /// The counter-clockwise angle from a beam to the next one; for the last beam, to the first.
+  /// The counter-clockwise angle from a beam to the next beam; for the last beam, to the first beam.
   double gap_rad(int beam) const { return beam + 1 < count() ? spacing_rad_ : last_gap_rad_; }
 
  private:

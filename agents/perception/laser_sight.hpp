@@ -35,7 +35,7 @@ class LaserSight {
 
   const LaserSettings& laser() const { return beams_.settings(); }
   /// Processes a scan. `robots` are the known robots at the time of the scan. Returns false and changes
-  /// nothing if the scan is not newer than the last one.
+  /// nothing if the scan is not newer than the last scan.
   bool update(const LaserScan& scan, std::span<const Circle> robots);
 
   /// Time of the last scan; Time{} if there is none.

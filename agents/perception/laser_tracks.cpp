@@ -77,7 +77,7 @@ bool LaserTracks::is_explained(const Vec2& hit, const LocalGrid& grid) const {
   return is_found;
 }
 
-/// Whether a track that has moved is at the hit, so that the object may have come there recently.
+/// Whether a track that has moved is at the hit, which means that the object may have arrived recently.
 bool LaserTracks::is_of_moving_track(const Vec2& hit, Time occupied_since) const {
   return std::ranges::any_of(entries_, [&](const Entry& entry) {
     const double reach_m = entry.radius_m + kTrackSlack_m;

@@ -36,7 +36,7 @@ class LaserTracks {
   LaserTracks();
 
   /// Processes a scan, which the grid must not have processed yet. Returns false and changes nothing if the
-  /// scan is not newer than the last one. Does not allocate once warm.
+  /// scan is not newer than the last scan. Does not allocate once warm.
   bool update(const LaserBeams& beams, const LocalGrid& grid, const PriorMap& floor = {});
 
   /// The confirmed tracks.

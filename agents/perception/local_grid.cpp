@@ -32,7 +32,7 @@ struct CellAxis {
 LocalGrid::LocalGrid(const LocalGridSettings& settings) : settings_(settings) {
   const auto side = static_cast<std::size_t>(settings.side_cells);
   if (settings.side_cells < 16 || settings.side_cells > 4096 || !std::has_single_bit(side))
-    throw std::invalid_argument("a local grid: the cells per side are not a power of two from 16 to 4096");
+    throw std::invalid_argument("a local grid's cells per side must be a power of two from 16 to 4096");
   log_odds_.resize(side * side);
   occupied_since_.resize(side * side);
   crossed_at_.resize(side * side, Time::min());

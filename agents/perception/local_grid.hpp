@@ -23,7 +23,7 @@ class LocalGrid {
   // means unknown.
   static constexpr float kHit = 0.85F;  ///< added to a cell with hits, once per scan
   static constexpr float kMiss = 0.4F;  ///< subtracted from a cell that beams cross, once per scan
-  /// Evidence saturates at ± this value, so that changes are noticed soon.
+  /// Evidence saturates at ± this value; otherwise changes would be noticed late.
   static constexpr float kLimit = 3.5F;
   static constexpr double kDecay_s = 20;  ///< time in which evidence decays to 1/e without observations
 
@@ -33,7 +33,7 @@ class LocalGrid {
   /// Moves the window to the scanner, lets old evidence decay, and adds the evidence of a scan. Beams clear
   /// the cells up to their hit, or up to the maximum range. A cell with a hit is not cleared by other beams
   /// of the same scan. Hits on known robots are not added, and dropouts change nothing. Returns false and
-  /// changes nothing if the scan is not newer than the last one. Throws std::invalid_argument for positions
+  /// changes nothing if the scan is not newer than the last scan. Throws std::invalid_argument for positions
   /// beyond kMaxMapOrigin_m.
   bool update(const LaserBeams& beams);
 

@@ -19,7 +19,7 @@ bool ScanClusters::joins(const LaserBeams& beams, const Beam& last, const Beam& 
   return (beams.end_m(last) - beams.end_m(next)).norm() <= join_m_ + spread_m;
 }
 
-/// Whether the beam beside an end of a cluster is nearer, so that more of the object may be hidden.
+/// Whether the beam beside an end of a cluster is nearer, which means that it may hide more of the object.
 bool ScanClusters::is_hidden_beside(const LaserBeams& beams, int beam, int step) const {
   for (int i = 1; i <= kMissing + 1; ++i) {
     int beside = beam + i * step;
@@ -50,7 +50,7 @@ void ScanClusters::find(const LaserBeams& beams, std::span<const std::uint8_t> i
   clusters_.clear();
   const int count = beams.count();
   const auto selected = [&](int beam) { return is_selected[static_cast<std::size_t>(beam)] != 0; };
-  // A scan of a full turn is searched from a beam outside all clusters, so that no cluster is divided.
+  // A scan of a full turn is searched from a beam outside all clusters, so no cluster is divided.
   int start = 0;
   if (is_full_turn(beams))
     while (start < count && (selected(start) || beams[start].end == BeamEnd::kUnknown)) ++start;

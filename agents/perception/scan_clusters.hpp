@@ -28,7 +28,7 @@ class ScanClusters {
  private:
   /// The hits of the current cluster.
   struct Run {
-    int first = 0, last = 0, hits = 0;  // beams, numbered on beyond the end of the scan
+    int first = 0, last = 0, hits = 0;  // beam numbers continue beyond the end of the scan
     Vec2 sum_m{0, 0};
     double nearest_m = 0;
   };

@@ -24,7 +24,7 @@ class SightBorder {
   std::span<const Frontier> closed_gaps() const { return closed_; }
 
  private:
-  /// The region seen between a ray and the next one: the offset along `normal` is at most `height_m`.
+  /// The region seen between a ray and the next ray: the offset along `normal` is at most `height_m`.
   struct Wedge {
     double angle_rad;  // angle of the ray
     Vec2 normal;

@@ -29,7 +29,7 @@ struct ClosedGap {
 /// How far a disc can protrude through a gap that is not wider than the disc.
 [[nodiscard]] double sagitta_m(double radius_m, double gap_m);
 
-/// The counter-clockwise angle from one ray to another; a full turn from a ray to itself.
+/// The counter-clockwise angle from one ray to another ray; a full turn from a ray to itself.
 [[nodiscard]] double angle_between_rad(const SightRay& ray, const SightRay& next);
 
 /// Maximum distance from a stationary point that a person of this radius can reach by protruding across a
@@ -47,7 +47,7 @@ struct ClosedGap {
 /// about missing rays.
 void drop_narrow_shadows(std::vector<SightRay>& rays, double radius_m);
 
-/// Drops the rays within closed gaps: a disc can neither pass nor be in front of the gap between the two
+/// Drops the rays within closed gaps: a disc can neither pass nor be in front of the gap between the
 /// remaining rays.
 void drop_rays_within_gaps(std::vector<SightRay>& rays, double radius_m);
 

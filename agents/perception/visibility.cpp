@@ -13,14 +13,14 @@ double min_contact_distance_m(double robot_radius_m, double clear_m, double pers
 
 Visibility::Visibility(const VisibilitySettings& settings) : settings_(settings) {
   if (!(settings.person_radius_m > 0 && std::isfinite(settings.person_radius_m)))
-    throw std::invalid_argument("the radius of people is not positive and finite");
+    throw std::invalid_argument("the radius of people must be positive and finite");
   const auto is_error = [](double error) { return error >= 0 && std::isfinite(error); };
   if (!is_error(settings.range_error_m))
-    throw std::invalid_argument("the error of ranges is negative or not finite");
+    throw std::invalid_argument("the error of ranges must be finite and not negative");
   if (!is_error(settings.position_error_m) || !is_error(settings.heading_error_rad))
-    throw std::invalid_argument("the error of a scan's pose is negative or not finite");
+    throw std::invalid_argument("the error of a scan's pose must be finite and not negative");
   if (!is_error(settings.min_contact_m))
-    throw std::invalid_argument("the distance within which no person is touched is negative or not finite");
+    throw std::invalid_argument("the minimum contact distance must be finite and not negative");
 }
 
 void Visibility::begin(const LaserBeams& beams) {

@@ -35,7 +35,7 @@ struct VisibilitySettings {
 /// the line, and the disc protrudes across the line by at most the sagitta r - sqrt(r² - c² / 4). A larger
 /// disc protrudes less. For a wide angle, the nearest point that a disc can reach between the beams is at r /
 /// sin(a / 2) - r. The region before these lines was seen free. Beams without information are left out, which
-/// widens the angle between the others. Beams that end at a narrow object are left out too, if no person fits
+/// widens the angle between the others. Beams that end at a narrow object are also left out if no person fits
 /// into its shadow.
 ///
 /// **Closed and open.** The end of a beam does not show what it has hit: the side of a person who stands in a
@@ -49,7 +49,7 @@ struct VisibilitySettings {
 /// the surfaces of everything that is not within r of known objects, e.g. robots, people and new furniture.
 /// The open parts are the frontiers.
 ///
-/// **What follows.** Let a person touch the robot at y at time t, and let the person's centre have moved from
+/// **Consequences.** Let a person touch the robot at y at time t, and let the person's centre have moved from
 /// z0 at the time t0 of the scan to z. The curve from z0 along the centre's path to z, and straight on to y,
 /// is at most v_p (t - t0) + R long, where R is the person's radius. At t0 the person's disc was outside the
 /// region, so the curve crosses the border.

@@ -10,15 +10,15 @@ namespace sidestep {
 
 /// Plans to the goal or, if the goal touches an obstacle, to the nearest free position that the planner can
 /// reach. The domain handles a start that touches obstacles. `planner` is any planner with plan(domain,
-/// start, budget, rng). The goal itself gets the whole budget. All alternative positions share the same
-/// number of samples once more, because a planner that samples at random would spend all of them on each
+/// start, budget, rng). The goal itself gets the whole budget. All alternative positions together get the
+/// same number of samples again, because a planner that samples at random would spend all of them on each
 /// unreachable position.
 template <typename Planner>
 const Plan<Vec2>& plan_with_fallback_goal(Planner& planner, const DiscDomain& domain, const Vec2& start,
                                           const Budget& budget, Rng& rng) {
   const Plan<Vec2>* plan = &planner.plan(domain, start, budget, rng);
   if (plan->arrives() || !domain.goal_is_blocked()) return *plan;
-  // A position connected to an unreachable one by a straight motion is unreachable too.
+  // Positions connected to an unreachable position by a straight motion are also unreachable.
   std::vector<Vec2> tried{domain.goal(start)};
   Budget rest = budget;
   for (const Vec2& position : domain.free_positions_near_goal()) {

@@ -41,7 +41,7 @@ struct LocalMethods {
 struct NamedPlanner {
   std::string name;
   PlannerKind kind = PlannerKind::kForAnyWorld;
-  /// The planner that this one modifies or adds a feature to; empty: none.
+  /// Name of the planner that this planner modifies or extends; empty: none.
   std::string baseline;
   /// Valid until the planner's next plan.
   std::function<const Plan<Vec2>&(const DiscDomain&, const Vec2& start, const Budget&, Rng&)> plan;
@@ -60,7 +60,7 @@ inline constexpr double kOmplGoalBias = 0.05;
 /// (ompl::magic::MAX_MOTION_LENGTH_AS_SPACE_EXTENT_FRACTION).
 [[nodiscard]] double ompl_range_m(const Field& field, double radius_m);
 
-/// The names that make_planner() knows, in the order of the benchmark's table.
+/// The names that make_planner() accepts, in the order of the benchmark's table.
 const std::vector<std::string>& planner_names();
 
 /// Throws std::invalid_argument for unknown names.

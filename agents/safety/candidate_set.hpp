@@ -19,8 +19,8 @@ class CandidateSet {
   CandidateSet(int samples, const MotionLimits& limits, const batch::Kernels& kernels);
 
   /// Makes the desired acceleration candidate 0, and fills the rest with samples of A(v), the accelerations
-  /// allowed at this velocity, limited so that they may be held for `hold_time` at this maximum speed.
-  /// Precondition: the desired acceleration obeys the limits.
+  /// allowed at this velocity. Samples are limited such that they may be held for `hold_time` without
+  /// exceeding the maximum speed. Precondition: the desired acceleration obeys the limits.
   void sample_accelerations(const Vec2& velocity_mps, const Vec2& desired_mps2, Duration hold_time,
                             double max_speed_mps, Rng& rng);
   /// Replaces samples with these accelerations, which are taken in this order after the desired acceleration.
@@ -35,7 +35,7 @@ class CandidateSet {
                double other_acceleration_mps2);
 
   /// Removes the candidate nearest to the desired acceleration and returns its index. Also removes all
-  /// candidates nearer than `spread_mps2` to the accepted one, if accept() was called since the last call.
+  /// candidates nearer than `spread_mps2` to a candidate that was accepted since the last call.
   std::optional<std::size_t> take_nearest(double spread_mps2);
   /// Accepts the candidate that was last taken.
   void accept(std::size_t index) { accepted_ = index; }

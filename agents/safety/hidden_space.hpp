@@ -27,11 +27,11 @@ struct HiddenSpace {
 };
 
 /// Whether the robot is at rest before a person who was hidden could reach it (passive safety), or creeps to
-/// a place where no person can be nearer than at its present place. Otherwise a robot next to a place where a
-/// person may step out could not leave. Until the trajectory ends, the disc of radius `min_separation_m`, the
-/// robot's radius plus the margin, around its centre stays clear of all positions that a person may have
-/// reached from a frontier. Precondition: the trajectory begins in the region that was seen. Conservative:
-/// never falsely true; false negatives only within a millimetre.
+/// a place where no person can be nearer than at its present place. Without this exception, a robot next to a
+/// place where a person may step out could not leave. Until the trajectory ends, the disc of radius
+/// `min_separation_m`, the robot's radius plus the margin, around its centre stays clear of all positions
+/// that a person may have reached from a frontier. Precondition: the trajectory begins in the region that was
+/// seen. Conservative: never falsely true; false negatives only within a millimetre.
 ///
 /// A distance decreases at most at the sum of both speeds. So a distance that is large enough now stays large
 /// enough for a known time, and the check advances by that time (conservative advancement). A trajectory that

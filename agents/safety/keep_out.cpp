@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kRounding_m = 1e-9;
 
-/// Approximates the path by a chord for each phase; the error is less than a millimetre.
+/// Whether a candidate enters a zone. Approximates each phase by a chord, with an error of less than 1 mm.
 bool touches(const Trajectory& candidate, const Shape& zone, double radius) {
   Time t = candidate.start();
   Vec2 from = candidate.state_at(t).position_m;

@@ -61,11 +61,11 @@ struct SearchResult {
 
 /// Dynamics safety search (Bruce, CMU-CS-06-181, ch. 5). Tests the desired acceleration and random
 /// accelerations from A(v), the set allowed at the robot's velocity v. Each is held for `hold_time` and
-/// followed by the stop manoeuvre. The search keeps those candidates that stay on the field and clear of the
+/// followed by the stop manoeuvre. The search keeps the candidates that stay on the field and clear of the
 /// obstacles and of every version that other robots may be executing. Allocates nothing once warm.
 class SafetySearch {
  public:
-  /// Number of accelerations sampled from A(v) in addition to the desired one.
+  /// Number of accelerations sampled from A(v) in addition to the desired acceleration.
   static constexpr int kSamples = 48;
   /// Minimum difference between the accelerations of two candidates.
   static constexpr double kSpread_mps2 = 0.5;
@@ -75,7 +75,7 @@ class SafetySearch {
   [[nodiscard]] SearchResult search(const SearchQuery& query, TrajectoryIndex& others, Rng& rng);
 
  private:
-  /// A trajectory or a static obstacle that a candidate may come near to; one of the two pointers is null.
+  /// A trajectory or a static obstacle that a candidate may come near to; one of its pointers is null.
   struct Other {
     const Trajectory* trajectory;
     const Shape* obstacle;

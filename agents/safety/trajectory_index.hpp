@@ -20,7 +20,7 @@ class TrajectoryIndex {
   void clear();
   /// Stores a reference to the version, which must stay valid until clear() or assign().
   void add(const Version& version) { add(version, trajectory_bounds(version.trajectory)); }
-  /// Like the other add(), for a version whose bounds are already known.
+  /// Like add(version), for a version whose bounds are already known.
   void add(const Version& version, const TrajectoryBounds& bounds);
   void assign(std::span<const Version> versions);
 

@@ -41,7 +41,7 @@ double excess_distance_m(const Trajectory& trajectory, Time from, const Uncontro
     const double distance_m = (trajectory.state_at(t).position_m - body_m).norm();
     spare_m = std::min(spare_m, distance_m - body.separation_m - kAllowance_m);
   }
-  // From then on, the body may still be approaching, or may already have passed.
+  // When the robot comes to rest, the body may still be approaching, or may already have passed.
   UncontrolledBody later = body;
   later.reach.position_m +=
       to_seconds(std::max(from, trajectory.end()) - body.reach.observed_at) * body.velocity_mps;

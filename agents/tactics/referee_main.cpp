@@ -45,12 +45,12 @@ int run(int argc, char** argv) {
   program.add_options = [&](const CliCommand& app) {
     app.add_option("--referee", options.endpoint, "ADDRESS:PORT of the referee's packets").show_default();
     app.add_option("--league-interface", options.interface,
-                   "address of the network interface of these packets")
+                   "address of the network interface that receives these packets")
         .show_default();
     app.add_option("--team", team, "the team whose robots obey, if the run has only one team")
         .check(one_of({"blue", "yellow"}));
     app.add_flag("--defence-areas", options.settings.closes_defence_areas,
-                 "keep all robots, goalkeepers too, out of both defence areas");
+                 "keep all robots, including goalkeepers, out of both defence areas");
     app.on_parsed([&] {
       if (!team.empty()) options.settings.team = team == "blue" ? Team::kBlue : Team::kYellow;
     });

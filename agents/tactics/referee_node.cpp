@@ -77,7 +77,7 @@ void RefereeNode::report_silence() {
   events_.report(LogLevel::kWarning, std::nullopt, "no packet from the referee for {} s: {}",
                  to_seconds(kSilenceTimeout),
                  packet_ ? fmt::format("{} stays in force", name_of(packet_->command))
-                         : std::string("nothing is ordered"));
+                         : std::string("no orders are in force"));
 }
 
 void RefereeNode::update() {

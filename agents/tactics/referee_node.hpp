@@ -18,10 +18,10 @@
 
 namespace sidestep {
 
-/// Turns the referee's commands into orders to all robots. HALT is ordered at once, and everything else in
-/// steps of kPeriod, so that packets cannot cause a flood of orders. Without packets, the last packet's
-/// demands stay in force, and the zone around the ball still follows the ball. If the ball is lost, the zone
-/// stays where the ball was last seen.
+/// Turns the referee's commands into orders to all robots. HALT is ordered immediately, and all other demands
+/// once per kPeriod, so packets cannot cause a flood of orders. Without packets, the last packet's demands
+/// stay in force, and the zone around the ball still follows the ball. If the ball is lost, the zone stays
+/// where the ball was last seen.
 class RefereeNode {
  public:
   RefereeNode(Bus& bus, const Scenario& scenario, const RefereeSettings& settings);
@@ -30,7 +30,7 @@ class RefereeNode {
 
   /// Processes an untrusted datagram.
   void on_datagram(std::span<const std::byte> bytes, const league::Endpoint& from);
-  /// Calls back for each event of at least this level.
+  /// Sets a callback for events of level `min_level` or higher.
   void on_event(LogLevel min_level, OnLogEvent listener) {
     events_.set_listener(min_level, std::move(listener));
   }

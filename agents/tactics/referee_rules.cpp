@@ -11,11 +11,11 @@
 namespace sidestep {
 namespace {
 
-/// Below the rules' 1.5 m/s, because a robot is sometimes slightly faster than its reference.
+/// Speed limit in stopped play: below the rules' 1.5 m/s, because robots may slightly exceed their reference.
 constexpr double kStopSpeedLimit_mps = 1.4;
 /// Required distance between the edges of robot and ball, as in the rules.
 constexpr double kBallDistance_m = 0.5;
-/// Allowance for the error of the ball's position, and for its motion until all robots know of it.
+/// Allowance for the error of the ball's position, and for its motion until all robots know its new position.
 constexpr double kBallAllowance_m = 0.03;
 // Robots also leave the line along which the ball will roll within this time, up to a maximum length.
 constexpr double kBallLookahead_s = 1, kMaxBallPath_m = 2;
@@ -33,7 +33,7 @@ bool is_in_play(RefereeCommand command) {
 }
 
 /// Whether the rules for stopped play apply. They also apply in a timeout, when people may be on the field,
-/// and after a hold ends, so that no robot is fast before the next command is known.
+/// and after a hold ends, because no robot may be fast before the next command is known.
 bool is_stopped(RefereeCommand command) {
   switch (command) {
     case RefereeCommand::kHalt:

@@ -57,7 +57,7 @@ class RefereeRules {
   std::optional<Zone> ball_zone(const league::RefereePacket& packet,
                                 const std::optional<BallState>& ball) const;
   /// The zone along the ball's predicted path. Robots in it have time to leave. It is separate from the zone
-  /// around the ball, so that they leave without passing the ball. nullopt if the ball rests.
+  /// around the ball, so robots leave it without passing the ball. nullopt if the ball rests.
   std::optional<Zone> ball_path_zone(const BallState& ball) const;
 
   RefereeSettings settings_;

@@ -16,7 +16,7 @@ class RefereeStream {
   enum class Outcome {
     kAccepted,
     kLate,    ///< sent before the last accepted packet
-    kForeign  ///< from another sender, while the first one is still sending
+    kForeign  ///< from another sender, while the first sender is still sending
   };
 
   Outcome add(const league::RefereePacket& packet, const league::Endpoint& from, Time now);

@@ -57,7 +57,7 @@ TEST_CASE("with --log-level debug, the log of a run lists each registration with
     CAPTURE(robot);
     CHECK(run.logged("debug   sidestep-coordinator: robot " + std::to_string(robot) +
                      " is registered by its agent"));
-    CHECK(run.logged("info    agent-" + std::to_string(robot) + ": arrived at goal 0, the last one"));
+    CHECK(run.logged("info    agent-" + std::to_string(robot) + ": arrived at goal 0, the last goal"));
   }
   CHECK(run.logged("info    sidestep-run: all processes are running"));
   const auto report = run.report();

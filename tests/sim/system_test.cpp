@@ -258,9 +258,9 @@ TEST_CASE("the report lists each epoch with its reason, and processes log the sa
   CHECK(json["epochs"][1]["reason"] == report.epochs[1].reason);
   const std::string second = std::to_string(report.epochs[1].epoch);
   CHECK(reported("coordinator 1: begins epoch " + second + ": no heartbeat of coordinator 0 for 1"));
-  CHECK(reported("agent 0: adopts epoch " + second + " of coordinator 1"));
+  CHECK(reported("agent 0: adopted epoch " + second + " of coordinator 1"));
   CHECK(reported("agent 0: registered in epoch " + second));
-  CHECK(reported("agent 0: arrived at goal 0, the last one"));
+  CHECK(reported("agent 0: arrived at goal 0, the last goal"));
 }
 
 }  // namespace sidestep::system_test

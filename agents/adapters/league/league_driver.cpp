@@ -21,7 +21,7 @@ void LeagueDriver::send(std::span<const BaseCommand> commands) {
   }
   for (const Team team : {Team::kBlue, Team::kYellow}) {
     const league::TeamCommands& packet = packets_[static_cast<std::size_t>(team)];
-    // A datagram that cannot be sent is counted; the next one replaces it.
+    // A datagram that cannot be sent is counted; the next datagram replaces it.
     if (!packet.robots.empty())
       (void)socket_.send(encode(packet), team == Team::kBlue ? ports_.blue : ports_.yellow);
   }

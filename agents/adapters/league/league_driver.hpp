@@ -32,7 +32,7 @@ class LeagueDriver : public Driver {
   void send(std::span<const BaseCommand> commands) override;
   void count_drops(DropCounters& drops) const override;
 
-  /// A file descriptor that becomes readable when an answer has arrived. Call receive() then.
+  /// A file descriptor that becomes readable when an answer has arrived. Then call receive().
   int descriptor() const { return socket_.descriptor(); }
   void receive();
 

@@ -17,7 +17,7 @@ class SkeletonDriver : public Driver {
   void send(std::span<const BaseCommand> commands) override;
   void on_odometry(std::function<void(const OdometryReport&)> callback) override;
 
-  /// The pose of a base in its own frame, initially the origin.
+  /// The pose of a base in its odometry frame, initially the origin.
   const OdometryReport& base(RobotId robot) const;
 
  private:

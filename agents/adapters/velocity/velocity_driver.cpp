@@ -6,8 +6,8 @@
 namespace sidestep {
 namespace {
 
-// If a base's clock is off by more than this, it shows a different time, for example a simulator's. Its
-// odometry is then timestamped on arrival.
+// If a base's clock is off by more than this, it keeps a different time, for example simulated time. In that
+// case its odometry is timestamped on arrival.
 constexpr Duration kMaxClockError = std::chrono::seconds(1);
 constexpr double kMaxCoordinate_m = 1e6, kMaxNormError = 0.1;
 

@@ -8,7 +8,7 @@ namespace {
 
 // The forces on a bubble are displacements. The gains and the reach of obstacles are from Philippsen (EPFL
 // thesis 3146, ch. 3), whose robots are about 0.7 m wide; scale the internal force with the robot's size.
-constexpr double kInternalForce_m = 0.1;  ///< towards each neighbour
+constexpr double kInternalForce_m = 0.1;  ///< internal force towards each neighbour
 /// External force per metre by which the bubble's radius is below the reach of obstacles.
 constexpr double kExternalForce = 0.5;
 constexpr double kObstacleReach_radii = 2;  ///< reach of obstacles, in robot radii

@@ -20,8 +20,8 @@ struct Bubble {
                                   double robot_radius_m);
 
 /// The diameter of the largest disc that can move straight from the centre of one bubble to the centre of
-/// another without leaving both: the common chord if it lies between the centres, otherwise the diameter of
-/// the smaller bubble; 0 if they do not overlap.
+/// another bubble without leaving either bubble: the common chord if it lies between the centres, otherwise
+/// the diameter of the smaller bubble; 0 if they do not overlap.
 [[nodiscard]] double passage_width_m(const Bubble& a, const Bubble& b);
 
 }  // namespace sidestep

@@ -80,7 +80,7 @@ void BubbleBand::follow(const Vec2& robot_m) {
 void BubbleBand::step(const Query& free) {
   constexpr int kAttempts = 3;
   const double needed_m = kBrokenBelow * 2 * robot_radius_m_;
-  // Each bubble takes into account where the previous one has moved, so that neighbours do not overshoot
+  // Each bubble takes the previous bubble's new position into account, so neighbours do not overshoot
   // together.
   for (std::size_t i = 1; i + 1 < bubbles_.size(); ++i) {
     const Bubble &before = bubbles_[i - 1], &after = bubbles_[i + 1];

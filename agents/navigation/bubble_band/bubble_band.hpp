@@ -9,9 +9,9 @@
 namespace sidestep {
 
 struct BubbleBandSettings {
-  /// Far along the band, obstacles near the robot are ignored: they may have moved when the robot gets there.
-  /// The distance from the robot within which they are ignored grows with the path length from 0 to this.
-  /// With 0, nothing is ignored; Philippsen uses 4.
+  /// Far along the band, obstacles near the robot are ignored: they may have moved by the time the robot
+  /// arrives. The distance from the robot within which they are ignored grows with the path length, from 0 to
+  /// max_masked_m. With 0, nothing is ignored; Philippsen uses 4.
   double max_masked_m = 0;
 };
 
@@ -46,7 +46,7 @@ class BubbleBand {
     fit(Query(free));
   }
 
-  /// Whether the robot does not fit through some place in the band. A new path must then be planned.
+  /// Whether the robot does not fit through some place in the band. If so, a new path must be planned.
   bool is_broken() const { return is_broken_; }
   /// The bubbles, from the robot to the goal.
   std::span<const Bubble> bubbles() const { return bubbles_; }
@@ -54,7 +54,7 @@ class BubbleBand {
   /// The position on the band at a path length from the robot, or the goal if the band is shorter.
   /// Precondition: the band was started.
   Vec2 position_m(double ahead_m) const;
-  /// A bubble at a path length ignores obstacles up to this distance from the robot.
+  /// The distance from the robot within which a bubble at a path length ignores obstacles.
   double masked_m(double path_m) const;
 
  private:

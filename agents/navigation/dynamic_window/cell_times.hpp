@@ -41,9 +41,9 @@ struct ObstacleGrid {
 /// Times are computed for an outline that is enlarged by kCellPadding_m, which exceeds all rounding errors.
 struct CellTimes {
   ObstacleGrid grid;
-  float horizon_s = 0;         ///< represents all later times too
+  float horizon_s = 0;         ///< represents all later times
   std::vector<float> times_s;  ///< indexed by cell, then slot; horizon_s for velocities beyond the limits
-  /// Indexed by cell: whether the outline touches the cell before it moves, so that the cell's times are 0.
+  /// Indexed by cell: whether the outline touches the cell before it moves; if so, the cell's times are 0.
   std::vector<bool> touches_hull;
 
   std::span<float> of(std::size_t cell) { return std::span(times_s).subspan(cell * kSlots, kSlots); }

@@ -31,7 +31,7 @@ class CollisionTimes {
   }
 
   /// Computes the times for the velocities of a window, up to the horizon. A velocity whose time is at most
-  /// that in `needed_s` is inadmissible; its computed time may be an upper bound only. Returns false if a
+  /// its time in `needed_s` is inadmissible; its computed time may be only an upper bound. Returns false if a
   /// point touches the outline. Skips points that are not finite. Does not allocate once warm.
   [[nodiscard]] bool compute(std::span<const Vec2> points_m, const GridWindow& window,
                              const VelocityTimes& needed_s) {
@@ -51,7 +51,7 @@ class CollisionTimes {
       for (const Vec2& point : exact_) {
         if (times_s_[slot] <= needed_s[slot]) break;
         const double time_s = outline_.time_to_collision_s(point, slot);
-        // Rounds down, so that the stored time is never later than the exact time.
+        // Rounds down: the stored time must never be later than the exact time.
         if (time_s < static_cast<double>(times_s_[slot]))
           times_s_[slot] = std::nextafter(static_cast<float>(time_s), 0.0F);
       }
@@ -61,7 +61,7 @@ class CollisionTimes {
 
   float time_s(std::size_t slot) const { return times_s_[slot]; }
   const Outline& outline() const { return outline_; }
-  /// nullopt with the exact method.
+  /// The look-up table; nullopt with the exact method.
   const std::optional<CollisionTable>& table() const { return table_; }
 
  private:

@@ -32,7 +32,7 @@ struct DifferentialDrive {
     return std::abs(motion.speed_mps) <= speed_mps + kRounding &&
            std::abs(motion.turn_rate_radps) <= turn_rate_radps + kRounding;
   }
-  /// Time until both wheels are at rest. They slow down in proportion, so that the robot stays on its arc.
+  /// Time until both wheels are at rest. They slow down in proportion, which keeps the robot on its arc.
   double time_to_brake_s(const WheelSpeeds& wheels) const {
     return std::max(std::abs(wheels.left_mps), std::abs(wheels.right_mps)) / wheel_acceleration_mps2;
   }

@@ -56,7 +56,7 @@ void DiscWindow::prepare(double cycle_s) {
     const Vec2& velocity = times_.outline().velocities_mps[slot];
     if (!is_within_speed(velocity, limits_.speed_mps)) return;
     const double brake_s = velocity.norm() / limits_.deceleration_mps2;
-    // Rounded up, so that comparisons in single precision are on the safe side.
+    // Rounded up, which makes comparisons in single precision conservative.
     needed_s_[slot] = std::nextafter(static_cast<float>(brake_s + cycle_s), kForbidden_s);
   });
 }
@@ -90,7 +90,7 @@ Objectives DiscWindow::rate(std::size_t slot, const Vec2& goal_m) const {
   const double stopping_mps = std::sqrt(2 * limits_.deceleration_mps2 * goal_m.norm());
   const double off_mps = speed - std::min(stopping_mps, limits_.speed_mps);
   return {distance_objective(times_.time_s(slot), needed_s_[slot], static_cast<float>(kDiscHorizon_s)),
-          speed == 0 ? 0.5F  // without a direction
+          speed == 0 ? 0.5F  // at rest there is no direction
                      : heading_objective(static_cast<float>(velocity.dot(to_go)),
                                          static_cast<float>(cross(velocity, to_go))),
           static_cast<float>(1 - std::abs(off_mps) / limits_.speed_mps)};
@@ -112,7 +112,7 @@ const DiscWindowChoice& DiscWindow::choose(const DiscWindowQuery& query) {
     choice_.admissible.push_back({times_.outline().velocities_mps[slot], times_.time_s(slot), objectives,
                                   objectives.weighted(settings_.weights)});
   }
-  // Ties are broken by the velocity, so that the order does not depend on the library.
+  // Ties are broken by the velocity: the order must not depend on the library.
   std::ranges::sort(choice_.admissible, std::greater<>(), [](const RatedVelocity& rated) {
     return std::tuple(rated.value, rated.velocity_mps.x(), rated.velocity_mps.y());
   });

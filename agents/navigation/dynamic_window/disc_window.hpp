@@ -52,7 +52,7 @@ class DiscWindow {
   /// velocity, goal, cycle or window is not finite, or the cycle is not positive.
   const DiscWindowChoice& choose(const DiscWindowQuery& query);
 
-  /// nullopt with the exact method.
+  /// The look-up table; nullopt with the exact method.
   const std::optional<CollisionTable>& table() const { return times_.table(); }
 
  private:

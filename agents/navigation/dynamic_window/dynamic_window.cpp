@@ -63,7 +63,7 @@ void DynamicWindow::prepare(double cycle_s) {
     const ArcMotion& motion = times_.outline().motions[slot];
     const double brake_s = drive_.time_to_brake_s(drive_.wheels(row, column));
     if (drive_.is_allowed(motion)) {
-      // Rounded up, so that comparisons in single precision are on the safe side.
+      // Rounded up, which makes comparisons in single precision conservative.
       needed_s_[slot] = std::nextafter(static_cast<float>(brake_s + cycle_s), kForbidden_s);
     }
     // While braking at a constant rate, the robot moves half as far as at full speed.

@@ -62,7 +62,7 @@ class DynamicWindow {
   /// wheel speeds, goal, cycle or window is not finite, or the cycle or the goal's radius is not positive.
   const WindowChoice& choose(const WindowQuery& query);
 
-  /// nullopt with the exact method.
+  /// The look-up table; nullopt with the exact method.
   const std::optional<CollisionTable>& table() const { return times_.table(); }
 
  private:

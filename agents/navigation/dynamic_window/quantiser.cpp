@@ -22,7 +22,7 @@ class FineHistogram {
   FineHistogram(std::span<const float> times_s, float horizon_s)
       : count_before_(kBins + 1), sum_before_s_(kBins + 1), least_s_(kBins, kNone_s) {
     for (const float time : times_s) {
-      if (!(time >= 0)) throw std::invalid_argument("a collision time is negative");
+      if (!(time >= 0)) throw std::invalid_argument("a collision time must not be negative");
       if (time == 0 || time >= horizon_s) continue;
       const auto bin = std::min(static_cast<std::size_t>(time / horizon_s * kBins), kBins - 1);
       count_before_[bin + 1] += 1;

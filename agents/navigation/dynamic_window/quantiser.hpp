@@ -19,9 +19,9 @@ class Quantiser {
   static Quantiser uniform(float horizon_s);
   /// At most `levels` levels for these times (Lloyd 1982, Max 1960): intervals whose boundaries lie halfway
   /// between the means of neighbouring intervals. Unlike the original, each interval is represented by its
-  /// minimum (Philippsen, EPFL thesis 3146, ch. 3). The first level is 0. The last one is the horizon, which
-  /// represents all later times. Throws std::invalid_argument if there are fewer than three levels or more
-  /// than kLevels, or a time is negative.
+  /// minimum (Philippsen, EPFL thesis 3146, ch. 3). The first level is 0. The last level is the horizon,
+  /// which represents all later times. Throws std::invalid_argument if there are fewer than three levels or
+  /// more than kLevels, or a time is negative.
   static Quantiser lloyd_max(std::span<const float> times_s, float horizon_s, std::size_t levels = kLevels);
 
   /// The number of the last level that is not after the time. Precondition: the time is not negative.

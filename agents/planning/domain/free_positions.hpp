@@ -10,9 +10,9 @@
 namespace sidestep {
 
 /// Finds the nearest free position in each of 64 directions, up to `max_distance_m` away, and returns them
-/// sorted by distance. `step_m` is the initial step of the search. The nearest one is refined between the
-/// directions: its distance is within one percent of the smallest possible one, unless obstacles are finer
-/// than the spacing of the directions.
+/// sorted by distance. `step_m` is the initial step of the search. The nearest position is refined between
+/// the directions: its distance is within one percent of the minimum, unless obstacles are finer than the
+/// spacing of the directions.
 [[nodiscard]] std::vector<Vec2> free_positions_near(const Vec2& position_m, double step_m,
                                                     double max_distance_m,
                                                     const std::function<bool(const Vec2&)>& is_free);

@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kMaxCells = 4000;
-// Number of the nearest cells from which the last part is refined.
+// Number of nearest cells from which positions slide towards the goal.
 constexpr std::size_t kRefinedCells = 4;
 constexpr int kDirections = 16;
 constexpr double kMinStep_m = 0.001;

@@ -28,7 +28,7 @@ struct Budget {
 /// Outcome of planning.
 enum class PlanReason {
   kSolved,       ///< path to the goal
-  kImproved,     ///< path to the goal, shorter than the first one found
+  kImproved,     ///< path to the goal, shorter than the first path found
   kBudgetSpent,  ///< no path found within the budget; the states lead to the state nearest to the goal
   /// There is no path, at least on this planner's grid or graph; states as for kBudgetSpent.
   kUnreachable,

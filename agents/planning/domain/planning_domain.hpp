@@ -31,8 +31,8 @@ concept PlanningDomain = requires(const D& domain, const typename D::State& a, R
   { domain.goal(a) } -> std::same_as<typename D::State>;
 };
 
-/// A domain whose distance is the Euclidean distance between the coordinates of its states, so that a K-D
-/// tree can find nearest neighbours.
+/// A domain whose distance is the Euclidean distance between the coordinates of its states, as a K-D tree for
+/// nearest neighbours requires.
 template <typename D>
 concept EuclideanDomain = PlanningDomain<D> && requires(const D& domain, const typename D::State& a) {
   { domain.coordinates(a) } -> std::same_as<std::array<double, D::kDimensions>>;

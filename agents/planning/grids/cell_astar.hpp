@@ -26,7 +26,7 @@ struct CellRoute {
 };
 
 /// A* on the free cells of a grid with eight neighbours. A diagonal step requires both cells beside it to be
-/// free. With an admissible heuristic the path is a shortest one. Reuses its memory between searches.
+/// free. With an admissible heuristic the path is a shortest path. Reuses its memory between searches.
 class CellAstar {
  public:
   explicit CellAstar(CellHeuristic heuristic = CellHeuristic::kOctile) : heuristic_(heuristic) {}

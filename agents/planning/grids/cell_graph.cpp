@@ -48,7 +48,7 @@ void CellSearch::index_portals(const CellGraph& graph) {
 }
 
 /// The cell that contains the position, or else the nearest visible cell. The entry point lies slightly
-/// inside the cell, so that rounding does not exclude the point.
+/// inside the cell: rounding must not exclude the point.
 std::optional<CellSearch::Entry> CellSearch::entry(const CellGraph& graph, const DiscDomain& domain,
                                                    const Vec2& position,
                                                    const std::optional<std::uint32_t>& location) const {

@@ -74,7 +74,7 @@ class CellSearch {
   std::vector<std::uint32_t> first_portal_;  // indexed by cell: its first entry in portals_by_cell_
   std::vector<std::uint32_t> portals_by_cell_;
   std::vector<std::uint32_t> came_from_;   // indexed by portal: the previous portal
-  std::vector<std::uint32_t> leads_into_;  // indexed by portal that has a previous one: the cell
+  std::vector<std::uint32_t> leads_into_;  // indexed by portal with a previous portal: the cell
   std::vector<Open> open_;
   CellPath path_;
 };

@@ -17,9 +17,9 @@ constexpr std::uint64_t kOrderSeed = 1;  ///< seed of the random order in which 
 using Index = TrapezoidalMap::Index;
 
 constexpr std::int32_t kMargin = 16;      // margin of the box around the field, in grid units
-constexpr double kStandoff_m = 1e-6;      // or kStandoff, if that is longer
+constexpr double kStandoff_m = 1e-6;      // clearance beyond the robot's radius, unless kStandoff is longer
 constexpr double kStandoff = 4;           // in grid units; rounding moves boundaries by about one unit
-constexpr double kMinPortalHeight = 0.5;  // in grid units
+constexpr double kMinPortalHeight = 0.5;  // minimum length of a portal, in grid units
 constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
 
 /// The part of a convex polygon where sign * coordinate <= limit.
@@ -68,7 +68,7 @@ bool TrapezoidalDecomposition::choose_grid(const DiscDomain& domain) {
                     domain.field().width_m / 2 - domain.radius_m());
   if (!(half_m.minCoeff() > 0)) return false;
   unit_m_ = half_m.maxCoeff() / (kMaxGridCoordinate - 2 * kMargin);
-  // Rounded inwards, so that paths along the border stay within the field.
+  // Rounded inwards: paths along the border must stay within the field.
   half_field_ = {static_cast<std::int32_t>(half_m.x() / unit_m_),
                  static_cast<std::int32_t>(half_m.y() / unit_m_)};
   return true;
@@ -84,7 +84,7 @@ GridPoint TrapezoidalDecomposition::rounded(const Vec2& position) const {
 
 void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
   boundaries_.clear();
-  // Clockwise, so that the outside counts as covered.
+  // Clockwise: the outside counts as covered.
   const auto [x, y] = half_field_;
   CrossingDivider::append_boundary(std::array<GridPoint, 4>{GridPoint{-x, -y}, {-x, y}, {x, y}, {x, -y}},
                                    boundaries_);
@@ -159,7 +159,7 @@ void TrapezoidalDecomposition::count_covers() {
   }
 }
 
-/// Does nothing if the count is already known.
+/// Sets the count of a trapezoid and queues the trapezoid, unless the count is already known.
 void TrapezoidalDecomposition::cover(Index trapezoid, std::int32_t count) {
   if (trapezoid == TrapezoidalMap::kNone || covers_[trapezoid] != kUnknown) return;
   covers_[trapezoid] = count;
@@ -178,7 +178,7 @@ void TrapezoidalDecomposition::add_cell(Index i) {
     if (corners.empty() || (corner != corners.back() && corner != corners.front())) corners.push_back(corner);
 }
 
-/// Adds portals to the cells on its right.
+/// Adds the portals from a trapezoid to the cells on its right.
 void TrapezoidalDecomposition::add_portals(Index i) {
   const TrapezoidalMap::Trapezoid& trapezoid = map_.trapezoids()[i];
   const GridPoint& wall = trapezoid.right;

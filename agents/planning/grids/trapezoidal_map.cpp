@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kSameBottom = 0, kSameTop = 1;
 
 [[noreturn]] void throw_crossing() {
-  throw std::invalid_argument("segments of a trapezoidal map cross or overlap");
+  throw std::invalid_argument("segments of a trapezoidal map must not cross or overlap");
 }
 
 }  // namespace
@@ -23,9 +23,9 @@ void TrapezoidalMap::build(std::span<const GridSegment> segments, const GridPoin
   };
   for (const GridSegment& segment : segments) {
     if (!(segment.left < segment.right))
-      throw std::invalid_argument("the left end of a segment is not left of its right end");
+      throw std::invalid_argument("the left end of a segment must be left of its right end");
     if (!is_inside(segment.left) || !is_inside(segment.right))
-      throw std::invalid_argument("a segment of a trapezoidal map is not within its box");
+      throw std::invalid_argument("a segment of a trapezoidal map must be within the map's box");
   }
   segments_.assign(segments.begin(), segments.end());
   segments_.push_back({{-half.x, -half.y}, {half.x, -half.y}});

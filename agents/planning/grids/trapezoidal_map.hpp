@@ -69,7 +69,7 @@ class TrapezoidalMap {
   void divide_crossed(Index segment, Index left_part, Index right_part);
   /// Replaces the leaf of a crossed trapezoid with comparisons.
   void replace_leaf(std::size_t i, Index segment, Index left_part, Index right_part);
-  /// Makes the neighbour of a removed trapezoid a neighbour of a new one; `neighbour` may be kNone.
+  /// Makes the neighbour of a removed trapezoid a neighbour of a new trapezoid; `neighbour` may be kNone.
   void take_left(Index trapezoid, std::size_t which, Index neighbour, Index removed);
   void take_right(Index trapezoid, std::size_t which, Index neighbour, Index removed);
   void link(Index left, Index right, std::size_t which);

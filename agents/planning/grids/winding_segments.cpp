@@ -72,7 +72,7 @@ bool CrossingDivider::divide(std::vector<WindingSegment>& segments) {
   return false;
 }
 
-/// Segments are sorted by their left ends.
+/// Finds all crossings. Precondition: the segments are sorted by their left ends.
 void CrossingDivider::find_cuts(const std::vector<WindingSegment>& segments) {
   cuts_.clear();
   for (std::size_t i = 0; i < segments.size(); ++i)
@@ -98,7 +98,7 @@ void CrossingDivider::compare(const std::vector<WindingSegment>& segments, std::
   cut(segments, k, at);
 }
 
-/// Does nothing if the point is an end of the segment, or lies beyond its ends.
+/// Cuts a segment at a point, unless the point is an end of the segment or lies beyond its ends.
 void CrossingDivider::cut(const std::vector<WindingSegment>& segments, std::size_t i, const GridPoint& at) {
   const GridSegment& segment = segments[i].segment;
   if (at == segment.left || at == segment.right || !is_within_bounds(at, segment)) return;

@@ -27,7 +27,7 @@ bool CompositeDomain::is_clear_of_obstacles(const Vec2& from, const Vec2& to) co
 }
 
 bool CompositeDomain::are_clear(const State& from, const State& to, std::size_t i, std::size_t j) const {
-  // The relative position moves on a straight line too.
+  // The relative position also moves on a straight line.
   const Segment relative{from[i] - from[j], to[i] - to[j]};
   const double separation_m = problem_->min_separation_m() + kJointTolerance_m;
   return squared_distance(Vec2(0, 0), relative) >= separation_m * separation_m;

@@ -9,10 +9,10 @@
 
 namespace sidestep {
 
-/// Plans all robots as one (Bruce 2006, chapter 5). A state contains the positions of all robots, at rest. In
-/// a motion, all robots leave together, drive straight with the same speed profile scaled to their distances,
-/// and arrive together. So a motion is a straight line in the composite space, and every check is exact.
-/// Keeps a reference to the problem, which must outlive it.
+/// The planning domain of all robots together (Bruce 2006, chapter 5). A state contains the positions of all
+/// robots, at rest. In a motion, all robots leave together, drive straight with the same speed profile scaled
+/// to their distances, and arrive together. So a motion is a straight line in the composite space, and every
+/// check is exact. Keeps a reference to the problem, which must outlive it.
 class CompositeDomain {
  public:
   using State = std::vector<Vec2>;
@@ -21,7 +21,7 @@ class CompositeDomain {
 
   /// The Euclidean distance in the composite space.
   double distance(const State& a, const State& b) const;
-  /// Makes one step, in which robots wait if their motion would touch another robot's.
+  /// Makes one step, in which robots wait if their motion would touch another robot or an obstacle.
   std::optional<State> extend(const State& from, const State& to) const;
   bool check(const State& from, const State& to) const;
   State sample(Rng& rng) const;

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Plans all robots as one, with two trees in a space of 2n dimensions and subsequent smoothing. All robots
+/// Plans all robots together, with two trees in a space of 2n dimensions and subsequent smoothing. All robots
 /// are at rest at every state of the path. Probabilistically complete, but the space grows exponentially with
 /// the number of robots.
 class CompositePlanner {

@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// A robot's planned motion over all time: a sequence of trajectories from rest to rest, each of which starts
-/// where the previous one ends. The robot rests between them, before the first and after the last.
+/// where the previous trajectory ends. The robot rests between them, before the first and after the last.
 class Course {
  public:
   Course() = default;
@@ -19,7 +19,7 @@ class Course {
   /// Precondition: the leg starts at rest where the course ends, and not earlier than it ends.
   void append(const Trajectory& leg) { legs_.push_back(leg); }
 
-  /// The first leg is rest at the start.
+  /// The legs; during the first leg the robot rests at the start.
   std::span<const Trajectory> legs() const { return legs_; }
   Time end() const { return legs_.back().end(); }
   Vec2 rest_position_m() const { return legs_.back().rest_position_m(); }
@@ -30,8 +30,8 @@ class Course {
 };
 
 /// Whether a robot that executes `motion` keeps `min_separation_m` from a robot on this course, from the
-/// start of the motion until `until`. The robot may still be moving then. If `until` is Time::max(), checks
-/// all time. Uses the exact clearance of common/motion.
+/// start of the motion until `until`. The robot may still be moving then. If `until` is Time::max(), there is
+/// no end. Uses the exact clearance of common/motion.
 [[nodiscard]] bool is_clear(const Course& course, const Trajectory& motion, Time until,
                             double min_separation_m);
 

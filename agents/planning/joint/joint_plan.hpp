@@ -16,7 +16,7 @@ struct JointProblem {
   const ObstacleWorld* world = nullptr;  ///< must outlive the planning
   Field field{};
   double radius_m = 0.09;
-  double margin_m = 0.014;  ///< between two robots, and between robots and obstacles or the field's border
+  double margin_m = 0.014;  ///< distance of robots from each other, obstacles and the field's border
   MotionLimits limits{};
   std::vector<Vec2> starts_m{}, goals_m{};
 

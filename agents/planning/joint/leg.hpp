@@ -18,7 +18,7 @@ struct LegTimes {
 [[nodiscard]] LegTimes leg_times(double distance_m, const MotionLimits& limits);
 
 /// The straight motion that starts at `start` and takes these times. It obeys the limits if the times were
-/// computed for this distance or a longer one.
+/// computed for this distance or a longer distance.
 [[nodiscard]] Trajectory make_leg(Time start, const Vec2& from_m, const Vec2& to_m, const LegTimes& times);
 
 /// The part of a trajectory from `from` to `until`, where it stops abruptly. The clearance of two

@@ -11,7 +11,7 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kPlansPerRobot = 8;       ///< the plan with the earliest arrival is kept
-constexpr std::size_t kSamplesPerRobot = 1500;  ///< for one tree, before another order of robots is tried
+constexpr std::size_t kSamplesPerRobot = 1500;  ///< samples of one tree before another order is tried
 constexpr std::size_t kMaxOrders = 1000;        ///< maximum number of orders of robots that are tried
 
 bool is_spent(const Budget& budget, std::size_t samples) {
@@ -54,7 +54,7 @@ JointPlan PrioritisedPlanner::plan(const JointProblem& problem, const Budget& bu
 std::size_t PrioritisedPlanner::plan_in_order(const JointProblem& problem,
                                               const std::vector<std::size_t>& order, const Budget& budget,
                                               Rng& rng, JointPlan& result) {
-  std::vector<Course> planned;  // in the order of planning
+  std::vector<Course> planned;  // courses, in the order of planning
   for (std::size_t place = 0; place < order.size(); ++place) {
     if (is_spent(budget, result.samples)) return place;
     const std::size_t robot = order[place];

@@ -23,8 +23,8 @@ class PrioritisedPlanner {
   /// of robots if all have paths.
   std::size_t plan_in_order(const JointProblem& problem, const std::vector<std::size_t>& order,
                             const Budget& budget, Rng& rng, JointPlan& result);
-  /// Plans several paths for a robot and returns the path that arrives first; empty if there is none. Adds to
-  /// `samples`.
+  /// Plans several paths for a robot and returns the path that arrives first; empty if there is none. Adds
+  /// the number of samples to `samples`.
   std::vector<SpaceTimeState> path_of(std::size_t robot, const SpaceTimeDomain& domain, const Budget& budget,
                                       Rng& rng, std::size_t& samples);
 

@@ -19,7 +19,7 @@ struct SpaceTimeState {
 
 /// Planning in space × time for one robot among others that follow fixed courses. In a motion, the robot
 /// waits where it is, then drives straight from rest to rest, as fast as its limits allow, and arrives at the
-/// state's time. A motion to the goal is free only if the robot can stay there for ever. Motions are one-way,
+/// state's time. A motion to the goal is free only if the robot can stay there forever. Motions are one-way,
 /// because time passes. Keeps references to the problem and the courses, which must outlive it.
 class SpaceTimeDomain {
  public:
@@ -35,10 +35,10 @@ class SpaceTimeDomain {
   std::optional<State> extend(const State& from, const State& to) const;
   bool check(const State& from, const State& to) const;
   State sample(Rng& rng) const;
-  /// The goal at the time at which the straight motion arrives there.
+  /// The goal, with the time at which a straight motion reaches it.
   State goal(const State& from) const;
 
-  /// The arrival time of a motion that starts at once.
+  /// The arrival time of a motion that starts immediately.
   Time earliest_arrival(const State& from, const Vec2& to_m) const;
   /// The motion: waiting, then driving. Precondition: the robot can reach `to` in time.
   Trajectory motion(const State& from, const State& to) const;

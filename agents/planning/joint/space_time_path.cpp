@@ -35,8 +35,8 @@ bool leave_out(const SpaceTimeDomain& domain, Path& path, std::size_t left_out) 
   return false;
 }
 
-/// Moves the state `next` and everything after it forward in time, by as much of the wait before it as keeps
-/// the path free.
+/// Moves the state `next` and everything after it forward in time, by the part of the wait before it that can
+/// be skipped while the path stays free.
 void shorten_wait(const SpaceTimeDomain& domain, Path& path, std::size_t next) {
   constexpr int kHalvings = 6;
   Duration step = path[next].at - domain.earliest_arrival(path[next - 1], path[next].at_m);

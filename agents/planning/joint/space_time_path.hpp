@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Removes states and shortens waits of a free path as long as it stays free. Never makes it arrive later.
+/// Removes states and shortens waits while the path stays free. Never delays the path's arrival.
 void shorten(const SpaceTimeDomain& domain, std::vector<SpaceTimeState>& path);
 
 /// The course of a robot that follows a path from its start on. Waits are not legs: the robot rests between

@@ -18,7 +18,7 @@ struct PrmSettings {
 /// Settings for a new roadmap per query, which grows until there is a path.
 inline PrmSettings one_shot_prm() { return {.nodes = 40, .keep_roadmap = false}; }
 /// Settings for a world with moving obstacles, with radial connection (Dynamic PRM; Bruce 2006, section 4.4).
-/// The roadmap keeps blocked motions, so that it can use the space that obstacles leave.
+/// The roadmap keeps blocked motions, to use the space that moving obstacles vacate.
 inline PrmSettings dynamic_prm() {
   return {.connection = {.method = Connection::kRadial, .neighbours = 8, .blocked_per_sector = 2},
           .is_dynamic = true};
@@ -43,13 +43,13 @@ class Prm {
     if (base_size_ == 0) sample_nodes(domain, budget, rng);
     while (!query(domain, start) && !budget.is_spent(map_.size() + settings_.nodes, plan_.samples))
       sample_nodes(domain, budget, rng);
-    // A full roadmap that does not solve the query is rebuilt for the next one.
+    // A full roadmap that does not solve the query is rebuilt for the next query.
     if (!plan_.arrives() && map_.size() + settings_.nodes >= budget.nodes) clear();
     plan_.length = length_of(domain, plan_.states);
     return plan_;
   }
 
-  /// Builds the roadmap ahead of the first query; no effect if there is one.
+  /// Builds the roadmap ahead of the first query; has no effect if there is a roadmap already.
   void build(const D& domain, const Budget& budget, Rng& rng) {
     plan_.samples = 0;
     if (base_size_ == 0) sample_nodes(domain, budget, rng);

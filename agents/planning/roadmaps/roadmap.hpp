@@ -24,12 +24,12 @@ struct ConnectionSettings {
   Connection method = Connection::kNearest;
   std::size_t neighbours = 10;  ///< number of nearest nodes, or of sectors for kRadial
   double radius = 1.5;          ///< used with kRadius
-  /// Used with kRadial: number of blocked motions kept in each sector, to nodes nearer than the visible one.
+  /// Used with kRadial: number of blocked motions kept in each sector, to nodes nearer than the visible node.
   std::size_t blocked_per_sector = 0;
 };
 
-/// A graph of states and of motions between them that were free when they were added. Blocked motions can be
-/// kept too, because they may become free. New nodes can be removed again, last in, first out.
+/// A graph of states and of motions between them that were free when they were added. Blocked motions can
+/// also be kept, because they may become free. New nodes can be removed again, last in, first out.
 template <EuclideanDomain D>
 class Roadmap {
  public:

@@ -57,7 +57,7 @@ class LeaderFollower {
     smoothed_.push_back(path.back());
   }
 
-  /// The last state visible to the follower between a visible and a hidden one.
+  /// The last state visible to the follower between a visible and a hidden state.
   State farthest_visible(const D& domain, const State& follower, const State& visible,
                          const State& hidden) const {
     State last = visible;

@@ -18,7 +18,7 @@ struct BidirectionalErrtSettings {
 };
 
 /// Bidirectional multi-bridge ERRT (Bruce 2006, section 4.3.4). A tree from the start and a tree from the
-/// goal grow alternately: one towards a target, the other towards the node that the first one reached
+/// goal grow alternately: one towards a target, the other towards the node that the first tree reached
 /// (RRT-Connect; Kuffner and LaValle 2000). Planning ends once the requested number of bridges join the
 /// trees; the plan is the shortest path through both trees. Caches plans for the next query, and reuses its
 /// memory.

@@ -91,7 +91,7 @@ class KdTree {
 
   static void clear_leaf(Leaf& leaf) {
     leaf.count = 0;
-    // Empty lanes are compared too, so their coordinates are infinite.
+    // Empty lanes are also compared, so their coordinates are infinite.
     for (auto& axis : leaf.coordinate)
       for (double& x : axis) x = std::numeric_limits<double>::infinity();
   }
@@ -172,7 +172,7 @@ class KdTree {
     const double over = point[split.axis] - split.threshold;
     descend(over < 0 ? split.below : split.above, point, offset, distance2, found);
     const double far2 = distance2 - offset[split.axis] * offset[split.axis] + over * over;
-    // Slightly reduced, so that rounding does not exclude an equally near point.
+    // Slightly reduced: rounding must not exclude an equally near point.
     if (far2 * (1 - 1e-12) > found.distance2) return;
     offset[split.axis] = over;
     descend(over < 0 ? split.above : split.below, point, offset, far2, found);

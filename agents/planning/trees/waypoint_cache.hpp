@@ -12,12 +12,12 @@
 
 namespace sidestep {
 
-/// Replacement strategy: which waypoint a full cache drops for a new one.
+/// Replacement strategy: which waypoint a full cache drops for a new waypoint.
 enum class CacheReplacement {
   kRandom,             ///< a random waypoint (Bruce and Veloso 2002)
   kOldest,             ///< the waypoint stored first
   kLeastRecentlyUsed,  ///< the waypoint least recently used as a growth target
-  kWholePlan,          ///< all of them, so that the cache contains only the last plan
+  kWholePlan,          ///< all waypoints, so that the cache contains only the last plan
 };
 
 /// States of earlier plans that later plans grow towards, since good waypoints change little between
@@ -74,7 +74,7 @@ class WaypointCache {
       case CacheReplacement::kOldest:
         return oldest([](const Entry& e) { return e.stored; });
       case CacheReplacement::kLeastRecentlyUsed:
-        // One hard plan may use all waypoints; then the waypoint stored first is dropped.
+        // One hard plan may use all waypoints; in that case the waypoint stored first is dropped.
         return oldest([](const Entry& e) { return std::pair(e.used, e.stored); });
       default:
         return random_index(rng);

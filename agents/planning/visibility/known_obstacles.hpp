@@ -12,7 +12,7 @@ namespace sidestep {
 inline constexpr double kCoincidence_m = 1e-9;
 
 /// The obstacles that a search has encountered, tested one by one. They are few, and the obstacle that
-/// blocked one motion often blocks the next.
+/// blocked a motion often blocks the next motion.
 class KnownObstacles {
  public:
   /// Removes all obstacles, keeping the allocated memory, and sets the radius of the moving disc.

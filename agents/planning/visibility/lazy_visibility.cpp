@@ -9,7 +9,7 @@
 namespace sidestep {
 namespace {
 
-/// Clearance in addition to the disc's radius, so that rounding does not cause contact.
+/// Clearance in addition to the disc's radius: rounding must not cause contact.
 constexpr double kLazyStandoff_m = 1e-4;
 constexpr double kLazyTurn_rad = 0.35;  ///< maximum turn at a vertex of the path
 

@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// Finds the shortest path of a disc among obstacles: A* over the tangents between arcs. A tangent is only
-/// checked when it is the most promising tangent, and an obstacle is only taken into account once it blocks a
-/// checked tangent. A query therefore considers few obstacles, even in a world with many.
+/// Finds the shortest path of a disc among obstacles: A* over the tangents between arcs. A tangent is checked
+/// only when it is the most promising tangent, and an obstacle is considered only once it blocks a checked
+/// tangent. A query therefore considers few obstacles, even in a world with many.
 class LazyVisibility {
  public:
   /// The result belongs to this planner and is valid until its next plan. Deterministic. kUnreachable means

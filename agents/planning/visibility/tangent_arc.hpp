@@ -34,7 +34,7 @@ void append_arcs(const Shape& shape, double clearance_m, std::vector<TangentArc>
 enum class Side { kLeft = 1, kRight = -1 };
 inline double sign(Side side) { return static_cast<double>(side); }
 
-/// The straight motion from one arc to another.
+/// The straight motion from one arc to another arc.
 struct Tangent {
   Vec2 along{1, 0};  ///< unit vector
   double length_m = 0;
@@ -74,8 +74,8 @@ inline Vec2 tangent_point(const TangentArc& arc, Side side, const Vec2& along) {
 /// The direction from the arc's centre to the tangent point.
 inline Vec2 tangent_point_direction(Side side, const Vec2& along) { return -sign(side) * left_of(along); }
 
-/// The turn towards a side from one direction to another, in [0, 2 pi). A turn to the other side within
-/// rounding error counts as 0.
+/// The turn towards a side from one direction to another direction, in [0, 2 pi). A turn to the other side
+/// within rounding error counts as 0.
 inline double turn_rad(Side side, const Vec2& from, const Vec2& to) {
   const double across = sign(side) * cross(from, to), along = from.dot(to);
   const double angle = std::atan2(across, along);

@@ -51,14 +51,14 @@ class TangentGraph {
   Vec2 position_of(const Node& node) const;
 
   bool is_free(const Vec2& from, const Vec2& to) const;
-  /// Adds the free tangents among the four between two arcs.
+  /// Adds the free tangents between two arcs, of which there are at most four.
   void join(std::uint32_t a, std::uint32_t b);
   void join(std::uint32_t a, Side a_side, std::uint32_t b, Side b_side);
   void add_tangent(std::uint32_t from, std::uint32_t to, const Tangent& tangent);
   void sort_rings();
   void search();
   void relax(std::uint32_t from, std::uint32_t to, double length_m);
-  /// Relaxes the next node on the ring, if the arc between the two is free.
+  /// Relaxes the next node on the ring, if the arc between the nodes is free.
   void follow_ring(std::uint32_t node);
   void write_plan(std::uint32_t node);
 

@@ -17,7 +17,7 @@ struct DirectionPair {
 inline SidePair dot(const Vec2& a, const DirectionPair& b) { return a.x() * b.x + a.y() * b.y; }
 inline SidePair cross(const Vec2& a, const DirectionPair& b) { return a.x() * b.y - a.y() * b.x; }
 
-/// The tangents from one side of an arc to both sides of another.
+/// The tangents from one side of an arc to both sides of another arc.
 struct TangentPair {
   DirectionPair along;  ///< unit vectors
   SidePair length_m;

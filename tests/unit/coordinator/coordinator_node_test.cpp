@@ -247,7 +247,7 @@ TEST_CASE("a coordinator reports its role, each registration, and when it starts
   CAPTURE(events.text());
   CHECK(events.count("robot 1 is registered by its agent of incarnation") == 1);
   CHECK(events.count("robot 2 is registered by its agent of incarnation") == 1);
-  CHECK(events.count("grants in epoch") == 1);
+  CHECK(events.count("granting in epoch") == 1);
   CHECK(events.all()[1].robot == 1);
   CHECK(events.all()[1].level == LogLevel::kDebug);
   floor.network.run_until(floor.network.now() + std::chrono::seconds(5));
@@ -260,7 +260,7 @@ TEST_CASE("a coordinator names the robots whose registrations it awaits once per
   floor.send(topics::kRegistration, registration_of(floor.a, floor.node.coordinator().epoch()));
   floor.network.run_until(floor.network.now() + std::chrono::milliseconds(3500));
   CAPTURE(events.text());
-  CHECK(events.count("waits for the registrations of robots 2") == 3);
+  CHECK(events.count("waiting for robots 2 to register") == 3);
 }
 
 TEST_CASE("a coordinator reports when robots are quarantined and released") {

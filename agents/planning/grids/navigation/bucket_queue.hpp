@@ -60,7 +60,7 @@ class BucketQueue {
     }
   }
 
-  /// Moves the current bucket back if necessary, so that this key and higher keys can be added.
+  /// Moves the current bucket back if this key, which will be added, is below the current bucket.
   template <typename KeyOf>
   void rewind(float key, const KeyOf& key_of) {
     if (key >= begin_) {

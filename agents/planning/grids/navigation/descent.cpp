@@ -26,7 +26,7 @@ bool is_reached(const EStar& field, std::int64_t column, std::int64_t row) {
   return !field.is_blocked(cell) && field.value(cell) < kBlocked;
 }
 
-/// Empty if the position's own cell is not reached. Positions are in cells.
+/// The corners for a position in cells. Empty if the position's own cell is not reached.
 Corners corners_at(const EStar& field, const Vec2& at) {
   Corners corners;
   if (!(at.array().abs() < 1e9).all()) return corners;
@@ -79,7 +79,7 @@ Vec2 direction_of(const EStar& field, GridCell cell) {
   return length > 0 ? Vec2(along / length) : Vec2(0, 0);
 }
 
-/// Infinite where the field is not reached.
+/// The interpolated value at a position in cells; infinite where the field is not reached.
 double value_at(const EStar& field, const Vec2& at) {
   const Corners corners = corners_at(field, at);
   double sum = 0, weights = 0;

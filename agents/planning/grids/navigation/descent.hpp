@@ -15,7 +15,7 @@ namespace sidestep {
 /// empty path, if it starts outside the grid, in a blocked cell, or where the goal cannot be reached. It
 /// always terminates, because every step lowers the interpolated value by a minimum amount: where the
 /// gradient does not achieve that, the path continues through the centres of cells, each lower than the
-/// previous one. Does not allocate once warm.
+/// previous centre. Does not allocate once warm.
 [[nodiscard]] bool trace(const EStar& field, const Vec2& from_m, std::vector<Vec2>& path_m);
 
 }  // namespace sidestep

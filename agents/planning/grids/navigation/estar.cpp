@@ -47,12 +47,12 @@ void EStar::set_cost(GridCell cell, float cost) {
   if (is_in_disc(cell)) exact_is_stale_ = true;
 }
 
-/// Infinite for an entry that has become obsolete.
+/// The key of an entry; infinite if the entry has become obsolete.
 float EStar::key_of(Entry entry) const {
   return (entry & kRaise) ? raised_from_[entry & ~kRaise] : values_[entry];
 }
 
-/// Withdraws a cell's value, so that its neighbours do not use it until the cell is raised.
+/// Withdraws a cell's value; its neighbours do not use the value until the cell is raised.
 void EStar::mark_unsupported(std::uint32_t at) {
   raised_from_[at] = values_[at];
   values_[at] = kBlocked;
@@ -133,7 +133,7 @@ void EStar::update(std::uint32_t at) {
     return;
   }
   if (value == before && !is_unsupported) return;
-  // The neighbours must be updated even if the value is unchanged, because they have stopped using it.
+  // The neighbours must be updated even if the value is unchanged, because they have stopped using the cell.
   unsupported_ -= is_unsupported;
   raised_from_[at] = kBlocked;
   values_[at] = value;
@@ -151,8 +151,8 @@ void EStar::update_neighbours(std::uint32_t at) {
 template <typename Kernel>
 void EStar::raise(std::uint32_t at) {
   const float before = raised_from_[at], value = value_from_lower<Kernel>(at, before);
-  // Neighbours that are lower than this do not depend on the cell. The value is lower than the old one if a
-  // neighbour has been lowered since, but has not been expanded yet.
+  // Neighbours that are lower than this do not depend on the cell. The new value is lower than the old value
+  // if a neighbour has been lowered since, but has not been expanded yet.
   const float lowest = std::min(before, value);
   values_[at] = value;
   raised_from_[at] = kBlocked;

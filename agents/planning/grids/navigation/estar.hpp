@@ -26,14 +26,14 @@ struct EStarSettings {
 };
 
 /// E* (Philippsen 2004, EPFL thesis 3146, chapter 6): the cost of the cheapest path to the goal from every
-/// cell of a grid, interpolated between cells, so that a robot reaches the goal by descending. When costs
-/// change, only cells whose values change are recomputed. The result is bit-identical to a field computed
-/// from scratch, because only one field satisfies the kernel (kernels.hpp). Does not allocate once warm.
+/// cell of a grid, interpolated between cells. A robot reaches the goal by descending. When costs change,
+/// only cells whose values change are recomputed. The result is bit-identical to a field computed from
+/// scratch, because only one field satisfies the kernel (kernels.hpp). Does not allocate once warm.
 ///
 /// Bookkeeping follows D* Lite (Koenig, Likhachev 2002): cells are expanded in the order of the lower of
-/// their old and new values, and a cell that loses its support is raised before it can support others. Two
-/// things differ. Where no cell waits to be raised, a lower value is stored at once, as in fast marching. A
-/// cell that is raised keeps the support of cells that were lower than it, whose values are final.
+/// their old and new values, and a cell that loses its support is raised before it can support others. But
+/// while no cell waits to be raised, lower values are stored immediately, as in fast marching. And a raised
+/// cell keeps the support of cells that were lower than it, whose values are final.
 ///
 /// Throws std::invalid_argument for invalid settings, costs, cells and goals.
 class EStar {

@@ -54,7 +54,7 @@ float EStar::exact_distance(GridCell cell) const {
   return static_cast<float>(distance) * cost_there;
 }
 
-/// Cells with a different cost block lines of sight.
+/// Computes the exact distances. Cells whose cost differs from the goal's cost block lines of sight.
 void EStar::compute_sight() {
   const float cost_there = cost(goal_);
   bool is_of_one_cost = true;

@@ -8,14 +8,14 @@
 namespace sidestep {
 
 // Kernels compute a cell's value from the values of its neighbours. `low` is the lowest value among the four
-// neighbours, `high` the lowest value of the two on the other axis, and lengths are in cells. Every kernel is
-// strictly causal, in floating point too: its result exceeds the values that it uses, and values that are not
-// below the result do not influence it. A field that satisfies the kernel everywhere is therefore unique, so
-// the order of computation does not matter.
+// neighbours, `high` the lowest value of the neighbours on the other axis, and lengths are in cells. Every
+// kernel is strictly causal, in floating point too: its result exceeds the values that it uses, and values
+// that are not below the result do not influence it. A field that satisfies the kernel everywhere is
+// therefore unique, so the order of computation does not matter.
 
 // `kReach` is the distance in cells of the farthest neighbours that a kernel uses.
 
-/// Multiplying a positive number by this rounds to the next greater number or the one after.
+/// Multiplying a positive number by this rounds to one of the next two greater numbers.
 inline constexpr float kNextUp = 1 + 0x1p-23f;
 
 /// The step from the lowest neighbour alone.

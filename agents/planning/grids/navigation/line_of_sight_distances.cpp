@@ -98,8 +98,8 @@ void LineOfSightDistances::look_from_goal() {
   }
 }
 
-/// A path that turns at a corner bends around its closed cell, into directions between its straight
-/// continuation and the cell's edge.
+/// Reaches everything seen from a corner where a path turns. The path bends around the corner's closed cell,
+/// into directions between its straight continuation and the cell's edge.
 void LineOfSightDistances::look_from(Corner corner) {
   const std::int64_t x = corner % (columns_ + 1), y = corner / (columns_ + 1);
   const int closed_x = is_closed(x, y) || is_closed(x, y - 1) ? 1 : -1;
@@ -159,7 +159,7 @@ void LineOfSightDistances::cast(const Frame& frame, const Cone& cone) {
   }
 }
 
-/// Removes what the closed cells of a row hide between two heights.
+/// Removes from the cones the directions that the closed cells of a row hide between two heights.
 void LineOfSightDistances::split(const Frame& frame, std::int64_t row, double near, double far) {
   next_cones_.clear();
   const std::int64_t limit = frame.step_x > 0 ? columns_ - frame.column : frame.column + 1;

@@ -102,7 +102,7 @@ void WorldField::set_goal(const Vec2& goal_m) {
 
 bool WorldField::reach(GridCell cell) {
   // The values of adjacent cells differ by up to the cost of a cell. A path descends, so all cells between
-  // whose centres it interpolates are at most four steps higher than the first.
+  // whose centres it interpolates are at most four steps higher than the first cell.
   const auto dearest = static_cast<float>(1 + (keeps_clear() ? settings_.contact_cost : 0));
   values_.propagate_until(cell, 4 * dearest);
   return !values_.is_blocked(cell) && values_.value(cell) < kBlocked;

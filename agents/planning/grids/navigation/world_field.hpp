@@ -42,10 +42,10 @@ class WorldField {
   /// Sets another goal in the grid; values are out of date until reach(). Throws std::invalid_argument if the
   /// goal is outside the grid.
   void set_goal(const Vec2& goal_m);
-  /// Computes the values that a path from this cell needs, and returns whether there is one.
+  /// Computes the values that a path from this cell needs, and returns whether a path exists.
   bool reach(GridCell cell);
 
-  /// Values are final where reach() was successful, and on the path from there.
+  /// Values are final in cells for which reach() was successful, and on the paths from these cells.
   const EStar& values() const { return values_; }
 
  private:

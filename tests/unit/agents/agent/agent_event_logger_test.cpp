@@ -33,7 +33,7 @@ TEST_CASE("each step of an agent's startup is reported once") {
   f.activity.is_fenced = true;
   f.activity.incarnation = 99;
   f.run(100ms);
-  CHECK(f.events.count("the robot obeys this agent, with incarnation 99") == 1);
+  CHECK(f.events.count("the robot obeys this agent (incarnation 99)") == 1);
   f.changes.on_epoch(7, 10001);
   f.activity.epoch = 7;
   f.run(100ms);
@@ -59,7 +59,7 @@ TEST_CASE("an agent reports when its robot stops obeying it and when the robot o
   CHECK(f.events.count("a later agent drives this robot") == 1);
   f.activity.is_superseded = false;
   f.run(1s);
-  CHECK(f.events.count("the robot obeys this agent after all") == 1);
+  CHECK(f.events.count("no longer superseded: the robot obeys this agent") == 1);
 }
 
 TEST_CASE(
@@ -72,10 +72,10 @@ TEST_CASE(
     f.run(200ms);
     CHECK(f.events.all().empty());
     f.run(5s);
-    CHECK(f.events.count("waits for " + std::string(to_text(reason))) == 1);
+    CHECK(f.events.count("waiting for " + std::string(to_text(reason))) == 1);
     f.activity.waits_for = WaitReason::kNone;
     f.run(5s);
-    CHECK(f.events.count("no longer waits") == 1);
+    CHECK(f.events.count("no longer waiting") == 1);
     CHECK(f.events.all().size() == 2);
   }
 }
@@ -115,13 +115,13 @@ TEST_CASE("arrivals, escapes and deadlock recovery are reported, the latter two 
   CHECK(f.events.count("arrived at goal 0") == 1);
   f.activity.has_arrived = true;
   f.run(1s);
-  CHECK(f.events.count("arrived at goal 1, the last one") == 1);
+  CHECK(f.events.count("arrived at goal 1, the last goal") == 1);
   for (int i = 0; i < 200; ++i) {
     f.activity.is_escaping = f.activity.is_recovering = i % 2 == 0;
     f.run(16ms);
   }
   CAPTURE(f.events.text());
-  CHECK(f.events.count("escapes from a conflict") == 4);
+  CHECK(f.events.count("escaping from a conflict") == 4);
   CHECK(f.events.count("to resolve the deadlock") == 4);
 }
 
@@ -135,7 +135,7 @@ TEST_CASE("each own stop, restart and lifting of the robot is reported once") {
   robot_report.is_off_reference = true;
   robot_report.executing.number = 1234;
   for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
-  CHECK(f.events.count("off its reference and makes its own stop, version 1234") == 1);
+  CHECK(f.events.count("off its reference and makes its own stop (version 1234)") == 1);
   robot_report.activated = 0;
   robot_report.executing.number = 5678;
   for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);

@@ -74,7 +74,7 @@ TEST_CASE("nothing is ordered before the referee is heard") {
   system.see_ball();
   system.run_for(3s);
   CHECK(system.orders.empty());
-  CHECK(system.has_logged("no packet from the referee for 2 s: nothing is ordered"));
+  CHECK(system.has_logged("no packet from the referee for 2 s: no orders are in force"));
 }
 
 TEST_CASE("HALT is ordered immediately and ends with the next command") {
