@@ -25,7 +25,7 @@ struct CameraParameters {
   Vec3 translation_m{0, 0, 4};
 };
 
-/// What is wrong with the parameters; empty when they are valid.
+/// The reason why the parameters are invalid; empty if they are valid.
 [[nodiscard]] std::string validation_error(const CameraParameters& parameters);
 
 /// Projects points: the league's pinhole model with radial distortion. The world's z points up and is 0 on

@@ -29,7 +29,7 @@ inline double distortion_factor(double kr2) {
   for (int step = 0; step < 80; ++step) {
     const double cs2 = c * s * s;
     const double next = (1 + 2 * cs2 * s) / (1 + 3 * cs2);
-    // The error of `next` is less than seven times the square of this step, so it is below rounding.
+    // The error of `next` is less than seven times the square of this step, hence below rounding errors.
     if (std::abs(next - s) <= 1e-8 * s) return next;
     s = next;
   }

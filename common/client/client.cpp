@@ -18,7 +18,7 @@ namespace {
 
 DdsSettings dds_settings(const Settings& settings) {
   if (settings.name.empty() && !settings.is_operator)
-    throw std::invalid_argument("client: expected a name, or is_operator");
+    throw std::invalid_argument("client: a client that is not an operator needs a name");
   const std::string name = settings.name.empty() ? "operator" : settings.name;
   return {settings.domain,
           settings.interface,
@@ -120,7 +120,7 @@ struct Client::Impl {
   std::map<OrderHandle, OrderId> ids;                              ///< orders that may still change
   std::map<std::uint32_t, std::pair<OrderHandle, OrderId>> zones;  ///< the latest order about each zone
   OrderStates states;
-  mutable std::mutex mutex;  ///< guards the two members below
+  mutable std::mutex mutex;  ///< guards `table` and `callback`
   RobotTable table;
   std::function<void(OrderId, const OrderState&)> callback;
   std::thread thread;

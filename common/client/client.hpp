@@ -82,7 +82,7 @@ struct OrderState {
   }
 };
 
-/// What a robot is doing about its current order.
+/// A robot's progress with its current order.
 enum class Task {
   kNone,     ///< no order
   kWaiting,  ///< the robot has not started yet
@@ -105,7 +105,7 @@ struct Robot {
   std::optional<double> remaining_s{};  ///< estimated time to the last goal; nullopt: unknown
   std::optional<Pose> pose{};           ///< pose last seen by vision; nullopt: not within the last second
 
-  /// Whether the robot can start an order at once.
+  /// Whether the robot can start an order immediately.
   bool is_free() const {
     return is_heard && !is_held && pose && (task == Task::kNone || task == Task::kArrived);
   }
@@ -128,13 +128,13 @@ class [[gnu::visibility("default")]] Client {
   Client& operator=(const Client&) = delete;
 
   /// Sends a robot to up to 64 goals, one after another. Replaces the previous `go` from clients of the same
-  /// rank.
+  /// rank (operators, or all other clients).
   OrderId go(RobotId robot, const std::vector<Goal>& goals);
   /// Cancels the robot's current order from clients of this rank. The robot continues with an order of
   /// another rank if it has one; otherwise it brakes and stays where it comes to rest.
   OrderId cancel(RobotId robot);
   /// Stops a robot until it is resumed. This is not a certified emergency stop: it takes effect when a
-  /// coordinator hears it.
+  /// coordinator receives it.
   OrderId hold(RobotId robot);
   OrderId hold_all();
   /// Ends this client's hold on the robot. An operator's resume ends every client's hold.
@@ -146,10 +146,10 @@ class [[gnu::visibility("default")]] Client {
   OrderId set_zone(std::uint32_t number, const Zone& zone);
   OrderId remove_zone(std::uint32_t number);
 
-  /// nullopt if the order is unknown, or if it is over and 1000 later orders are over too.
+  /// nullopt if the order is unknown or forgotten. The client remembers the last 1000 orders that are over.
   std::optional<OrderState> state(OrderId order) const;
-  /// Waits until the order is over or `timeout` has passed, and returns its state. In a callback it returns
-  /// immediately.
+  /// Waits until the order is over or `timeout` has passed, and returns its state. Returns immediately if
+  /// called from a callback.
   std::optional<OrderState> wait(OrderId order, std::chrono::nanoseconds timeout) const;
   /// All robots that an agent or vision has reported.
   std::vector<Robot> robots() const;

@@ -9,8 +9,8 @@
 namespace sidestep::client {
 
 OrderState state_of(const SentOrder& sent);
-/// Whether the state is final. An accepted zone's state is not: all coordinators may forget the zone, or a
-/// later order may replace it.
+/// Whether the state is final. The state of an accepted zone is not final: all coordinators may forget the
+/// zone, or a later order may replace it.
 bool stays(const SentOrder& sent, const OrderState& state);
 
 sidestep::Zone to_zone(const Zone& zone);

@@ -7,8 +7,8 @@
 namespace sidestep {
 namespace {
 
-// A coordinator has forgotten an order if this many of its complete order memories in a row lack the order: a
-// single memory may have been sent before the coordinator heard of the order.
+// A coordinator has forgotten an order if this number of its consecutive complete order memories lack the
+// order: a single memory may have been sent before the coordinator received the order.
 constexpr int kRoundsUntilForgotten = 3;
 
 bool drives(const Order& order) { return order.kind == msg::OrderKind::ORDER_GO; }
@@ -47,7 +47,7 @@ bool is_refused(msg::OrderResult result) {
   return result != msg::OrderResult::RESULT_REMEMBERED && result != msg::OrderResult::RESULT_REPLACED;
 }
 
-/// Whether no further news about an order can arrive.
+/// Whether the state of an order can no longer change.
 bool is_closed(const SentOrder& sent) {
   return is_final(sent.phase) || (!is_persistent(sent.order) && sent.phase == OrderPhase::kAccepted);
 }
@@ -88,7 +88,7 @@ OrderHandle OrderClient::send_zone(Order order) {
             earlier.kind == msg::OrderKind::ORDER_REMOVE_ZONE) &&
            earlier.zone_number == order.zone_number;
   };
-  // There is at most one, because each zone order makes the client forget its predecessor.
+  // At most one earlier order is stored, because each zone order makes the client forget its predecessor.
   const auto earlier = std::ranges::find_if(sent_, is_same_zone);
   if (earlier != sent_.end()) forget(earlier);
   return send(std::move(order));
@@ -260,7 +260,8 @@ void OrderClient::compare(SentOrder& sent, std::uint32_t coordinator, const Orde
     missing_[sent.handle][coordinator] = 0;
     // Only an answer, or a report from the robot's agent, shows that a second process remembers the order.
     const bool has_started = known->progress.state != msg::OrderState::ORDER_ACCEPTED;
-    // The robot's status is more recent than the memory, unless the status was lost.
+    // The robot's status is usually more recent than the memory, so the memory counts only in these two
+    // cases.
     if (known->progress.is_finished() || (sent.phase == OrderPhase::kSent && has_started))
       update(sent, phase_of(known->progress), known->progress.goal_index);
   } else if (known && std::pair(known->order.number, known->order.client) > std::pair(number, client_)) {

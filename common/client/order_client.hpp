@@ -84,21 +84,21 @@ class OrderClient {
   };
   OrderHandle send(Order order);
   OrderHandle send_zone(Order order);
-  /// Stops repeating the orders that this one supersedes.
+  /// Marks earlier orders that `later` supersedes as replaced, so that they are not repeated.
   void replace_earlier(const Order& later);
   bool is_followed_by_hold(const SentOrder& resume) const;
   void publish(const Order& order);
   /// nullptr if this client has no order with this number.
   SentOrder* find_number(OrderNumber number);
-  /// Renumbers the order if its number was too low because this client's clock is behind, so that the answer
-  /// does not reflect the client's intent. Returns whether it renumbered the order.
+  /// Renumbers the order if this client's clock is behind and the number was therefore too low: the
+  /// coordinator then took an earlier order for a later one. Returns whether it renumbered the order.
   bool renumber(SentOrder& sent, const msg::OrderAnswer& answer);
   void repeat();
   void on_answer(const msg::OrderAnswer& answer);
   void on_status(const msg::OrderStatus& status);
   void on_memory(const msg::OrderMemory& memory);
-  /// Counts another consecutive complete order memory of this coordinator that lacks the order. True at every
-  /// kRoundsUntilForgotten-th.
+  /// Counts another consecutive complete order memory of this coordinator that lacks the order. Returns true
+  /// at every kRoundsUntilForgotten-th one.
   bool count_missing(const SentOrder& sent, std::uint32_t coordinator);
   /// Whether the latest complete order memory of any coordinator lists the order.
   bool is_listed(const SentOrder& sent) const;

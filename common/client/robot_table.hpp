@@ -14,7 +14,7 @@
 
 namespace sidestep::client {
 
-/// What agents and vision have reported about each robot. Messages are untrusted.
+/// The latest reports of agents and vision about each robot. Messages are untrusted.
 class RobotTable {
  public:
   /// Agents report at least once a second.
@@ -31,9 +31,9 @@ class RobotTable {
  private:
   struct Row {
     Robot robot;
-    std::optional<Time> heard_at{};     ///< when the agent's last report arrived
+    std::optional<Time> heard_at{};     ///< arrival time of the agent's last report
     std::optional<Time> observed_at{};  ///< capture time by vision's clock
-    std::optional<Time> seen_at{};      ///< when the last new observation arrived
+    std::optional<Time> seen_at{};      ///< arrival time of the last new observation
   };
 
   ClientId self_;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint32_t kNone = 0xffffffffu;
-constexpr std::uint32_t kMinChildren = 4;  // minimum for a node other than the root
+constexpr std::uint32_t kMinChildren = 4;  // minimum number of children of a node other than the root
 
 FloatBox lane_box(const TreeNode& node, std::uint32_t lane) {
   return {node.boxes.min_x_m[lane], node.boxes.min_y_m[lane], node.boxes.max_x_m[lane],

@@ -134,7 +134,7 @@ NearestSlot ShapeStore::nearest(const Vec2& at) const {
     const collision::ShapeRecord& circle = records_[slot];
     const double dx = circle.x_m - location.x(), dy = circle.y_m - location.y();
     const double reach = nearest.distance_m + circle.radius_m + slack_m;
-    // Negated, so that shapes other than circles, whose radius is NaN, are compared too.
+    // Negated to include shapes other than circles, whose radius is NaN.
     if (!(dx * dx + dy * dy > reach * reach)) compare(slot, at, nearest);
   }
   return nearest;

@@ -25,7 +25,7 @@ void check_corners(const std::vector<Vec2>& corners) {
     total_turn_rad += turn_rad;
   }
   require(total_turn_rad > std::numbers::pi && total_turn_rad < 3 * std::numbers::pi,
-          "a polygon's boundary has to go around exactly once");
+          "a polygon's boundary must make exactly one full turn");
 }
 
 }  // namespace

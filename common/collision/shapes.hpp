@@ -42,9 +42,9 @@ void check(const Shape& shape);
 /// them.
 [[nodiscard]] Vec2 nearest_boundary_point(const Vec2& p, const Shape& shape);
 
-/// A disc at the same distance and in the same direction from a point as the shape. For a circle this is the
-/// shape itself. For other shapes it is the nearest boundary point or, if the point is inside, a disc that
-/// touches this boundary point from the inside and contains the given point.
+/// A disc that stands in for the shape: at the same distance and in the same direction from `p`. For a circle
+/// this is the shape itself. For other shapes it is the nearest boundary point or, if the point is inside, a
+/// disc that touches this boundary point from the inside and contains `p`.
 [[nodiscard]] Circle disc_facing(const Vec2& p, const Shape& shape);
 
 /// The squared distance from a segment to the shape, 0 if they touch.

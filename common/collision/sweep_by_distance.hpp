@@ -38,8 +38,8 @@ class SweepByDistance {
   /// (Bruce 2006, chapter 3).
   bool touches() const { return touches(0, length_m_); }
 
-  /// How far the body moves before contact, found by conservative advancement: each step advances by the
-  /// clearance at the current position.
+  /// The distance that the body moves before contact, found by conservative advancement: each step advances
+  /// by the clearance at the current position.
   double free_path_m() const {
     for (double travelled_m = 0; travelled_m < length_m_;) {
       const double free_m = free_at(travelled_m);

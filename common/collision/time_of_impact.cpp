@@ -19,7 +19,7 @@ double entry(const Vec2& from, const Vec2& displacement, const Circle& disc) {
 }
 
 /// The fraction of the displacement after which a point that is farther than `reach` from an edge comes
-/// within this distance.
+/// within `reach`.
 double entry(const Vec2& from, const Vec2& displacement, const Segment& edge, double reach) {
   double first = std::min(entry(from, displacement, {edge.from_m, reach}),
                           entry(from, displacement, {edge.to_m, reach}));
@@ -27,7 +27,7 @@ double entry(const Vec2& from, const Vec2& displacement, const Segment& edge, do
   const double length = along.norm();
   if (length == 0) return first;
   const double side = cross(along, off) / length, approach = cross(along, displacement) / length;
-  // The point approaches the edge's line from its own side.
+  // The point moves towards the edge's line.
   if (side * approach < 0) {
     const double fraction = std::max(0.0, (std::abs(side) - reach) / std::abs(approach));
     const double foot = along.dot(off + fraction * displacement);

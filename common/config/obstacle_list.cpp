@@ -114,7 +114,7 @@ std::string text_of(const ConvexPolygon& polygon) {
   return fmt::format("polygon: {{corners_m: [{}]}}", corners);
 }
 
-/// What the user of a map must know; empty if nothing.
+/// A notice for the user about unknown cells and a rotation of the map; empty if there are none.
 std::string notice_of(const LoadedMap& map, const std::string& name, const std::string& unknown) {
   std::string text;
   if (map.unknown > 0)

@@ -19,9 +19,9 @@ namespace sidestep {
 /// An example of a list element for error messages: "circle: {centre_m: [0, 0], radius_m: 1}".
 [[nodiscard]] std::string obstacle_text(const Shape& shape);
 
-/// Reads the optional keys `map` and `unknown` of the same files. `map` is the path of a map's YAML file,
-/// relative to the file that has the key; `unknown` says how unknown cells are treated. If `cells` is given,
-/// it is used as the map, and no file is read. Throws ConfigError.
+/// Reads the optional keys `map` and `unknown` of a scenario or world. `map` is the path of a map's YAML
+/// file, relative to the file that has the key; `unknown` says how unknown cells are treated. If `cells` is
+/// given, it is used as the map, and no file is read. Throws ConfigError.
 [[nodiscard]] std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map,
                                                              const OccupancyMap* cells = nullptr);
 

@@ -12,8 +12,8 @@ struct Scenario;
 
 /// The planners that can drive robots, for the key `planner` of scenarios
 /// (agents/planning/named_planner.hpp). Six are local methods that follow another planner's paths. Planners
-/// that are not listed are for comparison: they keep a graph of one world, use up all time, or examine the
-/// whole floor.
+/// that are not listed are for comparison: they keep a graph of one world, always use the whole time limit,
+/// or examine the whole floor.
 inline constexpr std::array<std::string_view, 19> kDrivingPlanners{
     "lazy-visibility", "errt",
     "bi-errt",         "rrt",

@@ -27,7 +27,7 @@ struct RobotSpec {
   Vec2 start_m{0, 0};
   double start_heading_rad = 0;
   std::vector<Goal> goals;     ///< visited in order; may be empty
-  std::string planner{};       ///< planner of the robot's routes (named_planner.hpp); empty: the scenario's
+  std::string planner{};       ///< the robot's planner (named_planner.hpp); empty: the scenario's planner
   Duration clock_offset{0};    ///< robot's clock - host's clock, at the start
   double clock_drift_ppm = 0;  ///< rate at which the robot's clock gains on the host's
   bool is_absent = false;      ///< not on the floor at the start; start_m is then the robot's own estimate
@@ -59,7 +59,7 @@ struct VisionSpec {
   double rate_hz = 60;
   int columns = 2;                        ///< number of cameras along the length
   int rows = 1;                           ///< number of cameras along the width
-  double overlap_m = 0.5;                 ///< how far a camera's view extends beyond its grid cell
+  double overlap_m = 0.5;                 ///< distance by which a camera's view extends beyond its grid cell
   double position_noise_m = 0.0005;       ///< standard deviation on each axis
   double heading_noise_rad = 0.005;       ///< standard deviation
   Duration delay{10'000'000};             ///< time from capture to publication

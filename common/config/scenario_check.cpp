@@ -62,7 +62,7 @@ struct PlacementCheck {
     }
   }
 
-  /// `what` is called only in case of an error.
+  /// Throws ConfigError if robots at these positions would overlap. Only then calls `what`, for the message.
   template <typename What>
   void check_distance(const Vec2& a, const Vec2& b, int line, What what) const {
     const double min_distance = 2 * scenario.radius_m + scenario.margin_m;
@@ -74,7 +74,7 @@ struct PlacementCheck {
   }
 };
 
-/// The robot's place after its last goal. A robot without goals stays where it starts.
+/// The robot's last goal or, without goals, its start. nullopt for an absent robot without goals.
 std::optional<Vec2> last_place_m(const RobotSpec& robot) {
   if (!robot.goals.empty()) return robot.goals.back().position_m;
   return robot.is_absent ? std::nullopt : std::optional(robot.start_m);

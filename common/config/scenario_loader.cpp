@@ -113,7 +113,7 @@ void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
   });
 }
 
-/// Two robots of a team with the same pattern cannot be distinguished in images.
+/// Rejects scenarios with images in which two robots of a team have the same marker pattern.
 void check_images(YamlMap& map, const Scenario& scenario) {
   if (!scenario.vision.images) return;
   try {
@@ -125,7 +125,7 @@ void check_images(YamlMap& map, const Scenario& scenario) {
 
 void read_vision(YamlMap& map, VisionSpec& vision) {
   read_section(map, "vision", [&](YamlMap& inner) {
-    // Frames more than 0.3 s apart are too rare to supervise robots.
+    // The lower limit excludes frames more than 0.3 s apart, which are too rare to supervise robots.
     inner.read("rate_hz", {5, 1000}, vision.rate_hz);
     inner.read("columns", {1, 16}, vision.columns);
     inner.read("rows", {1, 16}, vision.rows);

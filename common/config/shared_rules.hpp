@@ -18,8 +18,8 @@ struct RuleDifference {
   std::string others;  ///< empty: the other process does not know the key
 };
 
-/// What all processes that share a floor must agree on: the roster, and the rules that the protocol's safety
-/// relies on. Stored as one line "key: value" per rule; values never contain a line break.
+/// The rules on which all processes that share a floor must agree: the roster, and the rules that the
+/// protocol's safety relies on. Stored as one line "key: value" per rule; values never contain a line break.
 class SharedRules {
  public:
   /// Identifies a set of rules in message headers. Never 0.

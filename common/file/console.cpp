@@ -15,7 +15,7 @@ void write_text(std::FILE* stream, const std::string& text) noexcept {
 void reopen_standard_streams() noexcept {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free descriptor, because those below it are open.
+    // open() returns the lowest free descriptor, which is this one, because the lower ones are open.
     (void)!open("/dev/null", O_RDWR);
   }
 }

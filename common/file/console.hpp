@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// Writes the text to a stream at once. If that fails, because the reader is gone or the disk is full, the
-/// text is lost. Unlike fmt::print(), this does not throw, so a missing reader does not abort any work. The
-/// process must ignore SIGPIPE to outlive the reader of a pipe.
+/// Writes the text to a stream and flushes it. If that fails, because the reader is gone or the disk is full,
+/// the text is lost. Unlike fmt::print(), this does not throw, so a missing reader does not abort any work.
+/// The process must ignore SIGPIPE to outlive the reader of a pipe.
 void write_text(std::FILE* stream, const std::string& text) noexcept;
 
 /// Formats the text, and writes it as write_text() does.

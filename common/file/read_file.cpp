@@ -15,8 +15,8 @@ void require_regular_file(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (error) throw std::runtime_error(error.message());
-  if (fs::is_directory(status)) throw std::runtime_error("a directory");
-  if (!fs::is_regular_file(status)) throw std::runtime_error("not a regular file");
+  if (fs::is_directory(status)) throw std::runtime_error("it is a directory");
+  if (!fs::is_regular_file(status)) throw std::runtime_error("it is not a regular file");
 }
 
 std::string read_file(const std::string& path, std::size_t max_bytes) {
@@ -29,9 +29,9 @@ std::string read_file(const std::string& path, std::size_t max_bytes) {
   while (file.read(buffer, sizeof buffer) || file.gcount() > 0) {
     text.append(buffer, static_cast<std::size_t>(file.gcount()));
     if (text.size() > max_bytes)
-      throw std::runtime_error(fmt::format("more than {} MB", max_bytes / 1'000'000));
+      throw std::runtime_error(fmt::format("it is larger than {} MB", max_bytes / 1'000'000));
   }
-  if (file.bad()) throw std::runtime_error("a read error");
+  if (file.bad()) throw std::runtime_error("a read error occurred");
   return text;
 }
 

@@ -7,7 +7,7 @@
 namespace sidestep {
 
 /// Throws std::runtime_error unless the path is a regular file, because a device or pipe could block a
-/// program or fill its memory. The message is only the reason, for example "a directory".
+/// program or fill its memory. The message is only the reason, e.g. "it is a directory".
 void require_regular_file(const std::string& path);
 
 /// Reads a file whose path comes from a user. Throws std::runtime_error if it is not a regular file, exceeds

@@ -36,8 +36,8 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return stat(path.c_str(), &status) == 0 ? std::optional(status) : std::nullopt;
 }
 
-/// The permission that is needed for a part of a path: folders on the way must be searchable, a folder at the
-/// end must be listable.
+/// The permission needed for a part of a path: folders before the last part must be searchable, and the last
+/// part must be readable and, if it is a folder, searchable.
 int needed_access(const fs::path& part, const fs::path& path) {
   const auto status = status_of(part);
   const bool is_folder = status && S_ISDIR(status->st_mode);

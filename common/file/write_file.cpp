@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-/// False with errno set when not all of the text could be written, or the file could not be opened.
+/// Writes the text and closes the file. False, with errno set, if the file is not open or writing failed.
 bool write(OutputFile file, const std::string& text) {
   if (!file) return false;
   const bool is_written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();

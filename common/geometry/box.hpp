@@ -30,7 +30,7 @@ inline bool overlap(const Box& a, const Box& b) {
          b.min_m.y() <= a.max_m.y();
 }
 
-/// The smallest box that contains both.
+/// The smallest box that contains both boxes.
 inline Box united(const Box& a, const Box& b) {
   return {a.min_m.cwiseMin(b.min_m), a.max_m.cwiseMax(b.max_m)};
 }

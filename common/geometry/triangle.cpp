@@ -38,7 +38,7 @@ double squared_distance(const Vec3& a_from, const Vec3& a_to, const Vec3& b_from
   const Vec3 u = a_to - a_from, v = b_to - b_from, w = a_from - b_from;
   const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w);
   const double determinant = uu * vv - uv * uv;
-  // Either both nearest points are interior, or one of them is an end.
+  // Either both nearest points are interior to their segments, or at least one of them is a segment's end.
   double nearest = std::min({squared_distance(a_from, b_from, b_to), squared_distance(a_to, b_from, b_to),
                              squared_distance(b_from, a_from, a_to), squared_distance(b_to, a_from, a_to)});
   if (determinant > 0) {

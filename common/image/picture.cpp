@@ -15,7 +15,7 @@ namespace {
 
 cv::Vec3b bgr(const Rgb& colour) { return {colour.b, colour.g, colour.r}; }
 
-/// Empty if OpenCV cannot decode the bytes.
+/// Decodes a picture; empty if OpenCV cannot decode the bytes.
 cv::Mat decoded(const std::string& bytes) {
   try {
     const cv::Mat file(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));

@@ -29,7 +29,7 @@ std::optional<PictureSize> png_size(std::string_view bytes) {
 std::optional<PictureSize> jpeg_size(std::string_view bytes) {
   for (std::size_t at = 2;;) {
     if (at >= bytes.size() || byte_at(bytes, at) != 0xff) return std::nullopt;
-    while (at < bytes.size() && byte_at(bytes, at) == 0xff) ++at;  // a marker may begin with several of these
+    while (at < bytes.size() && byte_at(bytes, at) == 0xff) ++at;  // a marker may begin with several 0xff
     if (at + 8 > bytes.size()) return std::nullopt;
     const std::uint8_t marker = byte_at(bytes, at++);
     const bool is_frame =

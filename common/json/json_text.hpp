@@ -9,7 +9,7 @@ namespace sidestep {
 
 // nlohmann's own functions would be compiled again in each source file that calls them, which takes seconds.
 
-/// The text of a value: on one line, or indented by this number of spaces a level. Bytes that are not UTF-8
+/// The text of a value: on one line, or indented by `indent` spaces per level. Bytes that are not UTF-8
 /// become U+FFFD.
 [[nodiscard]] std::string json_text(const nlohmann::json& json, int indent = -1);
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& json, int indent = -1);

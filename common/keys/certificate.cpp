@@ -28,7 +28,7 @@ Time to_time(const ASN1_TIME* time) {
   return Time{} + std::chrono::seconds(timegm(&parts));
 }
 
-/// The value of a part of the subject; empty unless there is exactly one.
+/// The value of an attribute of the subject; empty unless the attribute occurs exactly once.
 std::string part_of(const X509_NAME* name, int nid) {
   const int index = X509_NAME_get_index_by_NID(name, nid, -1);
   if (index < 0 || X509_NAME_get_index_by_NID(name, nid, index) >= 0) return {};

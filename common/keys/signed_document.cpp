@@ -25,7 +25,7 @@ std::optional<std::string> element(const std::string& xml, const std::string& na
   return xml.substr(begin + open.size(), end - begin - open.size());
 }
 
-/// Parses a time such as 2026-11-28T03:00:00. Fast DDS takes it to be in this host's time zone, so we do too.
+/// Parses a time such as 2026-11-28T03:00:00 in this host's time zone, as Fast DDS does.
 std::optional<Time> parse_time(const std::string& text) {
   std::tm parts{};
   std::istringstream stream(text);

@@ -12,8 +12,8 @@ namespace sidestep {
 /// Throws std::invalid_argument that names the file and the problem.
 [[nodiscard]] std::string load_signed_document(const std::string& path, const Certificate& authority);
 
-/// How long a subject's permissions are valid on this host, according to a permissions document. nullopt if
-/// the document has no permissions for this subject, or its times cannot be parsed.
+/// The period in which a subject's permissions are valid on this host, according to a permissions document.
+/// nullopt if the document has no permissions for this subject, or its times cannot be parsed.
 [[nodiscard]] std::optional<Validity> permissions_validity(const std::string& permissions,
                                                            const std::string& subject);
 

@@ -70,7 +70,7 @@ void LogReader::read_magic() {
   if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
     fail(name_, 0, fmt::format("not a log, expected {} at the beginning", kMagic));
   }
-  if (!is_long_enough) fail(name_, kMagic.size(), "the file ends, expected the version");
+  if (!is_long_enough) fail(name_, kMagic.size(), "the file ends before the version number");
   const auto version = big_endian<std::int32_t>(bytes.data() + kMagic.size());
   if (version != kVersion) {
     fail(name_, kMagic.size(), fmt::format("format version {}, expected {}", version, kVersion));

@@ -72,7 +72,7 @@ MulticastReceiver::MulticastReceiver(const Endpoint& group, const std::string& i
   set(socket_, SOL_SOCKET, SO_RCVBUF, kBufferSize, group, "set the size of the receive buffer");
   // Without IP_MULTICAST_ALL = 0 and binding to the group's address, the socket would also receive unicast
   // datagrams, and datagrams of groups that other processes have joined.
-  set(socket_, IPPROTO_IP, IP_MULTICAST_ALL, 0, group, "receive this group only");
+  set(socket_, IPPROTO_IP, IP_MULTICAST_ALL, 0, group, "receive only this group");
   const sockaddr_in address = socket_address(group);
   if (bind(socket_.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     fail(group, "listen");

@@ -41,7 +41,7 @@ inline constexpr std::size_t kRefereeCommands = 18;
 /// The league's name of a command, e.g. "FORCE_START".
 std::string_view name_of(RefereeCommand command);
 
-/// The team that a command concerns; nullopt if it concerns both.
+/// The team that a command concerns; nullopt if it concerns both teams.
 std::optional<Team> team_of(RefereeCommand command);
 
 /// The part of the Referee message that navigation needs.
@@ -49,7 +49,7 @@ struct RefereePacket {
   Duration sent{0};  ///< send time by the sender's clock, like DetectionFrame::captured
   RefereeCommand command = RefereeCommand::kHalt;
   std::uint32_t command_counter = 0;               ///< number of commands since the referee's start
-  Duration commanded{0};                           ///< when the command was given, by the sender's clock
+  Duration commanded{0};                           ///< time of the command, by the sender's clock
   std::optional<Vec2> designated_position_m = {};  ///< target position of ball placement
 };
 

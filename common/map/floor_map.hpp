@@ -22,7 +22,7 @@ class FloorMap {
   explicit FloorMap(OccupancyMap map, std::string name = "map", std::string notice = "");
 
   const std::string& name() const { return name_; }
-  /// What the user must know about the file, in one line; empty if nothing. Programs print it at start.
+  /// A notice about the map for the user, in one line; empty if there is none. Programs print it at start.
   const std::string& notice() const { return notice_; }
   const OccupancyMap& cells() const { return cells_; }
   const DistanceField& field() const { return field_; }
@@ -33,9 +33,8 @@ class FloorMap {
   /// Hash of the cells; maps whose cells differ in place or state have different hashes.
   std::uint64_t fingerprint() const { return fingerprint_; }
 
-  /// A disc at the same distance and in the same direction from a point as the nearest blocked cell or the
-  /// outside, as disc_facing(Vec2, Shape) returns for a shape. nullopt if nothing blocked is within
-  /// `within_m`.
+  /// A disc that stands in for the nearest blocked cell or the outside of the map: at the same distance and
+  /// in the same direction from `p`, like disc_facing(Vec2, Shape). nullopt if neither is within `within_m`.
   std::optional<Circle> disc_facing(const Vec2& p, double within_m) const;
 
  private:

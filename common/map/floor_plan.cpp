@@ -85,7 +85,7 @@ class FloorPlanner {
     if (is_corridor) open_door(area, is_wide, first + wall + corridor, first + between);
   }
 
-  /// Opens a door in a wall at a random place where both sides are free. Such a place exists, because the
+  /// Opens a door in a wall at a random place that is free on both sides. Such a place exists, because the
   /// outermost rooms on both sides are never narrower than a door.
   void open_door(const Area& area, bool is_wide, int begin, int end) {
     const int length = std::min(area.columns(), area.rows()),

@@ -18,7 +18,7 @@ constexpr const char* kExpectedMap = "a map";
 /// A probability that is within this distance of its threshold counts as unknown, because the brightness is
 /// rounded.
 constexpr double kTie = 1e-9;
-/// Map savers write unknown cells as 205 of 255, which some free thresholds would call free.
+/// Map savers write unknown cells as 205 of 255, which some values of free_thresh would make free.
 constexpr double kUnknownGrey = 50.0 / 255;
 /// Maximum yaw that is ignored: it moves no corner of a map by more than a millimetre.
 constexpr double kMaxIgnoredYaw_rad = 1e-6;
@@ -128,7 +128,7 @@ MapFiles map_files(const OccupancyMap& map, const std::string& image_name) {
       files.image += map.blocked().get(column, row) ? kBlockedPixel : kFreePixel;
   YAML::Emitter name;
   name << YAML::DoubleQuoted << image_name;
-  // Numbers are written so that reading them gives the same numbers.
+  // Numbers are written so that load_map() reads back exactly the same values.
   files.yaml = fmt::format(
       "image: {}\nresolution: {}\norigin: [{}, {}, 0]\nnegate: 0\n"
       "occupied_thresh: 0.65\nfree_thresh: 0.196\n",

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// A map as loaded from its file, with facts that its user must know.
+/// A map loaded from its file, with properties of the file that the user must know.
 struct LoadedMap {
   OccupancyMap cells;
   std::size_t unknown = 0;  ///< number of cells that are neither known to be free nor known to be occupied

@@ -7,7 +7,7 @@
 namespace sidestep {
 namespace {
 
-/// The index of the last of `count` + 1 borders that is not beyond a coordinate, or -1.
+/// The index of the last of `count` + 1 borders at or before `at_m`; -1 if there is none.
 template <typename Border>
 int last_border(double at_m, double origin_m, double resolution_m, int count, const Border& border_m) {
   if (!(at_m >= origin_m)) return -1;

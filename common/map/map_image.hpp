@@ -20,7 +20,7 @@ enum class CellState : std::uint8_t { kFree, kOccupied, kUnknown };
 /// Maps a pixel's brightness, from 0 (black) to 1 (white), to the state of its cell.
 using StateOf = std::function<CellState(double brightness)>;
 
-/// How cells of unknown occupancy are treated.
+/// The treatment of cells of unknown occupancy.
 enum class UnknownCells : std::uint8_t { kBlocked, kFree };
 
 /// A grid whose bits are 1 where a cell is blocked.

@@ -43,9 +43,9 @@ class OccupancyMap {
   bool for_each_box(const Box& region, const Call& call) const;
 
   /// Rectangles that together cover exactly the blocked cells, without the outside. Each is maximal, so
-  /// rectangles may overlap. Their number is small but not minimal: for each cell not yet covered, in rows
-  /// from the lower left, the largest rectangle with this cell as its corner is chosen, and extended. nullopt
-  /// if more than `limit` would be needed.
+  /// rectangles may overlap. Their number is small but not necessarily minimal: for each cell not yet
+  /// covered, in rows from the lower left, the largest rectangle with this cell as its corner is chosen, and
+  /// extended. nullopt if more than `limit` would be needed.
   std::optional<std::vector<Box>> rectangles(std::size_t limit) const;
 
  private:
@@ -78,7 +78,7 @@ bool OccupancyMap::for_each_box(const Box& region, const Call& call) const {
       const int begin = blocked_.find_set(end, end_column, row);
       if (begin >= end_column) break;
       end = blocked_.find_clear(begin, end_column, row);
-      // A run that equals the one below it belongs to that run's box.
+      // A run that equals the run below it belongs to the same box.
       if (row > range.first.row && is_run(begin, end, row - 1, range)) continue;
       int end_row = row + 1;
       while (end_row <= range.last.row && is_run(begin, end, end_row, range)) ++end_row;

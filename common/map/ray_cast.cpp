@@ -12,7 +12,7 @@ constexpr double kNoHit = std::numeric_limits<double>::infinity();
 /// The free distance at any point of a cell is the distance between centres less at most this: half a
 /// diagonal for the point, half a diagonal for the blocked cell, and the error of the stored distance.
 constexpr double kCellMargin = 1.4143 + 0.02;
-/// Margin that keeps a ray off blocked cells after a jump, so that rounding cannot put it into one.
+/// Margin that shortens jumps along a ray, so that rounding cannot move its end into a blocked cell.
 constexpr double kJumpMargin_m = 1e-8;
 
 /// One axis of a ray on its way through the grid.
@@ -35,7 +35,8 @@ struct RayAxis {
 };
 
 void check_ray(const Vec2& from, const Vec2& direction, double max_m) {
-  if (!from.allFinite() || !std::isfinite(max_m)) throw std::invalid_argument("a ray is not finite");
+  if (!from.allFinite() || !std::isfinite(max_m))
+    throw std::invalid_argument("a ray's start or length is not finite");
   if (!(std::abs(direction.squaredNorm() - 1) < 1e-6))
     throw std::invalid_argument("the direction of a ray is not a unit vector");
 }

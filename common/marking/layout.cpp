@@ -39,7 +39,7 @@ std::optional<std::string> colour_error(const MarkerLayout& layout, const Marker
                        pattern.colours.size());
   for (const Colour colour : pattern.colours)
     if (colour == layout.blue_team || colour == layout.yellow_team)
-      return fmt::format("{} is a team colour, expected another", named(colour).name);
+      return fmt::format("{} is a team colour, expected a different colour", named(colour).name);
   return std::nullopt;
 }
 
@@ -55,8 +55,9 @@ std::optional<LayoutError> pattern_error(const MarkerLayout& layout) {
     if (const auto why = colour_error(layout, pattern)) return error_at(*why);
     for (std::size_t t = 1; t < symmetries.size(); ++t)
       if (hamming_distance(pattern.colours, pattern.colours, symmetries[t]) == 0)
-        return error_at(fmt::format("the heading is ambiguous: rotated by {:.0f} degrees it looks the same",
-                                    symmetries[t].angle_rad * 180 / std::numbers::pi));
+        return error_at(
+            fmt::format("the heading is ambiguous: the pattern looks the same rotated by {:.0f} degrees",
+                        symmetries[t].angle_rad * 180 / std::numbers::pi));
     for (std::size_t j = 0; j < i; ++j) {
       const MarkerPattern& other = layout.patterns[j];
       if (other.id == pattern.id) return error_at(fmt::format("duplicate id {}", pattern.id));

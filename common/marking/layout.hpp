@@ -52,8 +52,8 @@ struct LayoutError {
 inline constexpr std::size_t kMaxDots = 12;
 inline constexpr std::size_t kMaxPatterns = 1024;
 
-/// The first error in a layout: overlapping dots, ambiguous colours, patterns that look the same after a
-/// rotation, or patterns with an ambiguous heading.
+/// Returns the first error in a layout: overlapping dots, ambiguous colours, patterns that look the same
+/// after a rotation, or patterns with an ambiguous heading.
 [[nodiscard]] std::optional<LayoutError> validation_error(const MarkerLayout& layout);
 
 }  // namespace sidestep

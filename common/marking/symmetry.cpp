@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// The permutation of the dots under a rotation; empty if some dot is not mapped to a dot.
+/// The permutation of the dots under a rotation; empty if the rotation does not map every dot to a dot.
 std::vector<std::size_t> permutation_of(const MarkerLayout& layout, double angle_rad) {
   std::vector<std::size_t> permutation;
   for (const Marker& dot : layout.dots) {

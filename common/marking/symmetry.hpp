@@ -17,11 +17,11 @@ struct RotationalSymmetry {
 inline constexpr double kSamePosition_m = 0.001;
 
 /// The rotational symmetries of a layout's dots, regardless of colour, by ascending angle; the first is the
-/// identity. They are the multiples of 2 pi / n, where n is their number. Precondition: no dot overlaps
-/// another dot or the centre.
+/// identity. The angles are the multiples of 2 pi / n, where n is the number of symmetries. Precondition: no
+/// dot overlaps another dot or the centre.
 std::vector<RotationalSymmetry> rotational_symmetries(const MarkerLayout& layout);
 
-/// The number of dots in which a pattern differs from another one that is rotated by a symmetry.
+/// The number of dots whose colour differs between `pattern` and `rotated` turned by the symmetry.
 std::size_t hamming_distance(const std::vector<Colour>& pattern, const std::vector<Colour>& rotated,
                              const RotationalSymmetry& symmetry);
 

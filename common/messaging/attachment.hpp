@@ -7,7 +7,7 @@
 namespace sidestep {
 
 /// Slot of a delivered message in which the readers of this process cache the decoded message, so that only
-/// the first one decodes it. It is empty at first and lives as long as the message.
+/// the first reader decodes it. The slot is initially empty and has the message's lifetime.
 class MessageAttachment {
  public:
   /// The value stored by set(); null if the slot is empty or holds another type.

@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// What keeps a robot from its goal, and where it goes instead, as a clause: "robot 5 stands on its goal; it
-/// goes to 1.20,-0.40 instead". Commands, reports and the monitor's page use it.
+/// Describes why a robot cannot reach its goal, and where it goes instead: "robot 5 stands on its goal; it
+/// goes to 1.20,-0.40 instead". Used by commands, reports and the monitor's page.
 [[nodiscard]] std::string to_text(const Blockage& blockage);
 
 }  // namespace sidestep

@@ -29,8 +29,8 @@ class Writer {
   Writer() = default;
   Writer(std::unique_ptr<RawWriter> raw, std::uint64_t rules) : raw_(std::move(raw)), rules_(rules) {}
 
-  /// Sets the header's rules, message_number and stamp_ns, and sends the message. The caller sets sender and
-  /// incarnation.
+  /// Sets the header's rules, message_number and stamp_ns, and sends the message. The caller sets the other
+  /// fields.
   void publish(Message& message, Time now) {
     message.header().rules(rules_);
     message.header().message_number(++count_);
@@ -44,9 +44,9 @@ class Writer {
   std::uint64_t count_ = 0;
 };
 
-/// A process's only interface to the outside: time, timers and messages. A bus makes all its callbacks from
-/// one thread, one after another, so nodes need no locks. Nodes may call a bus from its callbacks, or before
-/// it runs.
+/// A process's only interface to the outside: time, timers and messages. A bus makes all its callbacks in one
+/// thread, one after another, so nodes need no locks. Nodes may call a bus from its callbacks, or before it
+/// runs.
 class Bus {
  public:
   virtual ~Bus() = default;
@@ -98,14 +98,14 @@ class Bus {
   }
 
   /// From now on, if two processes write a single-writer channel, only the messages of the process that was
-  /// heard first are used. For observers of a simulation, where the first process is the genuine one.
+  /// heard first are used. For observers of a simulation, in which the first process is the genuine one.
   void trust_first_senders() { follows_first_ = true; }
 
   /// From now on, new subscriptions to single-writer channels listen for a moment before they trust a writer.
-  /// For a process that starts while others are running.
+  /// For a process that starts while other processes are running.
   void listen_before_trusting() { listening_ = SingleWriterGuard::kListening; }
 
-  /// Counts an item that this process has dropped for a reason that its node does not count.
+  /// Counts an item dropped by this process outside its node.
   void count_drop(DropReason reason) { drops_.count(reason); }
   /// Adds the drops of this bus, and of this process outside its node.
   void count_drops(DropCounters& drops) const {
@@ -147,7 +147,7 @@ class Bus {
   void subscribe(const Topic<Message>& topic, Callback callback) {
     subscribe(topic, 0, std::move(callback));
   }
-  /// Like subscribe(), but refuses nothing. For recordings.
+  /// Like subscribe(), but refuses no message. For recordings.
   template <typename Message, typename Callback>
   void observe(const Topic<Message>& topic, std::uint32_t robot, Callback callback) {
     observe_channel<Message>(topic, channel_name(topic, robot), std::move(callback));

@@ -23,7 +23,7 @@ std::uint32_t read_uint32(Bytes bytes, ByteOrder order) {
   return value;
 }
 
-/// Size of a message whose sequence is empty; if the type has no sequence, the size of every message.
+/// Size of a message with an empty sequence. If the type has no sequence, the fixed size of its messages.
 template <typename Message>
 std::size_t min_size() {
   static const std::size_t size = fast_dds::cdr_size(Message());
@@ -86,7 +86,7 @@ bool read_cdr(Bytes bytes, ByteOrder order, std::size_t max_elements, void* mess
   try {
     CdrCoder coder(bytes, order);
     coder.read(*static_cast<Message*>(message));
-    // If the bytes end between two members, Fast CDR 2 takes that for the end of the message.
+    // If the bytes end between two members, Fast CDR 2 accepts this as the end of the message.
     const std::size_t whole = max_elements == 0 ? min_size<Message>() : cdr_size<Message>(message);
     return coder.position() == whole && bytes.size() - coder.position() <= kMaxPadding;
   } catch (const std::exception&) {

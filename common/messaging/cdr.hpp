@@ -16,8 +16,8 @@ using ByteOrder = fast_dds::ByteOrder;
 /// The CDR bytes of a key, big-endian and padded with zeros.
 using CdrKey = std::array<std::uint8_t, 16>;
 
-/// The templates below are instantiated in cdr.cpp for the messages of all topics, not in every file that
-/// includes the topic table. Each `message` points to a Message. Bytes have no encapsulation header.
+/// The templates below are instantiated only in cdr.cpp, for the messages of all topics, to save compile
+/// time. Each `message` points to a Message. Bytes have no encapsulation header.
 
 template <typename Message>
 std::shared_ptr<void> make_message();

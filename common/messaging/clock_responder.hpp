@@ -10,18 +10,18 @@
 namespace sidestep {
 
 /// Answers clock probes with the time at which the probe arrived and the time at which the answer was sent,
-/// by this process's clock. Probes beyond a rate, which all senders share, are ignored, so that no sender can
-/// overload the process.
+/// by this process's clock. Probes beyond a rate limit, which all senders share, are ignored, so no sender
+/// can overload the process.
 class ClockResponder {
  public:
-  /// What an answer says about the process besides its clock.
+  /// The process's description in each answer.
   struct Identity {
     std::uint32_t process = 0;
     Incarnation incarnation = 0;
     double clock_bound_s = 0;
     std::string host, scenario;
   };
-  /// Number of probes that are answered at once; beyond it, one per kPeriod.
+  /// Maximum number of probes answered in a burst; further probes are answered at a rate of one per kPeriod.
   static constexpr int kBurst = 20;
   static constexpr Duration kPeriod{10'000'000};
 

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Publishes this process's drop counts once per kPeriod: those of its bus and those of its node.
+/// Publishes the drop counts of this process's bus and node once per kPeriod.
 class CounterPublisher {
  public:
   static constexpr Duration kPeriod{1'000'000'000};

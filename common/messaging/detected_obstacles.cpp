@@ -18,7 +18,7 @@ double robot_distance_m(const Circle& obstacle, const msg::DetectionFrame& frame
   return std::sqrt(min_squared) - obstacle.radius_m;
 }
 
-/// Moves the nearest obstacles to the front. Returns the distance up to which these are complete.
+/// Moves the nearest obstacles to the front. Returns the distance up to which they are complete.
 double select_nearest(std::span<Circle> detected, std::size_t count, const msg::DetectionFrame& frame) {
   const auto farthest_kept = detected.begin() + static_cast<std::ptrdiff_t>(count) - 1;
   std::ranges::nth_element(detected, farthest_kept, {},

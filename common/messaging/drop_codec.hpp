@@ -12,7 +12,7 @@ namespace sidestep {
 /// Writes the non-zero counts into a message.
 void encode(const DropCounters& drops, msg::Counters& message);
 /// Decodes untrusted counts. Returns nullopt unless the sender is the process that the counts describe, every
-/// reason is known, and every robot number is possible.
+/// reason is known, and every robot number is valid.
 [[nodiscard]] std::optional<std::vector<DropCount>> decode(const msg::Counters& message);
 
 }  // namespace sidestep

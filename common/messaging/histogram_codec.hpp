@@ -9,7 +9,7 @@ namespace sidestep {
 /// Encodes a histogram. Counts beyond 32 bits saturate at the message's maximum.
 msg::DurationCounts encode(const DurationHistogram& histogram);
 
-/// Any message gives a valid histogram; a hostile one gives wrong figures.
+/// Decodes an untrusted histogram. The result is always valid, but its counts may be wrong.
 [[nodiscard]] DurationHistogram decode(const msg::DurationCounts& message);
 
 }  // namespace sidestep

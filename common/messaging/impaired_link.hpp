@@ -12,7 +12,7 @@ namespace sidestep {
 /// Quality of the link from one process to another.
 struct LinkQuality {
   double loss = 0;              ///< fraction of messages that are lost
-  double mean_burst = 1;        ///< mean number of messages lost in a row (Gilbert 1960)
+  double mean_burst = 1;        ///< mean number of consecutive messages lost (Gilbert 1960)
   double duplicate = 0;         ///< probability of a duplicate
   Duration delay_min{200'000};  ///< delays are exponential above the minimum, truncated at the maximum
   Duration delay_mean{400'000};
@@ -34,7 +34,7 @@ class ImpairedLink {
   MessageCopies send(const LinkQuality& quality, Rng& rng);
 
  private:
-  /// Draws whether the next message is lost.
+  /// Decides at random whether the next message is lost.
   bool draw_loss(const LinkQuality& quality, Rng& rng);
 
   bool is_losing_ = false;  // currently in a burst of losses

@@ -8,7 +8,7 @@ constexpr std::int64_t kMaxDelay_ns = 10'000'000'000;
 constexpr double kMaxMeanBurst = 1e6;
 constexpr std::size_t kMaxSenders = 4096;
 
-// False for a NaN.
+// False if the value is NaN.
 bool is_within(double value, double low, double high) { return value >= low && value <= high; }
 
 }  // namespace

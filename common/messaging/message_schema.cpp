@@ -31,7 +31,7 @@ struct Definition {
   std::vector<std::string_view> tokens;
 };
 
-/// The name that a definition defines: the last one before its braces, its value or its end.
+/// The name that a definition defines: the last name before its braces, its value or its end.
 std::string_view defined_name(const std::vector<std::string_view>& tokens) {
   std::string_view name;
   for (const std::string_view token : tokens) {

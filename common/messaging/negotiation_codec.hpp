@@ -9,9 +9,9 @@
 namespace sidestep {
 
 /// Decodes an untrusted proposal. Returns nullopt if its sender is not an agent of the proposal's robot, or
-/// if incarnation or epoch are implausible at `now` (here and below: by the local clock). A candidate becomes
-/// nullopt if it is invalid, or if its robot, base or start differs from the first one's; the other
-/// candidates remain.
+/// if incarnation or epoch are implausible at `now`, by the local clock. A candidate becomes nullopt if it is
+/// invalid, or if its robot, base or start differs from that of the first candidate; the other candidates
+/// remain.
 [[nodiscard]] std::optional<Proposal> decode(const msg::Proposal& message, Time now);
 /// Decodes an untrusted registration. Returns nullopt if its sender is not an agent of the registration's
 /// robot, or if incarnation or epoch are implausible. Registration::versions is nullopt if too many are
@@ -20,13 +20,13 @@ namespace sidestep {
 /// Decodes an untrusted verdict. Returns nullopt unless a coordinator sent it for `robot`, and all reasons
 /// are known.
 [[nodiscard]] std::optional<Verdict> decode(const msg::Verdict& message, RobotId robot);
-/// Decodes an untrusted coordinator state. Returns nullopt if its sender is not the coordinator of that
-/// number, or if its epoch, its mode, the reason of its role, a time or the place of a displaced robot is
-/// implausible. Precondition: the message outlives the result.
+/// Decodes an untrusted coordinator state. Returns nullopt if its sender is not the coordinator with the
+/// stated number, or if its epoch, its mode, the reason of its role, a time or the place of a displaced robot
+/// is implausible. Precondition: the message outlives the result.
 [[nodiscard]] std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now);
 
 /// Decodes the untrusted reason of a coordinator's role. Returns nullopt if the reason is unknown or refers
-/// to no possible process.
+/// to an impossible process number.
 [[nodiscard]] std::optional<RoleCause> decode_role_cause(const msg::CoordinatorState& message);
 /// Writes a role's reason into a coordinator's state.
 void encode(const RoleCause& cause, msg::CoordinatorState& message);

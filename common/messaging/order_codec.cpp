@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxHeading_rad = 100;
 constexpr double kMaxRemaining_s = 1e9;
 
-// False for a NaN.
+// False if the value is NaN.
 bool is_between(double value, double low, double high) { return value >= low && value <= high; }
 
 /// Zero means that there is no value.
@@ -54,8 +54,7 @@ msg::OrderPose encode(const Goal& goal) {
   return pose;
 }
 
-/// Whether orders of this kind may address this robot: some kinds are for all robots, some for one, some for
-/// either.
+/// Whether orders of this kind may have this value of Order::robot: kAllRobots, one robot, or either.
 bool fits(msg::OrderKind kind, RobotId robot) {
   switch (kind) {
     case msg::OrderKind::ORDER_GO:
@@ -79,7 +78,7 @@ bool is_valid(const msg::OrderTerms& terms, std::size_t poses) {
                  : poses == 0 || terms.order_kind() == msg::OrderKind::ORDER_GO;
 }
 
-/// Also used for orders of the scenario, which have no poses.
+/// Decodes an order of a client or of the scenario; the latter has no poses.
 std::optional<Order> decode(RobotId robot, ClientId client, const msg::OrderTerms& terms,
                             std::span<const msg::OrderPose> poses, Time now) {
   const auto is_valid_pose = [](const msg::OrderPose& pose) { return is_valid(pose); };

@@ -10,12 +10,12 @@
 
 namespace sidestep {
 
-/// Maximum number of pages; more than the orders of kMaxRobots robots and all holds and zones need.
+/// Maximum number of pages; more than needed for the orders of kMaxRobots robots, all holds and all zones.
 inline constexpr std::uint32_t kMaxOrderPages = 512;
 
 /// Codecs refuse zones with more corners.
 inline constexpr std::size_t kMaxZoneCorners = 16;
-/// Codecs refuse lower speed limits: a robot would hardly move.
+/// Codecs refuse lower speed limits, at which a robot would hardly move.
 inline constexpr double kMinSpeedLimit_mps = 0.01;
 /// Codecs refuse smaller or larger arrival tolerances.
 inline constexpr double kMinTolerance_m = 0.001, kMaxTolerance_m = 10;
@@ -44,9 +44,8 @@ struct OrderReport {
   std::optional<double> remaining_s{};
 };
 
-/// Decodes an untrusted order. Returns nullopt if the sender may not send orders, or not this one, if the
-/// kind is unknown, if the number is implausible at `now` (by the local clock), or if any value is out of
-/// bounds.
+/// Decodes an untrusted order. Returns nullopt if the sender may not send this order, if the kind is unknown,
+/// if the number is implausible at `now` (by the local clock), or if any value is out of bounds.
 [[nodiscard]] std::optional<Order> decode(const msg::Order& message, Time now);
 /// Decodes an untrusted page. Returns nullopt if its sender is neither a coordinator nor an agent, if there
 /// are more than kMaxOrderPages pages, or if any of its orders is invalid.

@@ -55,7 +55,7 @@ std::string describe_other(std::uint32_t process, Incarnation own, Incarnation o
 
 std::string describe_conflict(const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
   return fmt::format(
-      "two processes send '{}' as {}; the messages of both are ignored on this topic until one of them ends",
+      "two processes send '{}' as {}; their messages on this topic are ignored until one of them exits",
       channel_name(topic, robot),
       topic.per_robot ? fmt::format("robot {}", robot) : process_name(header.sender()));
 }

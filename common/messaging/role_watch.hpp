@@ -11,8 +11,8 @@
 
 namespace sidestep {
 
-/// Detects other processes with this process's id where only one may run: a second simulator, vision,
-/// referee, or coordinator with the same number. The process that started first has priority.
+/// Detects other processes with this process's id if only one may run: a second simulator, vision, referee,
+/// or coordinator with the same number. The process that started first has priority.
 class RoleWatch {
  public:
   /// `on_other` is called once for each other process, with its incarnation. Has no effect for kinds of
@@ -41,12 +41,12 @@ class RoleWatch {
   std::map<Incarnation, Other> others_;
 };
 
-/// Whether a process with this id exits when it hears one that started earlier. Coordinators with the same
-/// number agree among themselves which of them is active.
+/// Whether a process with this id exits when it hears another process with the same id that started earlier.
+/// Coordinators with the same number instead agree which of them is active.
 [[nodiscard]] bool must_be_alone(std::uint32_t process);
 
-/// The message with which a process reports that another process with its id is running, and why it exits if
-/// it does.
+/// The message with which a process reports that another process with its id is running. It also explains an
+/// exit.
 std::string describe_other(std::uint32_t process, Incarnation own, Incarnation other);
 
 /// The message for Bus::watch_conflicts(): two processes write a single-writer channel.

@@ -58,11 +58,11 @@ void RulesExchange::publish_if_due() {
   message.process(process_);
   message.header().sender(process_);
   message.text().assign(rules_.text().begin(), rules_.text().end());
-  // Created only now: with many processes, unnecessary writers would dominate the start-up time.
+  // Created only on demand: with many processes, unnecessary writers would dominate the start-up time.
   if (!writer_) {
     writer_ = bus_.advertise(topics::kRules);
     // Over DDS the first message is lost, because no process has discovered this writer yet. The other
-    // process might never again send a message that is refused, so the rules are sent again later.
+    // process might never send another message that is refused, so the rules are sent again later.
     for (const int periods : {1, 2, 4}) bus_.at(now + periods * kPeriod, [this] { publish_if_due(); });
   }
   writer_->publish(message, now);

@@ -26,8 +26,8 @@ class RulesExchange {
   static constexpr Duration kPeriod{500'000'000};
   using OnMismatch = std::function<void(const RulesMismatch&)>;
 
-  /// `process` is this process's id. `on_mismatch` is called once without and once with differences for each
-  /// process and its rules. Create it before the nodes of the process.
+  /// `process` is this process's id. For each process and its rules, `on_mismatch` is called once without and
+  /// once with the differences. Create it before the nodes of the process.
   RulesExchange(Bus& bus, std::uint32_t process, const SharedRules& rules, OnMismatch on_mismatch);
   RulesExchange(const RulesExchange&) = delete;
   RulesExchange& operator=(const RulesExchange&) = delete;
@@ -43,7 +43,7 @@ class RulesExchange {
   const std::uint32_t process_;
   const SharedRules rules_;
   const OnMismatch on_mismatch_;
-  std::optional<Writer<msg::SharedRules>> writer_;  ///< nullopt until something is refused
+  std::optional<Writer<msg::SharedRules>> writer_;  ///< nullopt until a message is refused
   std::optional<Time> published_at_;
   /// Indexed by process and fingerprint: whether the differences have been reported.
   std::map<std::pair<std::uint32_t, Fingerprint>, bool> reported_;

@@ -28,8 +28,8 @@ SingleWriterGuard::Outcome SingleWriterGuard::receive(std::uint64_t incarnation,
     other_heard_at_ = now;
     ++others_;
   }
-  // One late message, overtaken by the first message of the restarted process, does not prove a conflict, and
-  // neither does one forged message.
+  // A single message does not prove a conflict: it may be forged, or a late message of the process before its
+  // restart.
   if (std::min(others_, interleaved_) < kEvidence)
     return incarnation == sender_ ? Outcome::kCounts : Outcome::kRefused;
   gone_after_ = kGoneAfterConflict;

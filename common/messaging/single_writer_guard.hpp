@@ -8,18 +8,18 @@
 namespace sidestep {
 
 /// Guards a channel that only one process at a time may write (TopicInfo::is_single_writer), such as a
-/// robot's feedback. Two processes that speak for the same robot contradict each other, and nothing shows
-/// which one is right. Therefore all messages of both are ignored while both are heard. For the protocol
-/// these messages are lost, which stops robots and is safe.
+/// robot's feedback. If two processes speak for the same robot, their messages contradict each other, and the
+/// receiver cannot tell which is right. Therefore the messages of both processes are ignored while both are
+/// heard. To the protocol these messages are lost; this stops robots and is safe.
 class SingleWriterGuard {
  public:
   enum class Outcome : std::uint8_t { kCounts, kRefused, kNewConflict };
-  /// Silence after which a process counts as gone, so that another may take its place. The longer time
-  /// applies if the two have been heard alternately.
+  /// Silence after which a process counts as gone and another process may take its place. The longer time
+  /// applies if the two processes have been heard alternately.
   static constexpr Duration kGoneAfter{1'000'000'000};
   static constexpr Duration kGoneAfterConflict{6'000'000'000};
   /// A process that starts while others are running listens for this long before it trusts a sender.
-  /// Otherwise it would take the first one heard for the only one.
+  /// Otherwise it would assume that the first sender heard is the only one.
   static constexpr Duration kListening{300'000'000};
 
   SingleWriterGuard() = default;
@@ -33,13 +33,14 @@ class SingleWriterGuard {
   /// Processes a message from the process with this incarnation.
   [[nodiscard]] Outcome receive(std::uint64_t incarnation, Time now);
 
-  /// Whether this process was the first of the conflicting ones to be heard.
+  /// Whether this process was heard before the other conflicting processes.
   bool is_first(std::uint64_t incarnation) const { return has_sender_ && incarnation == sender_; }
 
  private:
   /// Times later than `now` were read before this process's clock was set back; they are replaced by `now`.
   void clamp_future_times(Time now);
-  /// Handles a message in the listening period: any process heard besides the first one proves a conflict.
+  /// Handles a message in the listening period: a message from any process except the first proves a
+  /// conflict.
   Outcome listen(std::uint64_t incarnation, Time now);
 
   static constexpr std::uint32_t kEvidence = 2;  // number of alternating messages of each process

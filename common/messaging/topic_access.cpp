@@ -24,8 +24,8 @@ bool may_read(const Identity& identity, const TopicInfo& topic, std::uint32_t ro
 }
 
 bool exchange_messages(const Identity& a, const Identity& b) {
-  // For per-robot topics: an identity that is limited to its own channels may use those of the robots `first`
-  // .. `last`.
+  // For per-robot topics: an identity that is limited to its own channels may use the channels of the robots
+  // `first` .. `last`.
   const std::uint32_t robots[] = {std::max(a.first, b.first), std::min(a.last, b.last), a.first, b.first};
   bool result = false;
   for_each_topic([&](const TopicInfo& topic) {

@@ -25,8 +25,8 @@ namespace sidestep {
 
 /// Quality of service. States are best effort and keep the last sample of each key: each message of the
 /// control cycle supersedes the previous one, and the protocol tolerates loss, so a retransmission would only
-/// cost time. Events are few and should arrive: reliable, and in order per key (README.md lists when they may
-/// still be lost). Images are states of about a megabyte, and may be sent through shared memory.
+/// cost time. Events are few and should arrive: they are reliable, and in order per key (README.md lists when
+/// they may still be lost). Images are states of about a megabyte that may be sent through shared memory.
 enum class Qos : std::uint8_t { kState, kEvent, kImage };
 
 /// A type-erased message type, for buses and recordings. Pointers to messages point to messages of this type.
@@ -51,7 +51,7 @@ struct TopicInfo {
   Roles writers, readers;
   Qos qos{};
   bool per_robot = false;   ///< the topic has one channel per robot, "<name>/<robot>"
-  bool is_checked = false;  ///< processes refuse messages on this topic from processes with other rules
+  bool is_checked = false;  ///< messages on this topic from processes with different rules are refused
   MessageType type{};
   bool is_single_writer =
       false;  ///< only one process at a time may write each channel, see SingleWriterGuard
@@ -155,8 +155,8 @@ inline constexpr Topic<msg::OrderStatus> kOrderStatus{
 inline constexpr Topic<msg::AgentStatus> kStatus{
     {"status", Role::kAgent, kWatchers, Qos::kState, false, true,
      message_type<msg::AgentStatus>("sidestep::msg::AgentStatus")}};
-/// Counts of messages that each process has refused, dropped or received too late. Processes that must run
-/// alone also use it to detect a second process with their id.
+/// Counts of messages that each process has refused, dropped or received too late. Processes that must be the
+/// only one with their id also use it to detect a second process.
 inline constexpr Topic<msg::Counters> kCounters{
     {"counters", kSystemRoles, kSingleInstanceRoles | kWatchers, Qos::kState, false, true,
      message_type<msg::Counters>("sidestep::msg::Counters", msg::MAX_COUNTERS)}};
@@ -177,7 +177,7 @@ inline constexpr Topic<msg::GroundTruth> kTruth{
     {"truth", Role::kSimulator, Role::kJudge, Qos::kState, false, true,
      message_type<msg::GroundTruth>("sidestep::msg::GroundTruth", 1024), true}};
 
-/// Sent by every process that has received messages from a process with other rules.
+/// Sent by every process that has received messages from a process with different rules.
 inline constexpr Topic<msg::SharedRules> kRules{
     {"rules", kSystemRoles | Role::kOperator, kSystemRoles | Role::kClient | kWatchers, Qos::kEvent, false,
      false, message_type<msg::SharedRules>("sidestep::msg::SharedRules", msg::MAX_RULES_TEXT)}};

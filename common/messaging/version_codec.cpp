@@ -10,7 +10,7 @@ namespace {
 constexpr double kMaxInflation_m = 10;
 constexpr Duration kMaxPhaseDuration = std::chrono::minutes(1);
 
-// False for a NaN.
+// False if the value is NaN.
 bool within(double value, double bound) { return std::abs(value) <= bound; }
 
 std::optional<Intent> decode(const msg::Intent& message) {

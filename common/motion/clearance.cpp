@@ -139,11 +139,12 @@ double min_squared_distance(const RelativeMotion& motion) {
   return minimum;
 }
 
-/// The minimum, or NaN if the motion that led to this position contained NaN or infinity: std::min ignores
-/// NaN.
+/// Returns `minimum`, or NaN if `last_m` is not finite because the motion contained NaN or infinity: std::min
+/// ignores NaN.
 double or_nan(double minimum, const Vec2& last_m) { return minimum + 0 * last_m.squaredNorm(); }
 
-/// Conservative: false only if the motion along the line of centres cannot come within `far_m`.
+/// Whether the motion may come within `far_m`. Conservative: false only if its component along the line of
+/// centres cannot.
 bool may_come_within(const RelativeMotion& motion, double far_m) {
   const double distance = motion.d.norm();
   const double closing = std::min(motion.seconds * motion.d.dot(motion.v), 0.0) +
@@ -301,12 +302,12 @@ bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m)
 
 bool for_each_near_box(const Trajectory& a, const FloorMap& map, double min_separation_m,
                        const std::function<bool(const Box&)>& call) {
-  // A piece of this length is near few boxes, however long the whole path is.
+  // The path is divided into pieces of this length, each of which is near few boxes.
   constexpr double kPiece_m = 1;
   const double far_m = std::max(min_separation_m, 0.0) + 2 * kClearanceTolerance_m;
   const auto visit = [&](const Trajectory& piece, double length_m) {
     const Vec2 &from = piece.at_start().position_m, to = piece.rest_position_m();
-    // A path of this length is always within this distance of the midpoint of its ends.
+    // Every point of a path is within half the path's length of the midpoint of its ends.
     const Vec2 middle = 0.5 * (from + to);
     const double reach_m = 0.5 * length_m + far_m;
     if (map.field().lower_bound_m(middle) > reach_m) return true;
@@ -320,7 +321,7 @@ bool for_each_near_box(const Trajectory& a, const FloorMap& map, double min_sepa
   for (const MotionPhase& phase : a.phases()) {
     const double seconds = to_seconds(phase.duration);
     const double end_mps = (state.velocity_mps + seconds * phase.acceleration_mps2).norm();
-    // The speed is a convex function of time over a phase.
+    // The speed is a convex function of time over a phase, so its maximum is at one of the ends.
     const double length_m = seconds * std::max(state.velocity_mps.norm(), end_mps);
     const auto pieces = static_cast<std::int64_t>(std::ceil(length_m / kPiece_m));
     Duration begin{0};

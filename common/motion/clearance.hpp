@@ -30,14 +30,14 @@ double clearance_m(const Trajectory& a, const Vec2& centre_m, double min_separat
 [[nodiscard]] bool is_clear(const Trajectory& a, const Vec2& centre_m, double min_separation_m);
 
 /// The clearance between a trajectory and a static shape: the minimum distance to its boundary, minus
-/// `min_separation_m`. It is minus infinity if the trajectory enters the shape, except for circles, where the
-/// distance to the boundary is also defined inside.
+/// `min_separation_m`. It is minus infinity if the trajectory enters a shape other than a circle; inside a
+/// circle it is finite.
 double clearance_m(const Trajectory& a, const Shape& shape, double min_separation_m);
 /// Whether clearance_m(a, shape, min_separation_m) >= 0.
 [[nodiscard]] bool is_clear(const Trajectory& a, const Shape& shape, double min_separation_m);
 
-/// Whether the trajectory keeps at least `min_separation_m` from all blocked cells of a map and from the
-/// outside, tested as for shapes. The time grows with the length of the path.
+/// Whether the trajectory keeps a clearance of at least `min_separation_m` from all blocked cells of a map
+/// and from the outside. The time grows with the length of the path.
 [[nodiscard]] bool is_clear(const Trajectory& a, const FloorMap& map, double min_separation_m);
 
 /// Calls `call` with boxes of blocked cells, or of the outside, to which the trajectory comes closer than

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// The part of a trajectory from a given time on; the whole trajectory if it starts later.
+/// The part of a trajectory from `from` on; the whole trajectory if it starts later.
 Trajectory remaining_trajectory(const Trajectory& trajectory, Time from);
 
 /// The separation required between another trajectory and a version that continues `base` at `from`. It is

@@ -5,14 +5,14 @@
 
 namespace sidestep {
 
-/// What a robot intends to do beyond its version: hold a velocity from the version's start on, then drive to
+/// A robot's intended motion beyond its version: hold a velocity from the version's start on, then drive to
 /// its goal via a waypoint. Other robots use it only for prediction; safety does not rely on it.
 struct Intent {
   Vec2 velocity_mps{0, 0};
   double velocity_duration_s = 0;
   Vec2 waypoint_m{0, 0};
   Vec2 goal_m{0, 0};    ///< end of the robot's route
-  Vec2 target_m{0, 0};  ///< where the robot wants to be, even if its route ends elsewhere
+  Vec2 target_m{0, 0};  ///< the place that the robot wants to reach, even if its route ends elsewhere
 };
 
 }  // namespace sidestep

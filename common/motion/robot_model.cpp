@@ -37,8 +37,8 @@ double effort2_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) 
          across * across * per_speed2 * (1 / squared(limits.acceleration_mps2));
 }
 
-/// The requested acceleration, shortened until it may be held for the duration. An acceleration in A(v) at
-/// the final velocity of a longer one is also in A(v) at its own final velocity.
+/// The requested acceleration, shortened until it may be held for the duration. If an acceleration is in A(v)
+/// at the final velocity of a longer acceleration, it is also in A(v) at its own final velocity.
 Vec2 scaled_to_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
                           double seconds) {
   const double at_start2 = effort2(acceleration, velocity, limits);

@@ -6,12 +6,12 @@
 
 namespace sidestep {
 
-/// The part of the tracking bound that drift may use up until the next observation. A robot that is farther
-/// from its reference must return within 25 ms; the rest of the bound covers this time.
+/// The part of the tracking bound that drift may use until the next observation. A robot that is farther from
+/// its reference must return within 25 ms; the rest of the bound covers the motion during this time.
 constexpr double drift_bound_m(double tracking_bound_m) { return 0.6 * tracking_bound_m; }
 
-/// Maximum persistent offset between a robot's position and the one that vision reports, for example due to a
-/// badly calibrated camera. It is the part of the tracking bound that drift does not use up.
+/// Maximum persistent error of the position that vision reports for a robot, for example due to a badly
+/// calibrated camera. It is the part of the tracking bound that is not reserved for drift.
 constexpr double vision_error_bound_m(double tracking_bound_m) {
   return tracking_bound_m - drift_bound_m(tracking_bound_m);
 }

@@ -33,8 +33,8 @@ inline State state_after(const State& from, const Vec2& acceleration_mps2, doubl
           from.velocity_mps + elapsed_s * acceleration_mps2};
 }
 
-/// A robot's reference motion over absolute time: from its start on a few phases of constant acceleration,
-/// then rest without end. It is undefined before its start.
+/// A robot's reference motion over absolute time: a few phases of constant acceleration, then rest. It is
+/// undefined before its start.
 class Trajectory {
  public:
   static constexpr int kMaxPhases = 4;
@@ -62,7 +62,7 @@ class Trajectory {
   const State& at_start() const { return at_start_; }
   std::span<const MotionPhase> phases() const { return {phases_, static_cast<std::size_t>(count_)}; }
 
-  /// The state at a time. Before the start it is the start state; from end() on it is at rest.
+  /// The state at a time. Before the start this is the start state; from end() on the robot is at rest.
   State state_at(Time t) const { return motion_at(t).state; }
   /// The state and the acceleration at a time. At a phase boundary the acceleration is that of the later
   /// phase. It is zero before the start and from end() on.

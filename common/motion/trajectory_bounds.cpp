@@ -14,7 +14,7 @@ constexpr double kMaxResidualSpeed_mps = 1e-6;
 // Added to the radius of the discs to cover rounding.
 constexpr double kDiscRounding_m = 1e-6;
 
-// False for NaN.
+// False if a component is NaN.
 bool within(const Vec2& v, double bound) { return std::abs(v.x()) <= bound && std::abs(v.y()) <= bound; }
 
 }  // namespace

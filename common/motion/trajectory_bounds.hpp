@@ -12,7 +12,7 @@ struct TrajectoryBounds {
   bool is_batchable =
       false;  ///< has at most two phases and moderate numbers; otherwise it is compared individually
   State at_start;
-  double first_s = 0, second_s = 0;  ///< durations of the phases; first_s is 0 only if second_s is
+  double first_s = 0, second_s = 0;  ///< durations of the phases; if first_s is 0, second_s is 0
   Vec2 first_half_mps2{0, 0}, second_half_mps2{0, 0};  ///< half the accelerations of the phases
   Vec2 second_velocity_mps{0, 0};                      ///< velocity at the start of the second phase
   double acceleration_mps2 = 0;                        ///< maximum magnitude of the acceleration

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSpeedTolerance_mps = 1e-6;
 constexpr double kAccelerationTolerance_mps2 = 1e-3;
-// Agent and coordinator compute a continuation with the same function; the tolerance (m, m/s) is for machines
+// Agent and coordinator compute a continuation with the same function; the tolerance (m, m/s) covers machines
 // that round differently.
 constexpr double kContinuityTolerance = 1e-9;
 

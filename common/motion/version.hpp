@@ -11,8 +11,8 @@ namespace sidestep {
 
 using RobotId = std::uint32_t;
 using VersionNumber = std::uint64_t;
-/// Identifies one run of a process: the reading of the process's clock at its start, in nanoseconds. So a
-/// later run has a higher number.
+/// Identifies one run of a process: the reading of the process's clock at its start, in nanoseconds. A later
+/// run therefore has a higher number.
 using Incarnation = std::uint64_t;
 using Epoch = std::uint64_t;
 /// Whether a message may contain this time. Times an hour or more ahead of the local clock are refused.
@@ -21,8 +21,8 @@ constexpr bool is_plausible(Time t, Time now) {
   return t >= Time{} && t <= kMaxTime && t - now < kMaxAhead;
 }
 /// Whether a message may contain this incarnation, epoch or version number. All three are clock readings,
-/// raised slightly where one has to exceed another. The check ensures that a single wrong message cannot
-/// exhaust them or permanently exclude processes that use lower ones.
+/// raised slightly if a number has to exceed another. The check ensures that a single wrong message cannot
+/// exhaust the numbers or permanently exclude processes with lower numbers.
 constexpr bool is_plausible(std::uint64_t number, Time now) {
   return number <= static_cast<std::uint64_t>(to_ns(kMaxTime)) &&
          is_plausible(time_from_ns(static_cast<std::int64_t>(number)), now);

@@ -9,9 +9,8 @@
 
 namespace sidestep {
 
-/// All versions that the robot may be executing, now or later. This is R(i) in the coordinator's ledger, and
-/// the content of an agent's registration. Only robots' facts remove versions (coordinator/PROTOCOL.md, rule
-/// 2).
+/// All versions that a robot may execute, now or later. This is R(i) in the coordinator's ledger, and the
+/// content of an agent's registration. Only robots' facts remove versions (coordinator/PROTOCOL.md, rule 2).
 class VersionSet {
  public:
   static constexpr std::size_t kCapacity = 8;

@@ -88,7 +88,7 @@ CLI::Validator type_check() {
   }
 }
 
-/// Converts the project's exception into the library's, prefixed with the option's name if there is one.
+/// Wraps a callback: its UsageError becomes the library's exception, prefixed with the option's name if any.
 template <typename Callback>
 auto translated(const std::string& option, Callback callback) {
   return [option, callback = std::move(callback)](const auto&... arguments) {
@@ -255,7 +255,7 @@ void CliCommand::on_parsed(std::function<void()> callback) const {
 
 CommandLine::CommandLine(const std::string& description, const std::string& program_name)
     : app_(std::make_unique<CLI::App>(description, program_name)) {
-  // Called here, because each program begins with its command line.
+  // Called here, because every program starts by creating its command line.
   reopen_standard_streams();
 }
 

@@ -16,7 +16,7 @@ class Option;
 
 namespace sidestep {
 
-/// The command line is wrong; the message says where and why. Programs exit with kExitUsage.
+/// An error in the command line; the message says where and why. Programs exit with kExitUsage.
 class UsageError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
@@ -25,13 +25,13 @@ class UsageError : public std::invalid_argument {
 /// A condition on the text of an option's value.
 struct ValueCheck {
   std::string description;                                 ///< for --help, e.g. "POSITIVE"
-  std::function<std::string(const std::string&)> problem;  ///< what is wrong with a value; empty if valid
+  std::function<std::string(const std::string&)> problem;  ///< returns why a value is invalid; empty if valid
   struct Limits {
     double min, max;
   };
   std::optional<Limits> limits{};  ///< set by in_range()
 };
-/// For options with whole numbers, Option::check() replaces this check with in_whole_range().
+/// For options with whole numbers, Option::check() uses in_whole_range() instead of this check.
 [[nodiscard]] ValueCheck in_range(double min, double max);
 [[nodiscard]] ValueCheck in_whole_range(std::int64_t min, std::int64_t max);
 /// From 1e-9 to 1e9: positive, and usable as a duration in seconds or as a rate per second.
@@ -39,7 +39,7 @@ struct ValueCheck {
 [[nodiscard]] ValueCheck non_negative();
 [[nodiscard]] ValueCheck one_of(std::vector<std::string> values);
 
-/// Handle of one option. Valid as long as the command line that it belongs to.
+/// Handle of one option, valid during the lifetime of its command line.
 class Option {
  public:
   explicit Option(CLI::Option& option, bool is_whole = false) : option_(&option), is_whole_(is_whole) {}
@@ -47,7 +47,7 @@ class Option {
   Option required() const;
   Option check(const ValueCheck& check) const;
   Option check(std::function<std::string(const std::string&)> problem) const;
-  /// Makes --help show the variable's current value, or `text`.
+  /// Makes --help show the variable's current value, or `text`, as the default.
   Option show_default() const;
   Option show_default(const std::string& text) const;
   /// The value is a comma-separated list, with exactly `count` elements if `count` is given.

@@ -29,7 +29,7 @@ void HostClockWatch::watch_references() {
   bus_.watch_headers([this, topic](const TopicInfo& info, const msg::Header& header) {
     if (info.name == topic) recovery_.on_message(header.sender(), header.stamp_ns(), bus_.now());
   });
-  // Coordinators receive robots' feedback anyway, but some other processes receive no heartbeats otherwise.
+  // Without this subscription, some processes would not receive heartbeats.
   if (reference_ == ClockReference::kCoordinators)
     bus_.subscribe(topics::kCoordinator, [](const msg::CoordinatorState&) {});
 }

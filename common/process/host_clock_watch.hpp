@@ -15,16 +15,16 @@ enum class ClockReference {
 };
 
 /// Detects when the host's clock is set, and uses ClockRecovery to decide whether the process must restart
-/// with that clock. Costs nothing as long as the host's clock is not set.
+/// with that clock. Costs nothing until the host's clock is set.
 class HostClockWatch {
  public:
   static constexpr Duration kPeriod{1'000'000'000};
 
   struct Callbacks {
     std::function<Duration()> host_ahead;   ///< returns the host's clock minus the process's clock
-    std::function<bool()> is_in_use;        ///< whether the process uses its clock together with others
+    std::function<bool()> is_in_use;        ///< whether other processes rely on this process's clock
     std::function<void()> on_adopt;         ///< called once if the process must restart with its host's clock
-    std::function<void(Duration)> on_step;  ///< called if the host's clock was set, with its lead
+    std::function<void(Duration)> on_step;  ///< called if the host's clock was set, with host_ahead()
   };
 
   /// `max_clock_difference`: see ClockRecovery. The bus makes no callbacks after this object's destruction.

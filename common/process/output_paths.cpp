@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether both paths lead to the same file, even if it does not exist yet.
+/// Whether the paths name the same file, even if it does not exist yet.
 bool is_same_file(const std::string& first, const std::string& second) {
   std::error_code error;
   if (fs::exists(first, error) && fs::exists(second, error))

@@ -20,8 +20,8 @@ namespace sidestep {
 /// The nodes of a process on its bus.
 struct RunningNodes {
   std::shared_ptr<void> nodes;
-  /// Whether the process uses its clock together with others, so that it must keep its clock when the host's
-  /// clock is set. Empty: never.
+  /// Whether other processes rely on this process's clock, so it must keep its clock when the host's clock is
+  /// set. Empty: never.
   std::function<bool()> uses_clock = {};
   /// Called when the process is asked to exit, and then every 10 ms until it returns true; only then does the
   /// process exit. Empty: it exits immediately.
@@ -32,7 +32,7 @@ struct RunningNodes {
 struct Program {
   std::string name;         ///< for example sidestep-agent
   std::string description;  ///< one sentence for --help
-  /// Adds the program's own options to --scenario, --domain and --interface. Empty: none.
+  /// Adds the program's own options. Empty: none.
   std::function<void(const CliCommand&)> add_options;
   /// Returns the name of the DDS participant, which also names the process in its log, for example agent-3.
   /// Called after the options are parsed. Empty: `name`.
@@ -51,7 +51,7 @@ struct Program {
 int run_process(int argc, char** argv, const Program& program);
 
 /// The incarnation of a process that starts now. It is a clock reading, and above the incarnation of the
-/// previous run, unless other processes would refuse such a number because it is too far ahead of the clock.
+/// previous run, unless such a number is so far ahead of the clock that other processes would refuse it.
 [[nodiscard]] Incarnation next_incarnation(Incarnation previous, Time now);
 
 /// Adds --domain, --interface, --peers, --keys and --insecure.

@@ -27,7 +27,7 @@ Identity identity_of_process(std::uint32_t process, const Scenario& scenario) {
       return {Role::kRobot, first.id, last.id};
     }
     default:
-      throw std::logic_error(fmt::format("no process has the number {}", process));
+      throw std::logic_error(fmt::format("unknown process id {}", process));
   }
 }
 

@@ -8,9 +8,9 @@
 
 namespace sidestep {
 
-/// The identity whose keys the process with this number (common/protocol/senders.hpp) has in a run of the
+/// The identity whose keys the process with this id (common/protocol/senders.hpp) has in a run of the
 /// scenario. The process that drives the robots has the keys of all robots. Throws std::logic_error for
-/// numbers that no process has.
+/// unknown ids.
 [[nodiscard]] Identity identity_of_process(std::uint32_t process, const Scenario& scenario);
 
 }  // namespace sidestep

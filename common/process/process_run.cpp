@@ -39,7 +39,7 @@ class StoppableBus {
   StoppableBus(const StoppableBus&) = delete;
   StoppableBus& operator=(const StoppableBus&) = delete;
 
-  /// The bus can no longer be stopped through the request.
+  /// Detaches the bus, so that the request no longer stops it.
   void release() { request_.bus = nullptr; }
 
  private:
@@ -54,8 +54,8 @@ void stop_when_finished(DdsBus& bus, const StopRequest& request, const std::func
 }
 
 void log_step(Duration host_ahead) {
-  log(LogLevel::kWarning, fmt::format("the host's clock has been set and is now {:+.3f} s ahead of this "
-                                      "process's clock, which does not change",
+  log(LogLevel::kWarning, fmt::format("the host's clock was set and is now {:+.3f} s ahead of this "
+                                      "process's clock, which is unchanged",
                                       to_seconds(host_ahead)));
 }
 
@@ -114,10 +114,9 @@ void run_program(const Program& program, const Scenario& scenario, const DdsSett
   while (run_on_bus(program, scenario, dds, incarnation, stop)) {
     const double by_s = to_seconds(DdsBus::host_clock_ahead());
     DdsBus::adopt_host_clock();
-    log(LogLevel::kWarning,
-        fmt::format(
-            "restarts: the host's clock has been set by {:+.3f} s and now agrees with the clocks of others",
-            by_s));
+    log(LogLevel::kWarning, fmt::format("restarting: the host's clock was set by {:+.3f} s and now agrees "
+                                        "with the other processes' clocks",
+                                        by_s));
     incarnation = next_incarnation(incarnation, DdsBus::clock());
   }
 }

@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// A global, because a signal handler takes no user data.
+// Global, because a signal handler takes no user data.
 std::function<void()> stop_now;
 
 void handle(int) {

@@ -15,7 +15,7 @@ enum class InstructionSet {
 };
 
 /// The best instruction set that this processor and its operating system support. Code compiled for an
-/// instruction set may use exactly the extensions listed above for it.
+/// instruction set may use exactly the extensions listed for it above.
 inline InstructionSet best_instruction_set() {
 #ifdef __x86_64__
   const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&

@@ -10,16 +10,16 @@
 
 namespace sidestep {
 
-/// How often a process has dropped something for one reason since its start.
+/// Number of items that a process has dropped for one reason since its start.
 struct DropCount {
   DropReason reason = DropReason::kUnreadable;
   std::optional<RobotId> robot;  ///< the robot concerned; nullopt: none, or too many to count
   std::uint64_t count = 0;
 };
 
-/// What a process has dropped, by reason and robot. Allocates nothing. At most kMaxRobotCounts pairs of
-/// reason and robot are counted separately, so that a hostile sender cannot fill the memory; further ones are
-/// counted without the robot.
+/// Numbers of items that a process has dropped, by reason and robot. Allocates nothing. At most
+/// kMaxRobotCounts pairs of reason and robot are counted separately, so that a hostile sender cannot fill the
+/// memory; further pairs are counted without the robot.
 class DropCounters {
  public:
   static constexpr std::size_t kMaxRobotCounts = 256;

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Why a process did not use a received message or part of one, or did not send a message. The numbers are
+/// Why a process did not use a received message or a part of it, or did not send a message. The numbers are
 /// used in messages.
 enum class DropReason : std::uint16_t {
   // Counted by the bus of any process.
@@ -95,7 +95,7 @@ struct DropReasonInfo {
 /// Indexed by DropReason.
 inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
     {DropReason::kUnreadable, "unreadable", "bytes that do not decode to a message of the topic", true},
-    {DropReason::kOtherRules, "other_rules", "messages of processes with other rules", true},
+    {DropReason::kOtherRules, "other_rules", "messages of processes with different rules", true},
     {DropReason::kInjectedLoss, "injected_loss", "messages lost by simulated or injected network faults",
      false},
     {DropReason::kQueueFull, "queue_full", "messages dropped because a queue was full", false},
@@ -105,7 +105,7 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
      "datagrams of a process that was forgotten after seconds of silence, until both sides have reset",
      false},
     {DropReason::kUnknownParticipant, "unknown_participant",
-     "in a run with keys, datagrams of participants that have not announced one", false},
+     "in a run with keys, datagrams of participants that have not announced a key", false},
     {DropReason::kRefusedParticipant, "refused_participant",
      "announcements of participants without a valid key of this network", true},
     {DropReason::kForgedSender, "forged_sender",
@@ -151,22 +151,21 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
      "proposals, registrations and detections of robots that the scenario does not have", true},
     {DropReason::kUnproposedGrant, "unproposed_grant", "grants of versions that were never proposed", true},
     {DropReason::kUnexpectedVerdict, "unexpected_verdict",
-     "verdicts that are repeated, or of another epoch or agent", false},
-    {DropReason::kLateFact, "late_fact", "facts that arrived after a later one", false},
-    {DropReason::kLatePage, "late_page", "pages of the ledger that arrived after a later one", false},
-    {DropReason::kOldEpoch, "old_epoch", "heartbeats of an epoch that is no longer the highest", false},
+     "repeated verdicts, and verdicts of another epoch or for another agent", false},
+    {DropReason::kLateFact, "late_fact", "facts that arrived after a later fact", false},
+    {DropReason::kLatePage, "late_page", "pages of the ledger that arrived after a later page", false},
+    {DropReason::kOldEpoch, "old_epoch", "heartbeats of an epoch below the highest known epoch", false},
     {DropReason::kContradictoryFact, "contradictory_fact", "facts that contradict the ledger", true},
     {DropReason::kFactOfHigherEpoch, "fact_of_higher_epoch",
      "facts about versions that a coordinator of a higher epoch may have granted", false},
     {DropReason::kRefusedProposal, "refused_proposal",
-     "proposals of another epoch or agent, or before all robots have registered", false},
+     "proposals of another epoch or agent, and proposals before all robots have registered", false},
     {DropReason::kRefusedRegistration, "refused_registration", "registrations of another epoch or agent",
      false},
     {DropReason::kRefusedAttestation, "refused_attestation",
-     "attestations of robots that are not missing, or that were heard", false},
+     "attestations of robots that are not missing or have been heard", false},
     {DropReason::kRefusedOrder, "refused_order",
-     "orders to unknown robots or to places outside the field, and those that a later one has replaced",
-     false},
+     "orders to unknown robots or to places outside the field, and orders replaced by a later order", false},
     {DropReason::kUntimelyFrame, "untimely_frame", "frames whose capture time is too old or in the future",
      false},
     {DropReason::kFalseDetection, "false_detection",
@@ -174,7 +173,7 @@ inline constexpr std::array kDropReasons = std::to_array<DropReasonInfo>({
     {DropReason::kTooManyObstacles, "too_many_obstacles",
      "detections of obstacles while all tracks were in use", false},
     {DropReason::kRepeatedLeagueFrame, "repeated_league_frame",
-     "frames of the league that were received before", false},
+     "frames of the league that have already been received", false},
     {DropReason::kUndatedLeagueFrame, "undated_league_frame",
      "frames of the league whose capture time cannot be determined yet", false},
     {DropReason::kUnusedLeagueDetection, "unused_league_detection",

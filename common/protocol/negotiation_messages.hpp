@@ -18,7 +18,7 @@ struct Proposal {
   Incarnation incarnation = 0;  ///< the agent's incarnation
   Epoch epoch = 0;
   Time sent_at{};                   ///< by the agent's clock
-  VersionNumber number = 0;         ///< first candidate's number, even if malformed; identifies the proposal
+  VersionNumber number = 0;         ///< number of the first candidate, even if malformed; the proposal's id
   std::size_t candidate_count = 0;  ///< 0: the proposal is malformed
   /// In order of preference. nullopt: the candidate is malformed. Only the first candidate_count are used.
   std::array<std::optional<Version>, msg::MAX_CANDIDATES> candidates{};
@@ -47,7 +47,7 @@ struct Registration {
   /// All versions that the robot may execute, now or later. Empty: the robot is absent. nullopt: malformed,
   /// or asks_for_orders.
   std::optional<VersionSet> versions{};
-  /// The robot has executed a granted version, or it had obeyed another epoch before it obeyed this agent.
+  /// The robot has executed a granted version, or it obeyed another epoch before it obeyed this agent.
   bool has_moved = false;
   bool knows_orders = false;     ///< the agent knows all orders
   bool asks_for_orders = false;  ///< the message registers no robot but asks for all orders
@@ -59,13 +59,13 @@ struct CoordinatorHeartbeat {
   Incarnation incarnation = 0;
   Epoch epoch = 0;  ///< 0: the coordinator is a standby
   msg::CoordinatorMode mode = msg::CoordinatorMode::COORDINATOR_STANDBY;
-  /// The time of the world state with which the robots' places were last compared.
+  /// Time of the last world state that the coordinator has compared with the robots' versions.
   Time watched_until{};
   bool remembers_orders = false;
-  std::span<const msg::RobotNotice> notices{};  ///< valid as long as the decoded message exists
+  std::span<const msg::RobotNotice> notices{};  ///< valid during the lifetime of the decoded message
 };
 
-/// Whether nothing is known about where a robot is going, so that it counts as a moving obstacle.
+/// Whether a robot's future motion is unknown, so it counts as a moving obstacle.
 inline bool is_uncontrolled(const msg::RobotNotice& notice) {
   return notice.is_displaced() || notice.is_silent();
 }

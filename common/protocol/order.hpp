@@ -12,14 +12,14 @@
 
 namespace sidestep {
 
-/// The Header.sender of a process that gives orders.
+/// Header.sender of a process that gives orders.
 using ClientId = std::uint32_t;
 using OrderNumber = std::uint64_t;
 
 /// Value of Order::robot for orders that apply to every robot.
 inline constexpr RobotId kAllRobots = msg::ALL_ROBOTS;
 
-/// Priority of clients. A robot carries out the order of the highest rank first.
+/// Priority of clients, ascending. A robot carries out the order of the highest rank first.
 enum class Rank : std::uint8_t { kScenario, kClient, kReferee, kOperator };
 inline constexpr std::size_t kRanks = 4;
 

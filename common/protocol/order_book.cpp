@@ -151,7 +151,7 @@ void OrderBook::clear_lifted_by(const Order& resume) {
   clear(Kind::kResume, is_for_all ? 0 : resume.robot, resume.robot);
 }
 
-// Exceptions are kept: if one were forgotten, its robot would be held again.
+// Keeps exceptions: if an exception were forgotten, its robot would be held again.
 void OrderBook::forget_oldest_resumes() {
   if (resumes_.by_age.size() <= kMaxResumes) return;
   const std::size_t exceptions = exception_count();
@@ -260,7 +260,7 @@ bool OrderBook::is_lifted(const Order& hold) const {
 bool OrderBook::contradicts(const Order& order) const {
   if (knows(order)) return false;
   if (order.kind == msg::OrderKind::ORDER_RESUME) return ends_any_hold(order);
-  return orders_.contains(place_of(order));  // occupied by an earlier order, since this one is not known
+  return orders_.contains(place_of(order));  // an earlier order, since this order is not known
 }
 
 bool OrderBook::stands(const Order& order) const {

@@ -28,35 +28,35 @@ class OrderBook {
  public:
   enum class Outcome {
     kStored,
-    kKnown,     ///< already in the book, with at least this progress, or without effect
+    kKnown,     ///< already in the book with at least this progress, or has no effect
     kReplaced,  ///< a later order has its place, has lifted it or has removed it
     kFull       ///< clients have too many holds, zones or exceptions
   };
 
   /// Adds an order, or its progress, that another process remembers. Never refuses an order for lack of
-  /// space, but forgets the oldest exceptions beyond kMaxMergedExceptions.
+  /// space; beyond kMaxMergedExceptions, it forgets the oldest exceptions.
   Outcome merge(const RememberedOrder& order);
   /// Adds an order that a client has sent. Unlike merge(), it limits the number of clients' holds, zones, and
-  /// exceptions from holds of all robots. An order that may be a late repetition of a forgotten one counts as
-  /// replaced.
+  /// exceptions from holds of all robots. An order that may be a late repetition of a forgotten order counts
+  /// as replaced.
   Outcome admit(const Order& order);
-  /// Records the robot's progress with its order of this client and number. Returns whether anything changed.
-  /// Orders that the robot has already finished remain unchanged.
+  /// Records the robot's progress with its order of this client and number. The robot's other orders in the
+  /// state ORDER_ARRIVED become ORDER_LEFT. Progress never goes back. Returns whether anything changed.
   bool report(RobotId robot, ClientId client, OrderNumber number, const OrderProgress& progress);
 
   /// Whether there is a hold on the robot that neither its owner nor an operator has resumed.
   bool is_held(RobotId robot) const;
-  /// Whether the book knows that this hold was lifted, for its robot or for all robots.
+  /// Whether a resume in the book lifts this hold, for its robot or for all robots.
   bool is_lifted(const Order& hold) const;
-  /// Whether the book lacks this order but lists one that the order replaces, cancels, lifts or removes.
+  /// Whether the book lacks this order but lists another order that it replaces, cancels, lifts or removes.
   bool contradicts(const Order& order) const;
-  /// Whether this order is the one in its place.
+  /// Whether this order occupies its place.
   bool stands(const Order& order) const;
   /// Whether adding the order, apart from its progress, would change nothing in this book.
   bool knows(const Order& order) const;
   /// The robot's drive order, or its cancellation, of this rank; null if none.
   const RememberedOrder* drive_order(RobotId robot, Rank rank) const;
-  /// The order in the place of this order, which may be this one; null if none.
+  /// The order in the place of this order, possibly this order itself; null if none.
   const RememberedOrder* occupant_of(const Order& order) const;
   /// The zones that have not been removed.
   std::vector<Order> zones() const;
@@ -84,7 +84,7 @@ class OrderBook {
  private:
   enum class Kind : std::uint8_t { kDrive, kHold, kResume, kZone };
   using Place = std::tuple<Kind, RobotId, std::uint32_t, std::uint32_t>;
-  /// Bounded memory of lifting orders; the oldest are forgotten first.
+  /// Bounded memory of orders that lift holds or remove zones; the oldest are forgotten first.
   struct Lifted {
     std::set<std::pair<OrderNumber, Place>> by_age;
     OrderNumber forgotten_number = 0;  // highest number of the forgotten orders
@@ -97,7 +97,7 @@ class OrderBook {
   bool has_resumed(ClientId client, RobotId robot, OrderNumber number) const;
   /// Whether a later resume lifts everything that this one lifts.
   bool is_redundant(const Order& resume) const;
-  /// Whether there is a hold that the resume ends, at least for one robot.
+  /// Whether the resume ends any hold, at least for one robot.
   bool ends_any_hold(const Order& resume) const;
   /// Whether the resume releases one robot while its client still holds all robots.
   bool is_exception(const Order& resume) const;
@@ -106,7 +106,7 @@ class OrderBook {
   void remove(std::map<Place, RememberedOrder>::iterator entry);
   /// Adds the order to the counts of holds and zones or removes it from them, and remembers its age.
   void count(const Place& place, const Order& order, bool is_added);
-  /// Removes holds and resumes that this resume makes meaningless.
+  /// Removes holds and resumes that this resume lifts or supersedes.
   void clear_lifted_by(const Order& resume);
   void forget_oldest_resumes();
   void forget_oldest_removals();

@@ -14,11 +14,11 @@ struct RobotDisturbance {
   msg::DisturbanceKind kind = msg::DisturbanceKind::DISTURBANCE_PUSH;
   Vec2 push_mps{0, 0};       ///< change of velocity
   double grip = 1;           ///< grip while slipping
-  Vec2 place_m{0, 0};        ///< where it is put down or carried to, or the offset at which cameras see it
+  Vec2 place_m{0, 0};        ///< destination of placing or carrying, or offset at which cameras see the robot
   double heading_rad = 0;    ///< direction of the blocked wheel (body frame), or heading when put down
   Duration clock_offset{0};  ///< offset of the robot's clock from the host's; positive: ahead
-  Duration duration{0};      ///< how long it slips, is blocked, is carried or is seen wrongly
-  RobotId other_robot = 0;   ///< robot that cameras confuse with it
+  Duration duration{0};      ///< duration for which the robot slips, is blocked, carried or seen wrongly
+  RobotId other_robot = 0;   ///< robot that cameras confuse with this robot
 };
 
 }  // namespace sidestep

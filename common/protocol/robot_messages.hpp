@@ -54,8 +54,8 @@ struct RobotReport {
   double tracking_error_m = 0;
   LocalisationUncertainty uncertainty{};
   bool has_moved = false;       ///< the robot has executed a granted version
-  std::uint64_t activated = 0;  ///< number of versions switched to since the firmware's last restart
-  Duration lead{0};             ///< how long before a version's start the robot must have received it
+  std::uint64_t activated = 0;  ///< number of switches to a version since the firmware's last restart
+  Duration lead{0};             ///< time before a version's start by which the robot must have received it
 
   /// Whether the robot is off the floor and executes nothing.
   bool is_absent() const { return is_lifted && executing.number == 0; }

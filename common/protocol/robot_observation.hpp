@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-/// Where vision saw a robot.
+/// An observation of a robot by vision.
 struct RobotObservation {
   RobotId robot = 0;
   Time observed_at{};

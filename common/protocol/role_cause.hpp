@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Why a coordinator is active in its epoch, or is a standby; see RoleReason in idl/negotiation.idl.
+/// Why a coordinator is active in its epoch or is a standby; see RoleReason in idl/negotiation.idl.
 struct RoleCause {
   msg::RoleReason reason = msg::RoleReason::ROLE_STARTED;
   std::uint32_t peer = 0;  ///< number of the coordinator or robot that the reason refers to

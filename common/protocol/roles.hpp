@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// The kinds of processes, by what they may read and write.
+/// The kinds of processes, which determine what a process may read and write.
 enum class Role : std::uint8_t {
   kAgent,
   kCoordinator,

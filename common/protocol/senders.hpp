@@ -9,8 +9,8 @@
 
 namespace sidestep {
 
-/// Values of Header.sender. A robot and its agents use the robot's number. Other processes use these bases,
-/// plus their own number where there are several.
+/// Values of Header.sender. A robot and its agents use the robot's number. Other processes use the values
+/// below, plus their own number if there are several of the kind.
 enum class Sender : std::uint32_t {
   kCoordinator = 10000,
   kVision = 20000,
@@ -19,7 +19,7 @@ enum class Sender : std::uint32_t {
   kOperator = 40000,
   kReferee = 50000,
   kScenario = 60000,  ///< orders from the scenario file
-  kClient = 1000000,  ///< the lowest id of all other clients
+  kClient = 1000000,  ///< lowest id of clients other than those above
 };
 
 /// Coordinators are numbered 0 .. kMaxCoordinators - 1.
@@ -31,7 +31,7 @@ constexpr bool is_coordinator(std::uint32_t sender) {
 }
 
 /// The roles of processes that may use this Header.sender. A robot's feedback carries its agent's number, and
-/// an operator may speak as a client.
+/// an operator may use a client's id.
 constexpr Roles roles_of(std::uint32_t sender) {
   if (sender < kMaxRobots) return Role::kAgent | Role::kSimulator | Role::kRobot;
   if (is_coordinator(sender)) return Role::kCoordinator;

@@ -16,7 +16,7 @@ Version from_plain(const robot::Version& version, RobotId robot);
 /// robot_incarnation.
 RobotReport from_plain(const robot::RobotReport& plain, RobotId robot);
 
-/// Passes the protocol's part of a command to the robot side. Returns whether it is from an agent that the
+/// Passes the protocol's part of a command to the robot side. Returns whether its sender is an agent that the
 /// robot obeys.
 template <typename Real>
 [[nodiscard]] bool pass_command(const Command& command, Time now, robot::RobotSide<Real>& side,

@@ -10,11 +10,11 @@ constexpr const char* to_text(robot::OwnStopReason reason) {
     case robot::OwnStopReason::kOffReference:
       return "it is farther from its reference than the tracking bound";
     case robot::OwnStopReason::kDrifted:
-      return "it has drifted and not returned to its reference in time";
+      return "it drifted from its reference and did not return in time";
     case robot::OwnStopReason::kDisplaced:
       return "it was displaced without its wheels measuring it";
     case robot::OwnStopReason::kRestart:
-      return "its firmware has restarted, or it has found its pose";
+      return "its firmware restarted, or it found its pose";
     case robot::OwnStopReason::kClockSetBack:
       return "its clock was set back";
   }

@@ -19,7 +19,7 @@ constexpr Number smaller(Number a, Number b) {
 
 template <typename Real>
 bool is_finite(const Vec<Real>& v) {
-  // For infinities and NaN the difference is NaN, not 0.
+  // For infinities and NaN, the difference is NaN.
   return v.x - v.x == 0 && v.y - v.y == 0;
 }
 
@@ -114,7 +114,7 @@ bool RobotSide<Real>::on_command(const Command& command, std::int64_t now_ns, St
     return false;
   }
   // A new agent may not know the latest epoch, which the robot learned from an earlier agent. The agent's
-  // versions are refused until it learns that epoch from a fact.
+  // versions are refused until the agent learns that epoch from a fact.
   const bool is_old_epoch = command.epoch < durable_.epoch;
   DurableState next = durable_;
   next.incarnation = command.incarnation;
@@ -271,8 +271,8 @@ bool RobotSide<Real>::needs_uncertainty(std::int64_t now_ns, const Vec<Real>& po
          !(error_m(now_ns, position_m) < Real(0.5) * settings_.drift_bound_m);
 }
 
-// The uncertainty counts for at most half of the bound, so that a robot does not count as off its reference
-// merely because no camera sees it.
+// The uncertainty counts for at most half of the bound, so a robot is not off its reference only because no
+// camera sees it.
 template <typename Real>
 bool RobotSide<Real>::is_within(Real bound_m, Real error_m, const Estimate<Real>& estimate) const {
   const Real half_m = Real(0.5) * bound_m, uncertainty_m = 2 * estimate.position_error_rms_m;
@@ -287,9 +287,9 @@ std::int64_t RobotSide<Real>::drifted_since_ns(std::int64_t now_ns, const Estima
   return is_near ? kNever_ns : smaller(drifted_since_ns_, now_ns);
 }
 
-// A fix may reveal all drift since the last one at once. The control corrects it before a message could reach
-// the other robots, and an unexpected stop would endanger them. So the robot stops only for an error that the
-// control cannot correct in time or that the margin does not cover.
+// A fix may reveal all drift since the previous fix in one step. The control corrects this drift before a
+// message could reach the other robots, and an unexpected stop would endanger them. So the robot stops only
+// for an error that the control cannot correct in time or that the margin does not cover.
 template <typename Real>
 bool RobotSide<Real>::must_stop(std::int64_t now_ns, const Estimate<Real>& estimate,
                                 OwnStopReason& reason) const {

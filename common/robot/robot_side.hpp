@@ -23,10 +23,10 @@ struct Counts {
   std::uint64_t refused_base = 0;  ///< includes versions dropped because the queue was full
   std::uint64_t refused_fenced = 0;
   std::uint64_t refused_malformed = 0;
-  std::uint64_t refused_unstored = 0;  ///< could not be stored in memory
+  std::uint64_t refused_unstored = 0;  ///< refused because they could not be stored in memory
 };
 
-/// Why a robot has made an own stop, that is, a stop that it decided on by itself.
+/// The reason for an own stop, that is, a stop that the robot itself has decided on.
 enum class OwnStopReason : std::uint8_t {
   kOffReference,  ///< the robot is farther from its reference than the tracking bound
   kDrifted,       ///< drift has exceeded its bound for kMaxRecovery_ns
@@ -45,8 +45,8 @@ struct Command {
 };
 
 /// The motion that the motors will still perform during Settings::actuation_lead_ns because of commands
-/// already sent to them: starting at the velocity `from_mps`, a few parts in each of which the velocity
-/// changes linearly.
+/// already sent to them. It starts at the velocity `from_mps` and has a few parts, in each of which the
+/// velocity changes linearly.
 template <typename Real>
 struct MotionUnderWay {
   static constexpr int kMaxParts = Version::kMaxPhases - 1;
@@ -80,7 +80,7 @@ struct RobotReport {
   std::int64_t command_sent_at_ns = 0;  ///< send time of the last obeyed command, by the agent's clock
   std::int64_t command_received_at_ns = 0;
   std::uint64_t activated = 0;
-  std::int64_t lead_ns = 0;  ///< how long before its start a version must arrive
+  std::int64_t lead_ns = 0;  ///< time before its start by which a version must arrive
 };
 
 /// The robot's side of the safety protocol (coordinator/PROTOCOL.md, "What a robot must do"), without control
@@ -88,17 +88,17 @@ struct RobotReport {
 /// only at that version's start time, and only from that version's base. Without commands it executes its
 /// version to the end and rests. It stores everything that it acknowledges before acknowledging it.
 ///
-/// Once it obeys a new agent, it refuses versions of earlier agents and discards their pending ones. There is
+/// Once it obeys a new agent, it refuses versions of earlier agents and discards their pending versions, with
 /// one exception: if the motors respond with a delay, they have already been sent the beginning of any
-/// version that starts within the lead, so the robot executes such versions. It acknowledges the new agent
-/// and accepts its versions only when no such version can still start. So the fact that acknowledges an agent
-/// covers everything that the robot executes for earlier agents.
+/// version that starts within the lead, so the robot executes that version. It acknowledges the new agent and
+/// accepts its versions only when no such version can still start. Therefore the fact that acknowledges an
+/// agent covers everything that the robot executes for earlier agents.
 ///
 /// It makes an own stop if the robot may be farther from its reference than the tracking bound. It also makes
-/// one if the robot may be farther than the drift bound and either does not return within kMaxRecovery_ns or
-/// was displaced without its wheels measuring it. An own stop is a version that brakes from the estimated
-/// state; the robot executes it immediately. If the motors respond with a delay, the stop begins with the
-/// motion already under way.
+/// an own stop if the robot may be farther than the drift bound and either does not return within
+/// kMaxRecovery_ns or was displaced without its wheels measuring it. An own stop is a version that brakes
+/// from the estimated state; the robot executes it immediately. If the motors respond with a delay, the stop
+/// begins with the motion already under way.
 ///
 /// A robot without a pose accepts no version, and must not report facts. A lifted robot executes nothing
 /// (version 0) and accepts only a granted rest version on base 0.
@@ -109,13 +109,13 @@ template <typename Real>
 class RobotSide {
  public:
   static constexpr int kMaxPending = 8;
-  /// How long the control may take to return to the reference before the robot makes an own stop.
+  /// Time within which the control must return to the reference; otherwise the robot makes an own stop.
   static constexpr std::int64_t kMaxRecovery_ns = 25'000'000;
   /// Gap between the highest number that has reached the robot and the number of its own stop: versions that
   /// it has not received yet may already be granted and in transit.
   static constexpr std::uint64_t kOwnNumberGap = std::uint64_t{1} << 20;
-  /// The stored bound of numbers exceeds the numbers in use by up to this, so that it rarely needs to be
-  /// stored again.
+  /// The stored bound of numbers exceeds the numbers in use by up to this reserve, so the bound is rarely
+  /// stored.
   static constexpr std::uint64_t kStoredNumberReserve = std::uint64_t{1} << 26;
 
   /// For a robot that has just been switched on and does not know its pose.
@@ -133,19 +133,19 @@ class RobotSide {
   void reboot() { is_rebooting_ = true; }
   /// The robot has been without power and has lost its pending versions.
   void switch_on();
-  /// The robot's clock was set back. The times of its versions and facts are void, so it reports nothing
-  /// until the next check_reference() makes an own stop by the new time. From then on, the caller must give
-  /// facts a higher robot incarnation.
+  /// The robot's clock was set back. The times of its versions and facts are invalid, so it reports nothing
+  /// until the next check_reference() makes an own stop timed by the new clock. From then on, the caller must
+  /// give facts a higher robot incarnation.
   void set_clock_back(std::int64_t now_ns);
 
-  /// Obeys a command, or refuses and counts it. Returns whether it is from an agent that the robot obeys; if
-  /// so, the robot may use the rest of the command, such as a fix.
+  /// Obeys a command, or refuses and counts it. Returns whether the sender is an agent that the robot obeys;
+  /// if so, the robot may use the rest of the command, such as a fix.
   [[nodiscard]] bool on_command(const Command& command, std::int64_t now_ns, StableMemory& memory);
   /// Counts a command that could not be decoded.
   void on_malformed_command(std::int64_t now_ns);
 
-  /// Switches to the next version if it is due; returns false if none is due. Every other function that takes
-  /// a time first makes all switches due by then, so that a reported "executing f at t" remains true.
+  /// Switches to the next version that is due; returns false if no version is due. Every other function that
+  /// takes a time first makes all switches due by then, so that a reported "executing f at t" remains true.
   bool switch_next(std::int64_t now_ns);
 
   /// Whether check_reference() would read the estimate's position error, which is costly to compute.
@@ -159,9 +159,9 @@ class RobotSide {
 
   /// The robot was lifted off the floor: discards the executed version and all pending ones. Facts then
   /// report version 0 and name the last version as its base, so that the agent can number the next version
-  /// above it. If called again, it also discards a rest version accepted since.
+  /// above it. If called again, it also discards a rest version that was accepted in the meantime.
   void lift(std::int64_t now_ns, double x_m, double y_m);
-  /// The lifted robot has been put down at the rest version that it executes.
+  /// The robot has been put down; it executes a rest version at that place.
   void put_down() { is_lifted_ = false; }
 
   /// The facts at this time. Precondition: may_report().
@@ -173,7 +173,7 @@ class RobotSide {
   }
 
   const Version& executing() const { return executing_; }
-  /// The version to be executed at a later time, as far as it is known.
+  /// The version that the robot will execute at a later time, according to the pending versions.
   const Version& planned(std::int64_t t_ns) const;
   /// Whether the robot executes an own stop.
   bool is_off_reference() const { return is_off_reference_; }
@@ -232,13 +232,13 @@ class RobotSide {
   bool is_lifted_ = false;
   bool is_rebooting_ = false;
   bool has_pose_ = false;
-  bool has_found_pose_ = false;     ///< the robot has not made its own stop at the found pose yet
-  bool is_clock_set_back_ = false;  ///< the robot has not made its own stop by the new time yet
+  bool has_found_pose_ = false;     ///< the own stop at the found pose has not been made yet
+  bool is_clock_set_back_ = false;  ///< the own stop due to the set clock has not been made yet
   bool is_memory_broken_ = false;
   bool has_command_ = false;
   std::int64_t command_sent_at_ns_ = 0, command_received_at_ns_ = 0;
   std::int64_t last_report_ns_ = INT64_MIN;
-  std::int64_t drifted_since_ns_ = kNever_ns;  ///< kNever_ns while within the drift bound
+  std::int64_t drifted_since_ns_ = kNever_ns;  ///< kNever_ns while the robot is within the drift bound
   Version pending_[kMaxPending];               ///< sorted by start, then number, ascending
   int pending_count_ = 0;
   Counts counts_;

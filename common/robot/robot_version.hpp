@@ -33,7 +33,7 @@ struct Phase {
   double ax_mps2 = 0, ay_mps2 = 0;
 };
 
-/// The agent's intentions beyond a version. The robot only repeats them.
+/// The agent's intended motion beyond a version. The robot only reports it.
 struct Intent {
   float vx_mps = 0, vy_mps = 0, velocity_duration_s = 0;
   float waypoint_x_m = 0, waypoint_y_m = 0;

@@ -19,7 +19,7 @@ struct DurableState {
 /// The robot's memory that survives restarts and loss of power.
 class StableMemory {
  public:
-  /// Returns only when the state is certain to be found after a restart; false if it cannot be stored.
+  /// Returns true once the state is stored so that it survives a restart; false if it cannot be stored.
   [[nodiscard]] virtual bool store(const DurableState& state) = 0;
 
  protected:

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// How a simulated clock differs from true time: by an offset at `since`, and by a constant drift from then
+/// The error of a simulated clock relative to true time: an offset at `since`, and a constant drift from then
 /// on.
 struct ClockError {
   Duration offset{0};    ///< positive: the clock is ahead

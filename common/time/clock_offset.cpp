@@ -47,7 +47,7 @@ bool ClockOffset::add(const ClockExchange& e) {
   const OffsetInterval known = interval_ ? widened(*interval_, now - at_) : latest;
   OffsetInterval intersection{std::max(known.low, latest.low), std::min(known.high, latest.high)};
   if (intersection.low > intersection.high) {
-    // A message from before the jump may arrive after one from after it.
+    // A message sent before the jump may arrive after a message sent after it.
     if (is_overtaken) return true;
     ++jumps_;
     intersection = latest;

@@ -27,8 +27,8 @@ struct OffsetInterval {
 /// How far clock a is ahead of clock b, from the offsets of both against a third clock.
 OffsetInterval difference(const OffsetInterval& a, const OffsetInterval& b);
 
-/// A message to a peer, and a later message back that says when the first one arrived. This gives the four
-/// timestamps of NTP. The peer may reply at any time after it has received the message.
+/// The four timestamps of NTP: of a message to a peer, and of a later reply that says when the message
+/// arrived. The peer may reply at any time after it has received the message.
 struct ClockExchange {
   Time sent;           ///< by the local clock
   Time peer_received;  ///< by the peer's clock

@@ -7,13 +7,13 @@
 
 namespace sidestep {
 
-/// Admits up to `burst` events at once, and then one per period.
+/// Admits a burst of up to `burst` events, and then one event per period.
 class RateLimit {
  public:
   constexpr RateLimit(int burst, Duration period) : period_(period), tolerance_((burst - 1) * period) {}
 
   [[nodiscard]] constexpr bool admit(Time now) {
-    // due_ can only be this far ahead if the clock was set back since.
+    // due_ is this far ahead only if the clock has been set back.
     if (due_ - now > tolerance_ + period_) due_ = now;
     const Time due = std::max(due_, now);
     if (due - now > tolerance_) return false;
@@ -25,7 +25,7 @@ class RateLimit {
 
  private:
   Duration period_, tolerance_;
-  Time due_ = Time{};  ///< when the next event would be due at a rate of one per period
+  Time due_ = Time{};  ///< time at which the next event would be due at a rate of one per period
 };
 
 }  // namespace sidestep

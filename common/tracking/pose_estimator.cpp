@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kExtraFixNoise_m = 0.0005;  ///< covers the correlation of fixes by vision's filter
 
-// Periods may differ by one part in this number, because the robot's clock may drift.
+// Periods may differ from the nominal period by one part in this number, because the robot's clock may drift.
 constexpr int kMaxPeriodErrorPart = 1000;
 constexpr double kHeadingGain = 0.05;        // gain of a heading fix
 constexpr double kSlipVariance_m2ps = 1e-8;  // position variance due to wheel slip
@@ -18,8 +18,8 @@ constexpr double kScaleDriftPerSqrtSecond = 2e-5;
 constexpr double kOutlierDeviations = 4;
 // No odometry has a larger relative error than this many standard deviations.
 constexpr double kMaxScaleDeviations = 5;
-// An innovation sum of two or three fixes exceeds this many standard deviations by chance once in a thousand
-// robot-hours.
+// The sum of the innovations of two or three fixes exceeds this number of standard deviations by chance once
+// in a thousand robot-hours.
 constexpr double kJumpDeviations = 5;
 // Minimum projection of an innovation on the previous one, relative to the longer of the two.
 constexpr double kMinAgreement = 0.35;
@@ -105,7 +105,7 @@ bool PoseEstimator::correct(Time captured_at, const Vec2& position_m, double hea
   scale_ += correction.z();
   // The odometry's relative error e is defined by 1 + e = 1 / (1 - scale).
   if (!(scale_ < 1 && std::abs(scale_ / (1 - scale_)) <= kMaxScaleDeviations * settings_.scale_error)) {
-    // Wheels that roll while the robot is displaced seem to have such an error.
+    // Wheels that roll while the robot is displaced can cause such an apparent error.
     scale_ = 0;
     covariance_(2, 2) = settings_.scale_error * settings_.scale_error;
     decorrelate_scale();

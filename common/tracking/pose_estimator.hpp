@@ -23,7 +23,7 @@ struct Odometry {
 struct EstimatorSettings {
   double velocity_noise_mps = 0.01;   ///< noise of one odometry measurement, on each axis
   double scale_error = 0.005;         ///< constant relative error of the odometry
-  double fix_noise_m = 0.0005;        ///< noise of a fix, on each axis
+  double fix_noise_m = 0.0005;        ///< noise of a fix from vision, on each axis
   double velocity_gain = 0.08;        ///< weight of measurements against the motor model; 1: no model
   Duration period{1'000'000};         ///< period of the odometry
   double commanded_noise_mps = 0.01;  ///< error of an unmeasured, commanded velocity, on each axis
@@ -40,9 +40,9 @@ class PoseEstimator {
   PoseEstimator(const Vec2& position_m, double heading_rad, Time now, const EstimatorSettings& settings,
                 double deviation_m = kKnownPlaceDeviation_m);
 
-  /// Integrates the measurement, or else the commanded velocity, over the period that ends now. The
-  /// accelerations are those of the motor model. A gap in time clears the history, so that fixes from before
-  /// the gap are refused.
+  /// Integrates the measured velocity, or the commanded velocity if not `is_measured`, over the period that
+  /// ends now. The accelerations are those of the motor model. A gap in time clears the history, so that
+  /// fixes from before the gap are refused.
   void advance(Time now, const Odometry& odometry, const Vec2& acceleration_mps2,
                double angular_acceleration_radps2, bool is_measured = true);
 
@@ -110,7 +110,7 @@ class PoseEstimator {
   Eigen::Matrix3d covariance_;  ///< covariance of the position at the anchor, and of the scale
   double heading_anchor_rad_;   ///< heading at which turned_rad_ was 0
   double jump_m_ = 0;
-  Time commanded_at_ = Time::min();               ///< when a velocity was last commanded instead of measured
+  Time commanded_at_ = Time::min();               ///< last time at which only a commanded velocity was known
   std::array<Innovation, 3> recent_innovations_;  ///< latest first, before clamping
   EstimatorSettings settings_;
 };

@@ -5,8 +5,8 @@
 
 namespace sidestep {
 
-/// Why a user-supplied heading in radians is rejected: it is not finite, or its magnitude exceeds a full
-/// turn, which suggests degrees. Empty if it is valid.
+/// Returns why a user-supplied heading in radians is invalid: it is not finite, or its magnitude exceeds a
+/// full turn, which suggests degrees. Empty if it is valid.
 [[nodiscard]] std::string heading_problem(double heading_rad);
 
 }  // namespace sidestep

@@ -83,8 +83,7 @@ class DocumentScanner : public YAML::EventHandler {
   std::map<YAML::anchor_t, std::size_t> values_of_;
 };
 
-/// Whether the line, counted from 1, is indented by a tab. yaml-cpp reports various consequences of that but
-/// not the cause.
+/// Whether the line, counted from 1, is indented by a tab. yaml-cpp reports other errors for such a line.
 bool is_indented_by_tab(const std::string& text, int line) {
   std::istringstream stream(text);
   std::string content;
@@ -94,7 +93,7 @@ bool is_indented_by_tab(const std::string& text, int line) {
   return content.substr(0, indentation).find('\t') != std::string::npos;
 }
 
-/// yaml-cpp's reason for an error on this line, counted from 1, or the actual cause.
+/// The reason for an error on this line, counted from 1: an indentation by a tab, or else yaml-cpp's message.
 std::string reason_of(const YAML::Exception& error, const std::string& text, int line) {
   return is_indented_by_tab(text, line) ? "a tab indents this line, expected spaces"
                                         : "not YAML: " + error.msg;

@@ -36,7 +36,8 @@ std::string described(const YAML::Node& node) {
 
 std::string described(Range range) { return fmt::format("{:.10g} to {:.10g}", range.low, range.high); }
 
-/// A number is a plain scalar: "3" in quotes or with a tag is text. Like YAML's core schema, accepts a plus.
+/// A number is a plain scalar: "3" in quotes or with a tag is text. Accepts a plus sign, like YAML's core
+/// schema.
 template <typename Number>
 bool parse_plain(const YAML::Node& node, Number& value) {
   if (!node.IsScalar() || node.Tag() != "?") return false;
@@ -88,7 +89,7 @@ long integer_from(const YAML::Node& node, const YamlLocation& location, Range ra
 
 std::string text_from(const YAML::Node& node, const YamlLocation& location) {
   if (!node.IsScalar()) location.fail("expected text, got " + described(node));
-  // C functions would stop at a zero byte, and so read less than what was checked.
+  // C functions would stop at a zero byte, and thus read less than the text that was checked.
   if (node.Scalar().find('\0') != std::string::npos) location.fail("expected text without zero bytes");
   return node.Scalar();
 }

@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-/// Aliases can nest deeper than the text does.
+/// Aliases can nest more deeply than the text.
 constexpr int kMaxDepth = 1000;
 
 /// In quotes or with a tag, "<<" is an ordinary key.

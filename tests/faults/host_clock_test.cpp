@@ -12,8 +12,8 @@ namespace sidestep::host_clock_test {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kRestarts = ": restarts: the host's clock has been set";
-constexpr const char* kIsSet = ": the host's clock has been set";
+constexpr const char* kRestarts = ": restarting: the host's clock was set";
+constexpr const char* kIsSet = ": the host's clock was set";
 
 /// Assigns the processes of scenario crossing to hosts, and says how far the late host's clock is ahead
 /// initially.

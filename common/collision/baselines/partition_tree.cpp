@@ -10,7 +10,7 @@ namespace sidestep::baselines {
 namespace {
 
 constexpr std::size_t kMaxInLeaf = 4;  // leaves with this many obstacles or fewer are not divided
-constexpr double kMaxCost = 0.7;       // total of both sides, relative to the undivided leaf; 0.5 is the best
+constexpr double kMaxCost = 0.7;       // cost of both sides relative to the undivided leaf; 0.5 is optimal
 constexpr double kRelativeRounding = 1e-14;  // rounding of projections, relative to coordinates
 
 template <std::size_t kCount>
@@ -94,7 +94,7 @@ void PartitionTree<kDirections>::add(Slot slot, const Shape& shape) {
   const Extents extents = extents_[slot];
   for_each_leaf(0, extents, [&](NodeId leaf) {
     nodes_[leaf].slots.push_back(slot);
-    // Not tried at every size, because a leaf that cannot be divided would be tried again each time.
+    // Tries only at powers of two; otherwise it would retry at each insertion if the leaf cannot be divided.
     const std::size_t size = nodes_[leaf].slots.size();
     if (size > 2 * kMaxInLeaf && std::has_single_bit(size)) divide(leaf);
   });

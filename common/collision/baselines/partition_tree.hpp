@@ -21,7 +21,7 @@ class PartitionTree {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
-  /// Whether `test(slot)` holds for an obstacle whose box the sweep's box overlaps. An obstacle is tested
+  /// Whether `test(slot)` is true for any obstacle whose box overlaps the sweep's box. An obstacle is tested
   /// once for each leaf that both the obstacle and the sweep may touch.
   template <typename Test>
   bool any_candidate(const Sweep& sweep, const Test& test) const {

@@ -33,7 +33,8 @@ SpatialHash::SpatialHash(const ShapeStore& store) : origin_m_(store.origin_m()) 
   for (const Slot slot : store.slots()) add(slot, store.shape(slot));
 }
 
-/// The cell number of a coordinate, which increases with it. Coordinates far from the origin share a cell.
+/// The cell number of a coordinate, which increases with the coordinate. Coordinates far from the origin
+/// share a cell.
 std::int32_t SpatialHash::cell(double at_m) const {
   return static_cast<std::int32_t>(std::clamp(std::floor(at_m * cells_per_m_), -kMaxCell, kMaxCell));
 }

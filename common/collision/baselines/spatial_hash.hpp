@@ -16,7 +16,8 @@ class SpatialHash {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
-  /// Whether `test(slot)` holds for an obstacle whose box the sweep's box overlaps. Tests each at most once.
+  /// Whether `test(slot)` is true for any obstacle whose box overlaps the sweep's box. Tests each at most
+  /// once.
   template <typename Test>
   bool any_candidate(const Sweep& sweep, const Test& test) const {
     const Box box = sweep.bounds();

@@ -8,9 +8,9 @@
 namespace sidestep::baselines {
 
 /// Obstacles sorted by the lower ends of their boxes on one axis (Baraff 1992; Cohen et al. 1995). A query
-/// compares the boxes that begin before its upper end, and after its lower end minus the longest box. The
-/// axis is the one on which the obstacles are spread more widely. A moved obstacle is swapped with its
-/// neighbours until the order is restored, which takes few swaps if it moves little.
+/// compares the boxes that begin before its upper end, and after its lower end minus the length of the
+/// longest box. The axis is the one on which the obstacles are spread more widely. A moved obstacle is
+/// swapped with its neighbours until the order is restored, which takes few swaps if it moves little.
 class SweepAndPrune {
  public:
   explicit SweepAndPrune(const ShapeStore& store);
@@ -19,7 +19,8 @@ class SweepAndPrune {
   void replace(Slot slot, const Shape& shape);
   void remove(Slot slot);
 
-  /// Whether `test(slot)` holds for an obstacle whose box the sweep's box overlaps. Tests each at most once.
+  /// Whether `test(slot)` is true for any obstacle whose box overlaps the sweep's box. Tests each at most
+  /// once.
   template <typename Test>
   bool any_candidate(const Sweep& sweep, const Test& test) const {
     const Box box = sweep.bounds();

@@ -90,7 +90,7 @@ inline FourInts buckets(const MasksView& view, const ShapesView& shapes, const M
   return bucket > 0 ? bucket : FourInts{};
 }
 
-/// The rows of the four tables for these buckets.
+/// The rows that a query's four buckets select, one in each table.
 struct Rows {
   const std::uint64_t* row[4];
 

@@ -33,8 +33,8 @@ std::optional<std::span<const std::uint8_t>> take_part(std::span<const std::uint
   return part;
 }
 
-/// The bytes that the owner of a private key signs: the participant and its start time. The prefix
-/// distinguishes them from everything else that the key signs.
+/// The bytes that the owner of a private key signs: the participant and its start time. A mark at the
+/// beginning distinguishes these bytes from everything else that the key signs.
 std::vector<std::uint8_t> signed_part(const ParticipantId& id, std::span<const std::uint8_t> start) {
   std::vector<std::uint8_t> result(kMark.size() + id.size() + start.size());
   auto end = std::ranges::copy(kMark, result.begin()).out;
@@ -150,7 +150,7 @@ Admission::Refusal Admission::admit(const ParticipantId& id, Known& known, const
   const auto displaced = displaced_.find(id);
   if (displaced != displaced_.end() && now < displaced->second.until) return Refusal::kTooMany;
   const Time start = time_of(announced.start);
-  // Includes the latest participant itself, which may return after a silence.
+  // Equality includes the latest participant itself, which may return after a silence.
   const bool is_latest = start >= known.latest_start && start < now + kMaxAhead;
   if (!is_latest && !known.unproven.admit(now)) return Refusal::kTooMany;
   const auto refuse = [&](Refusal refusal) {
@@ -225,7 +225,7 @@ std::vector<Identity> Admission::newly_unauthenticated(Time now) {
     if (participant.is_authenticated || participant.is_reported || now - participant.admitted < kMaxUnproven)
       continue;
     participant.is_reported = true;
-    // A participant that has since ended may have been too short-lived to authenticate.
+    // A participant that has already ended may have lived too briefly to authenticate.
     if (id == self_id_ || now - participant.last_heard > kMaxUnproven / 2) continue;
     result.push_back(participant.known->identity);
   }

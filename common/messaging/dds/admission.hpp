@@ -18,27 +18,26 @@
 
 namespace sidestep {
 
-/// What a participant with keys announces about itself as its user data: the version of Fast DDS, its start
-/// time, its certificate, and a signature by its private key, which makes the announcement valid for this id
-/// only.
+/// The user data that a participant with keys announces: the version of Fast DDS, its start time, its
+/// certificate, and a signature by its private key, which makes the announcement valid for this id only.
 std::vector<std::uint8_t> credentials(const Certificate& certificate, const PrivateKey& key,
                                       const std::string& version, const ParticipantId& id, Time started);
 
-/// Decides which participants a process with keys listens to, and knows who they are.
+/// Decides which participants a process with keys listens to, and stores their identities.
 ///
 /// Fast DDS authenticates participants, but does not report their identities, stores every participant's
 /// announcements, and reads the list of revoked keys only at its start. Participants therefore announce their
 /// certificate. The prefix of a participant's GUID depends on the certificate, and Fast DDS checks that the
 /// owner of the GUID has the certificate's private key. The decisions made here therefore hold for all
-/// participants that Fast DDS accepts. No attacker can sign an announcement. It can replay another
-/// participant's, but then fails to authenticate. So the number of participants with one certificate is
-/// limited. Participants other than the one that started last are admitted at a low rate until they have
-/// authenticated, because Fast DDS keeps about a hundred bytes for each as long as the process lives. If no
-/// place is left, a new participant displaces one that has not authenticated in time. The displaced one must
-/// wait before it is admitted again, twice as long each time. Only the owner of the private key can announce
-/// a later start, so a genuine process that restarts does not wait. Participants that exchange no messages,
-/// such as two agents, do not admit each other: with many robots, their handshakes would take most of the
-/// start-up time.
+/// participants that Fast DDS accepts. An attacker cannot sign an announcement. It can replay another
+/// participant's announcement, but then fails to authenticate. Therefore the number of participants with one
+/// certificate is limited. All participants except the latest to start are admitted at a low rate until they
+/// have authenticated, because Fast DDS keeps about a hundred bytes for each participant until the process
+/// ends. If no place is left, a new participant displaces a participant that has not authenticated in time.
+/// The displaced participant must wait before it is admitted again, twice as long each time. Only the owner
+/// of the private key can announce a later start, so a genuine process that restarts does not wait.
+/// Participants that exchange no messages, such as two agents, do not admit each other: with many robots,
+/// their handshakes would take most of the start-up time.
 class Admission {
  public:
   static constexpr std::size_t kMaxPerCertificate = 24;
@@ -46,22 +45,22 @@ class Admission {
   /// kMaxPerCertificate.
   static constexpr Duration kUnauthenticatedPeriod{5'000'000'000};
   static constexpr std::size_t kMaxParticipants = 1024;
-  /// A participant is forgotten after this silence. Announcements come once a second.
+  /// Silence after which a participant is forgotten. Announcements arrive once a second.
   static constexpr Duration kForgetAfter{10'000'000'000};
   /// Time within which Fast DDS has authenticated a genuine participant.
   static constexpr Duration kMaxUnproven{8'000'000'000};
-  /// A start time farther in the future does not count as the latest: it is from a wrong clock, and would
-  /// remain the latest for that long.
+  /// A start time farther in the future than this does not count as the latest: it comes from a wrong clock,
+  /// and would remain the latest until then.
   static constexpr Duration kMaxAhead{600'000'000'000};
-  /// How long a displaced participant waits before it is admitted again: the first time, and at most. The
-  /// first wait is short, because a genuine participant may be slow on a busy machine.
+  /// Time for which a displaced participant is not admitted again: the first time, and at most. The first
+  /// wait is short, because a genuine participant may be slow on a busy machine.
   static constexpr Duration kFirstWait{10'000'000'000}, kMaxWait{3'600'000'000'000};
   /// Limit on the certificates and announcements whose signatures are checked: a burst, and then a rate.
   static constexpr int kMaxChecks = 400, kChecksPerSecond = 400;
 
   enum class Refusal : std::uint8_t {
     kNone,
-    kNotNeeded,  ///< the two exchange no messages
+    kNotNeeded,  ///< the participant and this process exchange no messages
     kNoCredentials,
     kOtherVersion,
     kNoCertificate,
@@ -77,7 +76,7 @@ class Admission {
 
   struct Decision {
     Refusal refusal = Refusal::kNone;
-    std::string who{};  ///< "agent 3", as its certificate says; empty: unknown
+    std::string who{};  ///< identity in the certificate, e.g. "agent 3"; empty: unknown
   };
 
   /// `version` is that of this process's Fast DDS. A process admits itself.
@@ -90,18 +89,18 @@ class Admission {
                                          Time now);
   /// Whether datagrams of the participant may be passed on. Call on_announcement() first.
   [[nodiscard]] bool admits(const ParticipantId& id, Time now);
-  /// Who the participant is; nullptr if it is not admitted.
+  /// The participant's identity; nullptr if it is not admitted.
   const Identity* identity_of(const ParticipantId& id) const;
   /// Fast DDS has accepted the participant's private key and permissions.
   void on_authenticated(const ParticipantId& id);
-  /// The identities of participants that have announced themselves for kMaxUnproven without
-  /// on_authenticated(). Each participant is returned once.
+  /// The identities of participants that were admitted at least kMaxUnproven ago but have not authenticated.
+  /// Each participant is returned once.
   [[nodiscard]] std::vector<Identity> newly_unauthenticated(Time now);
   /// Adds serial numbers of revoked certificates. Revocations are never undone.
   void revoke(const std::set<std::string>& serials) { revoked_.insert(serials.begin(), serials.end()); }
   const std::set<std::string>& revoked() const { return revoked_; }
-  /// Participants that are no longer admitted, because they are silent or were displaced, or their
-  /// certificate has expired or is revoked. Fast DDS must forget them.
+  /// Participants that have lost their admission since the last call, because they are silent or were
+  /// displaced, or because their certificate has expired or was revoked. Fast DDS must forget them.
   [[nodiscard]] std::vector<ParticipantId> newly_refused(Time now);
 
   /// The refusal in plain words: "agent 3 at 10.0.0.7, whose key is revoked".
@@ -135,9 +134,9 @@ class Admission {
   /// The certificate, if the authority has issued it; otherwise sets `refusal` and returns nullptr.
   Known* find_known(std::span<const std::uint8_t> der, Time now, Refusal& refusal);
   Refusal admit(const ParticipantId& id, Known& known, const Announced& announced, Time now);
-  /// Makes room for one more participant with this certificate. Displaces one that has not authenticated in
-  /// time. For the latest participant of a certificate, it may also displace any earlier one of the same
-  /// certificate that has not authenticated yet. Returns false if there is none to displace.
+  /// Makes room for one more participant with this certificate. Displaces a participant that has not
+  /// authenticated in time. The latest participant of a certificate may also displace any other participant
+  /// of that certificate that has not authenticated yet. Returns false if there is no such participant.
   bool make_room(const Known& known, bool is_latest, Time now);
   void displace(const ParticipantId& id, Time now);
   Refusal check_now(const Known& known, Time now) const;

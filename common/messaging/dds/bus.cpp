@@ -64,7 +64,7 @@ void DdsBus::stop() { impl_->loop->stop(); }
 std::unique_ptr<DdsBus> DdsBus::local_bus(int domain) const {
   if (domain == impl_->settings.domain)
     throw std::invalid_argument(
-        fmt::format("DDS domain {} is already the domain of this process; expected another one", domain));
+        fmt::format("DDS domain {} is already the domain of this process; expected a different one", domain));
   DdsSettings settings{domain, "127.0.0.1", impl_->settings.participant};
   settings.is_local_bus = true;
   return std::unique_ptr<DdsBus>(new DdsBus(std::make_unique<Impl>(settings, impl_->loop)));

@@ -11,7 +11,7 @@
 
 namespace sidestep {
 
-/// Ports of higher domains would exceed 65535 (RTPS 2.2, 9.6.1.1). This domain has room for 62 processes on a
+/// Ports of higher domains would exceed 65535 (RTPS 2.2, 9.6.1.1). In this domain, 62 processes fit on a
 /// machine.
 inline constexpr int kMaxDomain = 232;
 
@@ -24,14 +24,14 @@ struct DdsSettings {
   /// Addresses of all hosts that run processes, including this one. Empty: processes find each other by
   /// multicast.
   std::vector<std::string> peers{};
-  /// Folder with the keys of one identity, or a folder made by `sidestep keys init`. Empty: no keys, so that
-  /// any machine on the network can command the robots.
+  /// Folder with the keys of one identity, or a folder made by `sidestep keys init`. Empty: no keys, so any
+  /// machine on the network can command the robots.
   std::string keys{};
   bool insecure = false;  ///< allows running without keys on networks that other machines can reach
-  /// The identity whose keys to use if the folder has several.
+  /// The identity whose keys are used if the folder contains several.
   Identity identity{Role::kViewer};
-  /// Whether arriving states queue until they are read, for readers that must see every one. If false, a
-  /// newer state replaces an unread one, which suits readers that act on the latest.
+  /// Whether arriving states are queued until they are read, for readers that must see every state. If false,
+  /// a newer state replaces an unread one, for readers that only need the latest state.
   bool keeps_all = false;
   bool is_local_bus = false;  ///< created by DdsBus::local_bus(): no warning about missing keys
 };
@@ -83,7 +83,7 @@ class DdsBus : public Bus {
   /// subscription.
   std::string locators() const;
 
-  /// From now on impairs all arriving messages except an operator's. Precondition: DdsSettings::faults.
+  /// From now on, impairs all arriving messages except those of operators. Precondition: DdsSettings::faults.
   void impair(const LinkQuality& quality, std::uint64_t seed);
 
   bool has_keys() const;

@@ -19,7 +19,7 @@ static_assert(kHeader.size() + sizeof(ParticipantId) == kDatagramHeaderSize);
 constexpr std::array<std::uint8_t, 4> kProtocol{'R', 'T', 'P', 'S'};
 
 using EntityId = std::array<std::uint8_t, 4>;
-/// Writers that announce participants: the first one to all, the second one to authenticated participants
+/// Writers that announce participants: the first writer to all participants, the second to authenticated ones
 /// (DDS Security 1.1, 7.4.4).
 constexpr std::array<EntityId, 2> kParticipantWriters{{{0, 1, 0, 0xc2}, {0xff, 1, 1, 0xc2}}};
 constexpr std::size_t kDataHeaderSize = 20;
@@ -137,7 +137,7 @@ std::optional<ParticipantAnnouncement> participant_announcement(Bytes datagram, 
     const Bytes writer = body.subspan(8, 4);
     const auto announces = [&](const EntityId& id) { return std::ranges::equal(writer, id); };
     if (std::ranges::none_of(kParticipantWriters, announces)) continue;
-    if (kind == kDataPartSubmessage) return std::nullopt;  // announcements are not that large
+    if (kind == kDataPartSubmessage) return std::nullopt;  // announcements are too small to be sent in parts
     ParticipantAnnouncement found;
     if (!read_announcement(body, flags, sender, found)) return std::nullopt;
     result = found;

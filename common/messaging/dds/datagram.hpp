@@ -29,12 +29,12 @@ struct ParticipantAnnouncement {
 
 /// Copies a datagram into `copy` without its encrypted time stamp. False if no time stamp precedes its
 /// message. Fast DDS encrypts the time stamp as a separate submessage (DDS Security 1.1, 9.5.2) and derives a
-/// key for it, which takes as long as for the message itself. Nothing reads it: our messages have time stamps
-/// in their headers.
+/// key for it, which takes as long as for the message itself. No process reads this time stamp: our messages
+/// have time stamps in their headers.
 [[nodiscard]] bool copy_without_timestamp(std::span<const std::uint8_t> datagram, Datagram& copy);
 
 /// The datagram with which a participant would announce its departure (RTPS 2.2, 8.5.3: it disposes its
-/// participant data). When Fast DDS receives it, it forgets the participant.
+/// participant data). Fast DDS forgets the participant when it receives this datagram.
 Datagram departure_of(const ParticipantId& participant);
 
 /// A presence announcement: an RTPS datagram with a vendor-specific submessage, which other software skips.

@@ -19,13 +19,13 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kStatisticsSize = 56;
 /// Upper bound of the sequence numbers of a process's discovery messages, which count its own endpoints. Fast
-/// DDS 2.9.1 visits each number below the one in a heartbeat or a gap.
+/// DDS 2.9.1 visits each number below the number in a heartbeat or a gap.
 constexpr std::int64_t kMaxPlainNumber = 1 << 15;
 /// Entity ids of handshake messages (DDS Security 1.1, 7.4.3), whose sequence numbers count participants.
 constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x000201c4;
 
-/// Removes the ids of reader and writer from the front. Returns whether they belong together as a pair for
-/// discovery, or for handshakes, in which case it sets `is_handshake`. The reader may be unspecified.
+/// Removes the ids of reader and writer from the front. Returns whether they are a known pair for discovery
+/// or for handshakes, and sets `is_handshake` for the latter. The reader may be unspecified.
 bool take_entities(NumberReader& reader, bool& is_handshake) {
   const std::uint32_t to = reader.identifier(), from = reader.identifier();
   if (!reader.is_valid()) return false;
@@ -46,7 +46,7 @@ struct Submessage {
   Bytes body;
 };
 
-/// Removes a submessage from the front. nullopt if it is cut off, or so long that its length is not stated.
+/// Removes a submessage from the front. nullopt if it is truncated, or so long that its length is not stated.
 std::optional<Submessage> take_submessage(Bytes& left) {
   if (left.size() < kSubmessageHeaderSize) return std::nullopt;
   Submessage result{left[0], left[1], {}};
@@ -103,7 +103,7 @@ bool is_valid_content(const Submessage& submessage) {
     default:
       return false;
   }
-  reader.number(4);  // number of times that this was sent
+  reader.number(4);  // number of times that the message was sent
   return reader.is_at_end();
 }
 

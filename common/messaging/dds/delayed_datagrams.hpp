@@ -16,7 +16,7 @@
 
 namespace sidestep {
 
-/// Holds delayed datagrams. Its own thread passes each one on after its delay.
+/// Holds delayed datagrams. A thread of this object passes each datagram on after its delay.
 class DelayedDatagrams {
  public:
   /// `counts` must outlive this object.
@@ -29,7 +29,7 @@ class DelayedDatagrams {
   void add(Duration delay, fast_dds::transport::TransportReceiverInterface& receiver,
            std::span<const std::uint8_t> datagram, const fast_dds::rtps::Locator_t& local,
            const fast_dds::rtps::Locator_t& remote);
-  /// Drops the port's datagrams. Once this returns, no datagram of the port is passed on any more.
+  /// Drops the port's datagrams. After this call, no datagram of the port is passed on.
   void close(std::uint32_t port);
 
  private:

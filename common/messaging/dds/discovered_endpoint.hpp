@@ -30,7 +30,7 @@ struct DiscoveredEndpoint {
   std::vector<std::string> partitions;  ///< empty: the unnamed partition
 };
 
-/// A change of an endpoint that discovery reports.
+/// What discovery reports about an endpoint: discovered, changed or gone.
 enum class EndpointChange : std::uint8_t { kDiscovered, kChanged, kGone };
 
 /// Lists all policies of an endpoint, for example "best effort, volatile, keyed, liveliness automatic (no

@@ -140,7 +140,7 @@ void EventLoop::call_posted() {
 void EventLoop::serve_watched() {
   if (polled_.size() == 1 || stopped() || poll(polled_.data(), polled_.size(), 0) <= 0) return;
   for (std::size_t i = 1; i < polled_.size() && !stopped(); ++i) {
-    // A closed descriptor would wake the loop repeatedly without end; poll() ignores negative descriptors.
+    // A closed descriptor would wake the loop continually; poll() ignores negative descriptors.
     if (polled_[i].revents & POLLNVAL)
       polled_[i].fd = -1;
     else if (polled_[i].revents)

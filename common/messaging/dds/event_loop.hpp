@@ -21,7 +21,7 @@ class EventLoop {
   class Source {
    public:
     virtual ~Source() = default;
-    /// Processes what has arrived, up to a bound so that timers are not starved. True if more may be left.
+    /// Processes what has arrived, up to a bound so that timers are not starved. True: more may be left.
     virtual bool drain() = 0;
 
    private:
@@ -39,7 +39,7 @@ class EventLoop {
   /// adopt_host_clock(), plus the time that has passed since. Setting the host's clock does not affect it.
   static Time now();
   /// The host's clock minus the process's clock. It changes only when the host's clock is set: a time daemon
-  /// that slews the host's clock slews both.
+  /// that slews the host's clock slews both clocks.
   static Duration host_clock_ahead();
   /// Sets the process's clock to the host's. Precondition: no loop exists, because its timers would be wrong.
   static void adopt_host_clock();

@@ -60,7 +60,7 @@ bool take_property(NumberReader& reader) {
 
 bool is_handshake_message(std::span<const std::uint8_t> payload) {
   constexpr std::size_t kEncapsulationSize = 4;
-  // The identities of this message and of the one that it answers, followed by three GUIDs.
+  // The identities of this message and of the message that it answers, followed by three GUIDs.
   constexpr std::size_t kHeadSize = 2 * (16 + 8) + 3 * 16;
   if (payload.size() < kEncapsulationSize || payload[0] != 0 || payload[1] > 1) return false;
   NumberReader reader(payload.subspan(kEncapsulationSize), payload[1] == 1);

@@ -19,7 +19,7 @@ namespace {
 constexpr Duration kMinSilenceTimeout{1'000'000'000}, kMaxSilenceTimeout{16'000'000'000};
 constexpr std::uint32_t kImagesBytes = 32 << 20;   ///< memory for all images that wait to be read
 constexpr std::uint32_t kReaderBytes = 1 << 18;    ///< memory of a reader, which sends little
-constexpr std::chrono::seconds kCreationGrace{5};  ///< a segment that is being created is not locked yet
+constexpr std::chrono::seconds kCreationGrace{5};  ///< a newer segment may not be locked yet
 constexpr Duration kCheckPeriod{250'000'000};
 
 std::shared_ptr<DdsParticipant> make_participant(const DdsSettings& settings,
@@ -35,7 +35,7 @@ std::shared_ptr<DdsParticipant> make_sharing_participant(const DdsSettings& sett
     return make_participant(settings, bytes);
   } catch (const std::runtime_error&) {
     auto participant = make_participant(settings, 0);
-    log_dds("no shared memory: images go by UDP");
+    log_dds("no shared memory: images are sent over UDP");
     return participant;
   }
 }
@@ -91,7 +91,7 @@ void DdsImageReader::check_silence() {
   if (!latest_writer_found_at || last_received_ > *latest_writer_found_at) return;
   if (now - std::max(*latest_writer_found_at, opened_at_) < silence_timeout_) return;
   shares_memory_ = !shares_memory_;
-  log_dds(fmt::format("topic '{}': nothing received by {}, switching to {}", channel_,
+  log_dds(fmt::format("topic '{}': nothing received over {}, switching to {}", channel_,
                       shares_memory_ ? "UDP" : "shared memory", shares_memory_ ? "shared memory" : "UDP"));
   try {
     reader_.move_to(make_participant(settings_, shares_memory_ ? kReaderBytes : 0));

@@ -16,14 +16,14 @@ namespace sidestep {
 /// whose lock is free and whose age is at least `min_age`.
 void remove_stale_segments(const std::filesystem::path& folder, std::chrono::seconds min_age);
 
-/// The participant that writes images. It uses shared memory for readers on this host that use it too, and
-/// UDP for all others. Without shared memory it uses only UDP and logs that.
+/// The participant that writes images. It uses shared memory for readers on this host that also use it, and
+/// UDP for all others. If shared memory is unavailable, it uses only UDP and logs a warning.
 std::shared_ptr<DdsParticipant> image_publisher_participant(const DdsSettings& settings);
 
 /// A bus's reader of images. It starts with shared memory, which fails silently if the writer cannot access
 /// the same shared memory (for example in a container). Therefore, if a writer is known but no image arrives
-/// for a second, the reader switches to UDP; after two more seconds it switches back to shared memory, and so
-/// on. The timeout doubles each time, until an image arrives.
+/// for a second, the reader switches to UDP. After two more seconds it switches back to shared memory. The
+/// timeout doubles at each switch, until an image arrives.
 class DdsImageReader {
  public:
   /// Throws std::runtime_error if DdsReader does.

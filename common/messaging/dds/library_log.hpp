@@ -9,8 +9,8 @@ namespace sidestep {
 /// function of Fast DDS, because every hostile datagram can cause one. Later calls have no effect.
 void log_library();
 
-/// The first few errors that Fast DDS has logged since the last call, or since log_library() at the first
-/// call; empty if none.
+/// The first few errors that Fast DDS has logged since the last call or, at the first call, since
+/// log_library(); empty if none.
 std::string take_library_errors();
 
 }  // namespace sidestep

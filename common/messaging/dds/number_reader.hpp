@@ -59,7 +59,7 @@ class NumberReader {
     is_valid_ = is_valid_ && bits <= kMaxBits;
     take((bits + 31) / 32 * 4);
   }
-  /// Skips parameters up to the one that ends the list (RTPS 2.2, 9.4.2.11).
+  /// Skips parameters up to the end of the list (RTPS 2.2, 9.4.2.11).
   void skip_parameters() {
     constexpr std::uint32_t kEnd = 1;
     while (is_valid_) {

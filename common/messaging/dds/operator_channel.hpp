@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// An operator's writer for one topic, which knows the topic's subscribers. Its messages are exempt from
+/// An operator's writer for one topic, with a list of the topic's subscribers. Its messages are exempt from
 /// network faults.
 class OperatorChannel {
  public:

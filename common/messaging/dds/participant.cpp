@@ -155,7 +155,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
   builtin.discovery_config.leaseDuration = fast_dds::kInfiniteDuration;  // see Presence
   builtin.discovery_config.leaseDuration_announcementperiod = kAnnouncementPeriod;
   for (const std::string& peer : settings.peers) builtin.initialPeersList.push_back(locator_at(peer));
-  // If it has its own address for discovery, Fast DDS uses no multicast.
+  // If the participant has an explicit address for discovery, Fast DDS uses no multicast.
   if (!settings.peers.empty())
     builtin.metatrafficUnicastLocatorList.push_back(
         locator_at(settings.interface == "all" ? "0.0.0.0" : settings.interface));
@@ -184,7 +184,7 @@ void warn_of_expiry(const KeyFolder& keys) {
   if (const Time end = keys.certificate.not_after(); end - EventLoop::now() < kSoon)
     std::call_once(once, [&] {
       log(LogLevel::kWarning,
-          fmt::format("keys: others will refuse this process after {}, when its key expires",
+          fmt::format("keys: other processes will refuse this one after {}, when its key expires",
                       date_text(end)));
     });
 }

@@ -17,8 +17,8 @@
 
 namespace sidestep {
 
-/// A DDS participant with one publisher and one subscriber, over UDPv4 and optionally shared memory.
-/// Destroying it deletes everything that it has created.
+/// A DDS participant with one publisher and one subscriber, over UDPv4 and optionally shared memory. Its
+/// destructor deletes everything that it has created.
 class DdsParticipant {
  public:
   /// The listener, if any, must outlive the participant. `shared_memory_bytes` > 0 is the size of the segment

@@ -14,8 +14,8 @@
 namespace sidestep {
 namespace {
 
-// Bound on refusals that are reported at once, because a hostile sender can cause any number of them. Further
-// ones are reported at a rate of one per period.
+// Maximum number of refusals reported in a burst, because a hostile sender can cause any number of them.
+// Further refusals are reported at a rate of one per period.
 constexpr int kMaxReported = 64;
 constexpr Duration kReportPeriod = std::chrono::seconds(10);
 

@@ -7,7 +7,7 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kMaxCheckInterval{3'000'000'000};
-/// How long a notice is repeated. It is sent with each announcement, once a second.
+/// Time for which a notice is repeated. It is sent with each announcement, once a second.
 constexpr Duration kRepeatFor{2'500'000'000};
 /// After this time, a process that has caught up has read all datagrams that were waiting in its sockets.
 constexpr Duration kCatchUp{300'000'000};

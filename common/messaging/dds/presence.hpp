@@ -22,8 +22,8 @@ struct PresenceNotice {
   enum class Kind : std::uint32_t {
     /// The sender has forgotten `whom`. `number` identifies this event among those of the sender.
     kForgotten = 1,
-    /// The sender has received the kForgotten notice of `whom` with the same number, and has forgotten `whom`
-    /// too.
+    /// The sender has received the kForgotten notice of `whom` with the same number, and has itself forgotten
+    /// `whom`.
     kAgreed = 2,
   };
   ParticipantId whom{};
@@ -39,14 +39,14 @@ struct PresenceNotice {
 /// abort if the participant leaves during the check, and if only one side forgets the other, as when a
 /// process was stopped for a while, they may never find each other again. Participants therefore announce an
 /// infinite lease, and this class decides instead. When a forgotten participant is heard again, it is
-/// notified, and forgets the other side too. For a moment it refuses the other side's datagrams, because
-/// older ones may still wait in its sockets: if Fast DDS took an old acknowledgement for a new one, it would
+/// notified, and also forgets the other side. For a moment it refuses the other side's datagrams, because old
+/// datagrams may still wait in its sockets: if Fast DDS took an old acknowledgement for a new one, it would
 /// never resend the messages in question. Then it sends kAgreed, and its own datagrams are accepted again.
 ///
 /// Only participants that announce presence are tracked; those of other software are left to Fast DDS.
 class Presence {
  public:
-  /// Maximum number of forgotten participants that are remembered. Beyond it the oldest are dropped.
+  /// Maximum number of forgotten participants that are remembered; the oldest are dropped first.
   static constexpr std::size_t kMaxPeers = 1024;
   /// Maximum number of notices that notices() returns.
   static constexpr std::size_t kMaxNotices = 64;
@@ -69,7 +69,7 @@ class Presence {
     Time last_heard{};
     bool is_forgotten = false;
     std::uint64_t forgotten_number = 0;
-    Time ask_until{};                     ///< when kForgotten notices to the peer end
+    Time ask_until{};                     ///< time until which kForgotten notices are sent to the peer
     std::optional<std::uint64_t> agreed;  ///< number of the peer's last processed kForgotten notice
     Time agree_from{}, agree_until{};     ///< refuses datagrams until the former; then sends kAgreed
   };

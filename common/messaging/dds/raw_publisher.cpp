@@ -13,7 +13,7 @@ namespace {
 
 using namespace fast_dds::dds;
 
-/// Gets the key of each message from the caller, because the layout of the bytes is unknown here.
+/// Takes the key of each message from the caller, because the layout of the bytes is unknown here.
 class KeyedRawType : public RawType {
  public:
   using RawType::RawType;

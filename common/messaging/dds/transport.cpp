@@ -33,7 +33,7 @@ constexpr Duration kCheckInterval{500'000'000};
 /// Fast DDS announces a participant a few milliseconds before it can process the answers.
 constexpr Duration kUntilReady{50'000'000};
 
-/// A value that writers never reach; they send periodic heartbeats anyway.
+/// A number of bytes that writers never reach; they also send periodic heartbeats.
 constexpr std::uint32_t kBytesUntilHeartbeat = 1U << 30;
 
 bool has_operator_mark(const ParticipantId& id) {
@@ -52,9 +52,9 @@ struct UdpDescriptor : transport::ChainingTransportDescriptor {
 
   transport::TransportInterface* create_transport() const override;
   /// Fast DDS sends a heartbeat to all readers of a writer whenever the writer has sent this many bytes. For
-  /// discovery writers its count is far too high (2.9.1 adds up totals), so each new participant would cause
-  /// heartbeats from and to all others for every second endpoint. With 25 participants, these are most of the
-  /// packets at start-up.
+  /// discovery writers the count is far too high (2.9.1 adds up totals), so each new participant would cause
+  /// heartbeats from and to all others for every second endpoint. With 25 participants, these heartbeats are
+  /// most of the packets at start-up.
   std::uint32_t min_send_buffer_size() const override { return kBytesUntilHeartbeat; }
 
   std::shared_ptr<Impairment> impairment;
@@ -83,7 +83,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
   void on_datagram(Receiver& next, Bytes datagram, const rtps::Locator_t& local,
                    const rtps::Locator_t& remote) override {
     const std::optional<ParticipantId> sender = sender_of(datagram);
-    if (!sender) return;  // Fast DDS would refuse this datagram too
+    if (!sender) return;  // Fast DDS would also refuse this datagram
     if (!presence_notices(datagram)) {
       datagram = descriptor_.filter ? checked_datagram(datagram) : without_statistics(datagram);
       descriptor_.counts->malformed += datagram.empty();
@@ -153,7 +153,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
     std::vector<ParticipantId> result;
     if (notices && self_ && sender != *self_ && presence_.on_announcement(*self_, sender, *notices, now))
       result.push_back(sender);
-    // This participant's own announcements arrive here too, so this happens at least once a second.
+    // This participant's own announcements also arrive here, so the check runs at least once a second.
     if (now - checked_at_ > kCheckInterval) {
       checked_at_ = now;
       const std::vector<ParticipantId> silent = presence_.newly_silent(now);
@@ -202,7 +202,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
   std::optional<Time> announced_at_;
   Presence presence_;
   Time checked_at_{};
-  std::optional<DelayedDatagrams> delayed_;  ///< set only if there is an impairment
+  std::optional<DelayedDatagrams> delayed_;  ///< nullopt without an impairment
 };
 
 transport::TransportInterface* UdpDescriptor::create_transport() const { return new UdpTransport(*this); }

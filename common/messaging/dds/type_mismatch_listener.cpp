@@ -41,7 +41,7 @@ void TypeMismatchListener::on_endpoint(const fast_dds::rtps::GUID_t&, Discovered
 void TypeMismatchListener::compare(const DiscoveredEndpoint& endpoint) {
   const auto own = types_.find(endpoint.topic);
   if (own == types_.end() || own->second == endpoint.type) return;
-  log_dds(fmt::format("topic '{}': a {} has type {} and is ignored, ours is {}", endpoint.topic,
+  log_dds(fmt::format("topic '{}': a {} has type {} and is ignored, expected {}", endpoint.topic,
                       endpoint.is_writer ? "writer" : "reader", endpoint.type, own->second));
 }
 

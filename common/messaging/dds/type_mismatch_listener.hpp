@@ -13,9 +13,8 @@
 
 namespace sidestep {
 
-/// Watches discovery. Logs endpoints that use one of our channels with a different type, because DDS never
-/// matches them and reports nothing. Also records when the writers of each channel were discovered.
-/// Thread-safe.
+/// Watches discovery. Logs endpoints that use one of our channels with a different type, because DDS silently
+/// never matches them. Also records when the writers of each channel were discovered. Thread-safe.
 class TypeMismatchListener : public fast_dds::DiscoveryListener {
  public:
   /// Registers one of our channels and its type.

@@ -28,7 +28,7 @@ std::uint32_t size_of_empty(const MessageType& type) {
   return static_cast<std::uint32_t>(kEncapsulationSize + type.cdr_size(type.make().get()));
 }
 
-/// A message owned by Fast DDS, which only knows the address of the sample.
+/// A sample that owns its message; Fast DDS stores only the sample's address.
 struct OwnedSample : GuardedType::Sample {
   explicit OwnedSample(std::shared_ptr<void> made) : owner(std::move(made)) { message = owner.get(); }
   std::shared_ptr<void> owner;

@@ -37,7 +37,7 @@ class Writer {
   template <typename Number>
   void number(const Number& value) {
     align(sizeof(Number));
-    std::memcpy(bytes_.data() + at_, &value, sizeof value);  // this machine is little-endian too
+    std::memcpy(bytes_.data() + at_, &value, sizeof value);  // this machine is also little-endian
     at_ += sizeof value;
   }
   void text(const std::string& value) {
@@ -55,7 +55,7 @@ class Writer {
   std::size_t at_ = 0;
 };
 
-/// Reads untrusted bytes. After an error everything that it reads is zero.
+/// Reads untrusted bytes. After an error, all further values are zero.
 class Reader {
  public:
   Reader(std::span<const std::uint8_t> bytes, ByteOrder order) : bytes_(bytes), order_(order) {}

@@ -31,11 +31,10 @@ std::string command_channel(const std::string& prefix, std::uint32_t robot);
 std::string odometry_channel(const std::string& prefix, std::uint32_t robot);
 
 /// Topic descriptions with ROS 2's type names. They are not in the topic table, because these messages lack
-/// our headers: use Bus::relay() and Bus::observe_channel(). Readers are best effort, so that they match
-/// every writer.
+/// our headers: use Bus::relay() and Bus::observe_channel(). Best effort, so that readers match every writer.
 extern const TopicInfo kTwist;
 extern const TopicInfo kOdometry;
-/// The topic for writers: reliable, as ROS 2's subscriptions request by default.
+/// The same topic, but reliable, for writers: ROS 2's subscriptions request reliability by default.
 TopicInfo reliable(TopicInfo topic);
 
 }  // namespace sidestep::ros

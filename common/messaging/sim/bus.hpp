@@ -17,8 +17,8 @@ struct SimProcessSpec {
   ClockError clock{};     ///< error relative to the network's time, which is true time
 };
 
-/// One instance of a simulated process, and its access to a SimNetwork. Destroying it simulates kill -9: its
-/// timers never fire and messages on their way to it are lost; messages that it has sent still arrive.
+/// One instance of a simulated process, and its access to a SimNetwork. Its destruction simulates kill -9:
+/// its timers never fire and messages in transit to it are lost; messages that it has sent still arrive.
 class SimBus : public Bus {
  public:
   /// A new process, without link faults.
@@ -42,8 +42,8 @@ class SimBus : public Bus {
   /// Sets the process's clock. Timers keep their true times.
   void set_clock(const ClockError& clock) { clock_ = clock; }
   /// Simulates SIGSTOP until `until`, in network time: no timer fires, and up to `max_queued` messages are
-  /// queued. Further ones are lost, like datagrams that find a full socket buffer. At the end, all queued
-  /// messages and timers are delivered at the same time. A pause during another one can only prolong it.
+  /// queued. Further messages are lost, like datagrams that find a full socket buffer. At the end, all queued
+  /// messages and timers are delivered at the same time. A second pause can only prolong the first.
   void pause(Time until, std::size_t max_queued);
 
  protected:

@@ -75,7 +75,7 @@ class EventQueue {
     return payload;
   }
 
-  /// The event `distance` places behind the next one if it is in the same slot, otherwise null. For
+  /// The event `distance` places behind the next event if it is in the same slot, otherwise null. For
   /// prefetching.
   const Payload* peek(std::size_t distance) const {
     return due_.size() > distance ? &due_[due_.size() - 1 - distance].payload : nullptr;
@@ -127,7 +127,7 @@ class EventQueue {
   std::int64_t next_slot() const { return slots_.next_used(slot_ + 1, last_slot() + 1); }
 
   /// Advances to the next revolution that has events, spreads its events over the first wheel, and moves
-  /// events that have come within reach from the heap to the wheels.
+  /// events from the heap to the wheels if the wheels now cover their times.
   void begin_next_revolution() {
     const std::int64_t far = later_.empty() ? INT64_MAX : slot_of(later_.front()) >> kRevolutionBits;
     const std::int64_t end = revolution_ + kRevolutions, near = revolutions_.next_used(revolution_ + 1, end);

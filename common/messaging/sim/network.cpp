@@ -66,7 +66,7 @@ void SimNetwork::release(std::uint32_t sent) {
 void SimNetwork::postpone(const Event& event) {
   SimProcessInstance& instance = *event.subscription->instance;
   if (instance.queued_until <= now_) {
-    // The pause begins, or outlasts an earlier one: all events that are due now follow in order.
+    // The pause begins, or outlasts an earlier pause: all events due from now on follow in order.
     instance.queued_until = instance.paused_until;
     instance.queued = 0;
   }
@@ -111,7 +111,7 @@ void SimNetwork::send(Writer& writer, const void* message) {
 
 void SimNetwork::send_event(Writer& writer, SimSubscription& reader, std::uint32_t sent) {
   const ProcessId from = writer.instance().process, to = reader.instance->process;
-  // Always drawn, whatever happens to this message, so that it does not change the delays of other messages.
+  // Always drawn, even if the message is lost, so that the delays of other messages do not depend on it.
   const Duration delay = event_delay(from, to, rng_);
   const std::shared_ptr<ReliableStream>& stream = writer.stream_to(reader, begin_, [&] {
     return ReliableStream::Delays{
@@ -151,8 +151,7 @@ void SimNetwork::schedule_heartbeat(Writer& writer, const std::shared_ptr<Reliab
 void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
   const ProcessId from = writer.instance().process, to = stream.reader().instance->process;
   if (!update_match(writer, stream) || !arrives(from, to)) return;
-  // The heartbeat tells the reader which messages are lost for good, so that the reader does not wait for
-  // them.
+  // The heartbeat tells the reader which messages are permanently lost, so the reader does not wait for them.
   deliver_arrived(stream, event_delay(from, to, reliable_rng_));
   if (stream.waiting().empty() || !arrives(to, from)) return;
   Duration delay{0};

@@ -30,7 +30,7 @@ struct SimProcessInstance {
   Time paused_until = Time::min();
   Reachability reachability{};  ///< limited by its pauses; see reachability_of()
   Time queued_until =
-      Time::min();  ///< when queued events are due; before paused_until if a second pause prolonged the first
+      Time::min();  ///< due time of queued events; before paused_until if a second pause prolonged the first
   std::size_t queued = 0, max_queued = 0;  ///< number of messages that wait for the end of the pause
   std::uint64_t lost = 0;                  ///< number of messages to this process that the network has lost
   std::uint64_t overflowed = 0;            ///< number of messages to this process that found its queue full
@@ -98,7 +98,7 @@ class SimNetwork {
   /// Stores a message that did not arrive immediately, and drops messages beyond the writer's history.
   void keep(Writer& writer, const std::shared_ptr<ReliableStream>& stream, std::uint32_t sent,
             bool has_arrived);
-  /// Resends lost messages, provided that a heartbeat and the answer to it both arrive.
+  /// Resends lost messages if a heartbeat and the answer to it arrive.
   void heartbeat(Writer& writer, ReliableStream& stream);
   void schedule_heartbeat(Writer& writer, const std::shared_ptr<ReliableStream>& stream);
   void deliver_arrived(ReliableStream& stream, Duration delay);
@@ -114,7 +114,7 @@ class SimNetwork {
   Duration sample_delay(Rng& rng) const;
 
   Rng rng_;
-  Rng reliable_rng_;  ///< draws for reliable messages do not change the losses of other messages
+  Rng reliable_rng_;  ///< separate, so reliable messages do not affect the losses of other messages
   const Time begin_;
   Time now_;
   NetworkSpec spec_;

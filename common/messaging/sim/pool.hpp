@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Values addressed by index. The most recently freed index is reused first; nothing is allocated while free
-/// indices remain.
+/// Values addressed by index. Reuses the most recently freed index first, and allocates only if no index is
+/// free.
 template <typename Value>
 class Pool {
  public:

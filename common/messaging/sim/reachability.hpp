@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// How long two processes have been able to hear each other, for simulating discovery. They forget each other
+/// The times since which two processes can hear each other, for simulating discovery. They forget each other
 /// if either direction is silent for kSilenceLimit.
 struct Reachability {
   Time heard_from = Time::min();  ///< both directions are heard from this time until `silent_from`
@@ -26,8 +26,8 @@ struct Reachability {
   }
 };
 
-/// The combined reachability if two processes hear each other only while both `a` and `b` allow it, for
-/// example the two directions of their link.
+/// The reachability of two processes that hear each other only while both `a` and `b` allow it, for example
+/// the two directions of their link.
 inline Reachability both(const Reachability& a, const Reachability& b) {
   return {std::max(a.heard_from, b.heard_from), std::min(a.silent_from, b.silent_from),
           std::max(a.last_silent_from, b.last_silent_from), std::max(a.begun_anew, b.begun_anew)};

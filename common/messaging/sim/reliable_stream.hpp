@@ -13,9 +13,9 @@ namespace sidestep {
 struct SimSubscription;
 
 /// Messages from one writer of a reliable topic that have not been delivered to one reader yet. As in DDS, a
-/// reader receives nothing that was written before the two discovered each other, and a writer keeps the last
-/// kEventDepth messages of each key. A reader holds back a message until all earlier ones have arrived or are
-/// lost for good.
+/// reader receives nothing that was written before reader and writer discovered each other, and a writer
+/// keeps the last kEventDepth messages of each key. A reader holds back a message until all earlier messages
+/// have arrived or are permanently lost.
 class ReliableStream {
  public:
   struct Sample {
@@ -30,7 +30,7 @@ class ReliableStream {
     Duration at_first{0}, anew{0};
   };
 
-  /// `begin` is the time from which both exist; Time::min() if they have already discovered each other.
+  /// `begin` is the time from which both ends exist; Time::min() if they have already discovered each other.
   ReliableStream(SimSubscription& reader, Time begin, const Delays& delays)
       : reader_(&reader), begin_(begin), delays_(delays) {}
 
@@ -38,7 +38,7 @@ class ReliableStream {
   /// Updates and returns whether writer and reader know each other. If not, the waiting messages are lost.
   [[nodiscard]] bool update(const Reachability& reachability, Time now);
   std::deque<Sample>& waiting() { return waiting_; }
-  /// Removes the oldest message of the key from the writer's history if it holds more than kEventDepth.
+  /// If the writer's history holds more than kEventDepth messages of the key, removes the oldest of them.
   /// Returns the message if it is thereby lost.
   std::optional<Sample> overwrite(const CdrKey& key);
   /// Removes and returns the first message if it has arrived.

@@ -31,11 +31,11 @@ class SimNetwork::Writer : public RawWriter {
   SimSubscription& timers() const { return timers_; }
   const TopicInfo& topic() const { return topic_; }
   Channel& channel() const { return channel_; }
-  /// Its value becomes null when the writer is destroyed.
+  /// A pointer to this writer that becomes null when the writer is destroyed.
   std::shared_ptr<Writer*> alive() const { return alive_; }
 
-  /// The stream to a reader. `delays` is called to create one. Processes that exist at `network_begin` have
-  /// already discovered each other.
+  /// The stream to a reader, created if necessary with the delays that `delays` returns. Processes that exist
+  /// at `network_begin` have already discovered each other.
   template <typename MakeDelays>
   const std::shared_ptr<ReliableStream>& stream_to(SimSubscription& reader, Time network_begin,
                                                    MakeDelays delays) {

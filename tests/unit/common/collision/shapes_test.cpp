@@ -132,7 +132,7 @@ TEST_CASE("invalid shapes are rejected") {
   CHECK_THROWS_AS(check(ConvexPolygon{{{0, 0}, {1, 0}, {2, 0}}}), std::invalid_argument);
   ConvexPolygon star;
   for (int i = 0; i < 5; ++i) star.corners_m.push_back(rotated(Vec2(1, 0), 4 * i * std::numbers::pi / 5));
-  CHECK_THROWS_WITH(check(star), "a polygon's boundary has to go around exactly once");
+  CHECK_THROWS_WITH(check(star), "a polygon's boundary must make exactly one full turn");
 }
 
 TEST_CASE("shapes without an interior are valid") {

@@ -342,7 +342,7 @@ TEST_CASE("unreadable files are rejected") {
   };
   CHECK_THAT(load_error("/nowhere/x.yaml"),
              StartsWith("/nowhere/x.yaml:1: cannot read the file (No such file"));
-  CHECK_THAT(load_error("/tmp"), StartsWith("/tmp:1: cannot read the file (a directory"));
+  CHECK_THAT(load_error("/tmp"), StartsWith("/tmp:1: cannot read the file (it is a directory"));
 }
 
 TEST_CASE("a mutated scenario either loads or is rejected with a ConfigError") {

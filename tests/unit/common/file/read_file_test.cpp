@@ -15,7 +15,7 @@ TEST_CASE("a regular file is read completely, up to a maximum size") {
   const std::string text = std::string("a\0b\r\n", 5) + std::string(300'000, 'x');
   write_file(folder.file("text"), text);
   CHECK(read_file(folder.file("text"), text.size()) == text);
-  CHECK_THROWS_WITH(read_file(folder.file("text"), text.size() - 1), Equals("more than 0 MB"));
+  CHECK_THROWS_WITH(read_file(folder.file("text"), text.size() - 1), Equals("it is larger than 0 MB"));
   write_file(folder.file("empty"), "");
   CHECK(read_file(folder.file("empty"), 0).empty());
   CHECK_FALSE(read_file("/proc/self/status", 1'000'000).empty());
@@ -24,9 +24,9 @@ TEST_CASE("a regular file is read completely, up to a maximum size") {
 TEST_CASE("anything but a regular file is rejected at once") {
   const TemporaryFolder folder;
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
-  CHECK_THROWS_WITH(read_file(folder.file("pipe"), 100), Equals("not a regular file"));
-  CHECK_THROWS_WITH(read_file("/dev/zero", 100), Equals("not a regular file"));
-  CHECK_THROWS_WITH(read_file(folder.path(), 100), Equals("a directory"));
+  CHECK_THROWS_WITH(read_file(folder.file("pipe"), 100), Equals("it is not a regular file"));
+  CHECK_THROWS_WITH(read_file("/dev/zero", 100), Equals("it is not a regular file"));
+  CHECK_THROWS_WITH(read_file(folder.path(), 100), Equals("it is a directory"));
   CHECK_THROWS_WITH(read_file(folder.file("none"), 100), Equals("No such file or directory"));
 }
 

@@ -75,7 +75,7 @@ TEST_CASE("an invalid layout is rejected with its line") {
   check_rejected("[0.05, 0]", "[0.03, 0]", 4, "overlaps the centre dot");
   check_rejected("[-0.05, 0]", "[0.05, 0.03]", 5, "overlaps dots[0]");
   check_rejected("[-0.05, 0]", "[-2, 0]", 5, "expected -1 to 1");
-  check_rejected("[pink, green]", "[pink, pink]", 7, "rotated by 180 degrees it looks the same");
+  check_rejected("[pink, green]", "[pink, pink]", 7, "the pattern looks the same rotated by 180 degrees");
   check_rejected("[pink, red]", "[green, pink]", 8, "looks like the pattern of id 4 rotated by 180 degrees");
   check_rejected("[pink, red]", "[pink, green]", 8, "looks like the pattern of id 4 rotated by 0 degrees");
   check_rejected("[pink, red]", "[pink, blue]", 8, "blue is a team colour");

@@ -165,8 +165,8 @@ TEST_CASE(
   reader.watch_conflicts([&](const TopicInfo& topic, std::uint32_t robot, const msg::Header& header) {
     ++contests;
     CHECK(describe_conflict(topic, robot, header) ==
-          "two processes send 'feedback/3' as robot 3; the messages of both are ignored on this topic "
-          "until one of them ends");
+          "two processes send 'feedback/3' as robot 3; their messages on this topic are ignored "
+          "until one of them exits");
   });
   msg::Feedback feedback;
   const auto send = [&](auto& writer, Incarnation incarnation) {

@@ -16,12 +16,12 @@ TEST_CASE("the budget line shows how the margin is composed and how much is to s
       budget_line({0.006, 0.0005, 2}, 0.025) ==
       "safety budget: margin 25.0 mm = 2 x 6.0 mm tracking + 4.0 mm for clocks within 0.5 ms at 2 m/s + 9.0 "
       "mm to spare");
-  CHECK_THAT(budget_line({0.005, 0.01, 2}, 0.1),
-             EndsWith("warning: errors of the cameras' clocks may shift robots by 40.0 mm, of which tracking "
-                      "covers 2.0 mm: expect "
-                      "own stops, or set tracking_bound_m to 100.0 mm or more"));
+  CHECK_THAT(
+      budget_line({0.005, 0.01, 2}, 0.1),
+      EndsWith("warning: clock errors of cameras may shift observed robots by 40.0 mm; tracking covers "
+               "2.0 mm: expect own stops, or set tracking_bound_m to 100.0 mm or more"));
   CHECK_THAT(budget_line({0.005, 0, 2}, 0.01),
-             EndsWith("warning: clocks are known to 0.1 ms at best, for which the margin allows 0 m/s: set "
+             EndsWith("warning: clock offsets are known to 0.1 ms at best, so the margin allows 0 m/s: set "
                       "margin_m to 10.4 mm or more"));
   CHECK_THAT(budget_line({0.005, 0, 2}, 0.0104), EndsWith("+ 0.4 mm to spare"));
 }

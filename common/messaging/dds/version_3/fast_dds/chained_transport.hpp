@@ -16,7 +16,7 @@
 
 namespace sidestep::fast_dds {
 
-/// A transport that handles the datagrams of another one.
+/// A transport that handles the datagrams of another transport.
 class ChainedTransport : public transport::ChainingTransport {
  public:
   using ChainingTransport::ChainingTransport;

@@ -51,7 +51,7 @@ inline dds::DataRepresentationQosPolicy& representation(dds::DataReaderQos& qos)
   return qos.representation();
 }
 
-/// Makes endpoints of one process exchange messages over the network too. Call it before creating
+/// Makes endpoints within one process also exchange messages over the network. Call it before creating
 /// participants.
 inline void disable_intraprocess_delivery() {
   eprosima::fastdds::LibrarySettings settings;

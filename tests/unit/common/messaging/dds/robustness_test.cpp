@@ -73,7 +73,7 @@ TEST_CASE("an endpoint that uses one of our topics with another type is reported
   const auto other = writer.advertise(test_topic<msg::Proposal>(Qos::kState, "sidestep::msg::Proposal"));
   const auto is_logged = [&] {
     return captured.has(
-        "a writer has type sidestep::msg::Proposal and is ignored, ours is sidestep::msg::Verdict");
+        "a writer has type sidestep::msg::Proposal and is ignored, expected sidestep::msg::Verdict");
   };
   const bool reported = run_until(is_logged, reader, writer);
   CAPTURE(captured.text());
