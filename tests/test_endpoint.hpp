@@ -16,7 +16,7 @@ class TestEndpoint {
   /// The same port on the loopback interface.
   league::Endpoint unicast(int index = 0) const { return {0x7f00'0001, endpoint(index).port}; }
   std::string text(int index = 0) const { return to_text(endpoint(index)); }
-  /// A DDS domain that no other test uses, either.
+  /// A DDS domain that no other test on this machine uses.
   const TestDomain& domain() const { return domain_; }
 
  private:

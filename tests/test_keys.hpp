@@ -28,7 +28,7 @@ class TestKeys {
     return key_folder_of(folder(), parse_identity(identity).value());
   }
   KeyStore& store() { return store_; }
-  /// When the authorities' and issued keys become valid.
+  /// The time from which the authorities' and issued keys are valid.
   Time now() const { return now_; }
   std::string issue(const Identity& identity, Duration validity = std::chrono::hours(1)) {
     return store_.issue(identity, now_, now_ + validity);

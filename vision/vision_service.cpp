@@ -22,8 +22,8 @@ std::vector<std::uint32_t> configured_cameras(const Scenario& scenario, const Vi
   return are_given ? options.league_cameras : cameras_of(scenario.vision);
 }
 
-/// Rejects files for images if no images arrive, because the user would believe that the files are used.
-/// Throws std::invalid_argument.
+/// Throws std::invalid_argument if an option names a file that only image processing uses. Called if no
+/// images arrive, because the user would believe that the file is used.
 void require_none(const ImageOptions& options) {
   const std::pair<const char*, const std::string&> files[] = {{"--colours", options.colours_file},
                                                               {"--cameras", options.cameras_file},
@@ -49,7 +49,7 @@ void add_league_options(const CliCommand& app, VisionOptions& options) {
       .show_default();
   app.add_option("--league-cameras", options.league_cameras,
                  "numbers of SSL-Vision's cameras that together see all of the floor, e.g. 0,1,3; robots "
-                 "drive only while all of them do")
+                 "drive only while all these cameras send frames")
       .comma_separated()
       .check(in_range(0U, league::kMaxCameras - 1))
       .needs(source)

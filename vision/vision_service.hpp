@@ -37,7 +37,7 @@ class VisionService {
   VisionService(const VisionService&) = delete;
   VisionService& operator=(const VisionService&) = delete;
 
-  /// Sets a callback for events of at least a level.
+  /// Sets a callback for events of level `min_level` or higher.
   void on_event(LogLevel min_level, OnLogEvent callback) { node_.on_event(min_level, std::move(callback)); }
 
  private:

@@ -11,7 +11,7 @@ constexpr double kBaseTurnAcceleration_radps2 = 50, kBaseTurnSpeed_radps = 20;
 
 // Time constant with which the motors reach a commanded velocity.
 constexpr double kResponse_s = 0.02;
-// Maximum number of commands that wait for the latency to pass, so that a flood of commands does not fill the
+// Maximum number of commands whose latency has not passed yet. It keeps a flood of commands from filling the
 // memory.
 constexpr std::size_t kMaxWaiting = 1000;
 

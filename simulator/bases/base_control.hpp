@@ -26,8 +26,8 @@ struct BaseVelocity {
 
 BodySettings body_settings(const BaseSettings& settings);
 
-/// The velocity control of a simulated base: it follows the latest command that is older than its latency,
-/// within its acceleration, and brakes when there are no commands.
+/// The velocity control of a simulated base. It follows the latest command whose latency has passed, within
+/// the base's acceleration limits, and brakes if no commands arrive.
 class BaseControl {
  public:
   static constexpr double kMaxSpeed_mps = 3.7;
@@ -47,7 +47,7 @@ class BaseControl {
   BaseSettings settings_;
   std::deque<Received> waiting_;
   BaseVelocity current_;
-  Time silent_from_{};  ///< time at which it brakes if no further command takes effect
+  Time silent_from_{};  ///< time at which the base brakes unless another command takes effect
 };
 
 }  // namespace sidestep

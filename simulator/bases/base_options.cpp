@@ -21,34 +21,33 @@ void add_base_options(const CliCommand& app, BaseOptions& options) {
       .show_default();
   app.add_option("--yellow", options.yellow, "with --league: ADDRESS:PORT for the yellow team's commands")
       .show_default();
-  app.add_option(
-         "--team-size", options.team_size,
-         "with --league: fill up each team to this many robots with ones that the scenario does not know")
+  app.add_option("--team-size", options.team_size,
+                 "with --league: add opponents until each team has this many robots")
       .check(in_range(0, league::kRobotNumbers))
       .show_default();
-  app.add_option("--latency-ms", options.latency_ms, "without firmware: from a command to first motion")
+  app.add_option("--latency-ms", options.latency_ms,
+                 "without firmware: delay from a command to the first motion")
       .check(in_range(0, 1000))
       .show_default();
   app.add_option("--silence-ms", options.silence_ms,
-                 "without firmware: robots brake after this without a command")
+                 "without firmware: robots brake after this time without a command")
       .check(in_range(10, 10000))
       .show_default();
   app.add_option("--braking", options.braking_mps2, "without firmware: deceleration of the robots, m/s²")
       .check(in_range(0.1, 20))
       .show_default();
-  app.add_option("--loss", options.loss,
-                 "with --league: probability that a packet of commands or of vision is lost")
+  app.add_option("--loss", options.loss, "with --league: probability that a command or vision packet is lost")
       .check(in_range(0, 1))
       .show_default();
   app.add_option("--speed", options.speed, "without firmware: speed of the simulation, relative to real time")
       .check(in_range(0.1, 10))
       .show_default();
   app.add_flag("--accept-global", options.accepts_global,
-               "with --league: accept velocities in the field's frame too");
+               "with --league: also accept velocities in the field's frame");
   app.add_flag("--geometry-always", options.has_geometry_in_every_packet,
                "with --league: send the geometry in every vision packet instead of every 3 s");
   app.add_flag("--times-from-start", options.counts_from_start,
-               "with --league: capture times count from the start instead of 1970");
+               "with --league: capture times count from the simulation's start instead of 1970");
 }
 
 void check(const BaseOptions& options) {

@@ -28,7 +28,7 @@ struct BaseOptions {
   bool counts_from_start = false;
 };
 
-/// Throws UsageError if both kinds are requested.
+/// Throws UsageError if both --league and --velocity are given.
 void check(const BaseOptions& options);
 
 void add_base_options(const CliCommand& app, BaseOptions& options);

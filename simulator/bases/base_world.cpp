@@ -11,9 +11,9 @@
 namespace sidestep {
 namespace {
 
-// Ids of opponents: each base plus the robot's number in its team.
+// Ids of opponents: these first ids plus the robot's number in its team.
 constexpr RobotId kFirstBlueOpponent = kMaxRobots - 32, kFirstYellowOpponent = kMaxRobots - 16;
-// For this long after an opponent has pushed it, a robot may be moving because of the push.
+// Time after an opponent's push during which a robot's motion may be an effect of the push.
 constexpr Duration kPushedTime = std::chrono::seconds(1);
 constexpr double kReach_m = 0.015, kFrontAngle_rad = 0.45;
 
@@ -113,7 +113,7 @@ void BaseWorld::step() {
   if (ball_) ball_->step(floor_.field, floor_.obstacles, floor_.map.get(), bodies_, floor_.radius_m);
 }
 
-// The clearance that contacts_ measures includes the opponents.
+// Measures the clearance between the scenario's robots; contacts_ also measures clearances from opponents.
 void BaseWorld::measure_clearance() {
   if (scenario_robot_count_ == bodies_.size()) return;
   for (std::size_t i = 0; i < scenario_robot_count_; ++i) {

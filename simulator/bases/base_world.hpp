@@ -15,19 +15,19 @@
 
 namespace sidestep {
 
-/// A floor with robots without firmware, which external programs drive by velocity commands. These are the
-/// robots of a scenario, and others that fill up the teams and count as opponents. Time advances in steps of
+/// A floor whose robots have no firmware and are driven by velocity commands from external programs. It
+/// contains the robots of a scenario, and opponents that fill up the teams. Time advances in steps of
 /// kPhysicsStep.
 class BaseWorld {
  public:
-  /// The scenario's robots, and opponents up to `team_size` robots of each team, which wait along the field's
-  /// upper edge. Throws std::invalid_argument if two robots have the same team and number.
+  /// Creates the scenario's robots, and opponents at the field's upper edge until each team has `team_size`
+  /// robots. Throws std::invalid_argument if two robots have the same team and number.
   BaseWorld(const Scenario& scenario, std::uint32_t team_size, const BaseSettings& settings, Time begin);
 
   void advance(Time to);
   Time time() const { return time_; }
 
-  /// The scenario, with the opponents added to its robots.
+  /// The scenario with the opponents among its robots.
   const Scenario& floor() const { return floor_; }
   std::optional<std::size_t> find(Team team, std::uint32_t number) const;
   void command(std::size_t robot, const BaseVelocity& velocity, Time now) {
@@ -36,7 +36,7 @@ class BaseWorld {
   void place(std::size_t robot, const Vec2& position_m, double heading_rad);
   void remove(std::size_t robot);
   void set_ball(const State& state);
-  /// Kicks the ball if it is at the robot's front. Returns whether it was.
+  /// Kicks the ball if it is at the robot's front. Returns whether it was kicked.
   bool kick(std::size_t robot, double speed_mps);
   bool has_ball(std::size_t robot) const;
 
@@ -59,7 +59,7 @@ class BaseWorld {
   Time time_;
   std::vector<Body> bodies_;
   std::vector<BaseControl> controls_;
-  std::vector<Time> pushed_at_;  ///< when an opponent last touched the robot
+  std::vector<Time> pushed_at_;  ///< time at which an opponent last touched each robot
   std::optional<Ball> ball_;
   Contacts contacts_;
   std::uint64_t seen_contacts_ = 0;
@@ -68,7 +68,7 @@ class BaseWorld {
   std::array<ContactPair, msg::MAX_CONTACTS> recent_contacts_{};
   std::array<RobotId, msg::MAX_CONTACTS> recent_moving_crashes_{};
   double max_crash_mps_ = 0;
-  double min_clearance_m_ = 1;  ///< between the scenario's robots
+  double min_clearance_m_ = 1;  ///< minimum clearance between the scenario's robots
 };
 
 }  // namespace sidestep

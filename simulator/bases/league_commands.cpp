@@ -40,7 +40,7 @@ league::SimulatorResponse LeagueCommands::on_control(const league::SimulatorComm
                                                      std::optional<double>& speed) {
   league::SimulatorResponse response;
   const auto refuse = [&](const char* what) {
-    response.errors.push_back({"UNSUPPORTED_CONFIG", fmt::format("{} are those of the scenario", what)});
+    response.errors.push_back({"UNSUPPORTED_CONFIG", fmt::format("the scenario determines {}", what)});
   };
   for (const league::RobotTeleport& robot : command.robots) teleport(robot, response.errors);
   if (command.ball) {

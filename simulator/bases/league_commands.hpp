@@ -9,8 +9,8 @@ namespace sidestep {
 /// Applies the commands of the league's simulation protocol to a world.
 class LeagueCommands {
  public:
-  /// `accepts_global` allows velocities in the world frame too. The league's simulators accept local
-  /// velocities only.
+  /// `accepts_global` also allows velocities in the world frame. The league's simulators accept only local
+  /// velocities.
   LeagueCommands(BaseWorld& world, bool accepts_global) : world_(world), accepts_global_(accepts_global) {}
 
   league::TeamResponse on_team(Team team, const league::TeamCommands& commands, Time now);

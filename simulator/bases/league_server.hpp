@@ -18,11 +18,11 @@ struct LeagueServerPorts {
 /// if a port is in use.
 class LeagueServer {
  public:
-  /// `loss` is the probability that a packet of commands is lost.
+  /// `loss` is the probability that a command packet is lost.
   LeagueServer(VelocityRobotSimNode& node, const LeagueServerPorts& ports, bool accepts_global,
                double loss = 0);
 
-  /// `watch` calls back whenever a descriptor is readable.
+  /// `watch` must call `readable` whenever `descriptor` is readable.
   void start(const std::function<void(int descriptor, std::function<void()> readable)>& watch);
 
  private:

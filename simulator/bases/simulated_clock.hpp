@@ -5,7 +5,7 @@
 
 namespace sidestep {
 
-/// The time of a simulation that runs at a different speed than the clock.
+/// The time of a simulation that runs faster or slower than the real clock.
 class SimulatedClock {
  public:
   SimulatedClock(Time begin, double speed) : clock_(begin), simulated_(begin), speed_(speed) {}

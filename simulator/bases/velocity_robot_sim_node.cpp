@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr Duration kWakePeriod = milliseconds(2);
 constexpr Duration kTruthPeriod{16'666'667};
-// After a longer pause of this process the missed time is skipped, and all robots stand still.
+// Longest pause of this process after which the missed time is simulated. After a longer pause it is skipped.
 constexpr Duration kMaxCatchUp = milliseconds(1000);
 constexpr auto kSender = static_cast<std::uint32_t>(Sender::kSimulator);
 

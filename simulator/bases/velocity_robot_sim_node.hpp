@@ -13,9 +13,9 @@
 
 namespace sidestep {
 
-/// Simulates, on a bus, a floor of robots that external programs drive: advances it with time, publishes the
-/// cameras' detections after the scenario's delay, and ground truth for metrics and audit. The bus must make
-/// no callback after the node's destruction.
+/// Simulates a floor of robots that external programs drive. Advances the floor with the bus's time, and
+/// publishes the cameras' detections after the scenario's delay, and ground truth for metrics and audit. The
+/// bus must make no callback after the node's destruction.
 class VelocityRobotSimNode {
  public:
   VelocityRobotSimNode(Bus& bus, const Scenario& scenario, std::uint32_t team_size,
@@ -31,7 +31,7 @@ class VelocityRobotSimNode {
   void add_drop_source(std::function<void(DropCounters&)> source) {
     drop_sources_.push_back(std::move(source));
   }
-  /// Sets a callback for each frame's detections when they are due. Capture times are in the time of the
+  /// Sets a callback that receives each frame's detections when they are due. Capture times are by the
   /// process's clock.
   void set_detection_listener(std::function<void(const msg::DetectionFrame&)> listener) {
     detection_listener_ = std::move(listener);
@@ -63,7 +63,7 @@ class VelocityRobotSimNode {
   EventReporter events_;
   std::vector<std::function<void(DropCounters&)>> drop_sources_;
   std::function<void(const msg::DetectionFrame&)> detection_listener_;
-  std::vector<PendingFrame> frames_;  ///< sorted by time
+  std::vector<PendingFrame> frames_;  ///< in ascending order of publish_at
   Writer<msg::DetectionFrame> detections_;
   Writer<msg::GroundTruth> truth_;
   msg::GroundTruth truth_message_;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kRobotHeight_m = 0.15;
 constexpr std::uint32_t kSourceOther = 1;
 
-/// Noise can move a detection out of the image but never behind the camera.
+/// The pixel of a detection. Noise can move a detection out of the image but never behind the camera.
 Vec2 pixel_of(const Vec2& position_m, double height_m, const CameraModel& camera) {
   return camera.pixel_of({position_m.x(), position_m.y(), height_m}).value_or(Vec2(0, 0));
 }

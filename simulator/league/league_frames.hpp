@@ -20,9 +20,10 @@ class LeagueFrames {
   /// are more than league::kMaxCameras cameras.
   LeagueFrames(const Scenario& scenario, std::span<const CameraView> views);
 
-  /// The detections of one camera, sent now. Precondition: frame.camera() is an index into `views`.
+  /// The packet with a camera's detections, sent `now`. Precondition: frame.camera() is an index into
+  /// `views`.
   league::VisionPacket detection(const msg::DetectionFrame& frame, Time now);
-  /// The field and all cameras.
+  /// The packet with the field's geometry and all cameras' calibrations.
   league::VisionPacket geometry() const;
 
  private:

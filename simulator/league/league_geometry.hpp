@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// The field with its FieldMarking. The floor ends at the outer lines.
+/// A field with its FieldMarking, in the league's format. The floor ends at the outer lines.
 league::FieldSize league_field(const Field& field);
 
 /// A camera with this view of the floor, up to the height of the robots' tops: 780 x 580 pixels, no

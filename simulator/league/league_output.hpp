@@ -13,16 +13,16 @@
 
 namespace sidestep {
 
-/// How a simulator sends league packets. The league's simulators differ in this.
+/// Differences between the league's simulators in how they send packets.
 struct LeagueTraits {
   Duration geometry_period = std::chrono::seconds(3);  ///< 0: with every frame
-  bool counts_from_start = false;                      ///< times begin with 0 instead of 1970
-  double loss = 0;  ///< probability that a packet of detections is not sent
+  bool counts_from_start = false;  ///< times count from the simulation's start instead of 1970
+  double loss = 0;                 ///< probability that a packet of detections is not sent
 };
 
-/// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry from
-/// time to time. The bus must make no callback after this object's destruction. Throws what MulticastSender,
-/// parse_multicast_endpoint() and LeagueFrames throw.
+/// Sends the detections of a simulator's cameras to the league's multicast address, and the geometry once per
+/// geometry_period. The bus must make no callback after this object's destruction. Throws what
+/// MulticastSender, parse_multicast_endpoint() and LeagueFrames throw.
 class LeagueOutput {
  public:
   LeagueOutput(Bus& bus, const EventReporter& events, const Scenario& scenario,

@@ -35,7 +35,7 @@ class FloorCoverage {
     const double line_m = lines_.distance_m(p), surface_m = signed_distance(p, surface_);
     const Coverage centre = at_point(line_m, surface_m);
     const double edge_m = std::min(std::abs(line_m), std::abs(surface_m));
-    // Larger than any pixel, so that the exact pixel size is needed near edges only.
+    // Larger than any pixel, so that the exact pixel size is needed only near edges.
     constexpr double kFar_m = 0.1;
     if (edge_m > kFar_m) return centre;
     const auto slope = camera.projection_jacobian(Vec3(p.x(), p.y(), 0));

@@ -25,8 +25,8 @@ class FieldLines {
   std::array<Box, std::tuple_size_v<decltype(FieldMarking::lines)>> lines_;  ///< lines without width
 };
 
-/// The fraction of full light at a point of the floor. Beyond the field's far end it is the same as at that
-/// end.
+/// The fraction of full light at a point of the floor. Beyond the field's far end, the light is the same as
+/// at the far end.
 double light_fraction_at(const RenderSpec& spec, const Field& field, const Vec2& p);
 
 /// A camera's view of the empty floor under neutral light: the field surface with its lines, its texture and

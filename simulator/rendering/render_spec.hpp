@@ -25,7 +25,7 @@ struct RenderSpec {
   LightFalloff light_falloff = LightFalloff::kLinear;
   double far_light = 0.85;               ///< fraction of full light at the far end
   Eigen::Vector3d colour_gain{1, 1, 1};  ///< gain of red, green and blue: the error of the white balance
-  double blur_px = 0.7;           ///< standard deviation of the lens's Gaussian blur; below 0.2 there is none
+  double blur_px = 0.7;           ///< standard deviation of the lens's Gaussian blur; no blur below 0.2
   double noise = 2.5;             ///< standard deviation in each colour channel, in levels of 255
   double surface_texture = 0.02;  ///< relative standard deviation of the field surface's brightness
   double exposure_s = 0;          ///< duration of the exposure, centred on the capture time

@@ -29,7 +29,7 @@ bool is_covered(const OccupancyMap& map, const Box& box) {
   return true;
 }
 
-/// What a viewing ray shows.
+/// The surface that a viewing ray shows.
 enum class Seen { kFloor, kSide, kTop };
 
 /// The part of a viewing ray between the height of the obstacles' tops and the floor.
@@ -41,7 +41,7 @@ class StaticView {
         parallax_(scene.height_m / (camera.position_m().z() - scene.height_m)),
         nadir_m_(camera.position_m().head<2>()) {}
 
-  /// Chooses the shapes that rays may meet near a point at the height of the tops.
+  /// Sets candidates_ to the shapes that rays passing near a point at the height of the tops may meet.
   void select(const Vec2& top_m, double reach_m) {
     candidates_.clear();
     const Segment ray = ray_of(top_m);
@@ -59,7 +59,7 @@ class StaticView {
     return meets(ray_of(top_m)) ? Seen::kSide : Seen::kFloor;
   }
 
-  /// Whether all rays within this reach show tops; false if uncertain.
+  /// Whether all rays within this reach show tops. Conservative: never falsely true.
   bool shows_only_tops(const Vec2& top_m, double reach_m) const {
     const Vec2 reach(reach_m, reach_m);
     return std::ranges::any_of(candidates_,

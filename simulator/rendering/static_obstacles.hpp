@@ -29,14 +29,14 @@ inline constexpr double kBoardHalfThickness_m = 0.005;
 
 /// The regions that static obstacles hide from one camera.
 struct StaticOcclusion {
-  cv::Mat1b samples;  ///< how many of kSamples per pixel show an obstacle
+  cv::Mat1b samples;  ///< number of samples per pixel, of kSamples, that show an obstacle
   /// The distance from the point below the camera to the point where the pixel's viewing ray meets an
   /// obstacle. Anything farther along the ray is hidden. Meaningful where `samples` is not 0.
   cv::Mat1f front_m;
 };
 
-/// Draws the obstacles over a floor under neutral light, antialiased, and returns what they hide: empty
-/// matrices if there are no obstacles. Draws nothing unless the camera is above the obstacles.
+/// Draws the obstacles over a floor under neutral light, antialiased, and returns the regions that they hide:
+/// empty matrices if there are no obstacles. Draws nothing unless the camera is above the obstacles.
 StaticOcclusion draw_static(const StaticScene& scene, const CameraModel& camera, const Field& field,
                             const RenderSpec& spec, Canvas& floor);
 

@@ -48,7 +48,7 @@ class BodyView {
 
   /// The content of a square of pixels.
   struct SquareContent {
-    bool is_mixed;       ///< the pixels may differ
+    bool is_mixed;       ///< the pixels may differ in colour
     const Light* light;  ///< colour of all pixels; null: the background
   };
 

@@ -73,7 +73,8 @@ void Body::displace(const Vec2& shift_m, const Vec2& velocity_change_mps) {
   state_.velocity_mps = limited(state_.velocity_mps + velocity_change_mps, settings_.speed_mps);
 }
 
-// The wheels follow the command. The body gets only the grip's share of their acceleration and of friction.
+// Advances a slipping body: its wheels follow the command, but the grip transmits only a fraction of their
+// acceleration and of friction to the body.
 void Body::slide(const Actuation& command) {
   constexpr double dt = kPhysicsStepSeconds;
   const State before = state_;

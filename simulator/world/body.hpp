@@ -41,7 +41,7 @@ class Body {
   /// clamped, and one that is not finite counts as zero.
   void step(const Actuation& command);
 
-  /// Displaces the body and changes its velocity, including that of the wheels. This is the effect of a
+  /// Displaces the body and changes its velocity, including that of the wheels. Models the effect of a
   /// contact.
   void displace(const Vec2& shift_m, const Vec2& velocity_change_mps);
 
@@ -58,7 +58,7 @@ class Body {
   /// Moves the body at a velocity just above the floor, so that its wheels do not roll. nullopt: puts it
   /// down, at rest.
   void carry(const std::optional<Vec2>& velocity_mps);
-  /// Takes the body off the floor, where it does not move.
+  /// Takes the body off the floor. It does not move until it is put down.
   void lift();
   /// Puts the body on the floor, at rest.
   void put_down(const Vec2& position_m, double heading_rad);

@@ -27,7 +27,7 @@ struct VisibleObjects {
   std::span<const Body> robots;  ///< in the scenario's order
   const Vec2* ball_m = nullptr;
   std::span<const Circle> opponents{};
-  std::span<const VisionFault> vision_faults{};  ///< errors in seeing the robots; empty: none
+  std::span<const VisionFault> vision_faults{};  ///< faults in how cameras see the robots; empty: no faults
 };
 
 /// The cameras over the field. They capture in turn, each once per period, and detect robots, ball and
@@ -38,7 +38,7 @@ class Cameras {
 
   /// The time at which the next frame is due.
   Time next_capture() const { return due_[next_]; }
-  /// Captures that frame from the given objects, and drops the camera's overdue frames. Sets everything
+  /// Captures the next frame from the given objects, and drops the camera's overdue frames. Sets everything
   /// except the header. If there are more opponents than a frame holds, lists those nearest to the detected
   /// robots.
   void capture(Time now, const VisibleObjects& objects, msg::DetectionFrame& frame);
@@ -60,7 +60,7 @@ class Cameras {
   std::size_t next_ = 0;
   Duration period_;
   Rng rng_;
-  std::vector<Circle> seen_opponents_;  // in the frame that is being captured
+  std::vector<Circle> seen_opponents_;  // opponents in the frame that is being captured
 };
 
 }  // namespace sidestep

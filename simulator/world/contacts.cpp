@@ -10,7 +10,7 @@ namespace sidestep {
 namespace {
 
 constexpr int kStepsBetweenSearches = 20;
-constexpr double kMaxPush_m = 0.02;  // how far contacts may push a pair together between two searches
+constexpr double kMaxPush_m = 0.02;  // assumed maximum approach of a pair by contacts between two searches
 
 }  // namespace
 

@@ -56,7 +56,7 @@ class Contacts {
   };
   struct Overlap {
     std::uint32_t first, second;
-    Vec2 normal;  ///< unit vector from the second to the first
+    Vec2 normal;  ///< unit vector from the second body or obstacle to the first body
     double depth_m;
   };
   void find_near_pairs(std::span<const Body> bodies);

@@ -12,7 +12,7 @@ constexpr double kMaxAngle_rad = 100;
 constexpr double kMaxVisionOffset_m = 10;
 constexpr Duration kMaxDuration = std::chrono::hours(1);
 
-// False for NaN.
+// Whether the magnitude of a value is at most `bound`; false for NaN.
 bool is_within(double value, double bound) { return std::abs(value) <= bound; }
 
 bool has_valid_duration(const RobotDisturbance& disturbance) {

@@ -9,8 +9,8 @@
 namespace sidestep {
 
 /// Decodes an untrusted disturbance. Returns nullopt unless its kind is known and the fields that this kind
-/// uses are in range. A place must have the robot's whole disc on the field. The result's unused fields may
-/// hold any value.
+/// uses are in range. A robot placed at the requested position must be entirely on the field. The result's
+/// unused fields may hold any value.
 [[nodiscard]] std::optional<RobotDisturbance> decode(const msg::Disturbance& message, const Field& field,
                                                      double robot_radius_m);
 

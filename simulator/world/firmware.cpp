@@ -46,7 +46,7 @@ Firmware::Firmware(RobotId robot, const Vec2& start_m, double heading_rad, Time 
   executing_ = from_plain(side_.executing(), robot_);
 }
 
-// Compares numbers and starts: every switch changes the number, and lifting changes the start.
+// Updates executing_ if number or start differ: a switch changes the number, and lifting changes the start.
 void Firmware::update_executing() {
   const robot::Version& executing = side_.executing();
   if (executing.number != executing_.number || executing.start_ns != to_ns(executing_.trajectory.start()))

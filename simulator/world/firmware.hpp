@@ -20,7 +20,7 @@ struct FirmwareSettings {
   double deceleration_mps2 = MotionLimits{}.deceleration_mps2;
 };
 
-/// Firmware memory that survives the simulated robot's restarts. The Firmware object survives them too.
+/// Firmware memory that survives the simulated robot's restarts. The Firmware object also survives restarts.
 class SimulatedFlash final : public robot::StableMemory {
  public:
   [[nodiscard]] bool store(const robot::DurableState&) override { return true; }
@@ -57,14 +57,14 @@ class Firmware {
   /// report version 0 and name the last version as its base, so that the agent can number the next version
   /// above it. A second call also discards a rest version that was accepted since the first.
   void lift(Time now);
-  /// The lifted robot has been put down at the rest version that it executes. Precondition:
-  /// executing().number > 0.
+  /// The robot has been put down; it executes a rest version at that place. Precondition: executing().number
+  /// > 0.
   void put_down(double heading_rad, Time now);
   /// Restarts a robot on the floor, at the first tick later than all reported facts. It then makes an own
   /// stop and retains only its pose estimate, the incarnation and epoch that it obeys, and the highest number
   /// seen.
   void reboot() { side_.reboot(); }
-  /// Like reboot(), but the pose estimate is lost too. Precondition: the robot is not lifted.
+  /// Like reboot(), but the pose estimate is also lost. Precondition: the robot is not lifted.
   void forget_pose(Time now);
   /// Like reboot(), but after a time without power: the robot assumes that it is at rest, and has lost its
   /// pending versions.
@@ -81,14 +81,12 @@ class Firmware {
   const Version& executing() const { return executing_; }
   /// Whether the robot executes an own stop.
   bool is_off_reference() const { return side_.is_off_reference(); }
-  /// The reason for the last own stop.
   robot::OwnStopReason own_stop_reason() const { return side_.own_stop_reason(); }
   bool is_lifted() const { return side_.is_lifted(); }
-  /// Whether the robot knows its pose.
   bool has_pose() const { return side_.has_pose(); }
-  /// Precondition of robot_report().
+  /// Whether robot_report() may be called.
   bool may_report() const { return side_.may_report() && estimator_.is_finite(); }
-  /// The robot's own estimate.
+  /// The robot's own estimate of its position.
   Vec2 position_m() const { return estimator_.position_m(); }
   double heading_rad() const { return estimator_.heading_rad(); }
   Incarnation obeyed_incarnation() const { return side_.obeyed_incarnation(); }
@@ -111,11 +109,12 @@ class Firmware {
   SimulatedFlash flash_;
   robot::RobotSide<double> side_;
   Version executing_;  ///< copy of side_.executing()
-  Time moved_at_{};    ///< without a pose: when the wheels last turned
+  Time moved_at_{};    ///< time at which the wheels last turned; used without a pose
   FirmwareSettings settings_;
   double decay_;
   Duration look_ahead_;
-  double max_position_error_m_;  ///< beyond it, the tracking control would brake harder than the motors can
+  double max_position_error_m_;  ///< position error beyond which the tracking control would brake harder than
+                                 ///< the motors can
   PoseEstimator estimator_;
   Actuation last_actuation_;
   Actuation modelled_;  ///< current accelerations according to the motor model

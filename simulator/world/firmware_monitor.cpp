@@ -26,7 +26,7 @@ void FirmwareMonitor::command_arrived(const Command& command, Time now) {
 }
 
 bool FirmwareMonitor::arrived_in_time(const Arrival& wanted) const {
-  // Searches backwards, because the latest one matches in almost all cases.
+  // Searches backwards, because the latest arrival matches in almost all cases.
   for (std::uint64_t back = 1; back <= std::min<std::uint64_t>(arrival_count_, arrivals_.size()); ++back) {
     if (arrivals_[static_cast<std::size_t>((arrival_count_ - back) % arrivals_.size())] == wanted)
       return true;
@@ -43,7 +43,7 @@ void FirmwareMonitor::switched(const Version& to) {
   check_rule(to.trajectory.start() > last_report_);
   const State& begin = to.trajectory.at_start();
   if (is_lifted_) {
-    // Only a rest version is allowed, at the place where the robot will be put down.
+    // A lifted robot may switch only to a rest version, at the place where it will be put down.
     check_rule(executing_.number == 0 && to.trajectory.phases().empty() && begin.velocity_mps.norm() == 0);
   } else {
     const State previous = executing_.trajectory.state_at(to.trajectory.start());

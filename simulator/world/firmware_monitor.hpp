@@ -24,7 +24,6 @@ class FirmwareMonitor {
   /// The firmware starts an own stop.
   void started_own_stop(const Version& to);
   void reported(const RobotReport& robot_report);
-  /// Report disturbances of the robot.
   void lifted();
   void put_down();
   void rebooted() { expects_reboot_stop_ = true; }
@@ -51,8 +50,9 @@ class FirmwareMonitor {
   Version executing_;
   bool is_own_ = false;  ///< executing an own stop
   bool is_lifted_ = false;
-  bool expects_reboot_stop_ = false;  ///< rebooted, and has not made its own stop yet
-  bool expects_clock_stop_ = false;   ///< its clock has gone back, and it has not made its own stop yet
+  bool expects_reboot_stop_ = false;  ///< the robot has rebooted and has yet to make its own stop
+  bool expects_clock_stop_ =
+      false;  ///< the robot's clock has gone back and the robot has yet to make its own stop
   VersionNumber highest_executed_ = 0;
   std::uint64_t highest_seen_ = 0;  ///< highest version number or incarnation received
   Incarnation acknowledged_ = 0;    ///< highest incarnation reported in a fact

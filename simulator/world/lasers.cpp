@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// The maximum error in standard deviations of the noise, which is normal but limited to that error.
+/// The normally distributed noise is clamped to this many standard deviations.
 constexpr double kDeviations = 3;
 
 }  // namespace

@@ -24,7 +24,7 @@ class Lasers {
   /// The time at which the next scan is due, and the robot that takes it.
   Time next_scan() const { return next_scan_; }
   std::size_t next_robot() const { return next_robot_; }
-  /// Takes that scan. Sets everything except the header. Returns false if the robot is off the floor or
+  /// Takes the next scan. Sets everything except the header. Returns false if the robot is off the floor or
   /// reports nothing. Precondition: world.time() is the time of the scan, within one step.
   [[nodiscard]] bool scan(World& world, msg::LaserScan& scan);
 
@@ -36,7 +36,7 @@ class Lasers {
   LaserScanner scanner_;
   ObstacleWorld obstacles_;
   std::shared_ptr<const FloorMap> map_;
-  Duration interval_;  // interval between the scans of two robots
+  Duration interval_;  // interval between consecutive scans, which are of different robots
   std::size_t robot_count_;
   Time next_scan_;
   std::size_t next_robot_ = 0;

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kSamePoint_m = 0.001;
 constexpr int kStepsBetweenSearches = 20;
-constexpr double kMaxPush_m = 0.02;  // how far contacts may push a robot between two searches
+constexpr double kMaxPush_m =
+    0.02;  // assumed maximum displacement of a robot by contacts between two searches
 
 }  // namespace
 

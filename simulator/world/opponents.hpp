@@ -21,8 +21,8 @@ struct CrashTotals {
   double max_robot_crash_speed_mps = 0;  ///< largest contribution of the robot to the closing speed
 };
 
-/// Opponents move on the floor without negotiating. Each follows its route at constant speed and ignores
-/// everything in its way: back and forth, or in a loop if the route ends where it begins. Crashes with robots
+/// Opponents move on the floor without negotiating. Each follows its route back and forth, or in a loop if
+/// the route ends where it begins, at constant speed. It ignores everything in its way. Crashes with robots
 /// are counted but have no physical effect, since the protocol guarantees nothing about the motion after a
 /// crash. A pair is counted again only after its clearance has exceeded kContactHysteresis_m. Between two
 /// searches for neighbours, only pairs near enough to meet before the next search are checked.

@@ -14,7 +14,8 @@ using std::chrono::milliseconds;
 
 constexpr Duration kWakePeriod = milliseconds(4);
 constexpr Duration kTruthPeriod{16'666'667};
-// After a longer delay of this process all robots would have come to rest, so the remaining time is skipped.
+// Maximum delay of this process that is simulated. After a longer delay all robots would have come to rest,
+// so the remaining time is skipped.
 constexpr Duration kMaxCatchUp = milliseconds(5000);
 constexpr Duration kFrameExpiry = milliseconds(200);
 // Version starts farther ahead than this get no timer; the periodic wake-up handles them.
@@ -59,7 +60,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
   bus.at(begin, [this] { wake(); });
 }
 
-// The world's time continues if the host's clock is set back.
+// Returns the world's time, which continues if the host's clock is set back.
 Time SimulatorNode::clock() {
   const Time now = world_.world_time(bus_.now());
   if (now < clock_) world_.on_host_clock_set_back(clock_ - now);
@@ -160,7 +161,7 @@ void SimulatorNode::on_start(std::size_t robot) {
 }
 
 void SimulatorNode::publish_robot_report(std::size_t robot, Time now) {
-  // A robot whose clock was set back reports nothing until it has made its own stop.
+  // Reads the clock first: a robot whose clock was set back reports nothing until it has made its own stop.
   (void)world_.robot_time(robot, now);
   if (!world_.may_report(robot)) {
     report_due_[robot] = now + cycle_;

@@ -27,29 +27,29 @@ class SimulatorNode {
   SimulatorNode(const SimulatorNode&) = delete;
   SimulatorNode& operator=(const SimulatorNode&) = delete;
 
-  /// Sets a callback for events of at least a level.
+  /// Sets a callback for events of level `min_level` or higher.
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
-  /// The reporter that outputs of this node use too.
+  /// The node's event reporter, which its outputs also use.
   const EventReporter& events() const { return events_; }
-  /// Registers an output of this node, which adds its own drop counts.
+  /// Registers a function that adds the drop counts of one of this node's outputs.
   void add_drop_source(std::function<void(DropCounters&)> source) {
     drop_sources_.push_back(std::move(source));
   }
   void count_drops(DropCounters& drops) const;
 
-  /// Whether any robot obeys an agent. A robot must not forget whom it obeys.
+  /// Whether any robot obeys an agent. A restart of this process would make the robot forget the agent.
   bool is_commanded() const;
 
   const World& world() const { return world_; }
   const Cameras& cameras() const { return cameras_; }
-  /// Sets a callback for the moment at which a camera captures a frame; the world is then in the captured
-  /// state.
+  /// Sets a callback that is called when a camera captures a frame, while the world is in the captured state.
   void set_capture_listener(std::function<void(std::uint32_t camera, Time captured_at)> listener) {
     capture_listener_ = std::move(listener);
   }
-  /// Sets a callback for each frame's detections when they are due, whether the node publishes them or not.
+  /// Sets a callback that receives each frame's detections when they are due, even if the node does not
+  /// publish them.
   void set_detection_listener(std::function<void(const msg::DetectionFrame&)> listener) {
     detection_listener_ = std::move(listener);
   }
@@ -62,7 +62,6 @@ class SimulatorNode {
   };
   /// The current time of the world.
   Time clock();
-  /// Calls back at this time of the world.
   void at(Time world_time, std::function<void()> callback);
   void wake();
   void advance(Time now);

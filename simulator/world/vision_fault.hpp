@@ -14,9 +14,9 @@ struct VisionFault {
     Vec2 position_m{0, 0};
     double heading_rad = 0;
   };
-  Vec2 offset_m{0, 0};                  ///< from the true position to where cameras show the robot
+  Vec2 offset_m{0, 0};  ///< offset from the robot's true position to the position that cameras show
   std::optional<std::size_t> shown_as;  ///< index of another robot as which cameras report it
-  std::optional<Pose> frozen;           ///< cameras show the robot at this pose, wherever it is
+  std::optional<Pose> frozen;           ///< pose at which cameras show the robot, regardless of its true pose
 };
 
 }  // namespace sidestep

@@ -111,12 +111,12 @@ void World::step() {
   }
 }
 
-// A clock that is set back by less than the bound stands still until the new time has caught up with it, so
-// that reported facts stay true. If it is set back farther, the robot begins a new incarnation, and earlier
-// facts are void.
+// Reads a robot's clock. A clock that is set back by less than the bound stops until the new time has caught
+// up with it, so that reported facts stay true. If it is set back farther, the robot begins a new
+// incarnation, and earlier facts are void.
 Time World::robot_time(std::size_t index, Time now) {
   Robot& robot = robots_[index];
-  // A scan or a command may ask for an earlier time than the last request did.
+  // A scan or a command may request an earlier time than the request before it.
   robot.read_at = std::max(robot.read_at, now);
   const Time reading = robot.clock_error.reading(robot.read_at);
   if (robot.clock - reading <= clock_bound_) return robot.clock = std::max(robot.clock, reading);

@@ -46,7 +46,8 @@ class World {
   void on_malformed_command(std::size_t robot, Time now);
   /// The robot's clock. If it has gone back by more than the clock bound, the robot begins a new incarnation.
   Time robot_time(std::size_t robot, Time now);
-  /// The robot's facts; robot_incarnation is the number of times that the robot has started a new one.
+  /// The robot's facts; robot_incarnation is the number of times that the robot has started a new
+  /// incarnation.
   RobotReport robot_report(std::size_t robot, Time now);
   /// The host's clock, and with it the clocks of all robots, was set back by this duration. The time of this
   /// world continues.
@@ -93,14 +94,14 @@ class World {
     Rng noise;
     double odometry_scale;
     Actuation actuation;
-    Vec2 last_position_m;  ///< without slip, for the odometry
+    Vec2 last_position_m;  ///< position without slip at the last odometry measurement
     double last_heading_rad;
     ClockError clock_error;      ///< error of the robot's clock relative to the host's
     Time clock;                  ///< latest reading of the robot's clock
-    Time read_at = Time::min();  ///< when the clock was last read
+    Time read_at = Time::min();  ///< latest time at which the clock was read
     std::uint64_t clock_setbacks = 0;
     VersionNumber last_own_stop = 0;
-    /// When the body was last disturbed; active disturbances may end later.
+    /// Time at which the body was last disturbed; active disturbances may end later.
     std::optional<Time> last_disturbance = std::nullopt;
     bool has_pending_report = false;
     bool is_powered = true;
@@ -117,7 +118,7 @@ class World {
   void end_disturbances();
   bool try_put_down(const ActiveDisturbance& request);
   void record_disturbance(std::size_t robot, Time at);
-  /// When the last disturbance of the robot's body ends or has ended.
+  /// The end, past or future, of the latest disturbance of the robot's body; nullopt if there was none.
   std::optional<Time> disturbance_end(std::size_t robot) const;
   void start_disturbance(const ActiveDisturbance& disturbance);
   void cancel_disturbances(std::size_t robot, msg::DisturbanceKind kind);
@@ -129,7 +130,7 @@ class World {
   bool start_seen_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void start_seen_frozen(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void end(const ActiveDisturbance& disturbance);
-  /// Whether cameras have misled the robot, and it has not yet had a fix at its true place.
+  /// Whether cameras have shown the robot at a wrong place, with no fix at its true place since then.
   bool is_misled_by_cameras(const ActiveDisturbance& disturbance) const;
   /// Whether the disturbance may take the body off its reference.
   bool affects_body(const ActiveDisturbance& disturbance) const;
@@ -146,7 +147,7 @@ class World {
   Duration clock_bound_;
   double tracking_bound_m_;
   Time time_;
-  Duration host_setback_{0};  ///< how far the host's clock has been set back
+  Duration host_setback_{0};  ///< total time by which the host's clock has been set back
   std::vector<Body> bodies_;
   std::vector<VisionFault> vision_faults_;
   std::vector<Robot> robots_;

@@ -118,7 +118,7 @@ void World::switch_on(std::size_t index, Time now) {
   request_report(index);
 }
 
-// A jump beyond the bound displaces a reference that is moving or about to move.
+// Sets a robot's clock. A jump beyond the bound displaces a reference that is moving or about to move.
 void World::set_clock(std::size_t index, Duration offset, Time now) {
   Robot& robot = robots_[index];
   const Time before = robot_time(index, now);
@@ -160,8 +160,8 @@ void World::start_seen_frozen(std::size_t index, const RobotDisturbance& disturb
   start_disturbance({index, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
 }
 
-// A robot follows the position that cameras show. An error of that position within the bound for vision
-// errors is part of its tracking error.
+// A robot follows the position that cameras show, so a wrong position displaces the body. An error within the
+// bound for vision errors is part of the robot's tracking error.
 bool World::affects_body(const ActiveDisturbance& disturbance) const {
   if (disturbance.kind == msg::DisturbanceKind::DISTURBANCE_PLACE) return false;
   return disturbance.kind != msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE ||

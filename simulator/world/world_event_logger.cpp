@@ -42,9 +42,9 @@ void WorldEventLogger::on_disturbance(const RobotDisturbance& disturbance) const
 }
 
 void WorldEventLogger::on_refused_disturbance(RobotId robot) const {
-  events_.report(
-      LogLevel::kWarning, robot,
-      "a disturbance of robot {} is refused: it is invalid, or the robot's state does not allow it", robot);
+  events_.report(LogLevel::kWarning, robot,
+                 "refused a disturbance of robot {}: it is invalid, or the robot's state does not allow it",
+                 robot);
 }
 
 }  // namespace sidestep

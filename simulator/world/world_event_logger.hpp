@@ -18,7 +18,6 @@ class WorldEventLogger {
   void update();
   /// Reports that a disturbance has been applied.
   void on_disturbance(const RobotDisturbance& disturbance) const;
-  /// Reports that a disturbance of a robot has been refused.
   void on_refused_disturbance(RobotId robot) const;
 
  private:

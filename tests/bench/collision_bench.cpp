@@ -23,7 +23,6 @@ namespace {
 constexpr std::size_t kQueries = 100'000, kRounds = 5;
 constexpr std::uint64_t kSeed = 1;
 
-/// A structure under comparison.
 struct MeasuredStructure {
   CollisionAnswers answers;
   bool is_ours;

@@ -15,7 +15,7 @@ class ExactLengths {
 
   ExactLengths(const CostGrid& grid, const Vec2& goal_m);
 
-  /// From a position to the goal, in cells; infinite if there is no path.
+  /// The length of the shortest path from a position to the goal, in cells; infinite if there is no path.
   double length(const Vec2& from_m) const;
 
  private:
@@ -40,7 +40,7 @@ class ExactLengths {
   const CostGrid& grid_;
   Vec2 goal_m_;
   std::int64_t columns_, rows_;
-  std::vector<double> lengths_;  // by corner
+  std::vector<double> lengths_;  // indexed by corner
   struct Open {
     double length;
     std::size_t corner;

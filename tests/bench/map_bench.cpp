@@ -87,7 +87,7 @@ bool bench_transform(const char* name, const OccupancyMap& map) {
   return different == 0;
 }
 
-/// A free position.
+/// A random position with at least this clearance.
 Vec2 free_position(Rng& rng, const OccupancyMap& map, double clearance_m) {
   while (true) {
     const double x_m = rng.uniform(map.extent().min_m.x(), map.extent().max_m.x());
@@ -104,7 +104,7 @@ double marched_m(const OccupancyMap& map, const Vec2& from, const Vec2& directio
   return kInfinite;
 }
 
-/// Counts the beams of a scan that differ from a ray cast on its own or from a march through the map.
+/// Counts the beams of a scan that differ from separately cast rays or from a march through the map.
 long count_wrong(const LaserScanner& scanner, const RayScene& scene, const Vec2& at, double heading_rad,
                  const std::vector<float>& ranges_m) {
   long wrong = 0;

@@ -105,7 +105,7 @@ struct Replanning {
   std::vector<double> times_ms;
 };
 
-/// Inserts and removes walls, each compared with fields from scratch.
+/// Inserts and removes walls, and compares the updated fields with recomputed ones.
 void compare_replanning(const Problem& problem, double blocked, double full_ns, bool& is_right) {
   EStar field(problem.grid), fresh(problem.grid);
   field.set_goal(problem.goal_m);
@@ -248,6 +248,7 @@ int main() {
   std::printf("obstacles kernel                   mean, cells  max   paths/exact       ms\n");
   for (const int blocked : {0, 1}) compare_lengths(Problem(1000, 0.2 * blocked), 0.2 * blocked, is_right);
   if (!is_right)
-    std::printf("\nWRONG: a field differs from the plain one or one from scratch, or a path is too short.\n");
+    std::printf(
+        "\nWRONG: a field differs from the plain wavefront or a recomputed field, or a path is too short.\n");
   return is_right ? 0 : 1;
 }

@@ -97,8 +97,8 @@ struct Contestant {
 };
 
 /// Times all contestants in rounds of random order, because each finds the caches as its predecessor left
-/// them. Each runs once untimed before it is timed, but on large frames this does not fully reload what
-/// OpenCV evicted. Ratios are relative to the first contestant.
+/// them. Each contestant runs once untimed before it is timed. On large frames, one run does not fully reload
+/// what OpenCV evicted. Ratios are relative to the first contestant.
 void compare(const std::string& frame_name, std::size_t bytes, std::vector<Contestant> contestants) {
   std::vector<std::size_t> order(contestants.size());
   std::iota(order.begin(), order.end(), 0);

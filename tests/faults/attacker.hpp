@@ -27,7 +27,7 @@ struct AttackerSettings {
   std::optional<AttackerKeys> keys{};  ///< nullopt: no security
   /// Returns the user data that the participant with this id announces.
   std::function<std::vector<std::uint8_t>(const ParticipantId&)> announced{};
-  std::optional<CertifiedPrefix> prefix{};  ///< prefix of its id; nullopt: chosen by Fast DDS
+  std::optional<CertifiedPrefix> prefix{};  ///< prefix of the participant's id; nullopt: chosen by Fast DDS
 };
 
 /// A Fast DDS participant with no checks except those of its own library.

@@ -10,7 +10,7 @@ using namespace sidestep;
 
 namespace {
 
-/// Audits the run for six seconds with this scenario file. Returns how the audit ended.
+/// Audits the run for six seconds with this scenario file. Returns the audit's exit reason.
 std::string audit(LaunchedRun& run, const std::string& scenario_file) {
   std::vector<std::string> arguments{"audit", scenario_file, "--seconds", "6"};
   for (const std::string& word : run.dds_arguments()) arguments.push_back(word);
@@ -19,7 +19,8 @@ std::string audit(LaunchedRun& run, const std::string& scenario_file) {
 
 }  // namespace
 
-TEST_CASE("an audit that joins a running run judges it, unless its own scenario has different rules") {
+TEST_CASE(
+    "an audit that joins a running run judges the run unless the audit's scenario has different rules") {
   LaunchedRun run(shuttles(20, ""));
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   const std::string reason = audit(run, run.scenario_file());

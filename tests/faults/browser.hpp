@@ -15,7 +15,7 @@ namespace sidestep {
 /// A headless Chromium, driven by WebDriver (w3.org/TR/webdriver2) over HTTP. It ends with this object.
 class Browser {
  public:
-  /// Throws std::runtime_error if it does not start.
+  /// Throws std::runtime_error if Chromium does not start.
   explicit Browser(int width_px = 1400, int height_px = 900);
   ~Browser();
   Browser(const Browser&) = delete;
@@ -27,15 +27,13 @@ class Browser {
   /// The text of the element with this id.
   std::string text(const std::string& id);
   void click(const std::string& id);
-  /// Presses a key.
   void press(const std::string& key);
   /// Waits until a JavaScript expression is true, for at most 20 s, and calls `meanwhile` repeatedly. Returns
   /// whether it became true.
   bool wait_until(
       const std::string& expression, const std::function<void()>& meanwhile = [] {});
-  /// Errors of scripts and of loading that the page has logged.
+  /// Script errors and loading errors that the page has logged.
   std::string complaints();
-  /// Writes a PNG.
   void save_screenshot(const std::string& path);
 
  private:

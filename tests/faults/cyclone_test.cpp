@@ -97,7 +97,7 @@ class RandomPublisher {
 
 }  // namespace
 
-TEST_CASE("a Cyclone DDS program reads five topics field by field") {
+TEST_CASE("a Cyclone DDS program decodes every field of messages on five topics") {
   RandomPublisher publisher;
   const PeerOutcome outcome = run_peer(fmt::format("read {} 3 20", test_settings().domain));
   publisher.stop();

@@ -81,7 +81,7 @@ std::uint64_t datagrams_read() {
   std::getline(file, names);
   std::uint64_t result = 0;
   if (!names.starts_with(" InDatagrams ") || !(file >> protocol >> result))
-    throw std::runtime_error("cannot read how many datagrams arrived");
+    throw std::runtime_error("cannot read the number of received datagrams");
   return result;
 }
 

@@ -26,7 +26,7 @@ void ExternalSimulatorRun::start_simulator() {
       "--scenario",     run_->scenario_file(), "--league", "--ssl-vision",  endpoints_.text(0),
       "--control",      to_text(control()),    "--blue",   to_text(blue()), "--yellow",
       to_text(yellow())};
-  // In its separate domain no process receives its messages.
+  // Without ground truth, the simulator gets a DDS domain in which no process receives its messages.
   const auto dds = has_truth_
                        ? run_->dds_arguments()
                        : std::vector<std::string>{"--domain", std::to_string(endpoints_.domain().number())};

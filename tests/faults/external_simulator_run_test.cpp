@@ -156,7 +156,7 @@ TEST_CASE("robots continue after the third-party simulator is killed and restart
   WARN("after a restart of the simulator: " << ended << ", " << outcome(report));
 }
 
-TEST_CASE("our robots never touch each other, and are at rest before randomly driven opponents touch them",
+TEST_CASE("robots never touch each other, and are at rest before randomly driven opponents touch them",
           "[both-cores]") {
   const std::uint64_t seed = 1 + static_cast<std::uint64_t>(time(nullptr)) % 1000;
   CAPTURE(seed);

@@ -102,7 +102,7 @@ class Shuttle {
   explicit Shuttle(const KeyedRun& keyed)
       : bus_(settings(keyed)), client_(bus_, static_cast<ClientId>(Sender::kOperator)) {}
 
-  /// Runs for 1 ms. Returns how many orders have been carried out so far.
+  /// Runs for 1 ms. Returns the number of orders carried out so far.
   int drive() {
     bus_.run_until(bus_.now() + std::chrono::milliseconds(1));
     for (RobotId robot = 0; robot < handles_.size(); ++robot) {

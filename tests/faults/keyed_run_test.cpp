@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What keys cost: the same runs with and without.
+// Measures the cost of keys: compares the same runs with and without keys.
 #include "tests/faults/keyed_run.hpp"
 
 #include <algorithm>
@@ -75,8 +75,8 @@ void compare(int runs) {
   print("with keys", keyed);
 }
 
-TEST_CASE("22 robots arrive with keys as well as without", "[both-cores][slow]") { compare(1); }
+TEST_CASE("22 robots arrive both with and without keys", "[both-cores][slow]") { compare(1); }
 
-TEST_CASE("22 robots arrive with keys as well as without, many times", "[.long][slow]") { compare(7); }
+TEST_CASE("22 robots arrive both with and without keys, many times", "[.long][slow]") { compare(7); }
 
 }  // namespace sidestep::keyed_run_test

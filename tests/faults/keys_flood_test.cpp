@@ -160,8 +160,9 @@ void check_flood(Duration duration) {
   CHECK(refused > sent);  // several processes receive each multicast announcement
 }
 
-TEST_CASE("a flood of unauthorised packets on every port delays robots, but costs neither safety nor memory",
-          "[both-cores][slow]") {
+TEST_CASE(
+    "a flood of unauthorised packets on every port delays robots but causes no contact and no memory growth",
+    "[both-cores][slow]") {
   check_flood(seconds(15));
 }
 

@@ -80,8 +80,8 @@ void check_refused(LaunchedRun& run, const AttackerSettings& settings, const std
 }
 
 /// Returns an attacker with genuine keys that the run hears. The attacker sends until the log says that its
-/// messages are refused. When processes of several tests start at once, one in ten attackers is not heard for
-/// more than a minute, and is then replaced by a new one.
+/// messages are refused. When processes of several tests start simultaneously, one in ten attackers is not
+/// heard for more than a minute, and is then replaced by a new one.
 std::unique_ptr<Attacker> heard_attacker(LaunchedRun& run, const AttackerSettings& settings,
                                          const std::function<void(Attacker&)>& send,
                                          const std::vector<std::string>& lines) {
@@ -166,7 +166,7 @@ TEST_CASE("with keys, a process without valid keys is refused and logged, and mo
   keyed.check_unharmed();
 }
 
-TEST_CASE("with keys, no process can send messages in the name of another") {
+TEST_CASE("with keys, no process can send messages in the name of another process") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   INFO(run.output());

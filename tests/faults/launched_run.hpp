@@ -16,7 +16,6 @@
 
 namespace sidestep {
 
-/// The path of the shipped hosts file.
 std::string three_hosts_file();
 
 /// `sidestep run` as started by a user, in its own DDS domain, observed through its output, the ground truth
@@ -52,7 +51,7 @@ class LaunchedRun {
   std::string wait_for_end();
   /// Starts another Sidestep program alongside the run; its output goes to the same log.
   pid_t start(const std::string& name, const std::string& program, const std::vector<std::string>& arguments);
-  /// How the program started with this name ended, e.g. "exit code 0"; nullopt: it is still running.
+  /// The exit reason of the program with this name, e.g. "exit code 0"; nullopt while the program runs.
   std::optional<std::string> exit_reason(const std::string& name) const;
   /// Runs `sidestep` with these arguments to its end and returns the reason, e.g. "exit code 0"; empty on
   /// timeout.
@@ -99,8 +98,8 @@ class LaunchedRun {
   std::optional<ScopedNamespace> visit_;
   std::unique_ptr<DdsBus> bus_;
   msg::GroundTruth truth_;
-  std::map<std::string, std::string> exit_reasons_;  ///< of programs started alongside the run
-  std::optional<std::string> exit_;                  ///< of the run
+  std::map<std::string, std::string> exit_reasons_;  ///< exit reasons of programs started alongside the run
+  std::optional<std::string> exit_;                  ///< exit reason of the run
   pid_t pid_ = 0;
 };
 
@@ -110,7 +109,6 @@ void check_passed_or_missed_messages(const LaunchedRun& run, const std::string& 
 
 /// The text of a shipped file below deploy/, e.g. "scenarios/crossing.yaml".
 std::string shipped(const std::string& file);
-/// The text of a shipped scenario.
 std::string shipped_scenario(const std::string& name);
 /// The scenario crossing-images. With a sanitizer, which makes rendering much slower, frames are fewer and
 /// smaller.
@@ -119,7 +117,7 @@ std::string crossing_images(int rate_hz = 60);
 /// times. `extra_keys` are added to the scenario.
 std::string shuttles(int times, const std::string& extra_keys);
 /// Fails the test unless the report exists and shows no contact, no firmware violation and no audit
-/// violation. A run that ends with exit code 0 was judged, too.
+/// violation. Does not require that the run was judged, which exit code 0 shows.
 void require_no_violations(const nlohmann::json& report);
 /// Whether a process with this id exists and is not a zombie.
 bool is_running(pid_t pid);

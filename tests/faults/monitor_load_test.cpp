@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: Apache-2.0 How much load the monitor and its viewers put on a run, with real
+// SPDX-License-Identifier: Apache-2.0 Measures the load that the monitor and its viewers put on a run of real
 // processes.
 #include <arpa/inet.h>
 #include <atomic>
@@ -118,7 +118,7 @@ class CountingViewer {
 };
 
 TEST_CASE("a run serves its page to the browser, and continues without the monitor") {
-  // A port that is free, because its monitor has just ended.
+  // This port is free, because the monitor that used it has just ended.
   std::uint16_t port = 0;
   {
     LaunchedRun first(kWaitingRobots);

@@ -179,7 +179,7 @@ class ShownRecording {
   std::string url_;
 };
 
-TEST_CASE("the page shows a recording, and a link opens it at a given moment") {
+TEST_CASE("the page shows a recording, and a link to a time opens the recording at that time") {
   ShownRecording recording("crossing.yaml");
   Browser page;
   page.open(recording.url());

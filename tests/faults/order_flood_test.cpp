@@ -16,8 +16,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr int kPerSecond = 10'000;
-// Maximum growth of a process. One that stored the orders of the shortest flood would need three times as
-// much.
+// Maximum growth of a process. Storing the orders of the shortest flood would need three times as much.
 constexpr double kMaxGrowth_mb = 6;
 
 std::string waiting_robots() {
@@ -32,7 +31,7 @@ msg::Order hostile_order(Rng& rng, Time now) {
   const auto sometimes = [&](double usual, double absurd) { return rng.below(10) == 0 ? absurd : usual; };
   msg::Order order;
   order.header().sender(1'000'001 + static_cast<std::uint32_t>(rng.below(2)));
-  // The flood does not affect robot 0, so that it can carry out its order.
+  // The flood does not affect robot 0, which must carry out its order.
   order.robot(
       static_cast<std::uint32_t>(sometimes(1.0 + static_cast<double>(rng.below(3)), 4e9 * rng.uniform())));
   order.terms().order_kind(static_cast<msg::OrderKind>(rng.below(5)));

@@ -39,7 +39,7 @@ struct Totals {
   int rounds = 0, holds = 0, killed = 0, long_cuts = 0;
   int moved = 0;       ///< robots that moved although they were held
   int accepted = 0;    ///< rounds in which a coordinator accepted the holds
-  int unanswered = 0;  ///< rounds in which no coordinator accepted them, although one could reach the agents
+  int unanswered = 0;  ///< rounds in which the holds were not accepted, although the agents were reachable
   int lost = 0;        ///< drive orders that were not carried out after the resume
 };
 
@@ -67,7 +67,7 @@ class PartitionRounds {
       return std::ranges::all_of(
           holds, [&](OrderHandle h) { return holder_.find(h)->phase == OrderPhase::kAccepted; });
     });
-    // Only the robot's agent confirms that it is held.
+    // Only a robot's own agent confirms that the robot is held.
     const bool is_reachable =
         !is_cut_first || std::ranges::none_of(held, [&](RobotId robot) { return host_of(robot) == host; });
     totals_.unanswered += is_reachable && !is_accepted;
@@ -99,7 +99,7 @@ class PartitionRounds {
     REQUIRE(run_.wait_until([&] { return condition() || run_.bus().now() > end; }));
     return condition();
   }
-  /// Whether one of the robots moves in this time, after they have had time to brake.
+  /// Whether one of the robots moves in this time, except in the braking time at its start.
   bool watch_for(Duration time, const std::set<RobotId>& robots) {
     const Time begin = run_.bus().now();
     const std::vector<RobotId> list(robots.begin(), robots.end());

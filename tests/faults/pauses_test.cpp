@@ -98,7 +98,7 @@ TEST_CASE("after kill -9 of the simulator, the run ends and reports that it died
   require_no_violations(run.report());
 }
 
-TEST_CASE("if one robot has two agents, the one started later drives it, without contact") {
+TEST_CASE("if a robot has two agents, the agent started later drives the robot without contact") {
   LaunchedRun run(shuttles(5, ""));
   REQUIRE(run.wait_until([&] { return run.speed_mps(3) > 0.8; }));
   std::vector<std::string> arguments{"--scenario", run.scenario_file(), "--robot", "3"};

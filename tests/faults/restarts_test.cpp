@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Each process's memory, and the share of a core that it uses during some seconds.
+/// A process's memory, and its processor time as a percentage of a core.
 struct Load {
   double memory_mb = 0;
   double cpu_percent = 0;
@@ -37,8 +37,8 @@ std::map<std::string, Load> measure(LaunchedRun& run, const std::string& except,
 }
 
 struct Aftermath {
-  Duration max_matching{};            ///< longest time from the start of an agent's bus until it was heard
-  double max_cpu_growth_percent = 0;  ///< largest growth of another process, in percent of a core
+  Duration max_matching{};  ///< longest time from the start of an agent's bus until the agent was heard
+  double max_cpu_growth_percent = 0;  ///< largest growth of another process's load, in percent of a core
 };
 
 /// Kills an agent with kill -9 this many times. The memory of other processes must not grow, and each new

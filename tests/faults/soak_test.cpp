@@ -18,9 +18,9 @@ namespace soak_test {
 using namespace std::chrono_literals;
 
 struct SoakSettings {
-  Duration duration;       ///< from the moment at which robots drive
+  Duration duration;       ///< duration from the time at which robots start to drive
   Duration warm_up;        ///< samples in this time are ignored, because caches and pools are still filling
-  Duration sample_period;  ///< between two samples of memory
+  Duration sample_period;  ///< time between two samples of memory
   bool has_keys = false;
 };
 

@@ -49,7 +49,7 @@ class TakeoverWatch {
     granted_.clear();
     moving_.clear();
   }
-  /// The time at which this many robots had executed versions granted by the new coordinator.
+  /// The time by which this many robots had executed versions granted by the new coordinator.
   std::optional<Time> moving(std::size_t robots) const {
     if (moving_.size() < robots) return std::nullopt;
     std::vector<Time> times;

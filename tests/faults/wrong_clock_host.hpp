@@ -13,7 +13,7 @@ namespace sidestep {
 class WrongClockHost {
  public:
   /// `processes` run on this host and `others` on the other host, both as in a hosts file, e.g. "processes:
-  /// [vision], agents: [0-3]". `ahead` is how far this host's clock is ahead at the start.
+  /// [vision], agents: [0-3]". `ahead` is the lead of this host's clock at the start.
   WrongClockHost(const std::string& processes, const std::string& others, Duration ahead);
   ~WrongClockHost();
   WrongClockHost(const WrongClockHost&) = delete;

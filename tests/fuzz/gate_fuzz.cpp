@@ -64,7 +64,7 @@ std::optional<std::vector<Submessage>> submessages_of(View datagram) {
 
 bool begins(View part, View whole) { return part.data() == whole.data() && part.size() <= whole.size(); }
 
-/// With keys, only known submessages are passed on.
+/// Checks that the filter, which runs with keys, has passed on only known submessages.
 void check_passed(View passed) {
   static const std::set<std::uint8_t> kUnderstood{kAckNackSubmessage,     kHeartbeatSubmessage,
                                                   kGapSubmessage,         kTimestampSubmessage,
@@ -115,7 +115,7 @@ void try_announcement(const ParticipantId& sender, View datagram) {
   if (!is_admitted) return;
   const Identity* const identity = admission.identity_of(sender);
   SIDESTEP_REQUIRE(identity != nullptr && *identity == parse_identity("agent 3"));
-  // The certificate signs no other id.
+  // The certificate is valid for no other participant id.
   SIDESTEP_REQUIRE(sender == agent_id());
 }
 

@@ -36,7 +36,7 @@ void check_again(const IdlType& type, const Json& json) {
     SIDESTEP_REQUIRE(encode_by_idl(type, decode_by_idl(type, bytes)) == bytes);
     if (is_keyed(type)) (void)key_by_idl(type, json);
   } catch (const IdlEncodingError&) {
-    // Unknown enumerators are decoded to numbers, and some keys are too long.
+    // Unknown enumerators, which are decoded to numbers, and keys that are too long cannot be encoded.
   }
 }
 

@@ -166,8 +166,8 @@ bool try_clock(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-/// The first byte of an input selects the reader: of packets of vision, tracker, referee, teams or simulator,
-/// of log files, or the clock that converts frame times.
+/// The first byte of an input selects the code under test: a reader of vision, tracker, referee, team or
+/// simulator packets, the reader of log files, or the clock that converts frame times.
 bool try_input(View input) {
   if (input.empty()) return false;
   const std::span<const std::byte> rest = std::as_bytes(input.subspan(1));

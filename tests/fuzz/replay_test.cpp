@@ -15,7 +15,7 @@ void put_huge_number(Bytes& bytes, std::size_t at, Rng& rng) {
   for (std::size_t i = at; i < std::min(bytes.size(), at + 4); ++i) bytes[i] = rng.chance(0.8) ? 0xff : 0x7f;
 }
 
-/// Repeats a part of `other` in the middle of the bytes.
+/// Inserts a copy of a part of `other` at `at`.
 void insert_part(Bytes& bytes, std::size_t at, const Bytes& other, Rng& rng) {
   const std::uint64_t begin = rng.below(other.size()),
                       size = rng.below(std::min<std::uint64_t>(other.size() - begin, 256) + 1);

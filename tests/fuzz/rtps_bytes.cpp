@@ -48,7 +48,7 @@ Body data_header(std::size_t reader, std::size_t writer) {
   return Body().u16(0).u16(kBytesToInlineQos).u32(reader).u32(writer).sequence_number(7);
 }
 
-/// Addressed to any reader, from the writer that announces endpoints.
+/// Entity ids of a submessage to any reader, from the writer that announces endpoints.
 Body discovery_entities() { return Body().u32(0).u32(kEndpointWriter); }
 
 }  // namespace

@@ -120,7 +120,7 @@ bool try_control(const std::vector<std::string>& parts, bool may_command) {
   ControlApi api(bus, {[&](const std::string&) { ++bookmarks; }, {}});
   const auto part = [&](std::size_t i) { return i < parts.size() ? parts[i] : std::string(); };
   const auto response = api.respond(
-      {part(0), part(1), {}, part(2), may_command ? "" : "only whoever has the token may command"});
+      {part(0), part(1), {}, part(2), may_command ? "" : "only clients with the token may give commands"});
   network.run_until(kBegin + std::chrono::milliseconds(1));
   if (!response) return false;
   SIDESTEP_REQUIRE(response->status >= 200 && response->status < 500);

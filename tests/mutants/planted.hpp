@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What planted faults call, see tests/mutants/plant. One build holds many faults; the environment variable
-// SIDESTEP_PLANTED chooses the one that is active.
+// Functions that planted faults call, see tests/mutants/plant. One build holds many faults; the environment
+// variable SIDESTEP_PLANTED chooses the one that is active.
 #pragma once
 
 #include <bitset>
@@ -54,7 +54,7 @@ concept Matrix = requires(T value) {
   typename T::PlainObject;
 };
 
-/// For bounds on counts.
+/// The left side of a comparison whose boundary a fault shifts, e.g. from < to <=; only for counts and times.
 template <typename T>
 requires std::integral<std::remove_cvref_t<T>> || Duration<std::remove_cvref_t<T>> || requires(T time) {
   time.time_since_epoch();

@@ -15,7 +15,7 @@ using std::chrono::seconds;
 
 constexpr double kRadius_m = 0.09, kNear_m = 0.08;  // kNear_m covers margin, extra clearance and noise
 
-/// Whether the robot reports that it is blocked, and rests.
+/// Runs until the robot rests and reports that it is blocked for this reason; false after 15 s.
 bool rests_blocked(OrderedSystem& run, RobotId robot, msg::BlockReason reason) {
   return run.run_until(seconds(15), [&] {
     const msg::OrderStatus& status = run.statuses[robot];
@@ -38,7 +38,7 @@ TEST_CASE("a robot waits beside another robot that rests on its goal, and contin
   CHECK(distance(run, 0, place) < 2 * kRadius_m + kNear_m);
   run.system.run_for(seconds(3));
   CHECK(rests_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
-  // A third robot waits next to both.
+  // Robot 2 waits next to robots 0 and 1.
   const auto third = run.send(msg::OrderKind::ORDER_GO, 2, kClient, {{place}});
   REQUIRE(rests_blocked(run, 2, msg::BlockReason::BLOCK_ROBOT));
   run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{0, 0}}});
@@ -100,7 +100,7 @@ TEST_CASE(
   run.erase(4);
   CHECK(run.run_until(seconds(5), [&] { return run.arrived.contains(order); }));
   CHECK(run.run_until(seconds(1), [&] { return distance(run, 0, place) < 0.01; }));
-  // Robots without an order, and robots that have already arrived, leave the zone too.
+  // Robots without an order, and robots that have already arrived, also leave the zone.
   run.draw(5, {{place}, 0.3});
   run.draw(6, {{home, home + Vec2(0, 1)}, 0.2});
   const auto are_out = [&] {

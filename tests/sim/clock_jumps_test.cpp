@@ -11,23 +11,23 @@
 namespace sidestep::clock_jumps_test {
 
 constexpr Duration kMaxRecovery = std::chrono::seconds(5);
-// The start time, so late that clocks that go back by an hour show no negative time.
+// The start time. A clock that goes back by an hour must not show a negative time.
 constexpr Time kBegin = time_from_ns(100'000'000'000'000);
 
-/// A jump of a clock: from `at` on it is off by `offset`.
+/// A jump of a clock: from `at` on, the clock is off by `offset`.
 struct Jump {
   Duration at{0};
-  std::string clock;  ///< the clock of this process, or of a robot if it begins with "robot "
+  std::string clock;  ///< name of the process whose clock jumps, or "robot N" for a robot's clock
   Duration offset{0};
 };
 
 struct History {
   Scenario scenario;
   std::vector<Jump> jumps;
-  Duration agree_at{0};  ///< from this time on, all clocks agree
+  Duration agree_at{0};  ///< time from which all clocks agree
 };
 
-/// 1 ms to an hour, forward or back.
+/// Samples an offset of 1 ms to an hour, forward or back.
 Duration sample_offset(Rng& rng) {
   const double size_s = 0.001 * std::pow(3.59e6, rng.uniform());
   return from_seconds(rng.chance(0.5) ? size_s : -size_s);
@@ -114,8 +114,8 @@ void run_all(std::uint64_t first, std::uint64_t last) {
     return seconds[static_cast<std::size_t>(share * static_cast<double>(seconds.size() - 1))];
   };
   WARN(fmt::format(
-      "all robots drive {:.2f} s (median), {:.2f} s (99 %), {:.2f} s (longest) after {} histories", part(0.5),
-      part(0.99), part(1), seconds.size()));
+      "time until all robots drive: {:.2f} s (median), {:.2f} s (99 %), {:.2f} s (longest); {} histories",
+      part(0.5), part(0.99), part(1), seconds.size()));
 }
 
 TEST_CASE("after clocks have jumped back and forth, all robots drive within five seconds") { run_all(1, 25); }

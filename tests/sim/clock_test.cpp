@@ -129,7 +129,7 @@ TEST_CASE(
   REQUIRE(floor.run_until_speed(0.8));
   REQUIRE(floor.granting_coordinator() == 0);
   floor.coordinator_bus(0).set_clock_offset(from_seconds(0.1));
-  // The next verdicts reveal the jump. Versions granted before are still executed.
+  // The next verdicts reveal the jump. Versions granted before the jump are still executed.
   (void)floor.run(0.1 + 2.0 / floor.scenario.limits.deceleration_mps2);
   CHECK(floor.max_speed_mps() == 0);
   (void)floor.run(3);
@@ -145,12 +145,12 @@ TEST_CASE(
 /// The results of runs with one delay.
 struct SlowRuns {
   double max_offset_s = 0;     ///< largest offset of a robot's clock that the measured intervals permitted
-  double min_clearance_m = 1;  ///< between the references of two robots, each at its robot's time
+  double min_clearance_m = 1;  ///< minimum distance of two robots' references, each by its robot's clock
   double max_makespan_s = 0;
 };
 
-/// Every second robot's clock is ahead of the others' by 0.8 times the delay, which round trips cannot
-/// reveal.
+/// Runs robots until they arrive. Every second robot's clock is ahead of the others' by 0.8 times the delay,
+/// which round trips cannot reveal.
 void drive_on_slow_network(Duration delay, std::uint64_t seed, SlowRuns& runs) {
   CAPTURE(seed);
   Scenario scenario = circle_scenario(16);
@@ -193,7 +193,7 @@ TEST_CASE(
   WARN("apart: true offset of the clocks, possible: largest offset that measurements cannot exclude\n"
        << table << "budget: at least " << 2e3 * scenario.tracking_bound_m << " mm, " << kSeeds
        << " seeds for each delay");
-  // Otherwise the delay would have had no effect.
+  // Shows that the delay has an effect.
   CHECK(rows.back().max_makespan_s > 10 * rows.front().max_makespan_s);
 }
 

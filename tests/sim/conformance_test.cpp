@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr RobotId kRobot = 3;
 
-/// One robot on a floor of division B.
+/// A scenario with one robot on a division-B field.
 Scenario lone_robot() {
   Scenario scenario;
   scenario.name = "lone robot";
@@ -28,7 +28,7 @@ Scenario lone_robot() {
   return scenario;
 }
 
-/// The same robot with vision as in the league, and a budget for third-party bases.
+/// The scenario of lone_robot() with vision as in the league, and a budget for third-party bases.
 Scenario lone_league_robot() {
   Scenario scenario = lone_robot();
   scenario.vision.position_noise_m = 0.0015;
@@ -78,7 +78,7 @@ TEST_CASE("a healthy robot with Sidestep's firmware conforms") {
   CHECK(report.is_conformant());
 }
 
-// The latency that an earlier examination has measured; see the test of the measured latency.
+// The latency that an earlier conformance test measured; see the test of the measured latency.
 constexpr Duration kObeysAfter = 118ms;
 
 TEST_CASE("a third-party base conforms when it is driven in single precision") {
@@ -174,7 +174,7 @@ TEST_CASE("a robot that acknowledges a new agent too late fails the check of pen
   CHECK(failed(report) == std::vector<std::string>{"pending versions"});
 }
 
-TEST_CASE("a robot that sends no reports fails that check, and no further checks are made") {
+TEST_CASE("a robot that sends no reports fails the check of reports, and no further checks are made") {
   const Scenario scenario = lone_robot();
   SimNetwork network(1, kBegin, scenario.network);
   const ConformanceReport report = examine(network, scenario);

@@ -393,7 +393,7 @@ const std::set<DropReason> kElsewhere{
     DropReason::kImplausibleEpoch,    // failover_test; codecs refuse such messages before it
 };
 
-TEST_CASE("each reason to drop a message is counted where it happens") {
+TEST_CASE("the process that drops a message counts it under the reason for the drop") {
   std::set<DropReason> covered = kElsewhere;
   for (const Cause& cause : kCauses) {
     covered.insert(cause.reason);
@@ -418,7 +418,7 @@ TEST_CASE("each reason to drop a message is counted where it happens") {
   }
 }
 
-TEST_CASE("a run without faults drops messages for the expected reasons only") {
+TEST_CASE("a run without faults drops messages only for expected reasons") {
   SimSystem system(crossing(), 1);
   CHECK(system.run_until_arrived(system.begin() + 20s));
   for (const auto& [process, counts] : system.metrics().report().counters) {

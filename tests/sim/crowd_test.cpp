@@ -99,11 +99,11 @@ void drive_through_crowds(std::uint64_t seeds) {
   CHECK(totals.arrived > totals.robots / 4);
 }
 
-TEST_CASE("among thirty-two people no robot is moving when it is touched, in twenty scenes") {
+TEST_CASE("no robot is moving when one of thirty-two people touches it, in twenty scenes") {
   drive_through_crowds(20);
 }
 
-TEST_CASE("among thirty-two people no robot is moving when it is touched, in two thousand scenes",
+TEST_CASE("no robot is moving when one of thirty-two people touches it, in two thousand scenes",
           "[.long][slow]") {
   drive_through_crowds(2000);
 }

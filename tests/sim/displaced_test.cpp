@@ -67,7 +67,7 @@ Moment moment_of(const msg::GroundTruth& truth) {
 struct BodyPath {
   Vec2 from_m, direction;
   double speed_mps, deceleration_mps2;
-  double end_s;  ///< time at which it is at rest
+  double end_s;  ///< time at which the body comes to rest
 
   static BodyPath coasting(const State& state) {
     const double speed = state.velocity_mps.norm();
@@ -98,7 +98,7 @@ bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const
     last_s = to_seconds(moment.at - fault);
     if (!is_clear(last.position_m, last_s)) return false;
   }
-  // Until the detection time has passed it keeps its last speed, then it brakes.
+  // The robot keeps its last speed until the detection time has passed, and then brakes.
   const double speed = last.velocity_mps.norm();
   const Vec2 direction = speed > 0 ? Vec2(last.velocity_mps / speed) : Vec2(0, 0);
   const double brakes_at_s = to_seconds(kDetectionTime);
@@ -150,11 +150,11 @@ struct Run {
 
 struct Totals {
   int cases = 0;
-  int judged = 0;             ///< robots that could stop without touching the body
+  int judged = 0;             ///< number of robots that could stop without touching the body
   int touched = 0;            ///< number of judged robots that touched it
   int other_contacts = 0;     ///< number of contacts between two robots that were not displaced
-  int unnamed = 0;            ///< bodies not named within a second
-  int falsely_displaced = 0;  ///< robots named before the fault
+  int unnamed = 0;            ///< number of bodies not named within a second
+  int falsely_displaced = 0;  ///< number of robots named before the fault
   Duration slowest_detection{0};
 };
 
@@ -243,7 +243,7 @@ void run_case(std::uint64_t seed, bool is_carried, Totals& totals) {
   run.system.disturb(off);
   if (is_carried) {
     run.system.run_until(fault.moved);
-    run.named.erase(fault.robot);  // it counted as displaced because it coasted
+    run.named.erase(fault.robot);  // this robot counted as displaced because it coasted
     auto carry = disturbance(fault.robot, msg::DisturbanceKind::DISTURBANCE_CARRY);
     carry.x_m(fault.target_m.x());
     carry.y_m(fault.target_m.y());

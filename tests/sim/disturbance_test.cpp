@@ -77,7 +77,7 @@ TEST_CASE("a robot pushed too close to another is in conflict with it until they
     CHECK(floor.coordinator(0).state().conflicts() == 1);
     CHECK(floor.coordinator(0).state().conflict_first() == 1);
     CHECK(floor.coordinator(0).state().conflict_second() == 2);
-    // A new coordinator that inherits the conflict resolves it too.
+    // A new coordinator that inherits the conflict also resolves it.
     if (takes_over) floor.kill_coordinator(0);
     clearance = std::min(clearance, floor.run_until_arrived(10));
     CHECK(clearance >= 0.002 - 1e-6);
@@ -163,7 +163,7 @@ TEST_CASE("a robot that computes in single precision is quarantined and reported
   }
 }
 
-TEST_CASE("robots are lifted and put down among others without harm while agents and coordinators restart") {
+TEST_CASE("lifted robots are put down with full margins while agents and coordinators restart") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     CAPTURE(seed);
     Scenario scenario = circle_scenario(8, 2);
@@ -189,8 +189,7 @@ TEST_CASE("robots are lifted and put down among others without harm while agents
       }
       clearance = std::min(clearance, floor.run(rng.uniform(0.05, 0.5)));
       REQUIRE_FALSE(floor.robots.is_on_floor(lifted));
-      // A random position. If another robot may be there, the request is refused and another position is
-      // tried.
+      // Tries random positions. A request is refused if another robot may be at its position.
       const Time requested = floor.network.now();
       while (!floor.robots.is_on_floor(lifted) &&
              floor.network.now() < requested + std::chrono::seconds(20)) {

@@ -116,7 +116,8 @@ struct Floor {
 };
 
 TEST_CASE(
-    "a restarted agent does not register with an old coordinator after its robot has obeyed a newer one") {
+    "a restarted agent does not register with an old coordinator after its robot has obeyed a newer "
+    "coordinator") {
   Floor floor;
   floor.both_obey(floor.second);
   REQUIRE(floor.second.is_granting());
@@ -124,7 +125,8 @@ TEST_CASE(
   floor.left_driver.rest(floor.second, floor.left, floor.now);
   REQUIRE(floor.left.rest_x() > 0.2);
 
-  // The new agent first receives heartbeats of the old coordinator, which does not know of the new one.
+  // The new agent first receives heartbeats of the old coordinator, which does not know about the new
+  // coordinator.
   Driver successor(1, 2000);
   successor.fence(floor.right, floor.now);
   successor.receive_heartbeat(floor.first, floor.now);
@@ -143,7 +145,7 @@ TEST_CASE(
 
 TEST_CASE("an agent whose robot obeys a later agent cannot register in a new epoch") {
   Floor floor;
-  Driver fenced_agent = floor.left_driver;  // receives no more reports
+  Driver fenced_agent = floor.left_driver;  // its agent receives no further reports
   Driver successor(0, 2000);
   successor.fence(floor.left, floor.now);
   successor.receive_heartbeat(floor.first, floor.now);

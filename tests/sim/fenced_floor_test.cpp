@@ -37,7 +37,7 @@ Scenario shuttles() {
 struct Outcome {
   std::uint64_t contacts = 0, violations = 0;
   int own_stops = 0;  ///< own stops after the warm-up, not counting drifts
-  int drifts = 0;     ///< own stops of robots that had drifted, which happen without restarts too
+  int drifts = 0;     ///< own stops of robots that had drifted, which also happen without restarts
   int restarts = 0, twins = 0;
   double driven_m = 0;
   std::string first_violation;
@@ -45,7 +45,7 @@ struct Outcome {
 
 class FencedFloor {
  public:
-  /// `latency`: time until a base moves as commanded.
+  /// `latency` is the time from a command to a base's first motion.
   FencedFloor(std::uint64_t seed, Duration latency)
       : scenario_(shuttles()),
         network_(seed, kBegin, scenario_.network),
@@ -69,7 +69,7 @@ class FencedFloor {
 
   void run(Duration duration) { network_.run_until(network_.now() + duration); }
   RobotId random_robot(Rng& rng) const { return scenario_.robots[rng.below(scenario_.robots.size())].id; }
-  /// Starts another agent of the robot; running ones continue.
+  /// Starts another agent of the robot; its running agents continue.
   void start(RobotId robot) {
     Agent agent{std::make_unique<SimBus>(network_), nullptr};
     agent.node = std::make_unique<AgentNode>(*agent.bus, scenario_, robot,
@@ -96,7 +96,7 @@ class FencedFloor {
   struct Agent {
     std::unique_ptr<SimBus> bus;
     std::unique_ptr<AgentNode> node;
-    ~Agent() { bus.reset(); }  // first, so that the bus makes no more callbacks
+    ~Agent() { bus.reset(); }  // destroyed first, so that it makes no more callbacks
     Agent(std::unique_ptr<SimBus> agent_bus, std::unique_ptr<AgentNode> agent)
         : bus(std::move(agent_bus)), node(std::move(agent)) {}
     Agent(Agent&&) = default;
@@ -129,7 +129,8 @@ class FencedFloor {
   Outcome outcome_;
 };
 
-/// One floor with a random latency. If `is_disturbed`, agents restart and run twice at random.
+/// Simulates a floor with a random latency. If `is_disturbed`, agents restart, and second agents of the same
+/// robots start, at random times.
 Outcome run_floor(std::uint64_t seed, Duration length, bool is_disturbed) {
   Rng rng(seed);
   const Duration latency = 1ms * static_cast<int>(18 + rng.below(283));
@@ -154,7 +155,7 @@ Outcome run_floor(std::uint64_t seed, Duration length, bool is_disturbed) {
   return floor.outcome();
 }
 
-/// Runs floors of half a minute each until robots have driven for this number of hours in total.
+/// Simulates floors for half a minute each until the robots have driven for this many hours in total.
 Outcome run_floors(std::uint64_t first_seed, double robot_hours, bool is_disturbed) {
   constexpr Duration kLength = 30s;
   const double hours_each = 8 * to_seconds(kLength) / 3600;

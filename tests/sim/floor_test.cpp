@@ -134,7 +134,7 @@ TEST_CASE("pushed or rebooted robots continue to their goals without contact") {
   }
 }
 
-TEST_CASE("robots continue to their goals after slipping or a blocked wheel") {
+TEST_CASE("robots continue to their goals after they slip or a wheel is blocked") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

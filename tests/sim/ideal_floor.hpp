@@ -25,7 +25,7 @@ class IdealFloor {
   const Coordinator& coordinator(CoordinatorNumber number) {
     return coordinators_.at(number).node->coordinator();
   }
-  /// The number of the coordinator that grants; -1 if none or several do.
+  /// The number of the coordinator that grants; -1 if no coordinator or more than one grants.
   int granting_coordinator();
 
   /// Starts another agent of a robot; earlier ones keep running.
@@ -34,7 +34,7 @@ class IdealFloor {
   /// The buses of the robot's agents, in order of their start.
   std::vector<FaultyBus*> agent_buses(RobotId robot);
 
-  /// Runs for some seconds. Returns the minimum clearance between any two robots in that time.
+  /// Runs for this long. Returns the minimum clearance between any two robots in that time.
   double run(double seconds);
   /// Number of times that a robot executed a version missing from the ledger of the granting coordinator. An
   /// own stop is not compared until the coordinator has received a report of it.

@@ -12,7 +12,7 @@
 namespace sidestep {
 namespace {
 
-// Agents number their versions upwards from their incarnations, and do not count this far in a year.
+// Distance of an own stop's number from the highest number seen. Agents do not count this far in a year.
 constexpr VersionNumber kOwnNumberGap = VersionNumber{1} << 32;
 
 Vec2 rounded(const Vec2& v) { return v.cast<float>().cast<double>(); }

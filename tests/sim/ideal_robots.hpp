@@ -24,7 +24,6 @@ class IdealRobots {
   /// Sets how far the robot's clock is ahead of the bus's clock from now on.
   void set_clock_offset(RobotId robot, Duration offset) { robots_.at(robot).clock_offset = offset; }
   double radius_m() const { return radius_m_; }
-  /// The version that a robot executes at time t.
   const Version& executing(RobotId robot, Time t);
   bool is_off_reference(RobotId robot) const { return robots_.at(robot).is_off_reference; }
   bool is_on_floor(RobotId robot) const { return !robots_.at(robot).is_lifted; }
@@ -32,7 +31,7 @@ class IdealRobots {
   /// Displaces a robot and sets its velocity. The robot notices that it is off its reference, and makes an
   /// own stop.
   void push(RobotId robot, const Vec2& shift_m, const Vec2& velocity_mps, double inflation_m = 0);
-  /// Restarts its firmware, which keeps only the incarnation, epoch and version number that it has obeyed.
+  /// Restarts the robot's firmware, which keeps only the obeyed incarnation, epoch and version number.
   void reboot(RobotId robot) { push(robot, Vec2::Zero(), velocity_mps(robot, bus_.now())); }
   /// From now on the robot executes versions rounded to single precision.
   void round_versions(RobotId robot) { robots_.at(robot).rounds_versions = true; }

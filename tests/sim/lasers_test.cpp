@@ -41,7 +41,7 @@ TEST_CASE(
     }
   }
   CHECK(arrived > cases * 7 / 10);
-  CHECK(touched_at_rest > 10);  // otherwise people hardly ever met robots
+  CHECK(touched_at_rest > 10);  // with fewer touches the test would prove little
 }
 
 TEST_CASE(
@@ -78,8 +78,8 @@ TEST_CASE("six robots drive safely among ten people whom they see only with thei
 }
 
 //   |  A  |     Through the gap A no speed is safe: a person may stand
-//   |     |     right behind its edges. With a second, wider gap the
-//   o ->  * robot goes that way.
+//   |     |     right behind its edges. If there is a second, wider
+//   o ->  * gap, the robot drives through that gap.
 TEST_CASE("a robot avoids a blind corner where no speed is safe, or reports that it is blocked") {
   const bool has_other_way = GENERATE(false, true);
   CAPTURE(has_other_way);

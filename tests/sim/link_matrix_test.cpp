@@ -72,8 +72,8 @@ Matrix sample_matrix(const Scenario& scenario, Rng& rng) {
   return matrix;
 }
 
-/// An independent decision: whether some coordinator and all agents can exchange messages, and hear vision
-/// and robots.
+/// Decides independently of the code under test whether any coordinator and all agents can exchange messages,
+/// and hear vision and robots.
 bool can_any_coordinator_serve(const Scenario& scenario, const Matrix& matrix) {
   const auto is_usable = [&](const std::string& from, const std::string& to) {
     const Link link = matrix.at({from, to});
@@ -159,14 +159,13 @@ void run_all(std::uint64_t first, std::uint64_t last) {
                   rests_s.size(), last - first + 1, part(0.5), part(0.9), part(0.99), part(1)));
 }
 
-TEST_CASE(
-    "robots keep driving, with stops below two seconds, as long as one coordinator can reach all agents") {
+TEST_CASE("robots keep driving, with stops below two seconds, while any coordinator can reach all agents") {
   run_all(1, 40);
 }
 
 TEST_CASE(
-    "robots keep driving, with stops below two seconds, as long as one coordinator can reach all agents, in "
-    "1,000 matrices",
+    "robots keep driving, with stops below two seconds, while any coordinator can reach all agents, in 1,000 "
+    "matrices",
     "[.long][slow]") {
   run_all(1, 1000);
 }
@@ -209,11 +208,11 @@ TEST_CASE("robots keep driving although a standby receives nothing") {
   require_motion(coordinators, links_to(coordinator_process(coordinators - 1), coordinators));
 }
 
-TEST_CASE("robots keep driving although the active coordinator receives nothing any more") {
+TEST_CASE("robots keep driving after the active coordinator stops receiving messages") {
   require_motion(2, links_to("coordinator 0", 2));
 }
 
-TEST_CASE("robots keep driving although no message of the active coordinator arrives any more") {
+TEST_CASE("robots keep driving after all messages from the active coordinator are lost") {
   require_motion(2, links_from("coordinator 0", 2));
 }
 

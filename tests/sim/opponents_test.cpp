@@ -36,7 +36,7 @@ Scenario random_scene(std::uint64_t seed) {
   return scenario;
 }
 
-TEST_CASE("among random opponents no robot is moving when it is touched, over a hundred seeds") {
+TEST_CASE("no robot is moving when a random opponent touches it, over a hundred seeds") {
   std::uint64_t crashes = 0;
   int robots = 0, arrived = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
@@ -93,7 +93,7 @@ Scenario crowded_scene(std::uint64_t seed, bool standing_first) {
   return scenario;
 }
 
-TEST_CASE("none of sixty opponents touches a moving robot, wherever the nearest are in the scenario's list") {
+TEST_CASE("none of sixty opponents touches a moving robot, whether listed in the scenario first or last") {
   const bool standing_first = GENERATE(true, false);
   std::uint64_t crashes = 0;
   int arrived = 0;
@@ -113,7 +113,7 @@ TEST_CASE("none of sixty opponents touches a moving robot, wherever the nearest 
 }
 
 TEST_CASE(
-    "with more opponents than an obstacle list holds, robots drive, and none is moving when it is touched") {
+    "robots drive among more opponents than an obstacle list holds, and none is moving when it is touched") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);

@@ -37,10 +37,10 @@ struct OrderedSystem {
   std::map<RobotId, msg::OrderStatus> statuses;
   std::map<OrderNumber, msg::OrderResult> answers;
   std::set<OrderNumber> arrived;
-  std::map<RobotId, State> bodies;  ///< true states
-  Vec2 ball_m{0, 0};                ///< true position
+  std::map<RobotId, State> bodies;  ///< true states of the robots
+  Vec2 ball_m{0, 0};                ///< true position of the ball
   OrderNumber number = 0;
-  Time moved_at{};  ///< when a robot last moved
+  Time moved_at{};  ///< time at which a robot last moved
 
   OrderedSystem(const Scenario& s, std::uint64_t seed) : scenario(s), system(scenario, seed) {
     system.on_order_status([this](const msg::OrderStatus& status) {
@@ -95,7 +95,7 @@ struct OrderedSystem {
     quality.is_cut = is_cut;
     system.set_client_link(process, quality);
   }
-  /// Kills all processes except the simulator and vision at once, and restarts them.
+  /// Kills all processes except the simulator and vision simultaneously, and restarts them.
   void restart_everything() {
     const auto names = system_process_names(scenario);
     for (const std::string& process : names)

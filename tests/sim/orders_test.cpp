@@ -96,13 +96,14 @@ TEST_CASE(
   CHECK(stays(seconds(4)));
   for (const RobotSpec& robot : scenario.robots) restart(agent_process(robot.id));
   CHECK(stays(seconds(4)));
-  // Kills coordinators and agents all at once.
+  // Kills all coordinators and agents simultaneously.
   for (const std::string& process : system_process_names(scenario)) {
     if (process != "simulator" && process != "vision") run.system.kill(process);
   }
   for (const std::string& process : system_process_names(scenario)) run.system.restart(process);
   CHECK(stays(seconds(5)));
-  // Another client cannot lift the hold. After a restart of everything its owner cannot either.
+  // Another client cannot lift the hold. After a restart of all coordinators and agents, its owner cannot
+  // lift it either.
   run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kOtherClient);
   run.send(msg::OrderKind::ORDER_RESUME, kAllRobots, kClient);
   CHECK(stays(seconds(2)));
@@ -175,7 +176,7 @@ struct RandomClient {
   }
 };
 
-TEST_CASE("a client learns the outcome of every order although any agents and coordinators are killed") {
+TEST_CASE("a client learns the outcome of every order even if random agents and coordinators are killed") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);
@@ -333,7 +334,7 @@ TEST_CASE("ten thousand orders a second neither stop a run nor fill memory") {
     const auto kind = static_cast<msg::OrderKind>(rng.below(6));
     const auto robot = static_cast<RobotId>(rng.below(5));
     Order flood{kind, robot, kClient + static_cast<ClientId>(rng.below(100'000)), run.number};
-    // Holds of robot 0 would stop it, as they should, so the flood holds other robots only.
+    // A hold of robot 0 would correctly stop it, so the flood holds only other robots.
     if (flood.kind == msg::OrderKind::ORDER_HOLD || flood.kind == msg::OrderKind::ORDER_RESUME)
       flood.robot = 1 + robot % 4;
     if (flood.kind == msg::OrderKind::ORDER_GO) flood.goals = {{{rng.uniform(-5, 5), 0}}};

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Holds survive partitions and crashes as long as a process that
-// remembers them lives (S-47, S-48), and no robot drives after a restart of everything.
+// SPDX-License-Identifier: Apache-2.0 Holds survive partitions and crashes while a process that remembers
+// them runs (S-47, S-48), and no robot drives after all processes have restarted.
 #include <set>
 
 #include "common/client/order_client.hpp"
@@ -34,7 +34,7 @@ struct Fleet : OrderedSystem {
   bool moves(Duration duration) {
     return run_until(duration, [&] { return max_speed_mps() > kAtRest_mps; });
   }
-  /// Orders the held robot to go somewhere.
+  /// Checks that the robot carries out an order to drive only after the hold is lifted.
   void require_held(RobotId robot) {
     send(msg::OrderKind::ORDER_GO, robot, kOtherClient, {{{2, 1}}});
     CHECK_FALSE(moves(seconds(10)));
@@ -68,7 +68,9 @@ TEST_CASE(
 }
 
 // Agent 2 does not hear the coordinator while the hold is given. Agent 1 does not hear it while it restarts.
-TEST_CASE("a hold survives the restart of the only coordinator, even if another agent has not heard of it") {
+TEST_CASE(
+    "a hold survives the restart of the only coordinator, even if another agent does not know about the "
+    "hold") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 1, seed);
@@ -114,7 +116,7 @@ TEST_CASE(
 }
 
 // Coordinator 0 hears every process, but only the client hears coordinator 0.
-TEST_CASE("a coordinator does not confirm a hold while no agent hears it") {
+TEST_CASE("a coordinator does not confirm a hold while no agent hears the coordinator") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Fleet run(3, 2, seed);
@@ -190,7 +192,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("restarts of single coordinators or agents while a fleet starts do not cause it to be held") {
+TEST_CASE("a fleet is not held if single coordinators or agents restart while the fleet starts") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);

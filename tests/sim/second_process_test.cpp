@@ -66,7 +66,8 @@ struct Watch {
 };
 
 TEST_CASE(
-    "a second simulator exits whenever it is started, and the first one's robots arrive without contact") {
+    "a second simulator exits at any time of a run, and the first simulator's robots arrive without "
+    "contact") {
   const auto seed = GENERATE(range(1u, 41u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -128,8 +129,7 @@ TEST_CASE("a silent robot for which only a second simulator reports causes no au
 }
 
 TEST_CASE(
-    "a robot for which a second simulator reported while it was silent is judged by its own reports "
-    "afterwards") {
+    "a silent robot for which a second simulator reported is judged by the robot's own reports afterwards") {
   const auto seed = GENERATE(range(1u, 6u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -213,7 +213,7 @@ TEST_CASE("two coordinators with the same number report each other, and robots a
   watch.require_safe();
 }
 
-TEST_CASE("a simulator that restarts does not count as a second one") {
+TEST_CASE("a simulator that restarts does not count as a second simulator") {
   SimSystem system(circle(), 1);
   Watch watch(system);
   system.run_for(2s);

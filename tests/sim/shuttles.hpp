@@ -11,8 +11,8 @@
 
 namespace sidestep {
 
-/// Robots that drive back and forth for ever, each in its own lane. With `crosses`, every second lane crosses
-/// the others.
+/// Robots that drive back and forth thirty times, each in its own lane. With `crosses`, every second lane
+/// crosses the others.
 inline Scenario shuttles(int robots, int coordinators, bool crosses = false, const std::string& more = "") {
   std::string text =
       fmt::format("field: {{length_m: 6, width_m: 6}}\ncoordinators: {}\n{}robots:\n", coordinators, more);
@@ -40,7 +40,6 @@ class MotionWatch {
         if (std::hypot(robot.vx_mps(), robot.vy_mps()) > kMotion_mps) note_motion(robot.robot());
     });
   }
-  /// Starts the measurement.
   void begin() {
     moved_at_.clear();
     longest_rest_s_.clear();
@@ -51,7 +50,7 @@ class MotionWatch {
     const double last_s = to_seconds(system_.now() - last_motion(robot));
     return std::max(longest_rest_s_[robot], last_s);
   }
-  /// Time from begin() to a robot's first motion; nullopt: it did not move.
+  /// Time from begin() to a robot's first motion; nullopt if the robot did not move.
   std::optional<double> first_motion_s(RobotId robot) const {
     const auto found = first_s_.find({robot, begin_});
     return found == first_s_.end() ? std::nullopt : std::optional(found->second);

@@ -52,7 +52,6 @@ struct MonitoredSystem {
   }
 };
 
-/// Counts the robots' own stops.
 void count_own_stops(SimSystem& system, int& own_stops) {
   system.on_event(LogLevel::kWarning, [&own_stops](const std::string&, const LogEvent& event) {
     own_stops += event.text.find("makes its own stop") != std::string::npos;
@@ -155,7 +154,7 @@ TEST_CASE(
     run.require_safe();
     arrived += run.system.metrics().arrived();
   }
-  // Robots that never move would be safe too, so some must arrive. Clocks are known only within tens of
+  // Robots that never move would also be safe, so some must arrive. Clocks are known only within tens of
   // milliseconds here, so robots are slow, and stay far from silent robots.
   CHECK(arrived > 120);
 }
@@ -193,8 +192,8 @@ TEST_CASE("a restarted agent drives its robot the rest of the way to its goal") 
 }
 
 TEST_CASE(
-    "without a coordinator all robots stop within v/D plus a cycle, and with a new one they reach their "
-    "goals") {
+    "without a coordinator all robots stop within v/D plus a cycle, and with a new coordinator they reach "
+    "their goals") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   MonitoredSystem run(shipped("crossing"), seed);

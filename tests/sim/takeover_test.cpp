@@ -154,7 +154,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a forged epoch causes one change of epoch if plausible, and none otherwise") {
+TEST_CASE("a forged epoch causes one change of epoch if it is plausible, and no change otherwise") {
   IdealFloor floor(circle_scenario(8, 2), 1);
   SimBus attacker(floor.network);
   auto writer = attacker.advertise(topics::kCoordinator);

@@ -20,7 +20,7 @@ struct AgentTraffic {
   std::map<Incarnation, int> messages;
 };
 
-TEST_CASE("if one robot has two agents, the one started later drives it, and clearances are kept") {
+TEST_CASE("if a robot has two agents, the agent started later drives the robot and keeps clearances") {
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     CAPTURE(seed);
     Scenario scenario = parse_scenario(

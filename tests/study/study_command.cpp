@@ -27,8 +27,8 @@ CliCommand add_study(const CliCommand& study, const std::string& name, const std
                      StudyOptions& options) {
   const CliCommand command = study.add_subcommand(name, description);
   command.add_option("--out", options.folder, "folder for the tables and plots").required();
-  command.add_option("--seed", options.seed, "seed of everything random").show_default();
-  command.add_flag("--quick", options.is_quick, "a small version of every experiment");
+  command.add_option("--seed", options.seed, "seed of all random numbers").show_default();
+  command.add_flag("--quick", options.is_quick, "run a small version of every experiment");
   return command;
 }
 
@@ -52,14 +52,16 @@ void add_buildings_study(const CliCommand& study, std::function<int()>& action) 
   const auto options = std::make_shared<BuildingsOptions>();
   const CliCommand buildings = add_study(
       study, "buildings", "Robots that repeatedly drive to random places of scenarios", options->study);
-  buildings.add_option("SCENARIO", options->scenario_files, "scenario files; their goals are the places")
+  buildings
+      .add_option("SCENARIO", options->scenario_files,
+                  "scenario files; robots drive between their starts and goals")
       .required();
   buildings.add_option("--planner", options->planners, "planners, separated by commas")
       .comma_separated()
       .check(one_of(driving_planners()))
       .show_default();
   buildings.add_flag("--dds", options->over_dds,
-                     "over DDS and in real time, with a process for each part of the system");
+                     "run over DDS in real time, with a process for each part of the system");
   buildings.add_option("--seconds", options->seconds, "virtual time of each run")
       .check(in_range(1, 86400))
       .show_default();

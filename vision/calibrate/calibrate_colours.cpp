@@ -61,8 +61,9 @@ Image read_frame(const std::string& path, PixelFormat format) {
 LearnedColours calibrate_colours(const CalibrateColoursOptions& options) {
   const std::size_t count = options.frame_files.size();
   if (options.cameras.size() != 1 && options.cameras.size() != count)
-    throw std::invalid_argument(fmt::format("--camera: expected 1 number, or {} for as many frames, got {}",
-                                            count, options.cameras.size()));
+    throw std::invalid_argument(
+        fmt::format("--camera: expected 1 number, or one for each of the {} frames, got {}", count,
+                    options.cameras.size()));
   const Scenario scenario = load_scenario(options.scenario_file);
   const MarkerLayout layout = options.layout_file.empty() ? butterfly() : load_layout(options.layout_file);
   const std::vector<Colour> expected = colours_at_start(scenario, layout);

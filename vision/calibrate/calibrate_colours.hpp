@@ -12,7 +12,7 @@ namespace sidestep {
 struct CalibrateColoursOptions {
   std::string scenario_file;
   std::vector<std::string> frame_files;
-  std::vector<std::uint32_t> cameras{0};  ///< cameras of the frames: one for all frames, or one for each
+  std::vector<std::uint32_t> cameras{0};  ///< camera numbers: one for all frames, or one for each frame
   std::string cameras_file{};             ///< empty: the scenario's cameras
   std::string layout_file{};              ///< empty: the butterfly layout
   std::string format{};                   ///< empty: the scenario's format

@@ -37,7 +37,7 @@ int run_colours(const CalibrateOptions& options) {
                one.pixels, 100 * one.recall);
   for (const std::string& warning : learned.warnings) fmt::print(stderr, "{}: warning: {}\n", kName, warning);
   if (!is_plausible(learned))
-    throw std::runtime_error("the pictures do not match the scenario: no file is written");
+    throw std::runtime_error("no file written: the pictures do not match the scenario");
   write_out(colours_text(learned.thresholds), options.out_file);
   return 0;
 }
@@ -70,7 +70,7 @@ int calibrate_command(int argc, char** argv) {
   app.add_option("FRAME", options.colours.frame_files, "pictures by cameras, such as PNG files")
       .excludes(geometry);
   app.add_option("--camera", options.colours.cameras,
-                 "numbers of the cameras: one for all frames, or N,N,... one for each")
+                 "numbers of the cameras: one for all frames, or one for each frame as N,N,...")
       .comma_separated()
       .show_default()
       .excludes(geometry);

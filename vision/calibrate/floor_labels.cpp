@@ -12,8 +12,8 @@
 namespace sidestep {
 namespace {
 
-/// Adds discs for the base and the top of a vertical cylinder that is as high as a robot, even when their
-/// centres are outside the image.
+/// Adds discs for the base and the top of a vertical cylinder that is as high as a robot, even if a disc's
+/// centre is outside the image.
 void add_cylinder(const CameraModel& camera, const Circle& circle, std::vector<LabelledDisc>& discs) {
   for (const double height_m : {0.0, kRobotHeight_m}) {
     const Vec3 centre_m(circle.centre_m.x(), circle.centre_m.y(), height_m);

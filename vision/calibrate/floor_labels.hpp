@@ -21,8 +21,8 @@ struct FloorLabels {
 [[nodiscard]] FloorLabels floor_labels_at_start(const Scenario& scenario, const MarkerLayout& layout,
                                                 const CameraModel& camera);
 
-/// All colours of robots and ball at the start, over the whole floor, without repetitions. Precondition: the
-/// layout has all patterns.
+/// All colours of robots and ball on the whole floor at the start, each listed once. Precondition: the layout
+/// has all patterns.
 [[nodiscard]] std::vector<Colour> colours_at_start(const Scenario& scenario, const MarkerLayout& layout);
 
 }  // namespace sidestep

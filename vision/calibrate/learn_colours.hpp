@@ -27,7 +27,7 @@ struct LearnedColours {
   ColourThresholds thresholds;
   std::vector<LearnedColour> colours;  ///< one element per expected colour
   double ground_false_positives = 0;   ///< fraction of the background classified as a named colour
-  std::vector<std::string> warnings;   ///< for the user: what makes the data unsuitable for calibration
+  std::vector<std::string> warnings;   ///< for the user: reasons why the data are unsuitable for calibration
 };
 
 /// Learns thresholds from labelled images, and evaluates them on the same images. `expected` are the colours

@@ -88,7 +88,7 @@ double cost_of(const CameraParameters& parameters, std::span<const CalibrationPo
   return sum;
 }
 
-/// Sets up the normal equations, in which fixed parameters get a step of 0.
+/// Sets up the normal equations; their solution has a step of 0 for fixed parameters.
 void set_up(const CameraModel& camera, std::span<const CalibrationPoint> points,
             const FreeParameters& is_free, NormalMatrix& normal, Step& right) {
   normal.setZero();
@@ -194,7 +194,7 @@ double rms_m(const CameraModel& camera, std::span<const CalibrationPoint> points
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-/// Precondition: all points are visible.
+/// Sets max_px and worst_index. Precondition: all points are visible.
 void find_worst_point(const CameraModel& camera, std::span<const CalibrationPoint> points,
                       CalibrationResult& result) {
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -27,7 +27,7 @@ struct CalibrationResult {
   CameraParameters camera;
   double rms_px = 0;            ///< RMS distance between given pixels and projected points
   double max_px = 0;            ///< maximum of these distances
-  std::size_t worst_index = 0;  ///< index of the point with that distance
+  std::size_t worst_index = 0;  ///< index of the point with the maximum distance
   double rms_m = 0;             ///< RMS distance between given points and pixels projected to their heights
   /// Predicted standard deviation of the pixel at which the camera observes the top of a robot, 0.15 m above
   /// one of the points; the maximum over all points. Large if the points do not determine the camera's

@@ -13,14 +13,14 @@ namespace {
 constexpr int kGrey = 128;
 constexpr int kMinChroma = 25;  // distance from grey on U or V beyond which a pixel is coloured
 constexpr int kRangeMargin =
-    14;  // margin around the observed range on a channel (U or V) that is nearer to grey
-constexpr double kEdgeShare = 0.4;  // fraction of the way from grey to a colour at which a region ends
+    14;  // margin around the observed range on a channel, U or V, on which a colour is nearly grey
+constexpr double kEdgeShare = 0.4;  // fraction of the way from grey to a colour at which its box begins
 // Weight of gaps in brightness relative to U and V, because light is uneven.
 constexpr double kBrightnessWeight = 0.5;
 constexpr double kOutlierShare = 0.002, kFloorOutlierShare = 0.1;
 
-// Bands for boxes of other colours.
-constexpr std::array<int, 4> kBandEdges{0, 96, 160, 256};  // limits in brightness
+// Bands of brightness, each with its own boxes of kOtherColour.
+constexpr std::array<int, 4> kBandEdges{0, 96, 160, 256};  // limits of the bands
 constexpr double kGroundOutlierShare = 0.001;              // white lines cover less than 1 % of the floor
 constexpr int kGroundMargin = 8;                           // margin around the observed background, on U or V
 // Chroma of grey with 10 % more red or blue, as a fraction of its brightness.
@@ -37,7 +37,7 @@ void ColourLearner::Histogram::add(const Yuv& pixel) {
   ++bins[2][pixel.v];
 }
 
-/// The quantile: the smallest value that is exceeded by at most the given fraction of all pixels.
+/// The quantile: the smallest value such that more than this fraction of all pixels do not exceed it.
 int ColourLearner::Histogram::quantile(std::size_t channel, double share) const {
   const double target = share * static_cast<double>(count);
   std::uint64_t sum = 0;
@@ -88,7 +88,7 @@ ColourLearner::Ranges ColourLearner::extended_box(const Histogram& histogram) co
   return box;
 }
 
-/// Gap on a channel between two observed ranges: 0 if they overlap, positive if `own` lies above.
+/// Gap on a channel between two observed ranges: 0 if they overlap, positive if `own` is the higher range.
 int ColourLearner::gap(const Range& own, const Range& other) {
   const int below = own.low - other.high, above = other.low - own.high;
   return below >= above ? std::max(0, below) : -std::max(0, above);

@@ -47,19 +47,17 @@ class ColourLearner {
   /// mostly floor. Pixels near the discs in `ignored` are skipped.
   void add(const ImageView& image, std::span<const LabelledDisc> discs,
            std::span<const LabelledDisc> ignored = {});
-  /// Adds one pixel of a colour.
   void add(Colour colour, const Yuv& pixel) { colours_[static_cast<std::size_t>(colour)].add(pixel); }
-  /// Adds one pixel of the background.
   void add_background(const Yuv& pixel);
 
-  /// One box per observed colour. It starts at two fifths of the way from grey to the colour, so that regions
-  /// keep their size and darker light is tolerated, and extends to the end of the channel. Towards another
-  /// colour or the floor it ends midway between the observed ranges. If two colours cannot be separated,
-  /// their boxes overlap, and the first one wins.
+  /// One box per observed colour. A box starts at two fifths of the way from grey to the colour, so that
+  /// regions keep their size and darker light is tolerated, and extends to the end of the channel. Towards
+  /// another colour or the floor, a box ends midway between the observed ranges. If two colours cannot be
+  /// separated, their boxes overlap, and the first one wins.
   [[nodiscard]] std::vector<ColourBox> named_boxes() const;
 
   /// Boxes of kOtherColour for everything clearly outside the observed background and not grey in tinted
-  /// light; empty when no background was observed. They overlap each other and named boxes; named boxes must
+  /// light; empty if no background was observed. The boxes overlap each other and the named boxes, which must
   /// come first.
   [[nodiscard]] std::vector<ColourBox> other_boxes() const;
 

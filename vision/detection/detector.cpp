@@ -24,8 +24,8 @@ double confidence_of(const DetectedPattern& pattern, const MarkerLayout& layout)
   return pattern.dot_count / static_cast<double>(layout.dots.size() + 1);
 }
 
-// Margins around the radius within which pixels are attributed to a robot that was found, and to a robot that
-// was expected but not found.
+// Pixels within a robot's radius plus this margin are attributed to the robot, if it was found, or expected
+// but not found.
 constexpr double kFoundRobotMargin_m = 0.01, kMissedRobotMargin_m = 0.04;
 
 // A tinted centre may be outside its team's thresholds by at most this distance in U and V, if the other
@@ -145,7 +145,7 @@ bool Detector::is_robot_dot(const ProjectedRegion& region) const {
   });
 }
 
-/// Reports the regions whose area is nearest to a ball's.
+/// Lists as balls the regions whose area is nearest to a ball's.
 void Detector::find_balls(msg::DetectionFrame& frame) {
   ball_regions_.clear();
   for (const Region& region : regions_) {

@@ -28,8 +28,8 @@ struct DetectorSettings {
   std::shared_ptr<const FloorMap> known_map;  ///< its blocked cells are not reported either; null: no map
 };
 
-/// Detects robots, balls and obstacles in the frames of one camera. Everything else except the ground is an
-/// obstacle (ObstacleFinder).
+/// Detects robots, balls and obstacles in the frames of one camera. Everything except robots, balls and the
+/// ground is an obstacle (ObstacleFinder).
 class Detector {
  public:
   Detector(const CameraModel& camera, const DetectorSettings& settings);

@@ -27,8 +27,9 @@ class HueSampler {
              const VerticalCylinders& robots)
       : silhouette_(silhouette), camera_(camera), image_(image), robots_(robots) {}
 
-  /// The chroma at this distance and this offset from the middle (in half widths), relative to the obstacle's
-  /// own: the mean over the samples that are in the image and not occluded. nullopt if there is none.
+  /// The chroma at this distance and this offset from the middle (in half widths), as a fraction of the
+  /// obstacle's chroma: the mean over the samples in the image that are not occluded. nullopt if there are
+  /// none.
   std::optional<double> at(double distance_m, double offset) const {
     double sum = 0;
     int count = 0;

@@ -16,9 +16,9 @@ struct Silhouette {
 };
 
 /// Distance to the foot of an obstacle whose side towards the camera is in shade and therefore too dark for
-/// its colour to be classified. Follows the hue inwards from `near_m` as long as it is stronger than on the
-/// floor to the sides, until robots or the image border hide it. Returns `near_m` if the floor has that hue
-/// or is not visible, or if the hue does not end.
+/// its colour to be classified. Follows the hue inwards from `near_m` while it is stronger than on the floor
+/// to the sides, until robots or the image border hide it. Returns `near_m` if the floor has the obstacle's
+/// hue or is not visible, or if the hue does not end.
 [[nodiscard]] double near_edge_m(const Silhouette& silhouette, const CameraModel& camera,
                                  const ImageView& image, const VerticalCylinders& robots);
 

@@ -76,7 +76,7 @@ void ObstacleFinder::collect_blobs(std::span<const Region> regions, const Vertic
       merged.area_px += other.area_px;
       blobs_[i] = blobs_.back();
       blobs_.pop_back();
-      i = 0;  // the merged blob may touch blobs that were passed over
+      i = 0;  // the merged blob may touch blobs that were skipped
     }
     blobs_.push_back(merged);
   }
@@ -157,9 +157,9 @@ bool ObstacleFinder::is_within_known(const Circle& circle) const {
   });
 }
 
-/// Fits the circle whose tangents from the point below the camera enclose the contour and whose nearest point
-/// to it is that of the contour, because in the image vertical sides extend radially away from the point
-/// below the camera. An obstacle almost below the camera gets its apparent size.
+/// Fits the circle that subtends the contour's angle as seen from the point below the camera, at the
+/// contour's distance, because in the image vertical sides extend radially away from that point. An obstacle
+/// almost below the camera gets its apparent size.
 Circle ObstacleFinder::fit_circle(const ImageView& image, const VerticalCylinders& robots) const {
   const Vec2 below_m = camera_.position_m().head<2>();
   Vec2 low = contour_[0], high = contour_[0];

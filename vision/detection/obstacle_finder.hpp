@@ -43,14 +43,14 @@ class ObstacleFinder {
   ObstacleFinder(const CameraModel& camera, const ObstacleFinderSettings& settings)
       : camera_(camera), settings_(settings) {}
 
-  /// Obstacles, largest first; the caller may reorder them. Ignores pixels on or behind one of the `robots`,
-  /// which fill these circles from the floor to their tops. Valid until the next call. Allocates only if a
-  /// scene has more blobs or contour points than all earlier ones.
+  /// Returns obstacles, largest first; the caller may reorder them. Ignores pixels on or behind a robot:
+  /// `robots` contains the circles that the robots fill from the floor to their tops. Valid until the next
+  /// call. Allocates only if a scene has more blobs or contour points than all earlier scenes.
   std::span<Circle> find(const ImageView& image, const ColourClasses& classes,
                          std::span<const Region> regions, std::span<const Circle> robots);
 
-  /// Whether the last image had more blobs than the finder can handle, so that it may have missed any
-  /// obstacle.
+  /// Whether the last image had more blobs than the finder can handle, in which case obstacles may be
+  /// missing.
   bool has_overflowed() const { return has_overflowed_; }
   /// Whether a region lies within the largest region of an obstacle found in the last call, including known
   /// obstacles.

@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMaxWorldAge_s = 0.25;  // older poses are not extrapolated
+constexpr double kMaxWorldAge_s = 0.25;  // maximum age of poses that are extrapolated
 
 std::optional<PixelFormat> format_of(msg::ImageFormat format) {
   switch (format) {

@@ -67,7 +67,7 @@ void LeagueInput::report_field() {
 
 void LeagueInput::report_clock_jump(const league::Endpoint& sender) {
   reported_jumps_ = source_.clock_jumps();
-  log(LogLevel::kWarning, fmt::format("the clock of the sender {} has been set", to_text(sender)));
+  log(LogLevel::kWarning, fmt::format("the clock of sender {} has jumped", to_text(sender)));
 }
 
 }  // namespace sidestep

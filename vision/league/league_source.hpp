@@ -28,7 +28,7 @@ class LeagueSource {
     std::uint64_t frames = 0;  ///< number of frames returned by decode()
     /// Number of packets, indexed by league::DecodeError.
     std::array<std::uint64_t, league::kDecodeErrors> rejected{};
-    /// Number of frames that had been received before.
+    /// Number of frames dropped because they were received before.
     std::uint64_t duplicates = 0;
     std::uint64_t unsynchronised = 0;  ///< number of frames whose capture time could not be determined
     /// Number of detections dropped: balls and obstacles beyond the capacity of a frame (the obstacles
@@ -48,7 +48,7 @@ class LeagueSource {
   void count_drops(DropCounters& drops) const;
   /// Number of packets rejected so far, for any reason.
   std::uint64_t rejected() const;
-  /// Why the latest packet was rejected; kNone if it was not.
+  /// The reason why the latest packet was rejected; kNone if it was accepted.
   league::DecodeError error() const { return error_; }
   /// Number of jumps detected in the senders' clocks.
   std::uint64_t clock_jumps() const;

@@ -12,16 +12,16 @@ namespace sidestep {
 /// Converts times of a sender's clock, whose epoch is arbitrary, to the local clock, from one-way messages.
 /// The lag of a message (arrival minus sending time) is the clock offset plus a delay. The minimum lag over
 /// the last two seconds in which messages arrived is the offset plus the minimum delay. A drift of 200 ppm
-/// causes an error of 0.4 ms, and delayed messages have no effect as long as one in two seconds is on time.
-/// The sender's clock must run at the rate of the local one.
+/// causes an error of 0.4 ms, and delayed messages have no effect if at least one message in two seconds is
+/// on time. The sender's clock must run at the rate of the local clock.
 class SenderClock {
  public:
   /// A message with a longer apparent delay is useless, or shows that the sender's clock has been set.
   static constexpr Duration kMaxDelay{500'000'000};
-  /// A lag below the minimum by more than this is accepted only after other messages agree.
+  /// A lag below the minimum by more than this is accepted only after further messages agree with it.
   static constexpr Duration kMaxAhead{50'000'000};
 
-  /// Initial time without output, because a process that was suspended receives old messages all at once.
+  /// Initial time without output, because a process that was suspended receives old messages in one burst.
   static constexpr Duration kSettlingTime{100'000'000};
 
   /// The local time of a frame's capture. `captured` and `sent` are by the sender's clock; a `sent` before

@@ -16,8 +16,8 @@ class TrackedOutput {
   /// scenario have the same team and number.
   TrackedOutput(const Scenario& scenario, Incarnation incarnation);
 
-  /// Valid until the next call. A robot that was not observed in the last 100 ms is reported as not visible,
-  /// whatever its variance.
+  /// The packet for a world; valid until the next call. A robot that was not observed in the last 100 ms is
+  /// reported as not visible, whatever its variance.
   [[nodiscard]] const league::TrackedPacket& packet_of(const msg::WorldState& world);
 
  private:

@@ -29,8 +29,8 @@ struct IdentifiedRobot {
 };
 
 /// Identifies robots by the colours of their dots. A complete pattern identifies one robot. If a dot is
-/// missing, several robots may match. The robot expected at that position is then chosen, or else the only
-/// robot that matches everything observed there so far. Where a robot is expected, a pattern is never
+/// missing, several robots may match. Then the robot expected at the pattern's position is chosen, or else
+/// the only robot that matches all observations there. Where a robot is expected, a pattern is never
 /// identified as a different robot, even if a dot was misread. An ambiguous pattern remains unidentified.
 class Identifier {
  public:

@@ -18,7 +18,7 @@ struct DetectedPattern {
   Pose pose;
   double rms_residual_m = 0;  ///< root mean square distance of the dots from their predicted positions
   std::optional<Team> team;   ///< nullopt if the centre dot is missing
-  int dot_count = 0;          ///< number of dots found, including the centre
+  int dot_count = 0;          ///< number of dots found, including the centre dot
   /// Colours of the layout's dots; nullopt for a missing dot.
   std::array<std::optional<Colour>, kMaxDots> colours{};
 

@@ -41,7 +41,7 @@ struct ObstacleBlob {
 /// The contents of a camera image of a floor.
 struct FloorBlobs {
   std::vector<ObstacleBlob> obstacles;
-  std::optional<Vec2> robot, target;  ///< centroids in pixels; nullopt: not found, or found several times
+  std::optional<Vec2> robot, target;  ///< centroids in pixels; nullopt: none or several found
 };
 
 /// Finds obstacles, robot and target among the colour regions of an image. Adjacent regions form one obstacle

@@ -36,8 +36,8 @@ struct PixelCells {
 };
 
 /// Marks the cells of the obstacles. `radius_px` is the disc's radius with its margin; a cell is blocked if a
-/// disc whose centre is anywhere in it may touch a seen cell or leave the image. So a path through free cells
-/// is safe everywhere.
+/// disc whose centre is anywhere in it may touch a seen cell or leave the image. A path through free cells is
+/// therefore safe everywhere.
 void mark_cells(const ImageView& image, const ColourClasses& classes, const FloorBlobFinder& finder,
                 std::span<const ObstacleBlob> obstacles, double radius_px, PixelCells& cells);
 

@@ -29,7 +29,8 @@ double density(const Region& region) {
 
 bool is_absorbed(const Region& region) { return region.area_px == 0; }
 
-/// False for a region of another colour or too far below. It is then false for all later regions too.
+/// Whether `lower` has the colour of `upper` and starts at most `max_gap_px` rows below it. If false, it is
+/// also false for all later regions.
 bool is_within_rows(const Region& upper, const Region& lower, int max_gap_px) {
   return lower.colour == upper.colour && lower.top_px - upper.bottom_px - 1 <= max_gap_px;
 }

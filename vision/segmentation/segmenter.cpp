@@ -56,8 +56,8 @@ struct HighNibbles {
   int pairs() const { return std::popcount(of[1]) * std::popcount(of[2]); }
 };
 
-/// Adds a box to the group that then accepts the fewest additional pairs; for an empty group this counts as
-/// one pair. Returns the group's bit.
+/// Adds a box to the group whose number of accepted pairs grows least; for an empty group the growth counts
+/// as one pair. Returns the group's bit.
 std::uint32_t add_to_group(std::array<HighNibbles, kBoxGroups>& groups, const ColourBox& box) {
   std::size_t best = 0;
   int min_added = std::numeric_limits<int>::max();

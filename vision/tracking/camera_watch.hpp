@@ -9,15 +9,15 @@
 
 namespace sidestep {
 
-/// Whether the cameras have watched the floor for long enough that every obstacle in their view has been
-/// observed. Otherwise, for example after a pause of this process, there may be obstacles that have not been
-/// seen. The set of cameras is configured, because a camera that has long been silent may still see an
+/// Decides whether the cameras have watched the floor for long enough that every obstacle in their view has
+/// been observed. Otherwise, for example after a pause of this process, there may be obstacles that have not
+/// been seen. The set of cameras is configured, because a camera that has long been silent may still see an
 /// obstacle.
 class CameraWatch {
  public:
-  /// A camera watches as long as its frames are no farther apart than this, by their capture times.
+  /// Maximum time between the captures of consecutive frames of a watching camera.
   static constexpr Duration kMaxGap{300'000'000};
-  /// Number of frames after a gap until a camera watches again. An obstacle may be missed in some of them.
+  /// Number of frames after a gap until a camera counts as watching again. Some of them may miss an obstacle.
   static constexpr int kFrames = 5;
   /// Maximum age of a watching camera's latest frame.
   static constexpr Duration kMaxAge{600'000'000};

@@ -24,7 +24,7 @@ struct ObstacleObservation {
   double radius_m = 0;
 };
 
-/// Default limit of how far a frame's capture time may be ahead.
+/// Default maximum by which a frame's capture time may be ahead of the local clock.
 inline constexpr Duration kMaxFrameLead = max_vision_lead(max_clock_difference(SafetyBudget{}.clock_bound_s));
 
 /// Whether a frame that arrives now may carry this capture time: at most 500 ms old, and at most `max_lead`

@@ -9,9 +9,9 @@
 
 namespace sidestep {
 
-/// The cameras whose last frame had more obstacles than were tracked, and how far the missing ones were from
-/// the frame's robots. These obstacles may have moved since, so the distance up to which the tracks are
-/// complete shrinks as the frame ages.
+/// The cameras whose last frame had more obstacles than were tracked, and the distances of the missing
+/// obstacles from the frame's robots. These obstacles may have moved since, so the distance up to which the
+/// tracks are complete shrinks as the frame ages.
 class IncompleteFrames {
  public:
   /// `max_speed_mps` is an obstacle's maximum speed, `max_error_m` the maximum error of its observed

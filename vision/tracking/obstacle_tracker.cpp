@@ -13,8 +13,8 @@ namespace sidestep {
 namespace {
 
 constexpr MotionNoise kObstacleMotion{2, 5};  ///< people turn abruptly
-/// Number of observations before a track is confirmed. While frames are incomplete one is enough, because an
-/// obstacle that the last frame left out is not new.
+/// Number of observations before a track is confirmed. While frames are incomplete, one observation is
+/// enough, because an obstacle that the last frame left out is not new.
 constexpr int kConfirmHits = 2;
 constexpr Duration kDropAfter{1'000'000'000};  ///< time without an observation after which a track ends
 
@@ -133,8 +133,8 @@ void ObstacleTracker::update_track(Track& track, Time at, const ObstacleObservat
   } else {
     track.filter.correct(innovation, variance);
   }
-  // A larger radius is adopted at once, because the track may have followed a smaller obstacle at the same
-  // place.
+  // A larger radius is adopted immediately, because the track may have followed a smaller obstacle at the
+  // same place.
   track.radius_m =
       std::max(observation.radius_m, track.radius_m + kRadiusGain * (observation.radius_m - track.radius_m));
   track.observed_at = at;

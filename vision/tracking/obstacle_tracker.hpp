@@ -19,9 +19,9 @@ struct ObstacleTrackerSettings {
   double position_noise_m = 0.0015;  ///< standard deviation of an observation on each axis
 };
 
-/// Tracks moving obstacles. Obstacles have no identity, so each observation updates the nearest track that
-/// can have reached it, or starts a track. Allocates only in the constructor, for incomplete frames, and when
-/// more observations are within reach of tracks than ever before.
+/// Tracks moving obstacles. Obstacles have no identity, so each observation updates the nearest track whose
+/// obstacle could have reached it, or starts a track. Allocates only in the constructor, for incomplete
+/// frames, and when more observations are within reach of tracks than in any earlier frame.
 class ObstacleTracker {
  public:
   /// Enough for four cameras with full frames.
@@ -48,7 +48,7 @@ class ObstacleTracker {
     double radius_m = 0;
     ConstantVelocityFilter<2> filter;  ///< state at observed_at
   };
-  /// A track, and an observation that it can have reached.
+  /// A track, and an observation that its obstacle could have reached.
   struct Pair {
     double distance_m = 0;  ///< distance of the observation from the track's prediction
     std::uint16_t track = 0;

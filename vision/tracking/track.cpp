@@ -107,7 +107,7 @@ void update_candidate(TrackState& state, const Observation& observation, const T
   state.candidate_hits = 1;
 }
 
-/// A robot that was pushed is observed repeatedly near its track; ghosts are not.
+/// Whether the robot was pushed: then it is observed repeatedly near its track, and ghosts are not.
 bool is_displaced(const TrackState& state, const Observation& observation, const TrackModel& model) {
   return state.is_confirmed && state.candidate_hits >= model.displaced_hits &&
          (observation.position_m - state.last.position_m).norm() <= model.gate_m;

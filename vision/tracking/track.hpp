@@ -22,7 +22,7 @@ struct TrackModel {
   double start_speed_mps = 1.5;
   double start_turn_radps = 5;  ///< standard deviation of the heading's rate at the first observation
   double gate_sigma = 5;        ///< maximum Mahalanobis distance of an observation from the track
-  double gate_m = 0.09;         ///< maximum distance, however uncertain the track is
+  double gate_m = 0.09;         ///< maximum distance of an observation, regardless of the track's uncertainty
   int confirm_hits = 3;         ///< number of consistent observations before a track is confirmed
   /// Number of consistent observations within gate_m that move a displaced track.
   int displaced_hits = 2;
@@ -61,7 +61,7 @@ struct TrackState {
   PoseFilter filter;  ///< state at last.captured_at; valid if confirmed
   Observation last;   ///< mean of the latest accepted observations; unfiltered, so that acceleration does not
                       ///< bias it
-  int last_count = 0;      ///< number of observations in that mean, all captured at the same time
+  int last_count = 0;      ///< number of observations averaged in `last`, all captured at the same time
   int candidate_hits = 0;  ///< number of consistent observations elsewhere, or before the track is confirmed
   Time candidate_at{};
   PoseFilter candidate;
@@ -76,8 +76,8 @@ struct TrackState {
 [[nodiscard]] std::optional<Estimate> estimate_at(const TrackState& state, Time t, const TrackModel& model);
 
 /// The track of one object from observations that arrive in any order. Stores the latest observations with
-/// the state after each. When a late observation arrives, it is inserted and the later ones are replayed. So
-/// the result depends on what was observed and when, but not on the order of arrival.
+/// the state after each. When a late observation arrives, it is inserted and the later ones are replayed. The
+/// result therefore does not depend on the order of arrival.
 class Track {
  public:
   /// Returns false for a duplicate, and for an observation that is older than all stored ones.

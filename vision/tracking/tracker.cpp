@@ -39,7 +39,7 @@ msg::TrackedBall tracked_ball(const State& state) {
 }
 
 constexpr double kDotError_px =
-    0.19;  // error of single dots in images, measured by sidestep-evaluation study vision
+    0.19;  // error of a single dot's position in images, measured by sidestep-evaluation study vision
 constexpr double kRobotHeight_m = 0.15;  // height of the dots
 // Error of an obstacle's position: cameras observe its contour from different sides, and thresholds affect
 // its edge.

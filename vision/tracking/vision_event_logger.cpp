@@ -12,7 +12,7 @@ void VisionEventLogger::on_unknown_camera(std::uint32_t camera) {
   if (++unknown_ < next_unknown_report_) return;
   next_unknown_report_ *= 10;
   events_.report(LogLevel::kWarning, {},
-                 "{} frame(s) refused so far of cameras that are not configured; the latest of camera {}",
+                 "{} frame(s) of unconfigured cameras refused so far; the latest was from camera {}",
                  unknown_, camera);
 }
 
@@ -20,14 +20,14 @@ void VisionEventLogger::report_missing(std::uint32_t number, Camera& camera, Tim
   if (camera.is_missing || now - *begin_ < kFirstFrameTimeout) return;
   camera.is_missing = true;
   events_.report(LogLevel::kWarning, {},
-                 "camera {} has sent no usable frame so far: obstacles may be where only it can see", number);
+                 "camera {} has sent no usable frame so far: obstacles in its view may be missed", number);
 }
 
 void VisionEventLogger::on_frame(const Frame& frame, Time now) {
   Camera& camera = cameras_.at(frame.camera());
   if (!frame.is_usable()) return report_refusal(frame, camera, now);
   if (camera.heard_at == Time{})
-    events_.report(LogLevel::kDebug, {}, "camera {} sends frames", frame.camera());
+    events_.report(LogLevel::kDebug, {}, "camera {} has started to send frames", frame.camera());
   else if (camera.is_lost)
     events_.report(LogLevel::kInfo, {}, "camera {} is back, after {:.1f} s", frame.camera(),
                    to_seconds(now - camera.heard_at));

@@ -39,13 +39,13 @@ class VisionNode {
   const msg::WorldState& world() const { return world_; }
   /// Processes a frame that has just arrived.
   void add_frame(const msg::DetectionFrame& message);
-  /// Sets a callback for events of at least a level.
+  /// Sets a callback for events of level `min_level` or higher.
   void on_event(LogLevel min_level, OnLogEvent callback) {
     events_.set_listener(min_level, std::move(callback));
   }
-  /// The reporter that sources of this node's frames use too.
+  /// The node's event reporter, which the sources of its frames also use.
   const EventReporter& events() const { return events_; }
-  /// Registers a source of this node's frames, which adds its own drop counts.
+  /// Registers a function that adds the drop counts of a source of this node's frames.
   void add_drop_source(std::function<void(DropCounters&)> source) {
     drop_sources_.push_back(std::move(source));
   }
@@ -73,7 +73,7 @@ class VisionNode {
   std::function<void(const msg::WorldState&)> listener_;
   EventReporter events_;
   VisionEventLogger event_logger_;
-  std::uint64_t unknown_cameras_ = 0;  // number of frames from cameras that are not among the node's
+  std::uint64_t unknown_cameras_ = 0;  // number of frames from cameras that are not configured
   std::vector<std::function<void(DropCounters&)>> drop_sources_;
   CounterPublisher counters_;
 };

@@ -46,7 +46,7 @@ class Viewer {
   }
 
  private:
-  /// The pictures written for one camera.
+  /// The state of writing one camera's pictures.
   struct Progress {
     int count = 0;
     Time last_captured_at{};

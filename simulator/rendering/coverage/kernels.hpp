@@ -34,8 +34,8 @@ struct Kernels {
   int (*count_in_disc)(const PixelSamples& samples, float x, float y, float radius);
   int (*count_in_cross_section)(const PixelSamples& samples, const CrossSection& section);
   /// Counts the samples whose rays meet the cross-section. The rays start at the samples. Their directions
-  /// are those of the rays through `still_offsets` from the pixel's centre, the samples before the body's
-  /// motion has shifted them.
+  /// are those of the rays through the samples before the body's motion shifts them, which are at
+  /// `still_offsets` from the pixel's centre.
   int (*count_rays_hitting)(const Points& still_offsets, const PixelSamples& samples, const ViewingRays& rays,
                             const CrossSection& section);
 };

@@ -21,7 +21,6 @@ struct Corridor {
 
   static Corridor random(Rng& rng, double robot_radius_m, double length_m);
   Vec2 middle_m(double x_m) const;
-  /// Points on both walls.
   std::vector<Vec2> wall_points(std::size_t count) const;
   /// A path along the middle.
   std::vector<Vec2> path() const;

@@ -88,9 +88,9 @@ bool compare_windows() {
       unsafe += is_safe(reference, window->choose(query)) ? 0 : 1;
     admitted += uniform.choose(query).admissible.size();
   }
-  fmt::print("  The uniform table admits {:.1f} % of the velocities that are admissible exactly.\n",
+  fmt::print("  The uniform table admits {:.1f} % of the velocities that exact computation admits.\n",
              100 * static_cast<double>(admitted) / static_cast<double>(admitted_exactly));
-  if (unsafe > 0) fmt::print("WRONG: in {} scenes, a table admits what is not admissible exactly\n", unsafe);
+  if (unsafe > 0) fmt::print("WRONG: in {} scenes, a table admits inadmissible velocities\n", unsafe);
   return unsafe == 0;
 }
 
@@ -136,7 +136,7 @@ bool compare_disc_windows() {
     for (const RatedVelocity& rated : uniform.choose(query(i, 0.1)).admissible)
       wrong += std::ranges::find(allowed, rated.velocity_mps) == allowed.end() ? 1 : 0;
   }
-  if (wrong > 0) fmt::print("WRONG: a table admits {} velocities that are not admissible exactly\n", wrong);
+  if (wrong > 0) fmt::print("WRONG: a table admits {} velocities that exact computation rejects\n", wrong);
   return wrong == 0;
 }
 

@@ -20,16 +20,16 @@ void add_bench_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<PlanningBenchOptions>();
   std::vector<std::string> planners;
   for (const BenchPlanner& planner : bench_planners()) planners.push_back(planner.name);
-  command.add_option("--world", options->worlds, "these worlds only").check(one_of(world_names()));
-  command.add_option("--planner", options->planners, "these planners only, with OMPL's versions of them")
+  command.add_option("--world", options->worlds, "run only these worlds").check(one_of(world_names()));
+  command.add_option("--planner", options->planners, "run only these planners and OMPL's versions of them")
       .check(one_of(planners));
-  command.add_option("--queries", options->queries, "queries in each world; a p99 needs 1000")
+  command.add_option("--queries", options->queries, "queries in each world; at least 1000 for a p99")
       .check(in_range(1, 1'000'000))
       .show_default();
-  command.add_option("--seeds", options->seeds, "number of seeds that the queries are divided among")
+  command.add_option("--seeds", options->seeds, "number of seeds among which the queries are divided")
       .check(in_range(1, 1000))
       .show_default();
-  command.add_option("--seed", options->seed, "first seed; the others follow it")
+  command.add_option("--seed", options->seed, "first of the consecutive seeds")
       .check(non_negative())
       .show_default();
   command.add_option("--ms", options->max_ms, "time limit of a planner for a query, milliseconds")
@@ -37,7 +37,7 @@ void add_bench_command(const CliCommand& root, std::function<int()>& action) {
       .show_default();
   command
       .add_option("--plant", options->planted,
-                  "tests the benchmark itself: adds a planner that must make it fail")
+                  "test the benchmark itself: add a faulty planner, which must make the benchmark fail")
       .check(one_of({"invalid-path", "weak-namesake"}));
   command.on_parsed(
       [&action, options] { action = [options] { return bench_planning(*options) ? 0 : kExitFailure; }; });

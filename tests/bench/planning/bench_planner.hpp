@@ -12,7 +12,7 @@ namespace sidestep {
 
 /// A planner's answer to a query, with the processor time that it took.
 struct TimedPlan {
-  bool is_solved = false;  ///< as claimed by the planner; the benchmark checks it
+  bool is_solved = false;  ///< as claimed by the planner; the benchmark checks the claim
   double plan_us = 0, smoothing_us = 0;
   std::size_t iterations = 0;  ///< samples for our planners; checks of the termination condition for OMPL's
   std::vector<Vec2> path_m, smoothed_m;
@@ -26,7 +26,7 @@ struct BenchPlanner {
   std::string name;
   /// The planner to which this one's times are compared; empty: none.
   std::string baseline;
-  /// Whether it implements the same algorithm as its baseline, so that it must not solve significantly fewer
+  /// Whether this planner implements its baseline's algorithm, and so must not solve significantly fewer
   /// queries.
   bool is_namesake = false;
   /// Prepares a planner for a world, which must outlive the result.

@@ -18,7 +18,7 @@ const std::vector<std::string>& ompl_planner_names();
 /// A planner of the Open Motion Planning Library (Sucan, Moll, Kavraki 2012) with this project's exact
 /// collision checks and OMPL's own smoothing. Every query constructs a new OMPL planner; the measured time is
 /// that of solve() alone, without construction, setup and destruction. Range and goal bias are OMPL's
-/// defaults, which the namesakes use too. The world must outlive this object.
+/// defaults, which the namesakes also use. The world must outlive this object.
 class OmplPlanner {
  public:
   OmplPlanner(const std::string& name, const BenchmarkWorld& world, std::uint64_t seed);

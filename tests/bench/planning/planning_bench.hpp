@@ -9,7 +9,7 @@ struct PlanningBenchOptions {
   std::vector<std::string> worlds;    ///< empty: all worlds
   std::vector<std::string> planners;  ///< empty: all planners
   std::string planted;                ///< see planted_planner(); empty: none
-  std::size_t queries = 1000;         ///< number for each kind of world
+  std::size_t queries = 1000;         ///< number of queries for each kind of world
   std::size_t seeds = 5;              ///< number of worlds of each kind; the queries are divided among them
   std::uint64_t seed = 1;             ///< the first seed
   double max_ms = 100;                ///< time limit of a query

@@ -14,7 +14,7 @@ struct BuildingResult {
   double distance_m = 0;  ///< total over all robots
   std::uint64_t route_changes = 0;
   double plan_p99_us = 0, plan_max_us = 0;  ///< processor time of one decision
-  double missed_percent = 0;                ///< of the agents' cycles
+  double missed_percent = 0;                ///< percentage of the agents' cycles that were missed
   bool audit_passed = false;                ///< the audit passed and no process died
 
   /// Whether all goals were reached or reported as blocked, nothing was touched by a moving robot, and the
@@ -22,12 +22,12 @@ struct BuildingResult {
   bool is_good() const { return trips.stuck == 0 && contacts == 0 && crashes_in_motion == 0 && audit_passed; }
 };
 
-/// The results that all runs have in common, from the report of a run.
+/// The result of a run, from its report, the counts of its trips and the distance driven.
 [[nodiscard]] BuildingResult building_result(const Report& report, const TripCounts& trips,
                                              double distance_m);
 
-/// Sends the robots of a scenario to random places for some virtual time, and then lets them finish. The
-/// scenario's goals are used only as places.
+/// Sends the robots of a scenario to random places for this much virtual time, and then runs until their
+/// orders are over. The scenario's goals are used only as places.
 [[nodiscard]] BuildingResult run_building(const Scenario& scenario, Duration duration, std::uint64_t seed);
 
 }  // namespace sidestep

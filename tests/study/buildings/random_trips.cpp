@@ -11,7 +11,7 @@ constexpr Duration kMaxPause{3'000'000'000};
 /// Time after which a goal that is reported as blocked is given up.
 constexpr Duration kPatience{30'000'000'000};
 
-// Robots at their positions leave this much more than the margin between each other.
+// Separation of robots at their places, in addition to the margin.
 constexpr double kExtraSeparation_m = 0.02;
 
 }  // namespace

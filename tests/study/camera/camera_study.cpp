@@ -41,7 +41,7 @@ struct DriveSum {
 
 struct Lengths {
   Distribution cells, discs;  ///< lengths relative to the path around the diamonds
-  int none = 0;               ///< number of drives in which one of the planners found no path
+  int none = 0;               ///< number of drives in which at least one planner found no path
 };
 
 void add(const StageTimes& from, StageTimes& to) {

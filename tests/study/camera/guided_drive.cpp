@@ -37,7 +37,7 @@ class DriveWorld {
     bumped_renderer_.emplace(renderer_of(bumped(guiding_camera(), angle_rad, rng_)));
   }
 
-  /// Carries out the events that happen before a frame.
+  /// Carries out the event, if one is due before a frame.
   void happen(int frame) {
     const bool is_now = frame == first_ || frame == first_ + kSecondEventAfter;
     if (is_now && event_ == DriveEvent::kTargetMoves) floor_.target_m = sample_free_place(floor_, 0.35, rng_);
@@ -121,7 +121,8 @@ void count(const PixelGuide::Guidance& guidance, int frame, const DriveWorld& wo
   if (guidance.camera_is_known) return;
   if (world.is_bumped(frame) && !result.noticed_after_frames)
     result.noticed_after_frames = frame - world.first_event() + 1;
-  // After an event this is no false alarm: a bumped camera counts as known again only after some good frames.
+  // After an event, a lost camera is no false alarm: a bumped camera counts as known again only after some
+  // good frames.
   const bool is_returning = frame >= world.first_event();
   result.false_alarms += is_returning ? 0 : 1;
 }
@@ -144,7 +145,7 @@ DriveResult drive(DriveEvent event, PixelPlanner planner, std::uint64_t seed) {
       result.discs_px = length_of(paths[2]);
     }
     result.frames = frame + 1;
-    // A drive with events ends after them.
+    // A drive with events does not end before the last event.
     const bool all_happened = event == DriveEvent::kNone || frame > world.first_event() + kSecondEventAfter;
     if (guidance.carrot_m && guidance.to_target_m < kArrival_m && all_happened) {
       result.arrived = true;

@@ -5,9 +5,8 @@
 
 namespace sidestep {
 
-/// Summarises a table of runs with one row per planner and number of people: how many robots reached all
-/// their goals, how long it took, and what went wrong. Precondition: the table has the columns of the clutter
-/// study.
+/// Summarises a table of runs with one row per planner and number of people: robots that reached all their
+/// goals, times, contacts and crashes. Precondition: the table has the columns of the clutter study.
 [[nodiscard]] StudyTable clutter_summary(const StudyTable& runs);
 
 /// Plots the share of robots that reached all their goals against the number of people, with one line per

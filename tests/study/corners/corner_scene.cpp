@@ -88,7 +88,7 @@ void sample_robot_and_laser(Scenario& scenario, Rng& rng) {
   laser.person_radius_m = rng.uniform(0.15, 0.3);
 }
 
-/// A position on a path that begins at `from_m`.
+/// The position at the fraction `part` of the length of a path that begins at `from_m`.
 Vec2 point_on(const Vec2& from_m, const std::vector<Vec2>& way_m, double part) {
   double length_m = 0;
   Vec2 last = from_m;

@@ -18,7 +18,7 @@ inline constexpr std::array kCornerKinds{"corner", "door", "shelves", "pillars",
 /// The outcome for the robot.
 struct CornerResult {
   bool has_arrived = false, was_blocked = false;
-  double seconds = 0;  ///< time until it arrived
+  double seconds = 0;  ///< time until the robot arrived
   std::uint64_t contacts = 0, crashes = 0, crashes_in_motion = 0;
   bool audit_passed = false;
 };

@@ -10,8 +10,9 @@ namespace sidestep {
 namespace {
 
 constexpr std::array kCells_m{0.02, 0.05, 0.1, 0.2};
-constexpr double kLength_m = 8, kRoom_m = 1;  // of the corridor; depth of the rooms beside it
-constexpr double kClear_m = 0.001;            // between people and walls
+constexpr double kLength_m = 8,
+                 kRoom_m = 1;       // corridor's length; rooms' depth
+constexpr double kClear_m = 0.001;  // clearance between people and walls
 
 /// The cells of the floor, and of the corridor in it.
 struct Layout {

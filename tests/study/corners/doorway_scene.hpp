@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Cell sizes of the map.
+/// Names of the kinds of scenes: the cell sizes of their maps.
 inline constexpr std::array kDoorwayKinds{"2 cm", "5 cm", "10 cm", "20 cm"};
 
 /// A scene with one robot that drives along a corridor and has a laser, and people who stand in doorways

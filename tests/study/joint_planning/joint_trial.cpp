@@ -44,7 +44,7 @@ JointTrial drive(const Scenario& scenario, const JointProblem& problem, std::uin
 
 template <typename Planner>
 JointTrial plan(const Scenario& scenario, const JointProblem& problem, double budget_s, std::uint64_t seed) {
-  // The effort is limited only by time.
+  // Only time limits the effort.
   constexpr std::size_t kUnlimited = 100'000'000;
   Rng rng(seed);
   Planner planner;

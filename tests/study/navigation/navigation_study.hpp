@@ -7,7 +7,7 @@ namespace sidestep {
 
 /// Studies navigation functions on grids: errors of their kernels by direction and among obstacles, changes
 /// when a wall appears, and effects of costs on paths. Writes directions, obstacles, replanning and costs as
-/// .csv and .png into the folder, which it creates. Throws std::runtime_error with what failed.
+/// .csv and .png into the folder, which it creates. Throws std::runtime_error with the reason of a failure.
 int study_navigation(const StudyOptions& options);
 
 }  // namespace sidestep

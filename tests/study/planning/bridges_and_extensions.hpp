@@ -9,7 +9,7 @@ struct BridgesAndExtensions {
   std::vector<std::size_t> extensions{1, 2, 4, 8, 32};
   std::vector<std::size_t> bridges{1, 2, 4, 8, 16, 32};
   std::size_t worlds = 50;
-  std::size_t queries = 20;  ///< number per world
+  std::size_t queries = 20;  ///< number of queries per world
   double step_m = 0.25;      ///< length of an extension; forty span the 10 m field
 };
 

@@ -22,8 +22,8 @@ constexpr std::array kStrategies{Strategy{"random", CacheReplacement::kRandom},
                                  Strategy{"whole plan", CacheReplacement::kWholePlan}};
 
 std::vector<MeasuredPlanner> planners_with(double waypoint_probability, std::uint64_t seed) {
-  // Each planner gets its own seed. With a common seed all would take the same branches, which the processor
-  // would already predict for later planners.
+  // Each planner gets its own seed. With a common seed, all planners would take the same branches, and the
+  // processor would predict them for all planners but the first.
   Rng seeds(seed);
   std::vector<MeasuredPlanner> planners;
   for (const Strategy& strategy : kStrategies) {

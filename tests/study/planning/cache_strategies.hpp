@@ -8,7 +8,7 @@ namespace sidestep {
 struct CacheStrategies {
   std::vector<double> waypoint_probabilities{0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
   std::size_t courses = 3;
-  std::size_t replans = 890;  ///< number in each course
+  std::size_t replans = 890;  ///< number of replans in each course
 };
 
 /// Replan times with the four replacement strategies of the waypoint cache of one tree (ERRT), as functions

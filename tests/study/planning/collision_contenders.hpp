@@ -12,7 +12,8 @@ namespace sidestep {
 struct CollisionContender {
   std::string name;
   std::function<bool(const Segment&)> touches;
-  /// Returns the mean time per query over all motions, one after another. The answers are only counted.
+  /// Returns the mean time per query over all motions, one after another. The answers are only counted, so
+  /// successive queries overlap in the processor.
   std::function<double()> query_ns;
   /// Returns the mean time of a query for one motion, repeated many times.
   std::function<double(const Segment&, std::size_t repetitions)> repeated_ns;

@@ -15,7 +15,7 @@ namespace sidestep {
 struct PlanStatistics {
   std::size_t queries = 0, solved = 0;
   Distribution plan_us{}, nodes{};
-  Distribution length{};  ///< relative to the shortest path; over solved queries
+  Distribution length{};  ///< path length relative to the shortest path; over solved queries
 
   /// `shortest_m` is the length of the shortest path; 0 if unknown.
   void add(const Plan<Vec2>& plan, double us, double shortest_m);
@@ -25,14 +25,14 @@ struct PlanStatistics {
 
 /// The columns of a table of plan statistics: the key's columns, then the measurements.
 std::vector<std::string> plan_columns(std::vector<std::string> key);
-/// A row of that table. The 99th percentile is empty for fewer than kMinForP99 plans.
+/// A row of the table with plan_columns(). The 99th percentile is empty for fewer than kMinForP99 plans.
 std::vector<std::string> plan_cells(std::vector<std::string> key, const PlanStatistics& statistics);
 
 /// Creates a query's domain with a planner's settings.
 using DomainFactory = std::function<DiscDomain(const DiscDomainSettings&)>;
 DomainFactory domain_factory(const ObstacleWorld& obstacles, const PlanWorld& world, const PlanQuery& query);
 
-/// A planner that is measured in comparison with others.
+/// A planner under comparison, and the statistics of its plans.
 class MeasuredPlanner {
  public:
   using PlanFunction =
@@ -71,7 +71,7 @@ MeasuredPlanner measured_planner(std::string name, std::uint64_t seed, const Set
 }
 
 /// Gives all planners the same query, in an order shuffled by `order`, because a planner's time depends on
-/// what its predecessor left in the processor's caches.
+/// the contents of the processor's caches.
 void plan_all(std::vector<MeasuredPlanner>& planners, Rng& order, const DomainFactory& domain,
               const Vec2& start_m, const Budget& budget, double shortest_m);
 

@@ -13,7 +13,6 @@
 namespace sidestep {
 namespace {
 
-/// The size of each experiment.
 struct PlanningSizes {
   CacheReplans cache;
   CacheStrategies strategies;

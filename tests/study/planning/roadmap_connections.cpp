@@ -39,7 +39,7 @@ std::vector<Variant> variants_of(const RoadmapConnections& settings) {
   return variants;
 }
 
-/// The world after each obstacle has moved this far in a random direction, and new queries.
+/// The world in which each obstacle has moved this far in a random direction, with new queries.
 BenchmarkWorld world_after(PlanWorld world, double displacement_m, std::size_t queries, Rng& rng) {
   for (Shape& shape : world.obstacles)
     shape = moved(shape, rotated({displacement_m, 0}, rng.uniform(0, 6.283185307179586)));

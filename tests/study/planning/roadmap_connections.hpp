@@ -13,7 +13,7 @@ struct RoadmapConnections {
   std::vector<double> displacements_m{0, 0.5};  ///< displacement of each obstacle after the roadmap was built
   std::size_t nodes = 200;
   std::size_t worlds = 50;
-  std::size_t queries = 20;  ///< number per world
+  std::size_t queries = 20;  ///< number of queries per world
 };
 
 /// Compares connection methods of a dynamic roadmap among 64 circles: the nearest node in each sector, the

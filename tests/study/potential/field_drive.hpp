@@ -20,12 +20,12 @@ struct FieldDrive {
   std::vector<Vec2> path_m;  ///< one position per cycle, beginning at the start
 };
 
-/// Returns the direction in which to drive from a position, as a unit vector; zero: do not drive.
+/// Returns the direction in which to drive from a position, as a unit vector; zero: stop.
 using DriveDirection = std::function<Vec2(const Vec2&)>;
 
-/// Drives a disc with limited acceleration to the goal of the world's query. In each cycle it accelerates
-/// towards its speed in the method's direction, and slows down before the goal. `obstacles` are the world's
-/// obstacles.
+/// Drives a disc with limited acceleration to the goal of the world's query. In each cycle the disc
+/// accelerates towards its target speed in the method's direction. It slows down before the goal. `obstacles`
+/// are the world's obstacles.
 [[nodiscard]] FieldDrive drive_by(const DriveDirection& direction, const PlanWorld& world,
                                   const ObstacleWorld& obstacles);
 

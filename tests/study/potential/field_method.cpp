@@ -11,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-// The planned disc is larger by this, to leave room for overshooting in turns.
+// Radius added to the planned disc, to leave room for overshooting in turns.
 constexpr double kOvershoot_m = 0.04;
 constexpr double kCell_m = 0.02;
 

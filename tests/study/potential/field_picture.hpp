@@ -8,7 +8,6 @@
 
 namespace sidestep {
 
-/// A driven path in a picture.
 struct PicturePath {
   std::vector<Vec2> path_m;
   std::string colour, title;

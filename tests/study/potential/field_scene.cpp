@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-// Clearance that some path to the goal has in every scene.
+// Minimum clearance of the widest path to the goal in every scene.
 constexpr double kExtraRadius_m = 0.09;
 
 void add_u(PlanWorld& world, Rng& rng) {

@@ -19,7 +19,7 @@ inline constexpr std::array kFieldScenes{FieldScene::kU, FieldScene::kWall, Fiel
                                          FieldScene::kGap, FieldScene::kDiscs};
 [[nodiscard]] const char* name_of(FieldScene scene);
 
-/// How much wider than the robot the corridors and gaps in random scenes are.
+/// Range of the widths, beyond the robot's width, of corridors and gaps in random scenes.
 inline constexpr double kMinSpare_m = 0.2, kMaxSpare_m = 0.5;
 
 /// A world with one query that is solvable with some clearance. The same seed gives the same scene.

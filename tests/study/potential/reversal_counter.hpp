@@ -24,7 +24,7 @@ class ReversalCounter {
   double threshold_rad_;
   std::optional<Vec2> last_m_;
   std::optional<double> heading_rad_;  // continuous: may exceed [-pi, pi]
-  double min_rad_ = 0, max_rad_ = 0;   // since the last reversal
+  double min_rad_ = 0, max_rad_ = 0;   // extreme headings since the last reversal
   int turning_ = 0;                    // 1: left, -1: right, 0: unknown
   int reversals_ = 0;
   double length_m_ = 0;

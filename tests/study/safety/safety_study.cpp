@@ -11,7 +11,6 @@
 namespace sidestep {
 namespace {
 
-/// The size of each experiment.
 struct SafetySizes {
   std::vector<int> robots{2, 4, 8, 16, 24, 32};
   int trials = 10;

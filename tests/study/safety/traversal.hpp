@@ -37,8 +37,8 @@ struct TraversalResult {
 
 TraversalResult result_of(const Interpenetration& meter);
 
-/// Runs the whole system for `seconds` after the coordinator's first grant. Throws std::runtime_error if it
-/// never grants.
+/// Runs the whole system for `seconds` after the coordinator's first grant. Throws std::runtime_error if the
+/// coordinator never grants.
 TraversalResult traverse_with_search(const Scenario& scenario, std::uint64_t seed, double seconds);
 
 /// Runs the same bodies, firmware and motion control without agents and coordinator: every robot executes its

@@ -54,7 +54,7 @@ std::string script(const Plot& plot) {
 
 void require_gnuplot() {
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
-    throw std::runtime_error("gnuplot is missing, which draws the plots; install gnuplot-nox");
+    throw std::runtime_error("gnuplot, which draws the plots, is not installed; install gnuplot-nox");
 }
 
 void draw(const std::vector<Plot>& plots, const std::string& png_file) {

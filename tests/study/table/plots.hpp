@@ -26,7 +26,7 @@ struct Plot {
   std::optional<double> marked_x{};  ///< position of a vertical line; nullopt: no line
 };
 
-/// Throws std::runtime_error that names the package to install if gnuplot is missing.
+/// Throws std::runtime_error, which names the package to install, if gnuplot is not installed.
 void require_gnuplot();
 
 /// Draws plots side by side into a PNG file with gnuplot. Throws std::runtime_error if that fails.

@@ -8,7 +8,7 @@
 namespace sidestep {
 
 struct MarkerErrors {
-  std::size_t frames = 300;                     ///< number per row
+  std::size_t frames = 300;                     ///< number of frames per row
   std::vector<double> noises{1, 2.5, 4, 6, 8};  ///< noise of the sensor per channel, in levels of 255
   std::size_t frames_per_scene = 10;
 };

@@ -19,7 +19,7 @@ struct Condition {
   int covered_dots = 0;
   double far_light = RenderSpec{}.far_light;
   Eigen::Vector3d colour_gain{1, 1, 1};
-  bool is_learned = true;  ///< thresholds are learned before colours drift; false: default thresholds
+  bool is_learned = true;  ///< true: thresholds learned before colours drift; false: default thresholds
 };
 
 const Condition kConditions[] = {

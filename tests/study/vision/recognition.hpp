@@ -6,7 +6,7 @@
 namespace sidestep {
 
 struct Recognition {
-  std::size_t frames = 10000;  ///< number per row
+  std::size_t frames = 10000;  ///< number of frames per row
   std::size_t frames_per_scene = 250;
 };
 

@@ -8,7 +8,6 @@
 namespace sidestep {
 namespace {
 
-/// Sizes of the experiments.
 struct VisionSizes {
   Recognition recognition;
   MarkerErrors errors;

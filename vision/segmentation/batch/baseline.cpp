@@ -21,7 +21,7 @@ struct Yuv422Row {
   }
 };
 
-/// Table look-up and AND, as in CMVision.
+/// Classifies a row by table look-up and bitwise AND, as in CMVision.
 template <typename Row>
 void classify(const ClassesView& classes, const std::uint8_t* row, std::size_t width_px,
               const RowMasks& masks) {

@@ -6,7 +6,7 @@
 namespace sidestep::segmentation {
 namespace {
 
-/// The Y, U and V of as many RGB pixels as a vector has bytes.
+/// Y, U and V of RGB pixels, one byte of a vector per pixel.
 struct RgbPixels {
   static constexpr std::size_t kBytes = 3;  ///< per pixel
   Bytes y, u, v;
@@ -18,7 +18,7 @@ struct RgbPixels {
     u = average(b, inverted_y);
     v = average(r, inverted_y);
   }
-  /// The groups of boxes that may contain some of the pixels; 0 in all bytes if there are none.
+  /// For each pixel, a bit for each group of boxes that may contain the pixel.
   Bytes groups(const CoarseTables& tables) const {
     return bit_and(bit_and(look_up(y, tables.y), look_up(u, tables.u)), look_up(v, tables.v));
   }

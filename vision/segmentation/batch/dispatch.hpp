@@ -10,7 +10,6 @@ namespace sidestep::segmentation {
 /// The kernels that this machine can run, fastest last.
 const std::vector<Kernels>& available_kernels();
 
-/// The fastest available kernels.
 const Kernels& best_kernels();
 
 }  // namespace sidestep::segmentation

@@ -352,7 +352,7 @@ TEST_CASE("disturbances, contacts, and own stops with their reasons are reported
   push.robot(99);
   writer.publish(push, scene.network.now());
   scene.run(milliseconds(50));
-  CHECK(events.count("a disturbance of robot 99 is refused") == 1);
+  CHECK(events.count("refused a disturbance of robot 99") == 1);
   for (const LogEvent& event : events.all()) CHECK(event.robot.has_value());
 }
 

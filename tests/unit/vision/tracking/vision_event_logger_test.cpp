@@ -45,7 +45,7 @@ TEST_CASE("a camera that falls silent is reported as lost, and as back with its 
   f.wait(2000 * kMs);
   f.run(1000 * kMs, 4, false);
   CAPTURE(f.events->text());
-  CHECK(f.events->count("camera 4 sends frames") == 1);
+  CHECK(f.events->count("camera 4 has started to send frames") == 1);
   CHECK(f.events->count("camera 4 is lost") == 1);
   CHECK(f.events->count("camera 4 is back, after 2.0 s") == 1);
   CHECK(f.events->all().size() == 3);
@@ -83,8 +83,8 @@ TEST_CASE("frames of cameras that are not configured are reported ever more rare
   for (std::uint32_t camera = 1; camera <= 10'000; ++camera)
     f.node->add_frame(frame_message(camera, f.network.now()));
   CAPTURE(f.events->text());
-  CHECK(f.events->count("frame(s) refused so far of cameras that are not configured") == 5);
-  CHECK(f.events->count("10000 frame(s) refused so far") == 1);
+  CHECK(f.events->count("frame(s) of unconfigured cameras refused so far") == 5);
+  CHECK(f.events->count("10000 frame(s) of unconfigured cameras refused so far") == 1);
   CHECK(f.events->all().size() == 5);
 }
 
