@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Robots that are absent from the floor, according to their own report or to the operator.
+// Robots that are absent from the floor according to their own reports or an operator.
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/coordinator_fixture.hpp"
 
@@ -43,7 +43,7 @@ TEST_CASE(
   CHECK(missing(floor.coordinator).size() == 2);
 }
 
-TEST_CASE("a moving robot that is held is granted nothing, however many versions it may execute") {
+TEST_CASE("a held robot in motion is granted nothing, even if it may execute several versions") {
   Floor floor;
   floor.register_both();
   Version last = floor.a;

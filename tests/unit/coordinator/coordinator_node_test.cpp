@@ -212,7 +212,7 @@ struct Attested : Floor {
   }
 };
 
-TEST_CASE("when an operator attests that a silent robot is absent, the coordinator says so and grants") {
+TEST_CASE("a coordinator logs that an operator attests the absence of a silent robot, and starts to grant") {
   Attested floor;
   floor.attest(1);
   CHECK(floor.node.coordinator().is_granting());
@@ -254,7 +254,7 @@ TEST_CASE("a coordinator reports its role, each registration, and when it starts
   CHECK(events.all().size() == 4);
 }
 
-TEST_CASE("a coordinator names the robots whose registrations it awaits once per second") {
+TEST_CASE("a coordinator reports once per second which robots it is waiting for") {
   Floor floor;
   const LogEvents events(floor.node);
   floor.send(topics::kRegistration, registration_of(floor.a, floor.node.coordinator().epoch()));
@@ -422,7 +422,7 @@ TEST_CASE("a coordinator keeps working after its clock is set back") {
   CHECK(floor.node.coordinator().epoch() == epoch);
 }
 
-TEST_CASE("a coordinator announces all orders as soon as its epoch begins") {
+TEST_CASE("a coordinator announces all orders when its epoch begins") {
   Floor floor(true);
   int whole_memories = 0;
   std::optional<Time> begun_at, told_at;

@@ -54,8 +54,7 @@ TEST_CASE("a denied version is not granted later, even after its verdict has bee
   // This version would drive through the other robot.
   const auto denied = proposal_of({continued(floor.a, 10, 1, {3, 0}, 0.6)}, kEpoch);
   REQUIRE(floor.ask(denied).reasons[0] == msg::Reason::REASON_CONFLICT);
-  for (VersionNumber number = 1; number <= 9;
-       ++number)  // older versions, which are answered but not remembered
+  for (VersionNumber number = 1; number <= 9; ++number)  // older versions; their verdicts are not remembered
     CHECK(floor.ask(proposal_of({continued(floor.a, number, 1, {0, 3})}, kEpoch)).granted_version == 0);
   for (VersionNumber number = 11; number <= 20; ++number)
     CHECK(floor.ask(proposal_of({continued(floor.a, number, 1, {3, 0}, 0.6)}, kEpoch)).granted_version == 0);

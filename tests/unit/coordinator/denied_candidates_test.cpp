@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Candidates that do not exist, and first versions of absent robots that are not rest versions.
+// Verdicts on missing candidates, and on first versions of absent robots that are not rest versions.
 #include "tests/catch.hpp"
 #include "tests/unit/coordinator/coordinator_fixture.hpp"
 

@@ -23,7 +23,7 @@ struct One {
 };
 
 TEST_CASE(
-    "a robot is displaced if it is off by more than half the margin plus vision's error plus its inflation") {
+    "a robot seen farther from its version than margin, vision error and inflation permit is displaced") {
   One one;
   one.see({0.0169, 0}, 1);
   CHECK_FALSE(one.displaced.contains(1));
@@ -82,11 +82,11 @@ TEST_CASE("a resting robot is displaced if the mean of its observations is half 
     see_often(0.009, 1);
     REQUIRE(one.displaced.contains(1));
   }
-  SECTION("until the robot is back") {
+  SECTION("the robot is back after it is seen near its version again") {
     see_often(0.002, kEnough + DisplacedRobots::kObservationsUntilBack);
     CHECK_FALSE(one.displaced.contains(1));
   }
-  SECTION("until the robot executes its own stop there") {
+  SECTION("the robot is back after it executes its own stop where it is seen") {
     Version stop = rest_version(1, {0.009, 0}, 1000);
     stop.trajectory = Trajectory::resting(at_s(now), {0.009, 0});
     REQUIRE(one.ledger.on_executing(stop, at_s(now), true) == ReportOutcome::kApplied);
@@ -128,7 +128,7 @@ TEST_CASE(
   CHECK_FALSE(one.displaced.last_observation(2));
 }
 
-TEST_CASE("an observation is compared with what the robot executed at its time, however late it arrives") {
+TEST_CASE("an observation is compared with the versions that the robot may have executed at its time") {
   One one;
   const Version p = continued(one.a, 10, 1, {3, 0}, 0.3);
   REQUIRE(one.ledger.grant(p).is_granted());
@@ -148,7 +148,7 @@ TEST_CASE("an observation is compared with what the robot executed at its time, 
 }
 
 // Version a rests at x = 0, the own stop at x = 0.5.
-TEST_CASE("a version that a robot has left still counts for as long as two clocks may differ") {
+TEST_CASE("a version that a robot has left still matches observations within the maximum clock difference") {
   const Duration max_difference = GENERATE(Duration{1'000'000}, Duration{4'000'000}, Duration{100'000'000});
   CAPTURE(to_seconds(max_difference));
   const Duration late = max_difference * GENERATE(1, 2, 3, 4, 5) / 4;

@@ -199,7 +199,7 @@ TEST_CASE("a coordinator yields to a higher epoch and takes over again when the 
 }
 
 TEST_CASE(
-    "a coordinator that learns of a higher obeyed epoch begins above it, or yields if it already grants") {
+    "a coordinator that learns a higher obeyed epoch raises its own epoch, or yields if it already grants") {
   Failover active({0, 5}, false, kBegin);
   const Epoch own = active.epoch();
   active.on_obeyed_epoch(own - 1, false, kBegin, 7, EpochHolder::kRobot);
@@ -211,8 +211,8 @@ TEST_CASE(
   CHECK_FALSE(active.is_active());
   const Duration first = active.takeover_timeout();
   Duration last = first;
-  // While no heartbeats of the other coordinator arrive, the coordinator yields for longer each time, up to a
-  // limit.
+  // If no heartbeats of another coordinator arrive, the coordinator yields for a longer time after each
+  // higher epoch, up to a limit.
   Time now = kBegin;
   for (int i = 0; i < 5; ++i) {
     const Time yielded = now;
@@ -231,7 +231,7 @@ TEST_CASE(
   CHECK(active.takeover_timeout() < std::chrono::milliseconds(300));
 }
 
-TEST_CASE("a coordinator keeps working while another process reports ever higher epochs") {
+TEST_CASE("a coordinator keeps working while another process reports increasing epochs") {
   const bool is_granting = GENERATE(true, false);
   const Duration period = std::chrono::milliseconds(GENERATE(5, 100, 3000));
   CAPTURE(is_granting, to_seconds(period));
@@ -256,7 +256,7 @@ TEST_CASE("a coordinator keeps working while another process reports ever higher
   CHECK((active.too_frequent() > 0) == (period < std::chrono::seconds(5)));
 }
 
-TEST_CASE("two coordinators share an epoch only if they have the same number, and then both give it up") {
+TEST_CASE("coordinators share an epoch only if they have the same number, and both give it up") {
   Rng rng(3);
   std::set<Epoch> epochs;
   for (int round = 0; round < 200; ++round) {
@@ -278,7 +278,7 @@ TEST_CASE("two coordinators share an epoch only if they have the same number, an
   CHECK(later.epoch() > shared);
 }
 
-TEST_CASE("epochs far ahead are ignored, and plausible hostile epochs cost one change of epoch each") {
+TEST_CASE("epochs far ahead are ignored, and each plausible hostile epoch causes one change of epoch") {
   Failover active({0, 5}, false, kBegin);
   const Epoch own = active.epoch();
   for (const Epoch hostile : {Epoch{1} << 61, (Epoch{1} << 62) - 1, Epoch{1} << 62, ~Epoch{0},
@@ -296,7 +296,7 @@ TEST_CASE("epochs far ahead are ignored, and plausible hostile epochs cost one c
   while (!active.is_active() && now < kBegin + std::chrono::seconds(5))
     update(active, now += std::chrono::milliseconds(5));
   CHECK(active.epoch() > just_plausible);
-  // By then, other processes find the new epoch plausible.
+  // The new epoch must be plausible to other processes.
   CHECK(is_plausible(active.epoch(), now));
 }
 

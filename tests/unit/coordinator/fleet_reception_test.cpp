@@ -9,7 +9,7 @@ constexpr Duration kPeriod{16'666'667};
 
 Time after_ms(int ms) { return time_from_ns(1'000'000'000'000) + std::chrono::milliseconds(ms); }
 
-TEST_CASE("a coordinator hears its robots while facts arrive from half of those that it heard recently") {
+TEST_CASE("a coordinator hears its robots while facts arrive from half of the recently heard robots") {
   FleetReception reception(kPeriod);
   CHECK_FALSE(reception.hears_robots(after_ms(0)));
   for (const RobotId robot : {1, 2, 3, 4}) reception.on_robot_report(robot, 5, false, after_ms(0));

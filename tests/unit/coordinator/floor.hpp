@@ -23,7 +23,7 @@ inline Version rest_version(RobotId robot, Vec2 position, VersionNumber number =
   return {robot, 0, number, 0, Trajectory::resting(at_s(0), position)};
 }
 
-/// Continues `base` from start_s with an acceleration for `seconds`, then stops.
+/// A version that continues `base` from start_s with an acceleration for `seconds`, then stops.
 inline Version continued(const Version& base, VersionNumber number, double start_s, Vec2 acceleration,
                          double seconds = 1.0 / 60) {
   Trajectory trajectory(at_s(start_s), base.trajectory.state_at(at_s(start_s)));

@@ -173,7 +173,7 @@ TEST_CASE("a robot pushed too close to an obstacle or off the field may move out
   CHECK(ledger.grant(continued(out, 12, 1, {0, 3})).is_granted());
 }
 
-TEST_CASE("lifting a robot removes its versions except those that are still to start") {
+TEST_CASE("lifting a robot removes its versions except those that have not started yet") {
   Two two({0, 0}, {1, 0});
   const Version p = continued(two.a, 10, 1, {0, 3});
   REQUIRE(two.ledger.grant(p).is_granted());
@@ -193,7 +193,7 @@ TEST_CASE("lifting a robot removes its versions except those that are still to s
   Version placed = rest_version(1, {3, 3}, 13);
   placed.trajectory = Trajectory::resting(at_s(2), {3, 3});
   REQUIRE(two.ledger.grant(placed).is_granted());
-  two.ledger.on_lifted(1, at_s(1.9));  // the robot has not switched to it yet
+  two.ledger.on_lifted(1, at_s(1.9));  // the rest version has not started yet
   CHECK(two.ledger.versions(1).size() == 1);
   CHECK(two.ledger.on_executing(placed, at_s(2), false) == ReportOutcome::kApplied);
   // The robot is lifted again, so it no longer executes that version.
@@ -213,7 +213,7 @@ TEST_CASE("a lifting ends when the robot restarts, even if its clock is then beh
   stop.number = 14;
   CHECK(two.ledger.on_executing(stop, at_s(2.5), true, second) == ReportOutcome::kApplied);
   CHECK(two.ledger.versions(1).front().number == 14);
-  // The robot is lifted again, by its new clock.
+  // The robot is lifted again, at a time of its new clock.
   two.ledger.on_lifted(1, at_s(3), second);
   CHECK(two.ledger.versions(1).empty());
   CHECK(two.ledger.on_executing(stop, at_s(2.9), true, second) == ReportOutcome::kStale);

@@ -76,7 +76,7 @@ TEST_CASE("a candidate must continue its base, obey the limits, come to rest and
   CHECK(two.ledger.versions(1).size() == 1);
 }
 
-TEST_CASE("a fact removes older versions, and newer versions that start at or before its time") {
+TEST_CASE("a fact removes older versions, and newer versions that start no later than the time of the fact") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(two.a, 11, 2, {3, 0}),
                 r = continued(p, 12, 3, {0, 3});
@@ -92,7 +92,7 @@ TEST_CASE("a fact removes older versions, and newer versions that start at or be
   CHECK(two.ledger.versions(1)[1].number == 12);
 }
 
-TEST_CASE("facts may arrive late, twice and in any order") {
+TEST_CASE("facts that arrive late, repeatedly or out of order remove no version") {
   Two two(5);
   const Version p = continued(two.a, 10, 1, {3, 0}), q = continued(p, 11, 1.1, {3, 0});
   REQUIRE(two.ledger.grant(p).is_granted());

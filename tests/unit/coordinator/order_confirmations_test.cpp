@@ -77,7 +77,7 @@ TEST_CASE("a hold is not confirmed until an agent of its robots reports that its
   }
 }
 
-TEST_CASE("a hold that was lifted or replaced before its confirmation is no longer awaited") {
+TEST_CASE("a hold that is lifted or replaced before its confirmation is answered as replaced") {
   Floor floor;
   floor.hold(3);
   floor.book.merge({{msg::OrderKind::ORDER_RESUME, 3, kClient, ++floor.number}});

@@ -47,7 +47,7 @@ TEST_CASE("before any robot has moved, a coordinator gives the scenario's orders
 }
 
 TEST_CASE(
-    "a coordinator that has forgotten the orders waits for another memory, then holds all robots until an "
+    "a coordinator without orders waits for another process's memory, then holds all robots until an "
     "operator resumes them") {
   Keeper k;
   CHECK_FALSE(k.keeper.update(true, true, kNow));
@@ -154,7 +154,7 @@ TEST_CASE("a client whose holds fill the memory can lift them") {
   CHECK(keeper.book().hold_count() == 1);  // the operator's hold remains
 }
 
-TEST_CASE("a hold accepted by one coordinator is stored by all others, however full their memories are") {
+TEST_CASE("a hold accepted by one coordinator is stored by all others, even if their memories are full") {
   OrderKeeper active(hundreds(), kSelf), standby(hundreds(), kOther);
   for (OrderKeeper* keeper : {&active, &standby}) (void)keeper->update(true, false, kNow);
   const auto page = [](const OrderKeeper& from, std::uint32_t process) {

@@ -22,7 +22,7 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and other r
   CHECK(state.notices()[0].robot() == 1);
   CHECK(state.notices()[0].is_quarantined());
   CHECK_FALSE(state.notices()[0].is_missing());
-  // The robot's versions and the reported one remain, whatever the robot reports.
+  // The robot's versions and the reported version remain in the ledger after further reports.
   CHECK(floor.coordinator.ledger().versions(1).size() == 3);
   floor.receive(make_report(floor.a, 1.02));
   floor.receive(make_report(granted, 1.5));
@@ -35,7 +35,7 @@ TEST_CASE("a robot whose fact contradicts the ledger is quarantined, and other r
   CHECK(floor.ask(proposal_of({continued(floor.b, 20, 1, {0, 3})}, kEpoch)).granted_version == 20);
 }
 
-TEST_CASE("a robot that obeys a higher epoch is not quarantined for executing what that epoch granted") {
+TEST_CASE("a robot that obeys a higher epoch is not quarantined for executing a version of that epoch") {
   Floor floor;
   floor.register_both();
   auto granted_elsewhere = make_report(rest_version(1, {0.5, 0}, 7), 1);
@@ -58,7 +58,7 @@ TEST_CASE("a robot that obeys a higher epoch is not quarantined for executing wh
   }
 }
 
-TEST_CASE("other robots keep clear of what a quarantined robot has reported") {
+TEST_CASE("other robots keep clear of the version that a quarantined robot has reported") {
   Floor floor;
   floor.register_both();
   floor.receive(make_report(rest_version(1, {0.5, 0}, 7), 1));
@@ -76,11 +76,11 @@ TEST_CASE("a quarantined robot is released by a new agent, a new epoch or a lift
   const Version unknown = rest_version(1, {0.5, 0}, 7);
   floor.receive(make_report(unknown, 1));
   REQUIRE(floor.coordinator.ledger().is_quarantined(1));
-  SECTION("the same agent does not release the robot") {
+  SECTION("a registration by the same agent does not release the robot") {
     CHECK(floor.receive(registration_of(floor.a, kEpoch))->reasons[0] == msg::Reason::REASON_GRANTED);
     CHECK(floor.coordinator.ledger().is_quarantined(1));
   }
-  SECTION("a new agent lists what the robot may execute") {
+  SECTION("a registration by a new agent releases the robot") {
     CHECK(floor.receive(registration_of(unknown, kEpoch, 2))->reasons[0] == msg::Reason::REASON_GRANTED);
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
     REQUIRE(floor.coordinator.ledger().versions(1).size() == 1);
@@ -88,12 +88,12 @@ TEST_CASE("a quarantined robot is released by a new agent, a new epoch or a lift
     floor.receive(make_report(unknown, 2));
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
   }
-  SECTION("a new epoch begins with registrations") {
+  SECTION("a new epoch releases the robot, which must register again") {
     floor.coordinator.begin_epoch(kEpoch + 1);
     CHECK_FALSE(floor.coordinator.ledger().is_quarantined(1));
     CHECK(missing(floor.coordinator).size() == 2);
   }
-  SECTION("a lifted robot executes nothing") {
+  SECTION("a lifting releases the robot and removes its versions") {
     auto lifted = make_report(rest_version(1, {0, 0}), 2);
     lifted.is_lifted(true);
     floor.receive(lifted);

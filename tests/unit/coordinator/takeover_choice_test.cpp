@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a coordinator decides from what it hears whether to take over.
+// How a coordinator decides whether to take over, based on the messages that it receives.
 #include "common/protocol/senders.hpp"
 #include "coordinator/failover.hpp"
 #include "tests/catch.hpp"
@@ -10,12 +10,12 @@ constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 constexpr Epoch kEpoch = 1'000'000'000'000;
 const std::vector<RobotId> kRoster{1, 2, 3};
 
-/// Coordinator 1, and what it hears in the next steps of 5 ms.
+/// Coordinator 1, and the senders that it hears in each step of 5 ms.
 struct Coordinator {
   Failover failover{{1, 99}, true, kBegin, {kRoster}};
   Time now = kBegin;
   std::vector<RobotId> heard_robots = kRoster, heard_agents = kRoster, asking{};
-  Epoch other = 0;                 ///< epoch of coordinator 0, whose heartbeats are heard; 0: none are heard
+  Epoch other = 0;                 ///< epoch in coordinator 0's heartbeats; 0 if none arrive
   std::vector<RobotId> missing{};  ///< robots that coordinator 0 has not registered
   bool hears_vision = true, is_fleet_served = false, is_granting = false;
   VersionNumber number = 10;
@@ -114,7 +114,7 @@ TEST_CASE("a standby takes over from a coordinator that does not register an age
 }
 
 TEST_CASE(
-    "only a standby that hears all agents and vision takes over from a coordinator that fails to serve one") {
+    "only a standby that hears all agents and vision replaces a coordinator that fails to serve an agent") {
   const bool hears_agents = GENERATE(true, false), hears_vision = GENERATE(true, false);
   const bool hears_all = hears_agents && hears_vision;
   CAPTURE(hears_agents, hears_vision);
@@ -185,7 +185,7 @@ TEST_CASE(
     be_superseded();
   }
   CHECK(last_s > 7);
-  // While no robot moves, a failed attempt costs nothing.
+  // If no robot begins new versions, earlier failures do not lengthen the wait.
   c.is_fleet_served = false;
   CHECK(c.takeover_s(30) < 2.2);
   c.other = 0;
@@ -199,8 +199,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "on learning of a higher epoch, a new coordinator begins above it, but one that waited in vain to grant "
-    "yields") {
+    "a new coordinator that learns a higher epoch raises its own, but yields if it has waited in vain to "
+    "grant") {
   Coordinator c;
   REQUIRE(c.takeover_s(5) < 5);
   const Epoch own = c.failover.epoch();

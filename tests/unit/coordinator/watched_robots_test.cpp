@@ -88,7 +88,7 @@ TEST_CASE("a robot with a slow clock counts as silent until its version has ende
   const double end_s = to_seconds(p.trajectory.end().time_since_epoch());
   CHECK(is_silent_at(end_s + 0.09));
   CHECK_FALSE(is_silent_at(end_s + 0.11));
-  // A clock that is ahead within the bound does not make a robot silent either.
+  // A robot whose clock is ahead within the bound does not count as silent.
   Version stop = rest_version(2, {1, 0}, 1'000'000);
   stop.trajectory = Trajectory::resting(at_s(3.14), {1, 0});
   auto message = make_report(stop, 3.14);
@@ -118,7 +118,7 @@ TEST_CASE("dropped or uncompared observations do not count as watching") {
     CHECK(watched_until() == at_s(1.01));
     CHECK(floor.coordinator.drops().total(DropReason::kFutureObservation) == 1);
   }
-  SECTION("a world state of which the caller dropped an observation") {
+  SECTION("a world state from which the caller dropped an observation") {
     see({seen(1, 1.1)}, 1.11, false);
     CHECK(watched_until() == at_s(1.01));
   }

@@ -19,7 +19,7 @@ TEST_CASE(
   scene.sees = false;
   scene.run(1s);
   CHECK_FALSE(scene.robot.may_report());
-  // These fixes disagree.
+  // The robot is moved between fixes, so the fixes disagree.
   for (int i = 0; i < 20; ++i) {
     scene.run(20ms);
     scene.position_m.x() += 0.05;
@@ -100,7 +100,7 @@ TEST_CASE("a driven robot whose process was paused stays at rest until it has fo
 namespace {
 
 /// Sends a version that accelerates for a second and then stops. Calls `step` in each period. Returns the
-/// largest error of the robot's own estimate.
+/// largest error of the robot's own estimate, which is infinite if the robot falls silent.
 double drive_and_measure(Scene& scene, const std::function<void()>& step) {
   const Version base = scene.robot_report().executing;
   const Time start = scene.now + 150ms;
@@ -116,8 +116,8 @@ double drive_and_measure(Scene& scene, const std::function<void()>& step) {
 
 }  // namespace
 
-TEST_CASE("with odometry a driven robot knows its position even if its base does not fully obey") {
-  // The timestamps of reports lie between control periods.
+TEST_CASE("with odometry, a driven robot knows its position even if its base is slower than commanded") {
+  // The timestamp of an odometry report may lie between two control periods.
   const auto [report_every, ago] = GENERATE(table<int, Duration>({{1, 0ms}, {1, 3ms}, {1, 7ms}, {2, 5ms}}));
   CAPTURE(report_every, ago.count());
   Scene scene;

@@ -56,7 +56,7 @@ class DrivenScene {
     const double turned_rad = heading_rad - s * turn_radps + 1.1;
     robot.on_odometry({kDrivenRobot, now - ago + date_error, place_m, turned_rad}, now - ago);
   }
-  /// Without a version, the command only fences.
+  /// Sends a command, which only fences if it contains no version.
   void send(const std::optional<Version>& version) {
     Command command = bare();
     command.version = version;
@@ -97,7 +97,7 @@ inline Version continuation(const Version& base, Incarnation agent, VersionNumbe
   return {kDrivenRobot, agent, number, base.number, trajectory, base.inflation_m};
 }
 
-/// The distance from the position that the version prescribes, minus the version's inflation.
+/// The distance of `position_m` from the version's position at `at`, minus the version's inflation.
 inline double beyond_m(const Version& version, const Vec2& position_m, Time at) {
   return (position_m - version.trajectory.state_at(at).position_m).norm() - version.inflation_m;
 }

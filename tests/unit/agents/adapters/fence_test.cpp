@@ -17,7 +17,7 @@ using test::DrivenScene;
 
 constexpr double kTrackingBound_m = SafetyBudget{}.tracking_bound_m;
 
-/// Runs for `duration`. Returns the body's maximum deviation from the version that the facts state.
+/// Runs for `duration`. Returns the body's maximum deviation from the executed version, minus the inflation.
 double run_and_measure(DrivenScene& scene, Duration duration) {
   double largest_m = 0;
   for (const Time end = scene.now + duration; scene.now < end;) {
@@ -83,7 +83,7 @@ TEST_CASE(
   CHECK(scene.robot_report().executing.number == scene.base.number);
 }
 
-TEST_CASE("in a chain of versions, those that start within the lead are kept") {
+TEST_CASE("a fenced robot keeps the versions of a chain that start within the lead") {
   PendingScene scene(200ms);
   scene.run(10ms);
   // The robot will not execute `third`, which starts too late, or `other`, which has a different base.
@@ -127,7 +127,7 @@ TEST_CASE("agents that fence a robot in turn delay each other by no more than th
   CHECK(beyond <= kTrackingBound_m);
 }
 
-TEST_CASE("an agent of a new epoch fences a robot by the same rule") {
+TEST_CASE("a robot obeys a new epoch immediately, but its agent only when the pending version starts") {
   PendingScene scene(100ms);
   scene.run(scene.start - 50ms - scene.now);
   scene.agent = 101;
@@ -142,11 +142,11 @@ TEST_CASE("an agent of a new epoch fences a robot by the same rule") {
 
 namespace {
 
-/// The versions that other processes expect the robot to execute, by the rules of the ledger.
+/// The versions that other processes expect the robot to execute according to the rules of the ledger.
 class ExpectedVersions {
  public:
   void grant(const Version& version) { versions_.push_back(version); }
-  /// Returns false if the fact contradicts the expectation.
+  /// Applies a fact. Returns false if the fact contradicts the expected versions.
   bool apply(const RobotReport& robot_report) {
     const VersionNumber f = robot_report.executing.number;
     const auto is_f = [=](const Version& version) { return version.number == f; };
@@ -168,7 +168,7 @@ class ExpectedVersions {
 
 }  // namespace
 
-TEST_CASE("whichever agents restart, the robot executes an expected version and its body follows it") {
+TEST_CASE("a robot with agents that restart at random executes and follows only expected versions") {
   int restarts = 0, deferred = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     INFO("seed " << seed);

@@ -22,7 +22,7 @@ Scenario two_teams() {
   return scenario;
 }
 
-/// Waits until the socket is readable; false after two seconds.
+/// Waits until the socket is readable. Returns false after two seconds.
 bool is_readable(int descriptor) {
   pollfd event{descriptor, POLLIN, 0};
   return poll(&event, 1, 2000) == 1;

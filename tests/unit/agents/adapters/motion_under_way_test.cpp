@@ -69,7 +69,7 @@ double acceleration_mps2(const robot::MotionUnderWay<float>& motion) {
   return largest_mps2;
 }
 
-TEST_CASE("for any commands, receivers accept the fitted motion's accelerations and its error is bounded") {
+TEST_CASE("a motion fitted to random commands has valid accelerations and a valid error bound") {
   const auto seed = GENERATE(range(1u, 301u));
   CAPTURE(seed);
   Rng rng(seed);

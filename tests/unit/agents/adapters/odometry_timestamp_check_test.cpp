@@ -20,7 +20,7 @@ TEST_CASE("after a report that arrived on time, timestamps are trusted for a lim
   CHECK_FALSE(dates.admit(kBegin + 520ms, kBegin + 530ms));
 }
 
-TEST_CASE("a report from the future is refused and ends the trust until another report arrives on time") {
+TEST_CASE("after a report from the future, all reports are refused until a report arrives on time") {
   OdometryTimestampCheck dates(4ms);
   CHECK(dates.admit(kBegin, kBegin));
   CHECK(dates.admit(kBegin + 14ms, kBegin + 10ms));
@@ -29,7 +29,7 @@ TEST_CASE("a report from the future is refused and ends the trust until another 
   CHECK(dates.admit(kBegin + 40ms, kBegin + 40ms));
 }
 
-TEST_CASE("a base whose clock is off by more than the error plus the delay is never trusted") {
+TEST_CASE("timestamps are never trusted if their offset exceeds the maximum error plus the delay") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

@@ -14,8 +14,8 @@ using test::beyond_m;
 using test::continuation;
 using test::DrivenScene;
 
-/// The robot's first own stop after version `before`, and the body's maximum deviation from it within a
-/// second, minus its inflation.
+/// The robot's first own stop after version `before`, and the body's maximum deviation from this stop
+/// within 1.5 s, minus the stop's inflation.
 struct Excursion {
   std::optional<Version> stop;
   double beyond_m = 0;
@@ -35,7 +35,7 @@ constexpr double kTrackingBound_m = SafetyBudget{}.tracking_bound_m;
 
 }  // namespace
 
-TEST_CASE("a push before a short version leaves the body within the robot's own stop") {
+TEST_CASE("a robot that is pushed just before a short version stays within its own stop") {
   const Duration latency = GENERATE(0ms, 50ms, 100ms, 150ms, 200ms, 300ms);
   DrivenScene scene(latency);
   scene.run(1500ms);
@@ -75,7 +75,7 @@ std::optional<Excursion> push_at_random(std::uint64_t seed) {
   Vec2 aim_mps2(0, 0);
   for (Time next = scene.now; scene.now < push_at; scene.step()) {
     if (scene.now < next) continue;
-    // Agents propose about this far ahead and hold an acceleration for about this long.
+    // Agents typically propose a version this long before its start, with an acceleration of this duration.
     const Duration ahead = latency + 10ms + from_seconds(rng.uniform(0, 0.03));
     if (rng.chance(0.4)) {
       const double size_mps2 = rng.uniform(0, 5), angle_rad = rng.uniform(-3.14, 3.14);
@@ -109,8 +109,8 @@ void check_pushes(std::uint64_t first, std::uint64_t count) {
     if (excursion->beyond_m > worst_m) worst_m = excursion->beyond_m, worst_seed = seed;
   }
   WARN(stops << " own stops, inflated by " << 1e3 * inflations_m / static_cast<double>(stops)
-             << " mm on average; " << beyond << " bodies beyond, at most " << 1e3 * worst_m << " mm, seed "
-             << worst_seed << "; " << unprovoked << " stops without a push");
+             << " mm on average; " << beyond << " left by the body, worst deviation " << 1e3 * worst_m
+             << " mm, seed " << worst_seed << "; " << unprovoked << " stops without a push");
   CHECK(beyond == 0);
   CHECK(unprovoked == 0);
   CHECK(stops > count / 2);

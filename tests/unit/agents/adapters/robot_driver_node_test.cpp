@@ -111,7 +111,7 @@ TEST_CASE("odometry with a wrong timestamp is counted for its robot") {
   CHECK(drops.total(DropReason::kMisdatedOdometry) == 2);
 }
 
-TEST_CASE("robots whose process must end finish their versions and accept no others") {
+TEST_CASE("when their process must end, robots finish their versions and accept no new versions") {
   Scene scene;
   for (int i = 0; i < 60; ++i) {
     scene.command(0, 100, 1);
@@ -151,13 +151,13 @@ TEST_CASE("robots whose process must end finish their versions and accept no oth
   CHECK(driving.driver.max_speed_mps < 0.01);
 }
 
-TEST_CASE("restarted robots remember which agent they obey, and count what they cannot store") {
+TEST_CASE("restarted robots remember the agent that they obey, and count commands that cannot be stored") {
   Scene scene;
   for (int i = 0; i < 60; ++i) {
     scene.command(1, 100, 9);
     scene.run(20ms);
   }
-  scene.robot_bus.reset();  // destroyed first, so that the bus makes no more calls
+  scene.robot_bus.reset();  // destroyed first, because the bus calls the node
   scene.node.reset();
   SimBus second_bus(scene.network);
   RobotDriverNode second(second_bus, scene.scenario, roster_of(scene.scenario), 56, DriveSettings{},

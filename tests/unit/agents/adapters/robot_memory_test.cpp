@@ -9,7 +9,7 @@
 
 namespace sidestep::robot_memory_test {
 
-TEST_CASE("a robot's file preserves what the robot stored") {
+TEST_CASE("a robot's memory file preserves the stored values") {
   const TemporaryFolder folder;
   const std::string robots = folder.file("a/b");
   const robot::DurableState state{1'795'644'474'375'210'547u, 17, 18'446'744'073'709'551'615u, true};

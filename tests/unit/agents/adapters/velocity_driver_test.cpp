@@ -62,7 +62,7 @@ TEST_CASE("velocities are sent as twists, and odometry is received with its time
   scene.report(misdated);
   REQUIRE(scene.reports.size() == 2);
   CHECK(scene.reports[1].measured_at > scene.network.now());
-  // The base uses a different time, for example a simulator's.
+  // The base's clock has a different epoch, for example that of a simulation.
   ros::Odometry old = scene.odometry();
   old.sec = 17;
   const Time sent = scene.network.now();

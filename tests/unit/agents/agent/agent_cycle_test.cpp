@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the node sends its commands, registrations, measurements, proposals and order reports.
+// Tests when the node sends commands, registrations, measurements, proposals and order reports.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -39,8 +39,8 @@ msg::OrderMemory memory_of(const RememberedOrder& order, bool is_announcement) {
 }
 
 /// An agent's node, and one process that acts as its robot at rest, as vision and as the coordinator. The
-/// network takes 0.1 ms. The coordinator grants nothing. By default it answers registrations but not
-/// proposals. Answers that do not echo the request's time do not measure the clock.
+/// network delay is 0.1 ms. The coordinator grants nothing. By default the coordinator answers registrations
+/// but not proposals. Answers that do not echo the request's time do not measure the clock.
 struct Floor {
   Scenario scenario = one_robot();
   SimNetwork network{1, kBegin, scenario.network};
@@ -164,7 +164,7 @@ TEST_CASE("cycles begin at multiples of the cycle time by the robot's clock") {
   for (const Duration gap : gaps(floor.commands)) CHECK(std::chrono::abs(gap - floor.cycle()) < 1ms);
 }
 
-TEST_CASE("an agent registers every three cycles until the coordinator's clock is measured, then rarely") {
+TEST_CASE("an agent registers every three cycles until it has measured the coordinator's clock") {
   Floor floor;
   floor.names_time = false;
   floor.denies = true;
@@ -179,12 +179,12 @@ TEST_CASE("an agent registers every three cycles until the coordinator's clock i
   CHECK_FALSE(floor.proposals.empty());
   floor.registrations.clear();
   floor.run(4s);
-  // A measurement is valid for two seconds and is repeated after one.
+  // A measurement is valid for two seconds and is repeated after one second.
   CHECK(floor.registrations.size() >= 3);
   CHECK(floor.registrations.size() <= 5);
 }
 
-TEST_CASE("when its robot may drive again, an agent proposes immediately unless the next cycle begins soon") {
+TEST_CASE("an agent whose robot may drive again proposes immediately unless the next cycle begins soon") {
   // Phase of the cycle in which the coordinator's heartbeat arrives.
   const double phase = GENERATE(0.1, 0.4, 0.6, 0.7, 0.8, 0.9);
   CAPTURE(phase);
@@ -208,7 +208,7 @@ TEST_CASE("when its robot may drive again, an agent proposes immediately unless 
   CHECK(floor.proposals.size() == 1);
 }
 
-TEST_CASE("an agent confirms each announced hold of its robot, even one that it already knows") {
+TEST_CASE("an agent confirms each announced hold of its robot, even if the announcement is a repetition") {
   Floor floor;
   constexpr ClientId kClient = 1'000'001;
   const auto announce = [&](msg::OrderKind kind, RobotId robot) {

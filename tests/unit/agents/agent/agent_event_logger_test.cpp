@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'000'000'000'000);
 
-/// Feeds an agent's activity to the logger, one call per cycle.
+/// Passes an agent's activity to the logger once per cycle.
 struct Fixture {
   EventReporter reporter;
   AgentEventLogger changes{reporter, 3};
@@ -62,8 +62,7 @@ TEST_CASE("an agent reports when its robot stops obeying it and when the robot o
   CHECK(f.events.count("no longer superseded: the robot obeys this agent") == 1);
 }
 
-TEST_CASE(
-    "a reason to wait is reported only after it has lasted a while, and the end of waiting is reported too") {
+TEST_CASE("a wait of more than a quarter of a second is reported with its reason, and its end is reported") {
   for (int i = 1; i <= static_cast<int>(WaitReason::kClockOutOfBound); ++i) {
     const auto reason = static_cast<WaitReason>(i);
     CAPTURE(to_text(reason));
@@ -89,7 +88,7 @@ TEST_CASE("a reason to wait that comes and goes in every cycle is not reported")
   CHECK(f.events.all().empty());
 }
 
-TEST_CASE("a speed limit due to the clocks is reported with the offset, when it changes and when it ends") {
+TEST_CASE("a speed limit due to the clocks is reported when it begins, changes considerably or ends") {
   Fixture f;
   f.run(2s);
   CHECK(f.events.all().empty());
@@ -108,7 +107,7 @@ TEST_CASE("a speed limit due to the clocks is reported with the offset, when it 
   CHECK(f.events.all().size() == 3);
 }
 
-TEST_CASE("arrivals, escapes and deadlock recovery are reported, the latter two at most once per second") {
+TEST_CASE("arrivals are reported, and escapes and deadlock recoveries are reported at most once per second") {
   Fixture f;
   f.activity.goal_index = 1;
   f.run(1s);
@@ -151,7 +150,7 @@ TEST_CASE("each own stop, restart and lifting of the robot is reported once") {
   for (int i = 0; i < 5; ++i) f.changes.on_robot_report(robot_report);
   CHECK(f.events.count("has been put down") == 1);
   const std::size_t before = f.events.all().size();
-  robot_report.valid_at -= 1ms;  // a fact that was overtaken on the network
+  robot_report.valid_at -= 1ms;  // a fact that arrives after a newer fact
   robot_report.is_lifted = true;
   f.changes.on_robot_report(robot_report);
   CHECK(f.events.all().size() == before);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the node treats hostile messages: none reaches the agent, and each is counted once.
+// Tests that hostile messages to the node do not reach the agent and are each counted once.
 #include "agents/agent/agent_node.hpp"
 
 #include <limits>
@@ -20,7 +20,7 @@ constexpr RobotId kRobot = 3;
 constexpr Incarnation kSelf = 1000;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Time kBegin = time_from_ns(1'000'000'000'000);
-constexpr std::uint64_t kHuge = std::uint64_t{1} << 61;  ///< for a number, or for a time in nanoseconds
+constexpr std::uint64_t kHuge = std::uint64_t{1} << 61;  ///< an implausible number or time in nanoseconds
 constexpr auto kCoordinator = static_cast<std::uint32_t>(Sender::kCoordinator);
 
 Scenario one_robot() {
@@ -160,7 +160,7 @@ TEST_CASE("invalid feedback is counted and changes nothing") {
   CHECK(send([](msg::Feedback& m) { m.executing().phase_count(99); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_incarnation(kHuge); }) == 1);
-  // A fixture of its own: after other messages, this one would be refused as a second process's message.
+  // Needs a new fixture, because the old one would refuse the message as coming from a second process.
   CHECK(NodeFixture().send_spoilt(topics::kFeedback, valid_robot_report(),
                                   [](msg::Feedback& m) { m.header().incarnation(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.valid_at_ns(static_cast<std::int64_t>(kHuge)); }) == 1);
@@ -267,8 +267,7 @@ TEST_CASE("an agent repeats announced orders immediately, but at most ten times 
   CHECK(repeated.back().second == number);
   CHECK(repeated.size() <= 22);
   CHECK(repeated.size() >= 15);
-  // The agent repeats the order again if it is announced again, because the coordinator missed the first
-  // repetition.
+  // A coordinator that missed the first repetition announces the order again, and the agent must repeat it.
   const std::size_t before = repeated.size();
   announce(number);
   f.run();

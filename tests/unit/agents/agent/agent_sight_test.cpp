@@ -82,7 +82,7 @@ struct BeforeWall {
   }
 };
 
-TEST_CASE("if no speed is safe from hidden people, the robot creeps away from where they are nearest") {
+TEST_CASE("if no speed is safe from hidden people, the robot creeps away from the nearest hidden space") {
   for (double bearing_rad = -3; bearing_rad <= 3; bearing_rad += 0.5) {
     CAPTURE(bearing_rad);
     BeforeWall robot(0.17, bearing_rad);

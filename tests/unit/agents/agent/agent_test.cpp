@@ -34,14 +34,14 @@ RobotReport resting_at(const Vec2& position, double at, Epoch epoch = 7) {
   return robot_report;
 }
 
-/// The coordinator remembers that the scenario gave the robot its goals.
+/// A coordinator's complete memory, which contains only the scenario's order for the robot.
 std::shared_ptr<OrderPage> scenario_orders() {
   const RememberedOrder order{{msg::OrderKind::ORDER_GO, 3, static_cast<ClientId>(Sender::kScenario), 1}};
   return std::make_shared<OrderPage>(
       OrderPage{static_cast<std::uint32_t>(Sender::kCoordinator), true, 0, 1, {order}});
 }
 
-/// Makes the coordinator grant, and registers the agent.
+/// Tells the agent that the coordinator grants, and registers the agent.
 void become_ready(Agent& agent, double now = 0.6, double watched_until = 0) {
   CoordinatorHeartbeat heartbeat;
   heartbeat.epoch = 7;
@@ -73,7 +73,7 @@ struct DrivenAgent {
     agent.on_robot_report(resting_at({0, 0}, 0.5));
     become_ready(agent);
   }
-  /// Delivers only a world state, which the coordinator receives too.
+  /// Delivers a world state without an obstacle list. The coordinator also hears vision.
   void observe_self(double x, double observed_at, double now) {
     CoordinatorHeartbeat heartbeat;
     heartbeat.epoch = 7;
@@ -143,7 +143,7 @@ TEST_CASE("an agent plans only while the coordinator hears vision") {
   CHECK(d.plans(1.22));
 }
 
-TEST_CASE("a robot that vision has lost is not driven, even if vision sees others") {
+TEST_CASE("a robot that vision has lost is not driven, even if vision sees other robots") {
   DrivenAgent d;
   d.observe(0, 0.6, 0.61);
   CHECK(d.plans(0.62));
@@ -157,7 +157,7 @@ TEST_CASE("a robot that vision has lost is not driven, even if vision sees other
   CHECK_FALSE(d.plans(0.95));
 }
 
-TEST_CASE("a poorly localised robot waits until vision observes it") {
+TEST_CASE("a robot whose position error is large does not drive") {
   const auto desired_mps2 = [](double position_error_rms_m) {
     DrivenAgent d;
     RobotReport robot_report = resting_at({0, 0}, 0.55);
@@ -238,7 +238,7 @@ TEST_CASE("each own stop of the robot counts once as a loss of its reference") {
   CHECK(losses_after(53, true) == 2);
 }
 
-TEST_CASE("an observation from the future is dropped and counted, and later valid ones are used") {
+TEST_CASE("an observation from the future is dropped and counted, and later valid observations are used") {
   DrivenAgent d;
   d.agent.on_obstacles(empty_list(0.6), at_s(0.61));
   d.observe_self(0, 1e6, 0.61);
@@ -285,7 +285,7 @@ TEST_CASE("until the robot's clock is known, observations are forwarded but not 
   CHECK(drops_of(d.agent).total(DropReason::kFutureObservation) == 1);
 }
 
-TEST_CASE("the hidden space is dated by the scan and allows for the error of the scan's pose") {
+TEST_CASE("the hidden space has the scan's capture time and allows for the error of the scan's pose") {
   Scenario scenario = two_goals();
   scenario.laser.emplace();
   Agent agent(scenario, 3, kSelf, std::make_shared<PlanningScratch>(scenario));
@@ -349,7 +349,7 @@ TEST_CASE("a robot whose current version ends at its goal proposes nothing") {
   CHECK(agent.status(at_s(1)).agent_state() == msg::AgentState::AGENT_ARRIVED);
 }
 
-TEST_CASE("nothing is proposed while a moving obstacle is too near, and proposals resume afterwards") {
+TEST_CASE("the search finds no candidate while a moving obstacle is too near") {
   DrivenAgent d;
   d.observe_obstacle(0.25, 0, 0.6, 0.61);
   auto plan = d.agent.plan(at_s(0.62), at_s(0.62 + kCycle_s), kUnlimited_mps, kNoLag);

@@ -89,11 +89,11 @@ TEST_CASE("an order of higher rank takes precedence, and the interrupted order c
   CHECK(r.goal_x() == 8);
   r.assignment.on_arrival();
   CHECK(r.goal_x() == 8);
-  r.hear(change(go(kClient, 10, {{5, 0}})));  // arrives late
+  r.hear(change(go(kClient, 10, {{5, 0}})));  // this order arrives late
   CHECK(r.goal_x() == 8);
 }
 
-TEST_CASE("a cancelled robot has no goal until it is given a new one") {
+TEST_CASE("a cancel order removes the robot's goal until a new drive order arrives") {
   Robot r;
   r.hear(memory({go(kClient, 10, {{5, 0}})}));
   r.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kClient, 11)));
@@ -105,7 +105,7 @@ TEST_CASE("a cancelled robot has no goal until it is given a new one") {
   CHECK(r.goal_x() == 6);  // an operator's cancel does not affect a client's order
 }
 
-TEST_CASE("a new agent continues where the previous one was, and does not repeat finished orders") {
+TEST_CASE("a new agent continues at its predecessor's current goal, and does not repeat finished orders") {
   Robot first;
   first.hear(memory({go(kClient, 10, {{5, 0}, {6, 0}, {7, 0}})}));
   first.assignment.on_arrival();
@@ -121,7 +121,7 @@ TEST_CASE("a new agent continues where the previous one was, and does not repeat
   third.hear(change(go(kOperator, 11, {{8, 0}})));
   third.assignment.on_arrival();
   third.hear(change(of_kind(msg::OrderKind::ORDER_CANCEL, kOperator, 12)));
-  CHECK_FALSE(third.assignment.goal());  // the finished order is over
+  CHECK_FALSE(third.assignment.goal());  // the robot does not resume its finished order
 }
 
 TEST_CASE("an agent remembers the orders of all robots, even if a coordinator's memory lacks them") {
@@ -150,7 +150,7 @@ OrderPage told_by(std::uint32_t process, Incarnation incarnation, OrderPage page
   return page;
 }
 
-TEST_CASE("an agent knows whether a coordinator has announced every order that it remembers") {
+TEST_CASE("an agent knows whether a coordinator has announced all orders that the agent remembers") {
   constexpr std::uint32_t kActive = kCoordinator, kStandby = kCoordinator + 1;
   Robot r;
   CHECK(r.assignment.has_no_orders());
@@ -160,7 +160,7 @@ TEST_CASE("an agent knows whether a coordinator has announced every order that i
   CHECK_FALSE(
       r.assignment.has_announced_all_orders(kActive, 2));  // a restarted coordinator has forgotten all orders
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
-  // The standby was partitioned in the meantime. It claims that its memory is complete.
+  // The standby, which was partitioned from the network, claims that its empty memory is complete.
   r.hear(told_by(kStandby, 1, memory({})));
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   REQUIRE(r.assignment.take_missing().size() == 1);
@@ -170,7 +170,7 @@ TEST_CASE("an agent knows whether a coordinator has announced every order that i
   r.hear(told_by(kStandby, 1, memory({hold_of(8, 5)})));
   CHECK(r.assignment.has_announced_all_orders(kStandby, 1));
   CHECK(r.assignment.take_missing().empty());
-  // If one coordinator announces a new order, the other may not have received it.
+  // The standby may not have received a new order that the active coordinator announces.
   r.hear(told_by(kActive, 1, change(hold_of(9, 6))));
   CHECK(r.assignment.has_announced_all_orders(kActive, 1));
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
@@ -180,7 +180,7 @@ TEST_CASE("an agent knows whether a coordinator has announced every order that i
   CHECK(r.assignment.has_announced_all_orders(kActive, 1));
 }
 
-TEST_CASE("an agent's memory survives successive coordinators that have forgotten everything") {
+TEST_CASE("an agent keeps its orders through a succession of coordinators without any orders") {
   Robot r;
   r.hear(memory({hold_of(8, 5)}));
   for (Incarnation incarnation = 2; incarnation < 10; ++incarnation) {
@@ -194,7 +194,7 @@ TEST_CASE("an agent's memory survives successive coordinators that have forgotte
   }
 }
 
-TEST_CASE("an agent forgets no order, however many have changed since the last complete memory") {
+TEST_CASE("an agent forgets no order, even after thousands of changes since the last complete memory") {
   Robot r;
   r.hear(memory({hold_of(8, 5)}));
   for (OrderNumber number = 100; number < 2000; ++number) {
@@ -217,7 +217,7 @@ TEST_CASE("of two robots in a passage, the one with the older order goes first")
     drive_8.order.robot = 8;
     for (Assignment* assignment : {&of_3, &of_8})
       assignment->on_page(std::make_shared<OrderPage>(memory({drive_3, drive_8})));
-    for (int period = 1; period < 4; ++period) {  // in every fourth period the precedence is random
+    for (int period = 1; period < 4; ++period) {  // the precedence is random in every fourth period
       const Time t = Time(period * kPeriod + kPeriod / 2);
       CHECK(of_3.yields_to({8, of_3.other(8).number}, t, kPeriod) == (older == 8));
       CHECK(of_8.yields_to({3, of_8.other(3).number}, t, kPeriod) == (older == 3));
@@ -254,7 +254,7 @@ TEST_CASE("zones are remembered until they are removed, and other orders do not 
   CHECK(r.assignment.zone_revision() > revision);
 }
 
-TEST_CASE("an agent knows whether another robot is held and where it still has to go") {
+TEST_CASE("an agent knows whether another robot is held, and the current goal of that robot") {
   Robot r;
   const auto of_other = [](RememberedOrder order) {
     order.order.robot = 8;

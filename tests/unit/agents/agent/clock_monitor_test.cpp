@@ -85,8 +85,8 @@ TEST_CASE("motion requires recent measurements of both clocks") {
 }
 
 TEST_CASE(
-    "a robot whose clock agrees with the coordinator's within the bound may move, whatever the agent's "
-    "clock") {
+    "a robot whose clock agrees with the coordinator's within the bound may move, even if the agent's clock "
+    "is wrong") {
   const double own_s = GENERATE(0.0, 0.1, -3600.0, 5.0);
   const double offset_s = GENERATE(0.0, 0.0004, -0.0004);
   CAPTURE(own_s, offset_s);
@@ -135,7 +135,7 @@ TEST_CASE("the larger the offset that the measurements permit, the lower the max
   CHECK(quick.clocks.max_speed_mps(at_s(1)) > 2);
   CHECK(quick.clocks.max_speed_mps(at_s(4)) == 0);  // the last measurement is too old
 
-  // Of the default margin, 2 mm per robot are reserved for clocks.
+  // The default margin reserves 2 mm per robot for clock errors.
   ClockFixture slow;
   slow.min_delay_s = 0.01;
   slow.spread_s = 0;
@@ -184,7 +184,7 @@ TEST_CASE("a clock jump during motion is detected within two cycles") {
   CHECK(f.clocks.is_beyond_bound(at_s(1 + 2 * kCycle_s)));
 }
 
-TEST_CASE("the measured clock of a coordinator remains known when the coordinator begins another epoch") {
+TEST_CASE("an agent still knows the measured clock of a coordinator that begins another epoch") {
   ClockFixture f;
   f.measure_both(0, 10);
   const auto measured = f.clocks.robot_coordinator_offset(at_s(0.2));
@@ -210,7 +210,7 @@ TEST_CASE("the measured clock of a coordinator remains known when the coordinato
   CHECK(uncertainty_in_epoch(kEpoch + 4, 0, 1) > from_seconds(0.05));
 }
 
-TEST_CASE("clock measurements start over with a new epoch and with a restarted robot") {
+TEST_CASE("clock measurements start over in a new epoch and after a restart of the robot") {
   ClockFixture f;
   f.measure_both(0, 10);
   REQUIRE(f.clocks.allows_motion(at_s(0.2)));
@@ -236,7 +236,7 @@ TEST_CASE("clock measurements start over with a new epoch and with a restarted r
   CHECK(f.clocks.is_beyond_bound(at_s(0.27)));
 }
 
-TEST_CASE("measurements from before a robot's restart do not narrow the interval of its present clock") {
+TEST_CASE("clock measurements from before a robot's restart do not narrow the offset interval after it") {
   ClockFixture f;
   f.spread_s = 0;
   f.measure_both(0, 10);

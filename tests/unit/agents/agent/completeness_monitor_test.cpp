@@ -35,7 +35,7 @@ TEST_CASE("nothing counts as seen before the first list") {
 }
 
 TEST_CASE(
-    "a complete list is usable alone, but an incomplete one only with the world state of the same time") {
+    "a complete list is usable alone, but an incomplete list only with the world state of the same time") {
   Fixture f;
   f.monitor.on_list(list(10, kCompleteEverywhere_m));
   CHECK(f.monitor.complete_at() == at_s(10));
@@ -51,7 +51,7 @@ TEST_CASE(
   // If the robot may lag, its seen region is smaller.
   CHECK(f.seen(from_seconds(0.06)).radius_at_m(at_s(11)) ==
         Approx(f.seen().radius_at_m(at_s(11)) - 1.5 * 0.06));
-  // Now the world state arrives first.
+  // The next world state arrives before its list.
   f.monitor.on_world_state(world(10.2, {1, 3}));
   f.monitor.on_list(list(10.2, 1));
   CHECK(f.monitor.complete_at() == at_s(10.2));
@@ -101,14 +101,13 @@ TEST_CASE("the latest world states are remembered for lists that arrive later") 
   CHECK(f.monitor.complete_at() == at_s(10.9));
 }
 
-TEST_CASE(
-    "together with the lists, forgotten obstacles limit the seen region until they would have been dropped") {
+TEST_CASE("forgotten obstacles limit the seen region until the time at which they would have been dropped") {
   Fixture f;
   f.monitor.on_list(list(10, kCompleteEverywhere_m));
   f.monitor.on_forgotten({{0, 0}, 3, at_s(10), 1.5}, at_s(11));
   CHECK(f.monitor.seen(at_s(10.5), kNoLag).radius_m == 3);
   f.monitor.on_forgotten({{1, 0}, 2.5, at_s(10.2), 1.5}, at_s(11.2));
-  // Of the first region, a radius of 3 m - 0.2 s * 1.5 m/s - 1 m remains around the new centre.
+  // The first region contains a disc with a radius of 3 m - 0.2 s * 1.5 m/s - 1 m around the new centre.
   CHECK(f.monitor.seen(at_s(10.5), kNoLag).centre_m == Vec2(1, 0));
   CHECK(f.monitor.seen(at_s(10.5), kNoLag).radius_m == Approx(1.7));
   f.monitor.on_world_state(world(10.4, {1, 0.5}));

@@ -35,7 +35,7 @@ struct Fixture {
   }
 };
 
-TEST_CASE("displaced robots are moving obstacles, except the robot itself") {
+TEST_CASE("other robots that are displaced are moving obstacles") {
   Fixture f;
   msg::RobotNotice missing;
   missing.robot(8);
@@ -62,7 +62,7 @@ TEST_CASE("a displaced robot is dropped after vision has lost it for a second") 
   CHECK(f.obstacles.recent(kNow + std::chrono::milliseconds(1010), kNoLag).empty());
 }
 
-TEST_CASE("a silent robot is a moving obstacle too") {
+TEST_CASE("a robot that is silent but not displaced is a moving obstacle") {
   Fixture f;
   msg::RobotNotice silent = displaced(5, 2, 1);
   silent.is_displaced(false);

@@ -27,7 +27,7 @@ msg::LaserScan valid_scan() {
   return scan;
 }
 
-TEST_CASE("a scan is decoded unchanged, including beams that hit nothing, are too near or are lost") {
+TEST_CASE("a scan is decoded unchanged, including beams that hit nothing, end too near or are lost") {
   LaserScanDecoder decoder(kRobot, kLaser);
   const msg::LaserScan message = valid_scan();
   const auto scan = decoder.decode(message, kNow);

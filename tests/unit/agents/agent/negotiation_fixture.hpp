@@ -26,7 +26,7 @@ inline RobotReport make_report(const Version& executing, double at, Incarnation 
   return robot_report;
 }
 
-/// Valid until the next call.
+/// A heartbeat, which is valid until the next call.
 inline CoordinatorHeartbeat heartbeat(Epoch epoch, const std::vector<RobotId>& missing = {}) {
   static std::vector<msg::RobotNotice> notices;
   notices.assign(missing.size(), {});
@@ -69,7 +69,7 @@ struct NegotiationFixture {
     append_stop(trajectory, 5);
     return n.propose({&trajectory, 1}, base.number, at_s(now));
   }
-  /// Grants the first candidate.
+  /// Grants the first candidate. Returns the version to forward; nullopt if the verdict is not obeyed.
   std::optional<Version> grant(const Proposal& proposal, double now, Epoch epoch = kEpoch) {
     Verdict verdict = verdict_on(proposal, epoch);
     verdict.granted_version = proposal.candidates[0]->number;

@@ -11,7 +11,7 @@ using namespace negotiation_fixture;
 /// Whether the registration declares the robot absent.
 bool is_empty(const Registration& registration) { return registration.versions->versions().empty(); }
 
-TEST_CASE("a robot's own stop is the base of later versions, and their numbers exceed the own stop's") {
+TEST_CASE("a robot's own stop is the base of later versions, which have higher numbers") {
   NegotiationFixture f;
   f.become_ready();
   const auto pending = f.grant(f.propose(1.0, 0.9), 0.95);
@@ -77,7 +77,7 @@ TEST_CASE("a lifted robot holds no version, registers as absent, and proposes a 
   CHECK(f.n.has_upcoming_version(at_s(1.26)));
   f.n.on_robot_report(lifted(1.31, *rest));
   CHECK_FALSE(f.n.is_absent());
-  // A late fact from before the robot executed the rest version. Then the robot is lifted again.
+  // A fact from before the robot executed the rest version arrives late. Then the robot is lifted again.
   f.n.on_robot_report(lifted(1.28, none));
   CHECK_FALSE(f.n.is_absent());
   CHECK(f.n.held().base_at(at_s(2)).number == rest->number);

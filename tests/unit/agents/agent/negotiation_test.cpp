@@ -91,7 +91,7 @@ TEST_CASE("a denied version is neither forwarded nor registered") {
   CHECK(f.n.registration().versions->versions().size() == 1);
 }
 
-TEST_CASE("an unanswered proposal is repeated a limited number of times while there is time") {
+TEST_CASE("an unanswered proposal is repeated at most three times, and never shortly before its start") {
   NegotiationFixture f;
   f.become_ready();
   (void)f.propose(2.0, 1.0);
@@ -149,7 +149,7 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
     f.n.on_robot_report(report_of(2, own_stop(7000, 10), 11));
     CHECK(f.n.held().executing().number == 7000);
   }
-  SECTION("a false fact of a later incarnation does not exclude true facts for good") {
+  SECTION("after a false fact of a later incarnation, sixty true facts are believed again") {
     f.n.on_robot_report(report_of(99, own_stop(20'000, 10), 3000));
     REQUIRE(f.n.held().executing().number == 20'000);
     int reports = 0;
@@ -157,7 +157,7 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
       f.n.on_robot_report(report_of(2, own_stop(9000, 10), 11 + 0.01 * reports));
     CHECK(reports == 60);
   }
-  SECTION("a lifting takes effect") {
+  SECTION("a lifting in a later incarnation takes effect") {
     RobotReport lifted = report_of(3, f.initial, 11);
     lifted.is_off_reference = false;
     lifted.is_lifted = true;
@@ -166,7 +166,7 @@ TEST_CASE("times of different incarnations of a robot are not compared") {
   }
 }
 
-TEST_CASE("a superseded agent continues even if its robot's clock was set back meanwhile") {
+TEST_CASE("a superseded agent continues if its robot obeys it again after the robot's clock was set back") {
   NegotiationFixture f;
   f.become_ready();
   f.n.on_robot_report(make_report(f.initial, 3600, f.n.incarnation() + 5));
@@ -200,7 +200,7 @@ TEST_CASE("a superseded agent queries its robot only when the robot has fallen s
   CHECK_FALSE(f.n.must_query_robot());
 }
 
-TEST_CASE("an agent continues although a wrong clock made a version start much later") {
+TEST_CASE("an agent keeps proposing although a wrong clock made a granted version start an hour later") {
   NegotiationFixture f;
   f.become_ready();
   const auto granted = f.grant(f.propose(3600, 0.96), 0.97);
@@ -210,13 +210,13 @@ TEST_CASE("an agent continues although a wrong clock made a version start much l
   REQUIRE(next);
   CHECK(f.n.has_upcoming_version(at_s(1.0)));
   CHECK(next->base == f.initial.number);
-  // The robot may still be executing any of the three.
+  // The robot may still be executing any of the three versions.
   CHECK(f.n.registration().versions->versions().size() == 3);
   f.n.on_robot_report(make_report(*next, 1.2));
   CHECK(f.n.registration().versions->versions().size() == 1);
 }
 
-TEST_CASE("an agent asks for another coordinator if it hears none or is not served") {
+TEST_CASE("an agent that hears no coordinator or is not served asks for another coordinator") {
   NegotiationFixture f;
   CHECK_FALSE(f.n.needs_other_coordinator(at_s(0.5)));
   SECTION("no coordinator was ever heard") {
@@ -296,7 +296,7 @@ TEST_CASE("an agent registers in an epoch only once its robot has acknowledged i
   CHECK(f.n.needs_registration());
 }
 
-TEST_CASE("a coordinator with a slow clock learns the highest epoch, unless a later coordinator is alive") {
+TEST_CASE("a coordinator of a lower epoch learns the highest epoch once the later coordinator is silent") {
   NegotiationFixture f;
   f.become_ready();
   f.n.on_coordinator_state(heartbeat(kEpoch - 1), at_s(1.0));
@@ -308,7 +308,7 @@ TEST_CASE("a coordinator with a slow clock learns the highest epoch, unless a la
 
 TEST_CASE(
     "an agent with a slow clock raises its incarnation above its predecessor's, and is superseded only after "
-    "it was obeyed") {
+    "its robot has obeyed it") {
   NegotiationFixture f;
   f.n.on_robot_report(make_report(f.initial, 0.5, 5000));
   CHECK_FALSE(f.n.is_superseded());
@@ -320,7 +320,7 @@ TEST_CASE(
   CHECK(f.n.is_superseded());
 }
 
-TEST_CASE("a superseded agent continues if a later fact, but not an earlier one, acknowledges it") {
+TEST_CASE("a superseded agent continues if a later fact acknowledges it, but not if an earlier fact does") {
   NegotiationFixture f;
   f.become_ready();
   const Incarnation self = f.n.incarnation();
@@ -400,7 +400,7 @@ TEST_CASE("late facts change nothing") {
   CHECK(f.n.counts().lost == 0);
 }
 
-TEST_CASE("a fact from before the fencing was acknowledged does not exclude a version granted since") {
+TEST_CASE("a late fact from before a lifting does not exclude the rest version granted after the lifting") {
   NegotiationFixture f;
   RobotReport lifted = make_report(f.initial, 0.5);
   lifted.is_lifted = true;
@@ -410,7 +410,7 @@ TEST_CASE("a fact from before the fencing was acknowledged does not exclude a ve
   const Trajectory rest = Trajectory::resting(at_s(1), {2, 0});
   const auto granted = f.grant(f.n.propose({&rest, 1}, 0, at_s(0.9)), 0.95);
   REQUIRE(granted);
-  // Sent after the fencing but before the lifting.
+  // The robot sent this fact after the fencing but before the lifting.
   f.n.on_robot_report(make_report(f.initial, 0.4));
   CHECK(f.n.is_absent());
   f.n.on_coordinator_state(heartbeat(kEpoch + 1, {kRobot}), at_s(0.97));
@@ -423,7 +423,7 @@ TEST_CASE("a fact from before the fencing was acknowledged does not exclude a ve
   CHECK(registration.versions->versions()[0].number == granted->number);
 }
 
-TEST_CASE("an agent numbers a rest version above the robot's last version, even an unreported one") {
+TEST_CASE("an agent numbers a rest version above the robot's last version, even if it was unreported") {
   NegotiationFixture f;
   f.become_ready();
   const VersionNumber unreported_stop = f.propose(1, 0.96).candidates[0]->number + (VersionNumber{1} << 20);
@@ -483,7 +483,8 @@ TEST_CASE("version numbers increase across incarnations and candidates") {
   CHECK(other.propose({&rest, 1}, 5000, at_s(0.9)).candidates[0]->number > 5000);
 }
 
-TEST_CASE("a verdict on an open or late proposal yields its round trip, but an unexpected verdict does not") {
+TEST_CASE(
+    "a round trip is measured for a verdict on an open or late proposal, but not for an unexpected one") {
   NegotiationFixture f;
   f.become_ready();
   Verdict verdict = verdict_on(f.propose(1.0, 0.9));

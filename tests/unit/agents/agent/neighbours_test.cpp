@@ -49,13 +49,13 @@ std::vector<VersionNumber> versions_within(Neighbours& neighbours, const Vec2& c
   return numbers;
 }
 
-TEST_CASE("exactly the versions that the latest pages list within the horizon are known") {
+TEST_CASE("an agent knows exactly the versions within the horizon that the latest pages list") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
   constexpr double kHorizon_m = 2.5;
   Neighbours neighbours(0);
-  // Reference: of each page's latest message, the versions that were within the horizon on arrival.
+  // Reference: the versions in each page's latest message that were within the horizon on arrival.
   std::map<std::uint32_t, std::vector<VersionNumber>> expected;
   std::uint64_t number = 0;
   Vec2 centre(0, 0);
@@ -111,7 +111,7 @@ TEST_CASE("a page with an invalid bounding rectangle is still used") {
   CHECK(versions_within(neighbours, {0, 0}, 2) == std::vector<VersionNumber>{10});
 }
 
-TEST_CASE("malformed versions within the horizon are counted, and the others are still used") {
+TEST_CASE("malformed versions within the horizon are counted, and the other versions of the page are used") {
   Neighbours neighbours(0);
   neighbours.set_horizon({0, 0}, 2);
   const std::vector<Version> versions{resting_version(1, 10, {1, 0}), resting_version(2, 11, {0, 1}),

@@ -40,7 +40,7 @@ struct List {
 struct Fixture {
   ObservedObstacles obstacles{kSpeed_mps, kSlack};
 
-  /// The robot is at the origin.
+  /// Delivers a list to a robot at the origin.
   void receive(const List& list, double now) { obstacles.on_list(list, {0, 0}, at_s(now)); }
   void receive(std::uint32_t track, double x, double observed_at, double now, Incarnation vision = 1) {
     receive(List(observed_at, vision).add(track, x, observed_at), now);
@@ -57,7 +57,7 @@ TEST_CASE("an observation is kept with its uncertainty until a newer one of the 
   CHECK(first.speed_mps == kSpeed_mps);
   CHECK(first.observed_at == at_s(10) - kSlack);
   f.receive(5, 1.2, 10.1, 10.12);
-  // A message that arrives late.
+  // This message arrives late.
   f.receive(5, 1.1, 10.05, 10.13);
   REQUIRE(f.obstacles.recent(at_s(10.13), kNoLag).size() == 1);
   CHECK(f.obstacles.recent(at_s(10.13), kNoLag)[0].position_m == Vec2(1.2, 0));
@@ -127,7 +127,7 @@ TEST_CASE("a list from the future is counted and dropped as a whole") {
     CHECK(f.obstacles.invalid() == 1);
     CHECK(f.obstacles.recent(at_s(10.02), kNoLag).empty());
     CHECK(f.obstacles.complete_at() == Time{});
-    // Vision's clock needs to be only roughly right.
+    // Vision's clock only needs to be roughly right.
     f.receive(List(10.1), 10.02);
     CHECK(f.obstacles.invalid() == 1);
     CHECK(f.obstacles.complete_at() == at_s(10.1));
@@ -153,7 +153,7 @@ TEST_CASE("old observations are dropped but not counted as invalid") {
   }
 }
 
-TEST_CASE("beyond the capacity, the farthest obstacles are forgotten and all nearer ones are known") {
+TEST_CASE("beyond the capacity, the farthest obstacles are forgotten and all nearer obstacles are kept") {
   const std::uint64_t seed = GENERATE(range(1u, 11u));
   CAPTURE(seed);
   Rng rng(seed);

@@ -18,7 +18,7 @@ Scenario two_goals() {
       "two-goals.yaml");
 }
 
-/// The coordinator remembers that the scenario gave the robot its goals.
+/// A coordinator's complete memory, which contains only the scenario's order for the robot.
 std::shared_ptr<OrderPage> scenario_orders() {
   const RememberedOrder order{{msg::OrderKind::ORDER_GO, 3, static_cast<ClientId>(Sender::kScenario), 1}};
   return std::make_shared<OrderPage>(OrderPage{kCoordinator, true, 0, 1, {order}});
@@ -45,8 +45,8 @@ TEST_CASE("the first page of orders changes the goal, and repeating the page doe
 }
 
 TEST_CASE(
-    "a robot that rests within the tolerance of a goal continues to the next one, or has arrived at the "
-    "last") {
+    "a robot that rests within the tolerance of a goal continues to its next goal or has arrived at its last "
+    "goal") {
   OrderedRobot robot;
   (void)robot.orders.on_page(scenario_orders());
   const double tolerance_m = robot.scenario.goal_tolerance_m;
@@ -61,7 +61,7 @@ TEST_CASE(
   CHECK_FALSE(robot.orders.has_arrived());
 }
 
-TEST_CASE("a robot in motion has not arrived") {
+TEST_CASE("a robot does not count as arrived until it is at rest") {
   OrderedRobot robot;
   (void)robot.orders.on_page(scenario_orders());
   Trajectory braking(kNow, {{1, 0}, {0.1, 0}});

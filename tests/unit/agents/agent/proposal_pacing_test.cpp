@@ -36,7 +36,7 @@ TEST_CASE("on a slow network the lead covers the answer and the command") {
   CHECK(pacing.lead() == 1);
 }
 
-TEST_CASE("the lead includes the robot's lead, whatever the coordinator's round trips") {
+TEST_CASE("the lead includes the robot's own lead in addition to the coordinator's round trip") {
   ProposalPacing pacing(kCycle);
   pacing.set_robot_lead(Duration{100'000'000});
   CHECK(pacing.lead() == 6);
@@ -49,7 +49,7 @@ TEST_CASE("the lead includes the robot's lead, whatever the coordinator's round 
   CHECK(pacing.lead() == 1);
 }
 
-TEST_CASE("repeated late versions increase the lead, but a single one does not") {
+TEST_CASE("repeated late versions increase the lead, but a single late version does not") {
   ProposalPacing pacing(kCycle);
   pacing.on_version_late();
   pacing.on_version_taken();

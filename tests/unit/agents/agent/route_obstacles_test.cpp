@@ -32,7 +32,7 @@ FloorRules rules_with(const std::vector<Shape>& obstacles) {
   return rules;
 }
 
-TEST_CASE("a world updated with moved obstacles equals a new one, and blockages name the nearest obstacle") {
+TEST_CASE("an updated world contains exactly the current obstacles, and blockages name the nearest of them") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -76,8 +76,7 @@ TEST_CASE("obstacles of equal size keep their ids when they move") {
   CHECK(obstacles.world().obstacles() == before);
 }
 
-TEST_CASE(
-    "routes treat a map's blocked cells as permanent obstacles and robots and people as temporary ones") {
+TEST_CASE("a map's blocked cells are permanent obstacles for routes, and robots are temporary obstacles") {
   MapGrid grid;
   grid.columns = grid.rows = 60, grid.resolution_m = 0.1, grid.origin_m = {-3, -3};
   BitGrid blocked(grid.columns, grid.rows);

@@ -24,7 +24,7 @@ msg::TrackedRobot tracked_robot(RobotId robot, double x) {
   return tracked;
 }
 
-/// The world state contains the robot and others.
+/// A valid world state with the robot and other robots.
 msg::WorldState valid_world() {
   msg::WorldState world;
   world.header().sender(20000);

@@ -139,7 +139,7 @@ void check_random_pairs(BatchedClearance& batch, Generator generate, std::uint64
       REQUIRE(clear.size() == count);
       for (std::size_t i = 0; i < count; ++i) {
         if (clear[i] != is_clear(tested, others[i], separations[i]))
-          FAIL("other " << i << ", minimum separation " << separations[i]);
+          FAIL("wrong result for trajectory " << i << " at minimum separation " << separations[i]);
       }
     }
     if (round % 4 == 0) batch.check_extra_clearance(one, rng.uniform(0, 0.3));

@@ -24,7 +24,7 @@ std::vector<Vec2> random_points(Rng& rng, std::size_t count) {
   return points;
 }
 
-TEST_CASE("warm dynamic windows do not allocate") {
+TEST_CASE("dynamic windows do not allocate memory after a warm-up") {
   Rng rng(1);
   const std::vector<Vec2> points = random_points(rng, 360);
   const ConvexPolygon hull{{{-0.01, -0.01}, {0.01, -0.01}, {0, 0.01}}};
@@ -43,7 +43,7 @@ TEST_CASE("warm dynamic windows do not allocate") {
   }
 }
 
-TEST_CASE("a warm bubble band does not allocate") {
+TEST_CASE("a bubble band does not allocate memory after a warm-up") {
   Rng rng(2);
   BubbleBand band(0.3);
   ObstaclePoints free;
@@ -57,7 +57,7 @@ TEST_CASE("a warm bubble band does not allocate") {
         }) == 0);
 }
 
-TEST_CASE("a warm local driver does not allocate") {
+TEST_CASE("a local driver does not allocate memory after a warm-up") {
   Rng rng(3);
   LocalDriver local({.uses_band = true, .uses_window = true}, Field{6, 6}, 0.09, 0.1, MotionLimits{});
   const ObstacleWorld world({Box{{-0.2, 0.5}, {0.2, 1}}, Circle{{1, 0.2}, 0.2}});

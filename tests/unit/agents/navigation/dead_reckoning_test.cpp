@@ -25,7 +25,8 @@ TEST_CASE("after the maximum dead reckoning distance, one robot in two thousand 
   CHECK(beyond < kRobots / 1500);
 }
 
-TEST_CASE("accurate odometry permits long distances, and a poorly localised robot must wait") {
+TEST_CASE(
+    "the permitted dead reckoning distance is long for accurate odometry and zero for a poor position") {
   CHECK(max_dead_reckoning_m({0, 0.005}, 0.003) == Approx(0.15));
   CHECK(max_dead_reckoning_m({0.0002, 0}, 0.003) > 100);
   CHECK(max_dead_reckoning_m({0.001, 0.001}, 0.003) == 0);

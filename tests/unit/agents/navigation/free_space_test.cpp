@@ -40,7 +40,7 @@ TEST_CASE("a query finds the nearest obstacle point that is not masked") {
   CHECK(without < 150);
 }
 
-TEST_CASE("a distance field leads away from the nearest obstacle") {
+TEST_CASE("the direction away from an obstacle is the gradient of the distance function") {
   // The distance from a disc of radius 1 at the origin.
   const DistanceFunction field([](const Vec2& at) { return at.norm() - 1; });
   const FreeDistance found = field({3, 4}, 0);

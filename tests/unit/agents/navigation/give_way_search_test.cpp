@@ -39,7 +39,7 @@ int finish(GiveWaySearch& search, Rng& rng) {
   return steps;
 }
 
-TEST_CASE("the place to give way is the nearest one, as a brute-force search confirms") {
+TEST_CASE("the search for the nearest place to give way agrees with a brute-force search") {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -52,7 +52,7 @@ TEST_CASE("the place to give way is the nearest one, as a brute-force search con
     REQUIRE(search.way().size() >= 2);
     const Vec2 place = search.way().back();
     CHECK_FALSE(corridor.world.touches(place, kRequired_m));
-    // Tolerates the resolution of the grid, and one place within a robot-sized cell.
+    // The tolerances allow for the resolution of the brute-force grid and of the search's coarser cells.
     CHECK(place.norm() >= corridor.nearest_m() - 0.01);
     CHECK(place.norm() <= corridor.nearest_m() + 3 * kRadius_m);
     for (std::size_t i = 1; i < search.way().size(); ++i)

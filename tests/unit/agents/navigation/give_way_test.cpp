@@ -30,7 +30,7 @@ struct Robot {
   Rng rng{1};
   double decided_s = 0;
 
-  /// Decides ten times per second until this time.
+  /// Decides ten times per second until this time. Returns the place to give way, if any.
   std::optional<Vec2> decide(double seconds, const Vec2& position_m, const std::vector<OtherRobot>& others,
                              const ObstacleWorld& fixed) {
     for (; decided_s < seconds + 1e-6; decided_s += 0.1) decide_once(decided_s, position_m, others, fixed);
@@ -127,7 +127,7 @@ TEST_CASE("robots that block each other and move back and forth do not count as 
   CHECK(place);
 }
 
-TEST_CASE("a robot gives way until the other robot has passed, even while that one is far away") {
+TEST_CASE("a robot gives way until the other robot has passed, even while the other robot is far away") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
@@ -138,12 +138,12 @@ TEST_CASE("a robot gives way until the other robot has passed, even while that o
   OtherRobot far{7, false};
   far.has_right_of_way = GENERATE(false, true);
   CHECK(robot.decide(5, *place, {far}, fixed) == place);
-  // Without a goal, the other robot's order is over or it is held.
+  // Robots that are held or whose orders are over are not listed, so the robot stops giving way.
   CHECK_FALSE(robot.decide(6, *place, {}, fixed));
 }
 
-TEST_CASE("robots give way if they block a door only together") {
-  // A wall with a door as wide as two robots. Two robots stand in it side by side.
+TEST_CASE("a robot that blocks a door only together with another robot gives way") {
+  // A wall with a door as wide as two robots. Two robots stand in the door side by side.
   const ObstacleWorld fixed({Box{{-0.05, -2}, {0.05, -0.24}}, Box{{-0.05, 0.24}, {0.05, 2}}});
   const OtherRobot beside{1, true, {0, -0.125}};
   Robot robot;
@@ -156,7 +156,7 @@ TEST_CASE("robots give way if they block a door only together") {
     CHECK_FALSE(alone.decide(0.1 * i, {0, 0.125}, {coming_from(0.4, -4.9)}, fixed));
 }
 
-TEST_CASE("a robot chooses another place if its place is taken or it makes no progress towards it") {
+TEST_CASE("a robot chooses another place if its place is occupied or cannot be reached") {
   // One bay is above the corridor, another one below it.
   const ObstacleWorld fixed({Box{{-5, -2}, {-2.2, -0.15}}, Box{{-1.8, -2}, {5, -0.15}},
                              Box{{-2.2, -2}, {-1.8, -0.5}}, Box{{-5, 0.15}, {-1.2, 2}},
@@ -207,7 +207,7 @@ TEST_CASE("a search ends when the robot makes progress or gets a new goal") {
   CHECK_FALSE(robot.give_way.is_searching());
 }
 
-TEST_CASE("a robot does not give way to a robot that drives around it, or immediately after a pause") {
+TEST_CASE("a robot does not give way to a robot that can drive around it, nor immediately after a pause") {
   const ObstacleWorld open;
   Robot robot;
   const OtherRobot other = coming_from(1, -4.9);

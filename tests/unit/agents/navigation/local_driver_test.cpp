@@ -37,7 +37,7 @@ TEST_CASE("a window that ignores the path heads for the path's end instead of a 
   CHECK(choice.target_m == Vec2(2, 0));
 }
 
-TEST_CASE("no velocity is chosen near the goal, too near to an obstacle, or without a window") {
+TEST_CASE("a local driver chooses no velocity near the goal, too near to an obstacle or without a window") {
   const ObstacleWorld world({Circle{{0, 0.3}, 0.25}});
   const std::vector<Vec2> near{{0.1, -0.5}}, far{{2, 0}};
   LocalDriver local = driver({.uses_window = true});
@@ -83,7 +83,7 @@ TEST_CASE("every velocity of the window lets the robot stop before it reaches an
   CHECK(chosen >= 10);
 }
 
-TEST_CASE("a field turns robots that meet to the right and pushes them away from walls") {
+TEST_CASE("a potential field pushes a robot to the right of an oncoming robot, and away from walls") {
   LocalDriver local = driver({.uses_field = true});
   const std::vector<Vec2> path{{3, 0}};
   const ObstacleWorld open;
@@ -100,14 +100,14 @@ TEST_CASE("a field turns robots that meet to the right and pushes them away from
   CHECK(along.velocity_mps->y() < -0.01);
 }
 
-TEST_CASE("a field chooses no velocity in a local minimum") {
+TEST_CASE("a potential field chooses no velocity in a local minimum") {
   LocalDriver local = driver({.uses_field = true});
   const std::vector<Vec2> path{{3, 0}};
   const ObstacleWorld wall({Box{{-1.85, -1}, {-1.8, 1}}});
   CHECK_FALSE(local.choose({{{-1.97, 0}, {0, 0}}, path, &wall, {}, kCycle_s}).velocity_mps);
 }
 
-TEST_CASE("a band leads around a body on the path, and its target can be reached in a straight line") {
+TEST_CASE("a band leads around a body on the path, and the straight line to the band's target is free") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
   Rng rng(seed);
@@ -133,7 +133,7 @@ TEST_CASE("a band leads around a body on the path, and its target can be reached
         body.radius_m + kSeparation_m - kTolerance_m - 1e-6);
 }
 
-TEST_CASE("a path to another goal replaces the band, and the path is followed if a gap is too narrow") {
+TEST_CASE("a path to another goal replaces the band, and a robot without a band follows the path itself") {
   LocalDriver local = driver({.uses_band = true});
   const ObstacleWorld open;
   const std::vector<Vec2> first{{2, 0}}, second{{0, 1}, {-2, 2}};

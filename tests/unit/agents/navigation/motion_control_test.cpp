@@ -62,12 +62,12 @@ TEST_CASE(
       farthest_m = std::max(farthest_m, state.position_m.norm());
     }
     CAPTURE(i, limits.speed_mps, limits.acceleration_mps2, limits.deceleration_mps2, to_seconds(cycle));
-    // The robot brakes for a whole cycle, even where less would do.
+    // The robot brakes for a whole cycle, even if a shorter time would suffice.
     CHECK(farthest_m - goal_m.norm() < 0.5 * limits.speed_mps * to_seconds(cycle));
   }
 }
 
-TEST_CASE("stopping after each hold never overshoots, and halves the distance to a goal nearer than a hold") {
+TEST_CASE("braking after one hold never overshoots the goal, and covers half of a short distance") {
   Rng rng(2);
   for (int i = 0; i < 1000; ++i) {
     MotionLimits limits;

@@ -35,7 +35,7 @@ Course random_course(Rng& rng) {
   return course;
 }
 
-/// Scalar reference: the same prediction for one robot.
+/// Scalar reference: predicts the motion of one robot.
 std::vector<Vec2> reference_prediction(const Course& course) {
   const Intent& intent = course.intent;
   const double leg = (intent.goal_m - intent.waypoint_m).norm();
@@ -136,7 +136,7 @@ TEST_CASE("predicted arrival times agree with time-optimal motion") {
   }
 }
 
-TEST_CASE("danger is positive exactly where two robots come nearer than their minimum separation") {
+TEST_CASE("danger is positive exactly if two robots come nearer than their minimum separation") {
   const std::uint64_t seed = 10;
   CAPTURE(seed);
   Rng rng(seed);

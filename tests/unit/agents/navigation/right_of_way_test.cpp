@@ -15,7 +15,7 @@ Time in_period(int number) { return Time(number * kPeriod + kPeriod / 2); }
 
 }  // namespace
 
-TEST_CASE("right of way: of two moving robots, each goes first in every second period") {
+TEST_CASE("each of two moving robots has the right of way in every second period") {
   for (int period = 0; period < 4; ++period) {
     CAPTURE(period);
     CHECK(has_right_of_way(3, 7, in_period(period), kPeriod) == (period % 2 == 0));
@@ -23,7 +23,7 @@ TEST_CASE("right of way: of two moving robots, each goes first in every second p
   }
 }
 
-TEST_CASE("right of way: in passages the older order goes first, except in every fourth period") {
+TEST_CASE("the robot with the older order goes first in a passage, but every fourth period is random") {
   int reversed = 0;
   for (int period = 0; period < 400; ++period) {
     CAPTURE(period);
@@ -35,7 +35,7 @@ TEST_CASE("right of way: in passages the older order goes first, except in every
   CHECK(reversed < 75);
 }
 
-TEST_CASE("right of way: robots in passages agree on one order in each period") {
+TEST_CASE("robots in a passage agree on their sequence in each period") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -54,7 +54,7 @@ TEST_CASE("right of way: robots in passages agree on one order in each period") 
   }
 }
 
-TEST_CASE("right of way: among robots with equally old orders in a passage, each soon goes first") {
+TEST_CASE("each of several robots with equally old orders soon goes first in a passage") {
   std::vector<int> first(6, 0);
   for (int period = 0; period < 600; ++period)
     for (RobotId robot = 0; robot < 6; ++robot) {

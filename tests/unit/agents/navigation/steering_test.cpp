@@ -40,8 +40,8 @@ void advance(State& state, const Intent& intent) {
   state.velocity_mps += change;
 }
 
-/// Runs a cycle: the robots choose one after another, then all move as chosen. Each has its own Steering
-/// unless one is shared.
+/// Runs a cycle: all robots choose intents one after another, then all robots move. Each robot uses its own
+/// Steering unless `shared` is given.
 void drive(std::vector<Mover>& movers, Steering* shared = nullptr) {
   for (Mover& mover : movers) {
     Steering& steering = shared ? *shared : mover.steering;
@@ -95,7 +95,7 @@ TEST_CASE("two robots that meet head-on both turn right and pass") {
   CHECK(passing_y_m < -0.02);
 }
 
-TEST_CASE("two groups that swap sides all arrive") {
+TEST_CASE("all robots of two groups that swap sides arrive") {
   const std::uint64_t seed = 5;
   CAPTURE(seed);
   Rng rng(seed);
@@ -121,7 +121,7 @@ TEST_CASE("two groups that swap sides all arrive") {
   CHECK(nearest > kMinSeparation_m - 0.05);
 }
 
-TEST_CASE("robots that share one Steering choose the same as robots with their own") {
+TEST_CASE("robots that share one Steering choose the same intents as robots with separate Steerings") {
   std::vector<Mover> apart;
   for (int i = 0; i < 12; ++i) {
     const Vec2 start = rotated(Vec2(1.5, 0), i * 0.5236);
@@ -168,7 +168,7 @@ TEST_CASE("a robot passes a stationary obstacle without leaving the field") {
   }
 }
 
-TEST_CASE("a robot keeps its chosen detour") {
+TEST_CASE("a robot changes its detour around an obstacle only a few times") {
   Mover mover({-1.5, 0}, {1.5, 0}, Field{});
   double turned_m = 0;
   for (int cycle = 0; cycle < 300 && mover.state.position_m.x() < 1.4; ++cycle) {
@@ -180,7 +180,7 @@ TEST_CASE("a robot keeps its chosen detour") {
   }
   CHECK(mover.state.position_m.x() >= 1.4);
   CHECK(turned_m < -0.1);
-  // The changes: to the detour, back to the direct path, and to a few better detours.
+  // The robot changes to the detour, back to the direct path, and to a few better detours.
   CHECK(mover.last.changes >= 2);
   CHECK(mover.last.changes < 12);
 }

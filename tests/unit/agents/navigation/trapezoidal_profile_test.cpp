@@ -29,7 +29,7 @@ TEST_CASE("a trapezoidal profile covers its distance and ends at rest within its
   }
 }
 
-TEST_CASE("two-dimensional motion control arrives from any velocity") {
+TEST_CASE("two-dimensional motion control brings a robot to its goal from any initial velocity") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);

@@ -64,7 +64,7 @@ TEST_CASE("robots keep out of zones without a speed limit") {
   CHECK_FALSE(ZoneMap().is_kept_out({0, 0}, 1));
 }
 
-TEST_CASE("a robot that brakes as late as a speed zone allows enters it within the zone's limit") {
+TEST_CASE("a robot that brakes as late as a speed zone permits enters the zone at most at its limit") {
   const MotionLimits limits;
   const std::vector<Order> orders{zone({{0, -1}, {0, 1}, {2, 1}, {2, -1}}, 0, 0.5)};
   const ZoneMap zones(orders);

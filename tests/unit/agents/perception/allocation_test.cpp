@@ -7,7 +7,7 @@
 
 namespace sidestep::perception_allocation_test {
 
-TEST_CASE("warm perception does not allocate") {
+TEST_CASE("perception does not allocate memory after a warm-up") {
   Rng rng(3);
   const LaserSettings laser{360, 2 * std::numbers::pi, 0.05, 8};
   test::Scene scene(3, laser);
@@ -22,7 +22,7 @@ TEST_CASE("warm perception does not allocate") {
   std::vector<Circle> discs(people.size());
   double sum = 0;
   std::size_t allocations = 0;
-  // Random scans make every buffer as large as it gets. Then the robot drives.
+  // Random scans first enlarge every buffer to its maximum size. Then the robot drives.
   std::vector<float> ranges(360);
   for (int i = 0; i < 600; ++i) {
     robot.step(scene, rng, 0.1);

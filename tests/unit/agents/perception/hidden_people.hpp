@@ -6,10 +6,10 @@
 
 namespace sidestep::test {
 
-/// Decides by checking every beam which discs a laser does not see. Knows only the true ranges.
+/// Slow reference: checks every beam to decide which discs a laser does not see.
 class HiddenPeople {
  public:
-  /// Ranges without error; NaN for dropouts.
+  /// The ranges of the scan must have no error; they are NaN for dropouts.
   HiddenPeople(const LaserScan& scan, const LaserSettings& laser) : at_m_(scan.at_m) {
     const LaserScanner scanner(laser);
     for (int beam = 0; beam < laser.beams; ++beam) {

@@ -9,7 +9,7 @@ namespace sidestep::laser_beams_test {
 constexpr double kPi = std::numbers::pi;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-TEST_CASE("each kind of range is interpreted correctly") {
+TEST_CASE("the range of a beam is read as a hit, a known robot, a clear beam or an unknown beam") {
   LaserBeams beams({8, 2 * kPi, 0.1, 5}, 0.1);
   const std::vector<float> ranges{1, kInfinite, -kInfinite, test::kNoRange, 6, 0.05F, -1, 2};
   const std::vector<Circle> robots{{{-1.5, 0}, 0.45}};
@@ -26,7 +26,7 @@ TEST_CASE("each kind of range is interpreted correctly") {
   CHECK((beams.end_m(beams[0]) - Vec2(-1, 0)).norm() < 1e-12);
 }
 
-TEST_CASE("beams point where the scanner's beams point") {
+TEST_CASE("decoded beams have the directions of the scanner's beams") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

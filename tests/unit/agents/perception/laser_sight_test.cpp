@@ -29,7 +29,7 @@ double nearest_frontier_m(double person_radius_m, double range_error_m, double p
   return nearest_m;
 }
 
-TEST_CASE("a person leaning against a wall is not mistaken for it, however small and inaccurately seen") {
+TEST_CASE("a small person leaning against a wall is not mistaken for the wall, even in an inaccurate scan") {
   for (const double radius_m : {0.03, 0.05, 0.15})
     for (const double range_error_m : {0.0, 0.01})
       for (const double pose_error_m : {0.02, 0.07, 0.12}) {
@@ -71,7 +71,7 @@ TEST_CASE("a scan that is not newer than the last one changes nothing") {
 TEST_CASE("unknown objects that stay stationary for a while are reported as squares, nearest first") {
   Watched watched;
   watched.settings.max_unknown = 3;
-  const Vec2 at_m(10, -7);  // far from the origin, because distances from there must not matter
+  const Vec2 at_m(10, -7);  // far from the origin, from which distances must not be measured
   watched.rules.obstacles = {Circle{at_m + Vec2(0, 1.5), 0.3}};
   LaserSight sight(watched.laser, watched.rules, watched.settings);
   // The second disc is nearer to the origin than the first, and the last one is out of range.

@@ -31,7 +31,7 @@ class Drive {
       person.step(scene_, rng_, kScan_s);
       discs_.push_back(person.disc());
     }
-    // The pose is slightly wrong, too.
+    // The pose of the scan also has a small error.
     LaserScan scan = scene_.scan(robot_->at_m(), robot_->heading_rad(), at_s(now_s_), discs_, kNoise, rng_);
     scan.at_m += 0.005 * Vec2(rng_.uniform(-1, 1), rng_.uniform(-1, 1));
     scan.heading_rad += rng_.uniform(-0.003, 0.003);
@@ -101,7 +101,7 @@ TEST_CASE("people who walk among walls are tracked") {
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     INFO("seed " << seed << ", map " << has_map);
     Drive drive(seed, 5, has_map);
-    std::vector<double> seen_s(drive.people().size(), 0);  // how long each person has been seen walking
+    std::vector<double> seen_s(drive.people().size(), 0);  // time for which each person has been seen walking
     for (int scan = 0; scan < 400; ++scan) {
       drive.step();
       const auto tracks = drive.tracks().tracks();

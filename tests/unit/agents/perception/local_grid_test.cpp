@@ -150,7 +150,7 @@ TEST_CASE("known robots leave no hits, and rays clear cells up to their edges") 
   CHECK(f.state(-1.52, -0.001) == CellState::kOccupied);
 }
 
-TEST_CASE("evidence saturates and decays") {
+TEST_CASE("the evidence in a cell saturates, and decays while the cell is not observed") {
   Fixture f;
   for (int i = 0; i < 50; ++i) f.scan(2.02F);
   const Cell hit = f.grid.cell_at({2.02, 0.001}), crossed = f.grid.cell_at({1, 0.001});

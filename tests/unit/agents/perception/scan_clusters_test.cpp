@@ -56,8 +56,8 @@ TEST_CASE("each disc is one cluster with its radius and mean hit, wherever the s
   }
 }
 
-TEST_CASE("hits that are far apart or not selected separate clusters") {
-  // Two discs, the nearer one hiding half of the farther one.
+TEST_CASE("clusters end where hits are far apart or are not selected") {
+  // Two discs; the nearer disc hides half of the farther disc.
   const std::vector<Circle> discs{{{2, 0}, 0.2}, {{4, 0.4}, 0.25}};
   const View both(discs, 1, 0, kAll);
   REQUIRE(both.clusters.all().size() == 2);

@@ -12,8 +12,8 @@ inline constexpr float kNoRange = std::numeric_limits<float>::quiet_NaN();
 /// Errors of a laser.
 struct ScanNoise {
   double deviation_m = 0;
-  double largest_m = 1e9;  ///< errors are clamped to this
-  double dropouts = 0;     ///< fraction of the beams
+  double largest_m = 1e9;  ///< maximum absolute error
+  double dropouts = 0;     ///< fraction of beams without a range
 };
 
 /// A floor plan of 12 m x 12 m with a scanner.

@@ -208,7 +208,7 @@ TEST_CASE("no person can hide behind a thin post") {
   CHECK_FALSE(thick.visibility.was_seen_free({2, 0.2}));
 }
 
-TEST_CASE("people may stand behind known robots, as near to them as the people's size permits") {
+TEST_CASE("a frontier lies behind a known robot that hides people, as near as their size permits") {
   const LaserSettings laser{720, 2 * kPi, 0.05, 8};
   const std::vector<Shape> walls{Segment{{3, -3}, {3, 3}}, Segment{{-3, -3}, {3, -3}},
                                  Segment{{-3, 3}, {3, 3}}, Segment{{-3, -3}, {-3, 3}}};

@@ -28,7 +28,7 @@ std::size_t allocations_once_warm(Planner plan, const std::string& name) {
   return allocation_count() - before;
 }
 
-TEST_CASE("warm planners do not allocate") {
+TEST_CASE("planners do not allocate memory after a warm-up") {
   const std::string name = GENERATE(from_range(world_names()));
   CAPTURE(name);
   const Budget budget{.samples = 2000};
@@ -55,7 +55,7 @@ TEST_CASE("warm planners do not allocate") {
             name) == 0);
 }
 
-TEST_CASE("warm navigation functions do not allocate") {
+TEST_CASE("navigation functions do not allocate memory after a warm-up") {
   const CostGrid grid({.columns = 60, .rows = 50});
   const GridLayout& layout = grid.layout();
   EStar field(grid);

@@ -12,7 +12,7 @@ using Trees = BidirectionalErrt<DiscDomain>;
 using AnytimeTrees = Anytime<DiscDomain, Trees>;
 const BidirectionalErrtSettings kNoCache{.cache_capacity = 0};
 
-TEST_CASE("paths become shorter with the budget and approach the shortest") {
+TEST_CASE("paths planned with a larger budget are shorter, and nearly as short as the shortest path") {
   const auto seed = GENERATE(1u, 2u, 3u);
   const PlanWorld world = make_world("circles", 20, seed);
   const ObstacleWorld obstacles(world.obstacles);

@@ -33,14 +33,14 @@ std::size_t allocations_once_warm(Work work) {
   return allocation_count() - before;
 }
 
-TEST_CASE("the counter counts an allocation") {
+TEST_CASE("the allocation counter counts an allocation") {
   const std::size_t before = allocation_count();
   std::vector<int> numbers(100);
   CHECK(numbers.size() == 100);
   CHECK(allocation_count() > before);
 }
 
-TEST_CASE("a warm search does not allocate for any neighbours") {
+TEST_CASE("the safety search does not allocate memory after a warm-up, even if neighbours change") {
   Rng rng(1);
   FloorRules rules;
   rules.obstacles = {Circle{{0.5, 0.5}, 0.1}};
@@ -59,7 +59,7 @@ TEST_CASE("a warm search does not allocate for any neighbours") {
   CHECK(found > 0);
 }
 
-TEST_CASE("warm batched comparisons do not allocate") {
+TEST_CASE("batched comparisons do not allocate memory after a warm-up") {
   Rng rng(2);
   batch::BatchClearance clearance(batch::best_kernels());
   std::vector<TrajectoryBounds> others;
@@ -79,7 +79,7 @@ TEST_CASE("warm batched comparisons do not allocate") {
   CHECK(clear > 0);
 }
 
-TEST_CASE("storing neighbours does not allocate once warm") {
+TEST_CASE("storing neighbours does not allocate memory after a warm-up") {
   Rng rng(3);
   Neighbours neighbours(0);
   TrajectoryIndex index;
@@ -113,7 +113,7 @@ TEST_CASE("storing neighbours does not allocate once warm") {
   CHECK(collected > 0);
 }
 
-TEST_CASE("decoding and encoding an agent's messages does not allocate") {
+TEST_CASE("decoding and encoding an agent's messages does not allocate memory") {
   Rng rng(4);
   RobotReport robot_report;
   robot_report.executing = random_version(0, rng);
@@ -140,7 +140,7 @@ TEST_CASE("decoding and encoding an agent's messages does not allocate") {
   CHECK(decoded == 7 * 600);
 }
 
-TEST_CASE("decoding, storing and avoiding listed obstacles does not allocate") {
+TEST_CASE("decoding, storing and avoiding listed obstacles does not allocate memory") {
   Rng rng(5);
   std::vector<msg::ObstacleList> lists(40);
   for (std::size_t k = 0; k < lists.size(); ++k) {

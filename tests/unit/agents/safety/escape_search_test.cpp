@@ -51,7 +51,7 @@ TEST_CASE("a base without conflicts has no escape candidates") {
   CHECK(search_escape(query_on(base, {3, 0}), base, index_of({&other, 1}), test_rules()).count == 0);
 }
 
-TEST_CASE("escape candidates lead away from the conflict, starting with the desired one if it does so") {
+TEST_CASE("escape candidates lead away from the conflict, and the desired motion comes first if it does so") {
   const Version base = braking(1, {0, 0}, {0, 0}), other = braking(2, {0.15, 0}, {0, 0});
   const auto towards = search_escape(query_on(base, {3, 0}), base, index_of({&other, 1}), test_rules());
   REQUIRE(towards.count == SearchResult::kMaxCandidates);

@@ -117,7 +117,7 @@ struct Crowd {
   }
 };
 
-TEST_CASE("no hidden person can touch a robot that moves as the check permits") {
+TEST_CASE("no hidden person can touch a robot that moves as the hidden space check permits") {
   using enum Crowd::Touch;
   int allowed = 0, refused = 0, touched = 0, walls = 0;
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
@@ -163,7 +163,7 @@ double reference_clearance_m(const Trajectory& motion, const HiddenSpace& hidden
   return room_m;
 }
 
-TEST_CASE("the check agrees with distances sampled at many instants") {
+TEST_CASE("the hidden space check agrees with distances sampled at many instants") {
   int allowed = 0, refused = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Crowd crowd(seed);
@@ -184,7 +184,7 @@ TEST_CASE("the check agrees with distances sampled at many instants") {
 
 //  frontier      robot
 //     |            o ->  away, slowly
-TEST_CASE("a robot beside a frontier may creep away from it but not towards it, and not faster") {
+TEST_CASE("a robot beside a frontier may move away slowly, but neither fast nor towards the frontier") {
   const std::vector<Frontier> frontiers{{{{0, -1}, {0, 1}}, 0}};
   HiddenSpace hidden{frontiers, {}, kCapture, 1.2};
   hidden.creep_mps = 0.03;
@@ -288,7 +288,7 @@ struct Doorway {
   }
 };
 
-TEST_CASE("no person in a doorway can touch a robot that moves as the check permits") {
+TEST_CASE("no person in a doorway can touch a robot that moves as the hidden space check permits") {
   using enum Crowd::Touch;
   int allowed = 0, refused = 0, touched = 0;
   for (std::uint64_t seed = 1; seed <= 1500; ++seed) {

@@ -17,7 +17,7 @@ double sampled_separation_m(const Trajectory& trajectory, const MovingObstacle& 
   const double seconds = to_seconds(trajectory.end() - trajectory.start());
   const auto at = [&](double s) {
     const Time t = trajectory.start() + from_seconds(s);
-    // At the end, uses the rest position.
+    // The last sample is the rest position.
     const Vec2 position =
         t >= trajectory.end() ? trajectory.rest_position_m() : trajectory.state_at(t).position_m;
     return (position - obstacle.position_m).norm() - obstacle.reach_m(t);
@@ -52,7 +52,7 @@ TEST_CASE("the passive safety check agrees with dense sampling in both direction
     if (trajectory.end() == trajectory.start()) continue;  // at rest from the start
     const MovingObstacle obstacle = random_obstacle(rng);
     const double true_separation = sampled_separation_m(trajectory, obstacle);
-    // The separation is close to the true one.
+    // The tested separation is close to the true separation.
     const double sign = rng.chance(0.5) ? 1 : -1, error = sign * std::pow(10, rng.uniform(-8, -1));
     const double separation = true_separation + error;
     if (separation < 0) continue;

@@ -87,8 +87,8 @@ TEST_CASE("without neighbours, the desired acceleration is the first candidate")
 }
 
 TEST_CASE(
-    "candidates are clear of all robots and within the limits, and the nearest to the desired one comes "
-    "first") {
+    "candidates are clear of all robots and within the limits, and are sorted by distance from the desired "
+    "motion") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -229,7 +229,7 @@ TEST_CASE("among the blocked cells of a map, the search finds the same candidate
   CHECK(restricted > 100);
 }
 
-TEST_CASE("preferred accelerations that are safe come directly after the desired one") {
+TEST_CASE("preferred accelerations that are safe come directly after the desired acceleration") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
   Rng rng(seed);
@@ -339,7 +339,8 @@ TEST_CASE("every candidate is at rest before an unknown obstacle beyond the seen
 }
 
 TEST_CASE(
-    "among hundreds of moving obstacles, every candidate is passively safe and no safe one is refused") {
+    "among hundreds of moving obstacles, all candidates are passively safe and no safe candidate is "
+    "refused") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -365,7 +366,7 @@ TEST_CASE(
       return is_passively_safe_from_all(candidate, moving, rules.radius_m + rules.margin_m);
     };
     REQUIRE(std::all_of(result.candidates.begin(), result.candidates.begin() + result.count, is_safe));
-    // If no candidate must be refused, the search finds the same candidates.
+    // If all candidates are safe, the search finds as many candidates as without obstacles.
     const bool is_restricted =
         !std::all_of(all.candidates.begin(), all.candidates.begin() + all.count, is_safe);
     if (!is_restricted) REQUIRE(result.count == all.count);

@@ -31,7 +31,7 @@ SeenRegion random_region(Rng& rng) {
   return {centre, radius_m, kBegin + from_seconds(observed_s), rng.chance(0.2) ? 0 : rng.uniform(0, 2)};
 }
 
-TEST_CASE("the check never passes if a sampled instant is too near to the edge, and rarely fails otherwise") {
+TEST_CASE("the seen region check never passes too near to the edge, and rarely fails elsewhere") {
   const std::uint64_t seed = GENERATE(range(1u, 25u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -53,7 +53,7 @@ TEST_CASE("the check never passes if a sampled instant is too near to the edge, 
   CHECK(needlessly_unsafe < safe / 10);
 }
 
-TEST_CASE("an unknown obstacle just beyond the edge must not reach the robot before it is at rest") {
+TEST_CASE("a robot is safe only if it rests before an obstacle just beyond the edge could reach it") {
   // Braking at 5 m/s² from 1 m/s takes 0.2 s and 0.1 m. Meanwhile an obstacle approaches by 0.4 m at 2 m/s.
   Trajectory braking(kBegin, {{0, 0}, {1, 0}});
   append_stop(braking, 5);
@@ -91,7 +91,7 @@ TEST_CASE("a region does not shrink if obstacles do not move") {
   CHECK_FALSE(is_passively_safe_from_unseen(braking, seen, 0.25));
 }
 
-TEST_CASE("a region that is limited by another one is contained in both at all times") {
+TEST_CASE("a region limited by another region is contained in both regions at all times") {
   const std::uint64_t seed = 3;
   CAPTURE(seed);
   Rng rng(seed);

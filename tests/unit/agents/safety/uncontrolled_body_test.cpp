@@ -71,7 +71,7 @@ TEST_CASE("a robot may not come to rest in a body's path unless its stop would e
   CHECK(UncontrolledBodies({}, nullptr, kNow).allow(resting(2, 0), 0.1, 5));
 }
 
-TEST_CASE("a robot may pass before the body if it would be hit where it stops") {
+TEST_CASE("a robot may pass in front of a body that would hit the robot if it stopped") {
   // The robot crosses the path from below at x = 1.2 m.
   const UncontrolledBody body = moving({2, 0});
   const Trajectory stop = driving({1.2, -0.25}, {0, 1.6}, 0), across = driving({1.2, -0.25}, {0, 1.6}, 0.3);
@@ -81,7 +81,7 @@ TEST_CASE("a robot may pass before the body if it would be hit where it stops") 
   CHECK(excess_distance_m(across, kNow, body) >= 0);
   CHECK_FALSE(is_passively_safe(across, body.reach, kSeparation_m - 0.09));
   CHECK(may_follow(across, stop, body));
-  // This also holds if only a later version takes the robot across.
+  // The robot may also pass if only a later version takes it across the path.
   const Trajectory shorter = driving({1.2, -0.25}, {0, 1.6}, 0.05);
   CHECK(excess_distance_m(shorter, kNow, body) < 0);
   CHECK(may_follow(shorter, stop, body));

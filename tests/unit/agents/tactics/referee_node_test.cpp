@@ -49,7 +49,7 @@ struct System {
     world.ball().y_m(ball_m.y());
     world_writer.publish(world, other_bus.now());
   }
-  /// Lets time pass, with a command and a world state every 10 ms.
+  /// Sends a command and a world state every 10 ms for `duration`.
   void play(RefereeCommand command, Duration duration) {
     for (Duration t{0}; t < duration; t += 10ms) {
       say(command);
@@ -69,7 +69,7 @@ struct System {
   }
 };
 
-TEST_CASE("nothing is ordered before the referee is heard") {
+TEST_CASE("the node gives no orders before the first packet from the referee") {
   System system;
   system.see_ball();
   system.run_for(3s);
@@ -109,7 +109,7 @@ TEST_CASE("a restarted referee program ends the orders that it gave before") {
   CHECK(system.book.zones().empty());
 }
 
-TEST_CASE("the zone around the ball follows it, and stays where the ball was lost") {
+TEST_CASE("the zone around the ball follows the ball, and stays where the ball was lost") {
   System system;
   system.play(RefereeCommand::kStop, 200ms);
   CHECK(system.ball_zone_m() == Vec2(1, 1));
@@ -147,7 +147,7 @@ TEST_CASE("commands that alternate in every packet cause a bounded number of ord
   CHECK(system.orders.size() < 200);
 }
 
-TEST_CASE("without packets the last command stays in force, and the log says so") {
+TEST_CASE("if packets stop, the last command stays in force and this is logged") {
   System system;
   system.play(RefereeCommand::kStop, 200ms);
   for (int i = 0; i < 500; ++i) {

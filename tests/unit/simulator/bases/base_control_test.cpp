@@ -44,7 +44,7 @@ TEST_CASE("a base starts to move after its latency and brakes when commands stop
   CHECK(base.body.velocity_mps().norm() < 0.01);
 }
 
-TEST_CASE("a base obeys velocities in its own frame or the world's, within its acceleration and braking") {
+TEST_CASE("a base obeys velocities in its own or the world's frame, within its acceleration limits") {
   BaseSettings settings;
   settings.latency = 0ms;
   Base base(settings);
@@ -56,7 +56,7 @@ TEST_CASE("a base obeys velocities in its own frame or the world's, within its a
   CHECK(base.body.velocity_mps().x() == Approx(2).margin(0.05));
   const double from_x = base.body.position_m().x();
   base.run(1s, BaseVelocity{});
-  // Braking from 2 m/s at 5.9 m/s^2 takes 0.34 m, and a little more until the motors brake.
+  // Braking from 2 m/s at 5.9 m/s^2 takes 0.34 m, plus the distance until the motors brake.
   CHECK(base.body.position_m().x() - from_x > 0.34);
   CHECK(base.body.position_m().x() - from_x < 0.42);
   CHECK(base.max_speed_mps < 2.1);

@@ -27,7 +27,7 @@ league::TeamCommands command(std::uint32_t number, league::RobotMove::Kind kind)
 
 }  // namespace
 
-TEST_CASE("only local velocities are accepted, unless global ones are allowed") {
+TEST_CASE("only local velocities are accepted, unless global velocities are allowed") {
   using Kind = league::RobotMove::Kind;
   BaseWorld world(one_robot(), 0, {}, kBegin);
   LeagueCommands strict(world, false), generous(world, true);
@@ -43,7 +43,7 @@ TEST_CASE("only local velocities are accepted, unless global ones are allowed") 
         "there is no blue robot 5");
 }
 
-TEST_CASE("feedback says whether the dribbler has the ball, and a kick moves the ball") {
+TEST_CASE("the feedback tells whether the robot has the ball, and a kick moves the ball") {
   BaseWorld world(one_robot(), 0, {}, kBegin);
   LeagueCommands commands(world, false);
   league::RobotCommand kick;

@@ -46,7 +46,7 @@ TEST_CASE("cameras see the bases after their delay, and ground truth shows the a
   CHECK(truths.back().robots()[0].x_m() > 0.5);
 }
 
-TEST_CASE("a slow simulation moves slowly but timestamps its frames by the clock") {
+TEST_CASE("robots in a slow simulation move slowly, but frames are timestamped by the clock") {
   SimNetwork network(1, kBegin, {});
   SimBus bus(network), observer(network);
   std::vector<Duration> delays;
@@ -58,7 +58,7 @@ TEST_CASE("a slow simulation moves slowly but timestamps its frames by the clock
     node.world_now().command(0, {{1, 0}, 0}, node.simulated_now());
     network.run_until(network.now() + 10ms);
   }
-  // The distance in a second of simulated time, less the latency and the acceleration.
+  // The base drives for a second of simulated time, minus its latency and the time to accelerate.
   CHECK(node.world_now().bodies()[0].position_m().x() == Approx(0.77).margin(0.06));
   CHECK(delays.size() == Approx(58).margin(4));
   for (const Duration delay : delays) CHECK(to_seconds(delay) == Approx(0.073).margin(0.006));

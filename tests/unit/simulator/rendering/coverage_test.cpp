@@ -19,7 +19,7 @@ Points random_points(Rng& rng) {
   return points;
 }
 
-/// Whether any point of a ray is well inside the cross-section, and whether any is inside or near its edge.
+/// Whether any point of a ray is well inside the cross-section, and whether any point is inside or near it.
 std::pair<bool, bool> reference_hits(double x, double y, double dx, double dy, const CrossSection& section) {
   bool is_inside = false, is_near = false;
   for (int i = 0; i <= 1000; ++i) {
@@ -31,7 +31,7 @@ std::pair<bool, bool> reference_hits(double x, double y, double dx, double dy, c
   return {is_inside, is_near};
 }
 
-TEST_CASE("all instruction sets give the same counts") {
+TEST_CASE("all instruction sets count the same samples") {
   const std::uint64_t seed = 81;
   CAPTURE(seed);
   Rng rng(seed);
@@ -55,7 +55,7 @@ TEST_CASE("all instruction sets give the same counts") {
   }
 }
 
-TEST_CASE("counts agree with a check of each sample") {
+TEST_CASE("sample counts agree with a check of each sample") {
   const std::uint64_t seed = 82;
   CAPTURE(seed);
   Rng rng(seed);

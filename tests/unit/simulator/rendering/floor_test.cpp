@@ -8,7 +8,7 @@
 
 namespace sidestep::floor_test {
 
-TEST_CASE("lines lie where the league's rules place them") {
+TEST_CASE("field lines lie where the league's rules place them") {
   const FieldLines a(Field{12, 9}), b(Field{9, 6});
   for (const Vec2& p : {Vec2(6, 1), Vec2(-6, -4.5), Vec2(3, 4.5), Vec2(0, 3), Vec2(2, 0), Vec2(0.5, 0),
                         Vec2(0, -0.5), Vec2(4.2, 1), Vec2(-5, 1.8), Vec2(4.2, -1.8)})

@@ -22,7 +22,7 @@ struct RandomScene {
   Scene scene() const { return {robots, cylinders, ball}; }
 };
 
-/// Some objects overlap or are outside the image.
+/// A random scene in which some objects overlap or are outside the image.
 RandomScene random_scene(Rng& rng) {
   RandomScene objects;
   const Box view_m = inflated(quarter_field().view_m, 0.4);
@@ -161,7 +161,7 @@ TEST_CASE("light and white balance affect all colours") {
   CHECK(std::abs(pixel_colour(tinting, Scene{})[0] - 1.1 * surface[0]) < 1);
 }
 
-TEST_CASE("robots show their team and id, except for hidden dots") {
+TEST_CASE("a rendered robot shows the dots of its team and id, and hidden dots are black") {
   FrameRenderer renderer = renderer_with(plain_spec());
   const auto colour_at = [&](const SceneRobot& robot, const Vec2& in_robot) {
     Image frame = renderer.render(Scene{{&robot, 1}});
@@ -186,7 +186,7 @@ TEST_CASE("robots show their team and id, except for hidden dots") {
   CHECK(colour_at(SceneRobot{Team::kBlue, 99, Vec2(1, 1), 0}, Vec2(0, 0)) == named(Colour::kBlack).rgb);
 }
 
-TEST_CASE("an odd width is refused for YUV") {
+TEST_CASE("a YUV camera with an odd image width is refused") {
   OverheadCamera overhead_camera = quarter_field();
   overhead_camera.width_px = 781;
   RenderSpec spec;

@@ -23,10 +23,10 @@ Moments moments(const std::vector<std::uint8_t>& bytes, std::size_t first, std::
   return {mean, std::sqrt(squares / count - mean * mean)};
 }
 
-/// Rounding to whole levels adds a variance of 1/12.
+/// Standard deviation after rounding to whole levels, which adds a variance of 1/12.
 double rounded_sd(double sd) { return std::sqrt(sd * sd + 1.0 / 12); }
 
-TEST_CASE("noise has the given deviation in red, green and blue") {
+TEST_CASE("noise has the specified standard deviation in red, green and blue") {
   Rng rng(61);
   const SensorNoise noise(PixelFormat::kRgb, 2.5, 780, rng);
   const std::vector<std::uint8_t> clean(780 * 3 * 200, 100);

@@ -98,7 +98,7 @@ double reference_brightness(const StaticScene& scene, const CameraModel& camera,
   return 0;
 }
 
-TEST_CASE("a pixel of static obstacles shows what many rays through it hit") {
+TEST_CASE("a pixel has the mean colour of the obstacles and the floor that its viewing rays hit") {
   const CameraModel camera = small_camera();
   const Field field{12, 9};
   int mixed = 0, covered = 0;
@@ -145,7 +145,7 @@ TEST_CASE("the outside of a map and all its blocked cells are drawn over the who
     for (int x = 0; x < kWidth_px; ++x) REQUIRE(cover.samples(y, x) == 128);
 }
 
-TEST_CASE("without static obstacles, nothing changes") {
+TEST_CASE("without static obstacles, the image does not change") {
   Canvas canvas(kHeight_px, kWidth_px, cv::Vec3b(1, 2, 3));
   CHECK(draw_static({}, small_camera(), Field{12, 9}, plain_spec(), canvas).samples.empty());
   CHECK(canvas(5, 5) == cv::Vec3b(1, 2, 3));

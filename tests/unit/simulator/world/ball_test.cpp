@@ -12,7 +12,7 @@ void roll(Ball& ball, int steps, const Field& field, std::span<const Shape> obst
   for (int i = 0; i < steps; ++i) ball.step(field, obstacles, nullptr, robots, 0.09);
 }
 
-TEST_CASE("a ball rolls v^2 / 2a and then rests") {
+TEST_CASE("a ball rolls for a distance of v^2 / 2a and then rests") {
   Ball ball({{-4, 0}, {1.2, 0.9}});
   roll(ball, 6000, {20, 20});
   CHECK((ball.state().position_m - Vec2(-4 + 0.8 * 3.75, 0.6 * 3.75)).norm() < 1e-6);

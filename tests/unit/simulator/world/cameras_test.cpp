@@ -69,7 +69,7 @@ TEST_CASE("a camera sees its share of the field and the overlap") {
   CHECK(seen[1] == std::set<RobotId>{8, 9});
 }
 
-TEST_CASE("noise and dropouts have the magnitudes of the scenario") {
+TEST_CASE("detection noise and dropouts match the values in the scenario") {
   const std::uint64_t seed = GENERATE(1, 2);
   CAPTURE(seed);
   Scenario scenario = scene();
@@ -140,7 +140,7 @@ TEST_CASE("ghost obstacles appear at the scenario's rate, within the camera's vi
   CHECK(ghosts / 10'000.0 == Approx(0.2).epsilon(0.1));
 }
 
-TEST_CASE("cameras show robots with their vision faults") {
+TEST_CASE("vision faults change the detections of the affected robots") {
   Scenario scenario = scene();
   scenario.vision.position_noise_m = 0;
   scenario.vision.overlap_m = 100;  // every camera sees everything

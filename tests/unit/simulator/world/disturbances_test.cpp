@@ -244,11 +244,11 @@ TEST_CASE(
   msg::GroundTruth truth;
   world.fill(truth);
   CHECK(truth.robots()[0].disturbance_end_ns() == to_ns(now));
-  // A version does not help either while the robot does not know its position.
+  // A version does not make the robot report while the robot does not know its position.
   world.on_command(0, rest_version(0, 11, now + milliseconds(5), dash.rest_position_m()), now);
   world.advance(now += milliseconds(50));
   send_fix(milliseconds(20));
-  CHECK_FALSE(world.may_report(0));  // the robot still executes its version from before
+  CHECK_FALSE(world.may_report(0));  // the robot still executes the version from before it forgot its pose
   world.advance(now += milliseconds(2));
   REQUIRE(world.may_report(0));
   const RobotReport robot_report = world.robot_report(0, now);
@@ -262,7 +262,7 @@ TEST_CASE(
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a robot without a pose that is lifted or switched off and on behaves like any other robot") {
+TEST_CASE("a robot without a pose reports a lifting, and does not regain its pose when switched on") {
   const Scenario scenario = separated_robots(1);
   World world(scenario, kBegin, 1);
   Time now = kBegin + milliseconds(10);
@@ -287,7 +287,7 @@ TEST_CASE("a robot without a pose that is lifted or switched off and on behaves 
   CHECK(world.firmware_violations() == 0);
 }
 
-TEST_CASE("a robot's facts use its own clock, which pauses if it is set back by less than the bound") {
+TEST_CASE("a robot's facts use the robot's clock, which pauses when it is set back by less than the bound") {
   Scenario scenario = separated_robots(1);
   scenario.robots[0].clock_offset = milliseconds(7);
   World world(scenario, kBegin, 1);
@@ -319,7 +319,7 @@ TEST_CASE("a robot's facts use its own clock, which pauses if it is set back by 
   CHECK(world.firmware(0).own_stops() == 0);
   const Incarnation incarnation = world.robot_report(0, now).robot_incarnation;
 
-  // If the clock is set back farther, all facts reported by it are void.
+  // If the clock is set back farther, a new incarnation of the robot begins.
   clock.clock_offset = milliseconds(-30);
   REQUIRE(world.disturb(0, clock, now));
   world.advance(now += milliseconds(20));
@@ -425,7 +425,7 @@ TEST_CASE("a robot with a drifting clock uses observations and follows its refer
   CHECK(world.robot_report(0, now).uncertainty.position_error_rms_m < 0.6 * before_m);
 }
 
-TEST_CASE("under any disturbances the firmware keeps its rules and ends where it reports to be") {
+TEST_CASE("under random disturbances, firmware keeps its rules and robots end at reported positions") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 21));
   CAPTURE(seed);
   Scenario scenario = separated_robots(4);

@@ -130,7 +130,7 @@ TEST_CASE("versions in a chain that are due at the same time are executed in ord
   CHECK(robot.counts().activated == 3);
 }
 
-TEST_CASE("an older incarnation is fenced") {
+TEST_CASE("a version of a fenced, older incarnation is refused") {
   auto robot = firmware();
   robot.on_command(bare_command(kRobot, kSecond), at(1));
   robot.on_command(command_with(version(101, 0, 20, kFirst)), at(2));
@@ -158,7 +158,7 @@ TEST_CASE("a fence does not affect the executed version") {
   CHECK(robot_report.obeyed_incarnation == kSecond);
 }
 
-TEST_CASE("a new incarnation cannot forward an older one's version") {
+TEST_CASE("an agent cannot forward a version of an older incarnation") {
   auto robot = firmware();
   auto command = command_with(version(101, 0, 20, kFirst));
   command.incarnation = kSecond;
@@ -328,7 +328,7 @@ TEST_CASE("a robot with NaN odometry brakes and stays silent until a fix shows i
   CHECK((robot.position_m() - Vec2(3, 4)).norm() < 1e-6);
 }
 
-TEST_CASE("versions that start far ahead do not displace earlier ones") {
+TEST_CASE("versions that start far ahead do not replace a version that starts soon") {
   auto robot = firmware();
   for (VersionNumber n = 0; n < 50; ++n) robot.on_command(command_with(version(200 + n, 0, 100'000)), at(1));
   robot.on_command(command_with(version(101, 0, 20)), at(2));
@@ -357,7 +357,7 @@ TEST_CASE("a robot turns to the commanded heading and holds it") {
 
 // Sends random commands: late, duplicated, out of order, and from several incarnations. All versions rest at
 // the start position, so that any may follow any other and only the rules decide.
-TEST_CASE("the monitor finds no broken rule under any commands") {
+TEST_CASE("the monitor finds no broken rule under random commands") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 40));
   CAPTURE(seed);
   Rng rng(seed);

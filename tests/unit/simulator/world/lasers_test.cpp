@@ -104,7 +104,7 @@ TEST_CASE("a robot off the floor does not scan and does not delay the scans of o
   CHECK(scan.robot() == 11);
 }
 
-TEST_CASE("lost beams are NaN") {
+TEST_CASE("the range of a lost beam is NaN") {
   Scenario scenario = scene(1);
   scenario.laser->dropout_probability = 0.3;
   World world(scenario, kBegin, 1);

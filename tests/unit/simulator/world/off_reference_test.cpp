@@ -41,7 +41,7 @@ struct Floor {
     for (std::size_t i = 0; i < world.robot_count(); ++i) sum += own_stops(i);
     return sum;
   }
-  // The time to the robot's next own stop, or one second if there is none.
+  // Runs until the robot's next own stop, for at most a second. Returns the elapsed time.
   Duration until_own_stop(std::size_t robot) {
     const std::uint64_t before = own_stops(robot);
     const Time since = now;
@@ -129,7 +129,7 @@ TEST_CASE("two noisy frames reveal that a robot was displaced by a centimetre") 
   CHECK(still.position_error_rms_m() > 0.001);
 }
 
-TEST_CASE("a slipping robot makes an own stop, and once at rest it is within the error that it reports") {
+TEST_CASE("a slipping robot makes an own stop, and at rest its position is within the reported error") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
   CAPTURE(seed);
   Floor floor(seed % 2 == 0 ? noisy(separated_robots(6)) : separated_robots(6), seed);
@@ -141,7 +141,7 @@ TEST_CASE("a slipping robot makes an own stop, and once at rest it is within the
     REQUIRE(floor.world.disturb(i, slip, floor.now));
   }
   floor.run_for(milliseconds(400));
-  CHECK(floor.own_stops() >= 4);  // robots that accelerated enough to leave their references
+  CHECK(floor.own_stops() >= 4);  // the other robots did not accelerate enough to slip
   for (IdealAgent& agent : floor.agents) agent.drives = false;
   floor.run_for(milliseconds(1500));
   for (std::size_t i = 0; i < floor.world.robot_count(); ++i) {
@@ -211,7 +211,7 @@ TEST_CASE("a robot farther from its reference than the bound makes an own stop i
     const RobotReport robot_report = world.robot_report(0, floor.now);
     CHECK(robot_report.tracking_error_m <= bound_m + robot_report.executing.inflation_m);
   }
-  // For drifts in between, the uncertainty of the estimate decides.
+  // For drifts between the two limits, the uncertainty of the estimate decides.
   if (std::abs(drift_m) < 0.7 * bound_m) CHECK(world.firmware(0).own_stops() == 0);
   if (std::abs(drift_m) > bound_m) CHECK(world.firmware(0).own_stops() == 1);
   CHECK(world.firmware_violations() == 0);

@@ -38,7 +38,7 @@ Vec2 along(const std::vector<Vec2>& path_m, bool is_loop, double distance_m) {
   return path_m.back();
 }
 
-TEST_CASE("an opponent follows its route at its speed, back and forth or in a loop") {
+TEST_CASE("an opponent follows its route at constant speed, back and forth or in a loop") {
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 11));
   const bool is_loop = GENERATE(false, true);
   CAPTURE(seed, is_loop);

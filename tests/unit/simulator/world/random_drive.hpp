@@ -27,7 +27,7 @@ class RandomDrive {
     plan_next();
   }
 
-  /// When the next call of act() is due.
+  /// Time at which the next call of act() is due.
   Time due() const { return std::min(send_at_, frame_due_); }
 
   void act(Time now) {

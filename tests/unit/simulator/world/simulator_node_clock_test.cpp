@@ -96,7 +96,7 @@ TEST_CASE("robots whose host's clock is set back make own stops in a new incarna
   const msg::Feedback before = bus.robot_reports.back();
   bus.set(kBegin + milliseconds(400));
   const Vec2 mark = scenario.robots[0].start_m;
-  // This version's base is one that the robot leaves because of the jump.
+  // The robot leaves this version's base because of the jump.
   bus.deliver_command(
       test::command_with({0, 1, 1, 0, Trajectory::resting(kBegin + milliseconds(450), mark)}));
   bus.set(kBegin + milliseconds(600));

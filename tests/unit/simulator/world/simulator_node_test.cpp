@@ -224,7 +224,7 @@ struct RandomAgent {
   VersionNumber newest = 0;
 };
 
-TEST_CASE("over a bad network, no rule is broken and bodies follow their versions") {
+TEST_CASE("over a bad network, robots break no rule and their bodies follow their versions") {
   const std::uint64_t seed = GENERATE(1, 2, 3, 4);
   CAPTURE(seed);
   Scenario scenario = separated_robots(5);

@@ -12,7 +12,7 @@ using test::separated_robots;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-TEST_CASE("cameras see robots wrongly for a while, and ground truth reports errors beyond the bound") {
+TEST_CASE("vision faults end after their duration, and ground truth reports faults beyond the error bound") {
   const Scenario scenario = separated_robots(2);
   World world(scenario, kBegin, 1);
   Time now = kBegin + milliseconds(10);
@@ -24,19 +24,19 @@ TEST_CASE("cameras see robots wrongly for a while, and ground truth reports erro
   };
   auto sight = disturbance(0, msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE);
   sight.duration = milliseconds(100);
-  SECTION("beside its true position, within the bound") {
+  SECTION("a robot is seen beside its true position, within the bound") {
     sight.place_m = Vec2(0, 0.9 * vision_error_bound_m(scenario.tracking_bound_m));
     REQUIRE(world.disturb(0, sight, now));
     CHECK(world.vision_faults()[0].offset_m == sight.place_m);
     CHECK(end_of(0) < 0);
   }
-  SECTION("beside its true position, beyond the bound") {
+  SECTION("a robot is seen beside its true position, beyond the bound") {
     sight.place_m = Vec2(0, 1.1 * vision_error_bound_m(scenario.tracking_bound_m));
     REQUIRE(world.disturb(0, sight, now));
     CHECK(world.vision_faults()[0].offset_m == sight.place_m);
     CHECK(end_of(0) == to_ns(now + sight.duration));
   }
-  SECTION("as another robot") {
+  SECTION("a robot is seen as another robot") {
     sight.kind = msg::DisturbanceKind::DISTURBANCE_SEEN_AS;
     sight.other_robot = 0;
     CHECK_FALSE(world.disturb(0, sight, now));
@@ -47,7 +47,7 @@ TEST_CASE("cameras see robots wrongly for a while, and ground truth reports erro
     CHECK(world.vision_faults()[1].shown_as == 0);
     CHECK(end_of(1) == to_ns(now + sight.duration));
   }
-  SECTION("frozen at its former position") {
+  SECTION("a robot is seen frozen at its former position") {
     sight.kind = msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN;
     REQUIRE(world.disturb(0, sight, now));
     CHECK(world.vision_faults()[0].frozen->position_m == world.bodies()[0].position_m());

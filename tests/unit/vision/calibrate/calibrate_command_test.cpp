@@ -41,7 +41,7 @@ void save_start(const std::string& scenario_file, std::size_t camera, const std:
   write_png(bgr_of(rendered_start(scenario, camera_grid(scenario)[camera], spec, 1).view()), path);
 }
 
-/// The robots found in frames of the scenario's cameras with the thresholds of a file.
+/// Number of robots found in frames of the scenario's cameras with the thresholds of a file.
 std::size_t found(const std::string& scenario_file, const std::string& colours_file) {
   const Scenario scenario = load_scenario(scenario_file);
   const ColourThresholds colours = load_colours(colours_file);
@@ -66,7 +66,7 @@ TEST_CASE("thresholds learned from one picture of the start find all robots") {
   CHECK(found(kFloorFile, folder / "c.yaml") == 6);
 }
 
-TEST_CASE("pictures of several cameras give one file") {
+TEST_CASE("pictures of several cameras give one file of thresholds") {
   const Folder folder;
   save_start(kCrossing, 0, folder / "left.png");
   save_start(kCrossing, 1, folder / "right.png");

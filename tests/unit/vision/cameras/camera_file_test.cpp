@@ -56,7 +56,7 @@ TEST_CASE("a camera file is read") {
   CHECK(are_equal(cameras[0].parameters, expected));
 }
 
-TEST_CASE("cameras are restored from a file to the last bit") {
+TEST_CASE("cameras are restored bit for bit from a file") {
   const std::uint64_t seed = 8;
   CAPTURE(seed);
   Rng rng(seed);

@@ -11,7 +11,7 @@ struct Sample {
   Yuv yuv;
 };
 
-/// Discs with a radius of 10 px on a floor, with uniform noise of up to `noise` in every number.
+/// Discs with a radius of 10 px on a floor, with uniform noise of up to `noise` in every channel.
 struct Painting {
   Image image{PixelFormat::kYuv422, 400, 60};
   std::vector<LabelledDisc> discs;
@@ -89,7 +89,7 @@ TEST_CASE("the border between two colours is midway between their observed range
   CHECK(box_of(boxes, Colour::kYellow)->high.v == 180);
 }
 
-TEST_CASE("pixels far from the background have another colour, and the observed background does not") {
+TEST_CASE("pixels far from the background are classified as another colour, and background pixels are not") {
   const std::uint64_t seed = GENERATE(range(1, 41));
   CAPTURE(seed);
   Rng rng(seed);

@@ -14,7 +14,7 @@ using namespace sidestep::test;
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 constexpr Duration kFrame{16'666'667};
 
-/// The class of a colour in light with this gain.
+/// The class of a colour in light with this gain; nullopt if the colour has no class.
 std::optional<std::uint32_t> classified_as(const ColourThresholds& thresholds, const Rgb& colour,
                                            const Eigen::Vector3d& gain) {
   Image pair(PixelFormat::kRgb, 2, 1);
@@ -30,7 +30,7 @@ std::optional<std::uint32_t> classified_as(const ColourThresholds& thresholds, c
 constexpr std::array kMarkerAndBallColours{Colour::kOrange, Colour::kYellow, Colour::kBlue, Colour::kGreen,
                                            Colour::kPink};
 
-TEST_CASE("named colours are classified in any light, and the ground has no colour") {
+TEST_CASE("named colours are classified in bright and dim light, and the ground has no class") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   const ColourThresholds thresholds = default_colours(format);
   CHECK(thresholds.format == format);
@@ -47,7 +47,7 @@ TEST_CASE("named colours are classified in any light, and the ground has no colo
   }
 }
 
-TEST_CASE("colours that only another layout uses are classified with that layout") {
+TEST_CASE("a colour that only one layout uses is classified only with that layout") {
   MarkerLayout layout = butterfly();
   layout.blue_team = Colour::kPurple;
   const Eigen::Vector3d full(1, 1, 1);

@@ -245,7 +245,7 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
   for (int i = 0; i < 60; ++i) {
     Circle known{{rng.uniform(-1.5, 1.5), rng.uniform(-1, 1)}, 0.12};
     if (i == 0) known.centre_m = below_camera_m;
-    // An obstacle behind the known one must not touch it in the image, because a narrower one is then hidden.
+    // An unknown obstacle behind the known one must not touch it in the image, or else it may be hidden.
     const bool is_behind = i % 2 == 0;
     const double distance_m = known.radius_m + 0.1 + (is_behind ? 0.15 : 0) + rng.uniform(0, 0.2);
     const Vec2 outward =
@@ -264,12 +264,12 @@ TEST_CASE("an unknown obstacle beside or behind a known one is reported") {
     CAPTURE(i, known.centre_m.x(), known.centre_m.y(), other.centre_m.x(), other.centre_m.y());
     const auto found = fixture.obstacles();
     REQUIRE(found.size() == 1);
-    // An obstacle that touches the known one forms one blob with it.
+    // An unknown obstacle that touches the known obstacle in the image forms one blob with it.
     CHECK((found[0].centre_m - other.centre_m).norm() < found[0].radius_m);
   }
 }
 
-TEST_CASE("a finder reports if an image has more blobs than it can handle") {
+TEST_CASE("the obstacle finder reports an image with more blobs than it can handle") {
   ObstacleFixture fixture(21);
   const Image image = fixture.floor.frame({});
   const ColourClasses classes(default_colours(PixelFormat::kYuv422).boxes);

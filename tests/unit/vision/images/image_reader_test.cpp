@@ -200,7 +200,7 @@ TEST_CASE("an outdated or inconsistent world state does not affect detection") {
   CHECK(robots_in(frame) == std::vector<RobotId>{3, 7});
 }
 
-TEST_CASE("cameras and colours that do not fit the scenario are refused with the file name") {
+TEST_CASE("camera, colour or layout files that do not fit the scenario are refused with the file name") {
   const Scenario scenario = parse_scenario(kFloor, "floor.yaml");
   const std::string file = "image-reader-test.yaml";
   const auto refusal = [&](const ImageOptions& options) -> std::string {

@@ -39,7 +39,7 @@ struct Sent {
   bool operator==(const Sent&) const = default;
 };
 
-/// All packets sent by calling advance() at the requested times.
+/// All packets that are sent if advance() is called at the requested times.
 std::vector<Sent> replayed(league::LogReader& reader, double speed) {
   Replay replay(reader, speed);
   std::vector<Sent> sent;

@@ -10,7 +10,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
-constexpr Duration kFrame{8'333'333};  // two cameras at 60 Hz
+constexpr Duration kFrame{8'333'333};  // period of the frames of two cameras at 60 Hz
 constexpr Duration kProcessing = milliseconds(9);
 constexpr Duration kMinDelay = std::chrono::microseconds(200);
 
@@ -68,11 +68,11 @@ class Scene {
   SenderClock clock_;
 };
 
-/// Simulated time from 0, the correct time, and a clock that is off by days.
+/// Readings at kBegin of a clock that starts at 0, a correct clock, and a clock that is off by days.
 const Duration kZeros[] = {Duration{0}, kBegin.time_since_epoch(),
                            kBegin.time_since_epoch() - std::chrono::hours(50)};
 
-TEST_CASE("capture times are accurate up to minimum delay and drift for any epoch of the sender's clock") {
+TEST_CASE("capture times become accurate to 0.9 ms for any origin and drift of the sender's clock") {
   for (const Duration zero : kZeros) {
     for (const double drift : {-2e-4, 0.0, 2e-4}) {
       CAPTURE(zero.count(), drift);
@@ -120,7 +120,7 @@ TEST_CASE("old frames of a new sender are not mistaken for new ones") {
   const int pause_ms = GENERATE(50, 300, 2'000);
   CAPTURE(pause_ms);
   Scene scene({Duration{0}}, 18);
-  // First, frames that are received together when the process resumes, then frames on time.
+  // The first frames are received together when the process resumes. Later frames are on time.
   const Time resumed = scene.now() + milliseconds(pause_ms);
   while (scene.now() + kProcessing + kMinDelay < resumed) {
     REQUIRE_FALSE(scene.frame(resumed - (scene.now() + kProcessing + kMinDelay)));

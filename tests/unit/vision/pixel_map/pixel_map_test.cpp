@@ -53,7 +53,7 @@ struct RandomFloor {
   std::vector<SceneCylinder> cylinders;
 };
 
-/// Points on the edge of a cylinder's base, the floor area that it covers.
+/// Pixels on the edge of a cylinder's base.
 std::vector<Vec2> base_pixels(const SceneCylinder& cylinder, const CameraModel& camera) {
   std::vector<Vec2> pixels;
   for (int i = 0; i < 64; ++i) {

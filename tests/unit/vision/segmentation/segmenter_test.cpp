@@ -19,7 +19,7 @@ Image noise(PixelFormat format, int width_px, int height_px, Rng& rng) {
   return image;
 }
 
-/// Blocks of equal pixels: regions are larger than in noise and have many shapes.
+/// A random image of equal blocks, whose regions are larger than in noise and have many shapes.
 Image blocks(PixelFormat format, int width_px, int height_px, Rng& rng) {
   Image image = noise(format, width_px, height_px, rng);
   const auto step = static_cast<std::size_t>(format == PixelFormat::kRgb ? 3 : 4);
@@ -110,7 +110,7 @@ TEST_CASE("all kernels classify every RGB colour by definition") {
   }
 }
 
-TEST_CASE("parts that join farther down form one region with a common centroid") {
+TEST_CASE("parts that are connected in a lower row form one region with a common centroid") {
   const Image image = image_of({"X...X...X",  //
                                 "X...X...X",  //
                                 "X..X.X..X",  //
@@ -184,7 +184,7 @@ TEST_CASE("in a noisy frame, regions beyond the limit are dropped") {
   CHECK(segmenter.segment(image.view()).size() == RegionBuilder::kMaxRegions);
 }
 
-TEST_CASE("segmenting a second frame does not allocate") {
+TEST_CASE("segmenting a second frame does not allocate memory") {
   Rng rng(7);
   const Image image = blocks(PixelFormat::kYuv422, 640, 100, rng);
   Segmenter segmenter(ColourClasses(boxes(5, rng)));

@@ -39,12 +39,12 @@ TEST_CASE("after a gap, a camera must send some frames again") {
   const Time last = f.now;
   CHECK(f.watch.is_complete(last + CameraWatch::kMaxAge));
   CHECK_FALSE(f.watch.is_complete(last + CameraWatch::kMaxAge + milliseconds(1)));
-  SECTION("a short gap or a late frame does not count") {
+  SECTION("a camera watches without a pause after a short gap or a late frame") {
     f.watch.on_frame(0, last - milliseconds(500));
     f.watch.on_frame(0, f.now = last + CameraWatch::kMaxGap);
     CHECK(f.is_complete());
   }
-  SECTION("a long gap counts") {
+  SECTION("a camera does not watch immediately after a long gap") {
     f.watch.on_frame(0, f.now = last + CameraWatch::kMaxGap + milliseconds(1));
     CHECK_FALSE(f.is_complete());
     f.frames(0, CameraWatch::kFrames - 1);
@@ -52,7 +52,7 @@ TEST_CASE("after a gap, a camera must send some frames again") {
   }
 }
 
-TEST_CASE("while a camera is silent, however long, there may be obstacles that only it can see") {
+TEST_CASE("the floor is not watched while a camera is silent, even for several minutes") {
   Fixture f({3, 8});
   f.frames(3, CameraWatch::kFrames);
   f.frames(8, CameraWatch::kFrames);
@@ -70,7 +70,7 @@ TEST_CASE("while a camera is silent, however long, there may be obstacles that o
   CHECK(f.is_complete());
 }
 
-TEST_CASE("a floor is not watched if it has no cameras or one was never heard") {
+TEST_CASE("a floor is not watched if it has no cameras or if one of its cameras was never heard") {
   Fixture none({});
   CHECK_FALSE(none.is_complete());
   Fixture f({3, 8});

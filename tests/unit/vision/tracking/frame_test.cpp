@@ -17,7 +17,7 @@ msg::RobotDetection valid_robot() {
   return frame.robots()[0];
 }
 
-/// Only the valid one of two detections must be kept.
+/// Checks that a frame drops and counts `bad`, and keeps a valid detection.
 void check_that_only_the_valid_one_is_kept(const msg::RobotDetection& bad) {
   msg::DetectionFrame message = frame_message(0, kBegin);
   message.robots().push_back(bad);
@@ -31,7 +31,7 @@ void check_that_only_the_valid_one_is_kept(const msg::RobotDetection& bad) {
   CHECK(frame.rejected() == 1);
 }
 
-TEST_CASE("only a detection with an invalid number is dropped and counted") {
+TEST_CASE("a detection with a NaN or too large number is dropped and counted, and a valid one is kept") {
   const double bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                -std::numeric_limits<double>::infinity(), 100.001, -1e300);
@@ -44,7 +44,7 @@ TEST_CASE("only a detection with an invalid number is dropped and counted") {
   check_that_only_the_valid_one_is_kept(d);
 }
 
-TEST_CASE("only a detection with an invalid confidence or robot number is dropped and counted") {
+TEST_CASE("a detection with a confidence or robot number out of range is dropped, and a valid one is kept") {
   msg::RobotDetection d = valid_robot();
   SECTION("confidence below 0") { d.confidence(-0.001); }
   SECTION("confidence above 1") { d.confidence(1.001); }
@@ -53,7 +53,7 @@ TEST_CASE("only a detection with an invalid confidence or robot number is droppe
   check_that_only_the_valid_one_is_kept(d);
 }
 
-TEST_CASE("only an invalid ball is dropped and counted") {
+TEST_CASE("invalid balls are dropped and counted, and valid balls are kept") {
   msg::DetectionFrame message = frame_message(0, kBegin);
   add_ball(message, {1, 1});
   add_ball(message, {std::nan(""), 1});

@@ -34,7 +34,7 @@ struct Walker {
   }
 };
 
-/// How far the walker protrudes from all discs in which agents expect obstacles.
+/// The distance by which the walker protrudes from all discs in which agents expect obstacles.
 double protrusion_m(const Walker& walker, const msg::ObstacleList& list) {
   double smallest_m = std::numeric_limits<double>::infinity();
   for (const msg::TrackedObstacle& track : list.obstacles()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which obstacles are listed, and up to which distance from robots the list claims to be complete. Compared
-// with brute force.
+// Compares the listed obstacles, and the distance within which a list claims to be complete, with brute
+// force.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -239,7 +239,7 @@ TEST_CASE("without a tracked robot, an incomplete list makes no claim of complet
   CHECK(list.complete_within_m() == (count > msg::MAX_OBSTACLES ? 0 : kCompleteEverywhere_m));
 }
 
-TEST_CASE("an incomplete frame counts until the camera's next frame, at most for a second") {
+TEST_CASE("an incomplete frame limits the lists until the camera's next frame, at most for a second") {
   Rng rng(5);
   const StripCamera camera{0, -10, 30};
   Crowd crowd(msg::MAX_OBSTACLES, 0.3, rng);
@@ -257,7 +257,7 @@ TEST_CASE("an incomplete frame counts until the camera's next frame, at most for
   const double at_first = complete_within_m(last);
   CHECK(at_first > 2);
   CHECK(at_first < 4);
-  // The omitted obstacles may approach.
+  // The omitted obstacles may approach, so the distance shrinks.
   CHECK(complete_within_m(last + 100 * kMs) == Approx(at_first - 0.15).margin(0.01));
   CHECK(complete_within_m(last + 900 * kMs) < at_first - 1.3);
   SECTION("the next frame is complete") {
@@ -273,7 +273,7 @@ TEST_CASE("an incomplete frame counts until the camera's next frame, at most for
   }
 }
 
-TEST_CASE("256 obstacles are tracked and listed without allocations once warm") {
+TEST_CASE("256 obstacles are tracked and listed without memory allocations after a warm-up") {
   Rng rng(6);
   const Crowd crowd(msg::MAX_OBSTACLES, 0.3, rng);
   const StripCamera camera{0, -10, 10};

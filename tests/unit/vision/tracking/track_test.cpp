@@ -40,7 +40,7 @@ TEST_CASE("an observation within the gate belongs to the track, but one a millio
   CHECK_FALSE(accepts(gate_m * (1 + 1e-6)));
 }
 
-TEST_CASE("of two observations away from a track, the one nearer to the track becomes its candidate") {
+TEST_CASE("the nearer of two observations away from a track becomes the track's candidate") {
   TrackModel model;
   model.displaced_hits = 100;
   const Vec2 place_m(2, 1), far_m(1, 1), near_m(2.5, 1);
@@ -53,7 +53,7 @@ TEST_CASE("of two observations away from a track, the one nearer to the track be
   CHECK(three.candidate.position.position() == near_m);
 }
 
-TEST_CASE("two observations displace a robot's track without averaging in older ones") {
+TEST_CASE("two observations move a displaced robot's track without averaging with older observations") {
   const TrackModel model;
   const Vec2 place_m(2, 1), displaced_m(2.05, 1);
   const TrackState state = resting(place_m, model);

@@ -30,7 +30,8 @@ TEST_CASE("a robot is published after three consistent observations and not befo
   CHECK(robot->vx_mps() == Approx(1.8).margin(0.2));
 }
 
-TEST_CASE("a lost robot is kept with growing variance, then dropped, and can reappear") {
+TEST_CASE(
+    "a lost robot is published with growing variance, then dropped, and published again when it reappears") {
   Rng rng(71);
   TrackerFixture fixture(1);
   feed_at_rest(fixture, {1, 1}, 0, 1, rng);
@@ -69,7 +70,7 @@ TEST_CASE("a robot that brakes to a halt unobserved stays within the published u
   CHECK((position_of(*robot) - truth).norm() < 3 * std::sqrt(robot->position_variance_m2()));
 }
 
-TEST_CASE("ghosts never move an observed robot, never create a robot, and are counted") {
+TEST_CASE("ghosts neither move an observed robot nor create a robot, and are counted") {
   const std::uint64_t seed = GENERATE(81u, 82u, 83u);
   CAPTURE(seed);
   Rng rng(seed);

@@ -97,7 +97,7 @@ TEST_CASE("a frame at the start of the stored history is processed as if in orde
   CHECK(fixture.world_at(now) == expected.world_at(now));
 }
 
-TEST_CASE("updating and publishing do not allocate") {
+TEST_CASE("updating the tracker and publishing do not allocate memory") {
   Rng rng(241);
   const std::vector<Arrival> frames = frames_of_two_cameras(rng, 1);
   TrackerFixture fixture(3);
@@ -110,7 +110,7 @@ TEST_CASE("updating and publishing do not allocate") {
   CHECK(allocation_count() == before);
 }
 
-TEST_CASE("arbitrary numbers in frames leave the world state finite") {
+TEST_CASE("the world state remains finite for frames with arbitrary numbers") {
   const std::uint64_t seed = GENERATE(range(250u, 260u));
   CAPTURE(seed);
   Rng rng(seed);

@@ -64,7 +64,8 @@ TEST_CASE("a robot that no camera sees is reported as lost, and later as seen ag
 }
 
 TEST_CASE(
-    "refused frames and cameras without any usable frame are reported with the reason, ever more rarely") {
+    "refused frames are reported with the reason at growing intervals, as are cameras without usable "
+    "frames") {
   Fixture f({2, 3});
   f.run(20'000 * kMs, 2, true, 3000 * kMs);
   CAPTURE(f.events->text());
@@ -78,7 +79,7 @@ TEST_CASE(
   CHECK(f.events->count("camera 3: 1 frame(s) refused so far: malformed") == 1);
 }
 
-TEST_CASE("frames of cameras that are not configured are reported ever more rarely") {
+TEST_CASE("refused frames of unknown cameras are reported at intervals that grow tenfold") {
   Fixture f;
   for (std::uint32_t camera = 1; camera <= 10'000; ++camera)
     f.node->add_frame(frame_message(camera, f.network.now()));

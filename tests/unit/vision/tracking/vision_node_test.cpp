@@ -174,7 +174,7 @@ TEST_CASE("the node publishes an obstacle list with every world state, complete 
   CHECK(lists.back().obstacles()[0].y_m() == Approx(2));
 }
 
-// The caller provides the frames, as with the league's packets and with images.
+// The caller provides the frames, as for the league's packets and for images.
 TEST_CASE(
     "the list is complete only while every configured camera watches, and other cameras do not matter") {
   SimNetwork net(351, kBegin, {});
@@ -209,7 +209,7 @@ TEST_CASE(
   CHECK_FALSE(was_complete);  // the other camera is dead
   run(1, {cameras[0], cameras[1]});
   CHECK(is_complete);
-  // Any process may send packets with any camera number. They neither stop robots nor are used.
+  // Any process may send packets with any camera number. Such packets are not used and do not stop robots.
   msg::DetectionFrame forged = frame_message(20, net.now());
   forged.obstacles_complete_within_m(0);
   add_obstacle(forged, {1, 1});

@@ -17,7 +17,7 @@ double length_m(std::span<const Vec2> path) {
   return sum;
 }
 
-/// The point's distance from the polyline through the centres.
+/// The smallest distance of any point from the polyline through the bubbles' centres.
 double clearance_m(const BubbleBand& band, std::span<const Vec2> points) {
   const auto bubbles = band.bubbles();
   double nearest2 = 1e9;
@@ -28,7 +28,7 @@ double clearance_m(const BubbleBand& band, std::span<const Vec2> points) {
   return std::sqrt(nearest2);
 }
 
-/// Two walls of points along the x axis, from x = -1 to 7, and possibly more obstacles.
+/// Two walls of points parallel to the x axis, from x = -1 m to 7 m, at y = ± `half_width_m`.
 std::vector<Vec2> walls(double half_width_m) {
   std::vector<Vec2> points;
   for (double x = -1; x < 7; x += 0.02) {
@@ -99,7 +99,7 @@ TEST_CASE("the passage between bubbles is as wide as the largest disc that fits 
   CHECK(passage_width_m({{0, 0}, 1, {0, 0}, 0}, {{3, 0}, 1, {0, 0}, 0}) == 0);
 }
 
-TEST_CASE("a band made from a planned path stays free and gets no longer than the path") {
+TEST_CASE("a band made from a planned path stays free and never becomes longer than the path") {
   int checked = 0;
   double shortened_m = 0;
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
@@ -141,7 +141,7 @@ TEST_CASE("a band made from a planned path stays free and gets no longer than th
   CAPTURE(shortened_m);
 }
 
-TEST_CASE("in free space, a band becomes nearly straight and shorter than a detour") {
+TEST_CASE("in free space, a band straightens a detour and never becomes longer") {
   BubbleBand band(kRadius_m);
   const std::vector<Vec2> detour{{0, 0}, {1.5, 1.2}, {3, -1}, {4.5, 1.5}, {6, 0}};
   const ObstaclePoints free = obstacles_of({});
@@ -155,7 +155,7 @@ TEST_CASE("in free space, a band becomes nearly straight and shorter than a deto
   CHECK_FALSE(band.is_broken());
 }
 
-TEST_CASE("a band makes way for an approaching obstacle, and breaks when the passage closes") {
+TEST_CASE("a band moves aside for an approaching obstacle, and breaks when the passage closes") {
   BubbleBand band(kRadius_m);
   const std::vector<Vec2> walls_m = walls(1.2), path{{0, 0}, {6, 0}};
   band.start(path, obstacles_of(walls_m));
@@ -225,7 +225,7 @@ TEST_CASE("bubbles far along the band ignore obstacles near the robot") {
   CHECK(nearest < 0.6);
 }
 
-TEST_CASE("a band works with a distance query") {
+TEST_CASE("a band avoids obstacles that are given by a distance function") {
   const ObstacleWorld world({Circle{{3, 0.1}, 0.3}});
   const DistanceFunction field([&](const Vec2& at) { return world.nearest(at).distance_m; });
   BubbleBand band(kRadius_m);

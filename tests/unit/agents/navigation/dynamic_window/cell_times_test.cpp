@@ -100,7 +100,7 @@ TEST_CASE("a disc's time to collision agrees with dense time steps") {
   CHECK(hits > 150);
 }
 
-TEST_CASE("tables give the minimum over the cells of all points, and are never later than exact times") {
+TEST_CASE("table times are the minimum over the cells of all points, and never later than exact times") {
   const std::uint64_t seed = GENERATE(1, 2);
   CAPTURE(seed);
   Rng rng(seed);

@@ -46,7 +46,7 @@ TEST_CASE("a disc may choose exactly the velocities that it can reach and stop f
         const Vec2 v = kLimits.speed_mps / 20 * Vec2(i, j);
         if (v.norm() > kLimits.speed_mps + 1e-9) continue;
         if (!is_admissible((v - query.velocity_mps) / *query.window_s, query.velocity_mps, kLimits)) continue;
-        // The motion at full speed during braking and one cycle.
+        // The path at constant speed for one cycle and the braking time, longer than the actual path.
         const Segment path{Vec2(0, 0), v * (v.norm() / kLimits.deceleration_mps2 + kCycle_s)};
         const bool is_free = std::ranges::all_of(
             points, [&](const Vec2& p) { return squared_distance(p, path) > kRadius_m * kRadius_m; });
@@ -97,7 +97,7 @@ TEST_CASE(
     CHECK((rated.velocity_mps - query.velocity_mps).cwiseAbs().maxCoeff() < 0.051);
 }
 
-TEST_CASE("a point inside the disc makes it brake") {
+TEST_CASE("a disc with a point inside has no admissible velocity") {
   for (const CollisionMethod method : {CollisionMethod::kExact, CollisionMethod::kLloydMaxTable}) {
     DiscWindow window(kRadius_m, kLimits, settings_for(method));
     const Vec2 inside(0.05, 0.05);

@@ -56,7 +56,7 @@ TEST_CASE("a robot among random posts reaches most goals and touches nothing") {
     }
     bool is_there = false;
     for (int cycle = 0; cycle < 400 && !is_there; ++cycle) {
-      REQUIRE(robot.step(window, 0.1) > 0.02 - 1e-6);  // the padding
+      REQUIRE(robot.step(window, 0.1) > 0.02 - 1e-6);  // the padding of the hull
       is_there = (robot.position_m - robot.goal_m).norm() <= 0.1;
     }
     arrived += is_there ? 1 : 0;

@@ -28,7 +28,7 @@ std::vector<Vec2> random_points(Rng& rng, std::size_t count, double half_side_m,
 
 using Admissible = std::map<std::pair<int, int>, RatedWheelSpeeds>;
 
-/// indexed by the wheel speeds
+/// The admissible wheel speeds of a choice, by their indices in the grid of wheel speeds.
 Admissible by_index(const WindowChoice& choice, const DifferentialDrive& drive) {
   const auto index = [&](double speed) {
     return static_cast<int>(std::lround(speed / drive.wheel_speed_mps * (kGridSide / 2))) + kGridSide / 2;
@@ -126,7 +126,7 @@ TEST_CASE("the exact window agrees with a slow reference") {
   }
 }
 
-TEST_CASE("tables admit only exactly admissible velocities, and nearly all of those") {
+TEST_CASE("tables admit most of the admissible velocities and no others") {
   const DifferentialDrive drive;
   DynamicWindow exact(drive, kHull, settings_for(CollisionMethod::kExact));
   DynamicWindow tables[] = {{drive, kHull, settings_for(CollisionMethod::kUniformTable)},
@@ -198,7 +198,7 @@ TEST_CASE("points within a cell of the hull block only motions that run into the
   }
 }
 
-TEST_CASE("a robot that must turn on the spot only turns") {
+TEST_CASE("a robot that must turn on the spot does not drive forward") {
   const DifferentialDrive drive;
   DynamicWindow window(drive, kHull, settings_for(CollisionMethod::kExact));
   WindowQuery query;
@@ -217,7 +217,7 @@ TEST_CASE("a robot that must turn on the spot only turns") {
   CHECK(drive.motion(choice->command).turn_rate_radps < -0.1);
 }
 
-TEST_CASE("invalid settings and queries are refused") {
+TEST_CASE("dynamic windows refuse invalid settings and queries") {
   const DifferentialDrive drive;
   DynamicWindowSettings settings = settings_for(CollisionMethod::kExact);
   settings.weights = {0, 0, 0};

@@ -50,7 +50,7 @@ TEST_CASE("exact times to collision agree with dense time steps") {
       REQUIRE(time_s == 0);
       continue;
     }
-    // The point is never inside the hull before the time.
+    // The point is never inside the hull before the time to collision.
     step(point, motion, [&](double t, const Vec2& seen) {
       if (t < time_s) REQUIRE(signed_distance(seen, hull.corners_m) > -kIntegration_m);
       return t < time_s;
@@ -59,7 +59,7 @@ TEST_CASE("exact times to collision agree with dense time steps") {
       ++misses;
       continue;
     }
-    // At that time the point is on the outline. Soon after it is inside, unless it only grazes the outline.
+    // At the time to collision, the point is on the outline.
     ++hits;
     const Vec2 entry = point_after_motion(point, motion, time_s);
     REQUIRE(std::abs(signed_distance(entry, hull.corners_m)) < 1e-8);
@@ -88,7 +88,7 @@ TEST_CASE("times to collision change little between straight and nearly straight
   CHECK(compared > 100);
 }
 
-TEST_CASE("a collision after more than half a turn is found") {
+TEST_CASE("a collision after more than half a turn of the robot is found") {
   // The robot turns left on the spot; the point lies on its right.
   const Hull outline(ConvexPolygon{{{0, -0.01}, {1, -0.01}, {1, 0.01}, {0, 0.01}}});
   const double time_s = outline.time_to_collision_s({0, -0.5}, {0, 1});
@@ -96,7 +96,7 @@ TEST_CASE("a collision after more than half a turn is found") {
   CHECK(std::isinf(outline.time_to_collision_s({0, -1.2}, {0, 1})));
 }
 
-TEST_CASE("a padded hull contains all points within its padding, and little more") {
+TEST_CASE("a padded hull contains all points within its padding and no points much farther away") {
   const std::uint64_t seed = GENERATE(range(1, 60));
   CAPTURE(seed);
   Rng rng(seed);

@@ -49,7 +49,7 @@ TEST_CASE("quantised times are never later than true ones") {
   }
 }
 
-TEST_CASE("levels are ordered like the times that they represent") {
+TEST_CASE("quantiser levels are ordered like the times that they represent") {
   Rng rng(3);
   const std::vector<float> times = random_times(rng, 2000);
   const Quantiser quantiser = Quantiser::lloyd_max(times, kHorizon_s);
@@ -58,7 +58,7 @@ TEST_CASE("levels are ordered like the times that they represent") {
   }
 }
 
-TEST_CASE("uniform levels are off by at most one step") {
+TEST_CASE("uniform quantiser levels differ from the true times by at most one step") {
   Rng rng(4);
   const Quantiser quantiser = Quantiser::uniform(kHorizon_s);
   for (int i = 0; i < 10'000; ++i) {

@@ -67,7 +67,7 @@ TEST_CASE("a robot in a U-shaped obstacle gets stuck in a local minimum, which i
   CHECK(end.x() > 0);
   CHECK(end.x() < 1 - kRadius_m);
   CHECK(std::abs(end.y()) < 0.5 - kRadius_m);
-  // The forces cancel there: the goal's force alone would be above 1 at this distance.
+  // The forces cancel where the robot is stuck: the goal's force alone would be above 1.
   const ObstaclePoints free = obstacles_of(points);
   CHECK(field.force(end, {2, 0}, free(end, 0)).norm() < 0.5);
 }

@@ -27,7 +27,7 @@ Vec2 random_position(Rng& rng) {
   return {x, y};
 }
 
-TEST_CASE("the nearest free position is as near as the first one in the list") {
+TEST_CASE("the nearest free position is as near as the first of all free positions nearby") {
   int found = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
@@ -78,7 +78,7 @@ TEST_CASE(
   CHECK(found > 60);
 }
 
-TEST_CASE("a domain for checks permits the same motions as a domain with a goal") {
+TEST_CASE("a domain without a goal permits the same motions as a domain with a goal") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

@@ -12,7 +12,7 @@ namespace sidestep::cells_test {
 
 struct Outcome {
   int solved = 0;
-  double over_shortest = 0;  // mean excess over the shortest path
+  double over_shortest = 0;  // mean length relative to the shortest path
 };
 
 template <typename Planner>
@@ -40,7 +40,7 @@ Outcome plan_world(Planner planner, const std::string& name, std::uint64_t seed)
   return outcome;
 }
 
-TEST_CASE("grid search finds paths only slightly longer than the shortest") {
+TEST_CASE("grid search finds paths only slightly longer than the shortest path") {
   const auto seed = GENERATE(1u, 2u, 3u);
   for (const std::string name : {"empty", "circles", "mixed", "maze", "u"}) {
     CAPTURE(name, seed);
@@ -50,7 +50,7 @@ TEST_CASE("grid search finds paths only slightly longer than the shortest") {
     CHECK(a_star.solved >= 9);
     CHECK(breadth.solved == a_star.solved);
     CHECK(depth.solved == a_star.solved);
-    // At most 8.3 % longer because of the eight directions, plus the width of the cells.
+    // Paths are at most 8.3 % longer because of the eight directions, plus the width of the cells.
     CHECK(a_star.over_shortest < 1.12);
     CHECK(a_star.over_shortest <= breadth.over_shortest);
     CHECK(breadth.over_shortest <= depth.over_shortest);
@@ -78,7 +78,7 @@ TEST_CASE("the trapezoids cover exactly the free positions") {
   const ObstacleWorld obstacles(world.obstacles);
   Rng rng(seed);
   TrapezoidalDecomposition planner;
-  // This query has no straight path, which would skip the decomposition.
+  // The query must have no straight path, because a straight path would skip the decomposition.
   const Vec2 start = world.queries[0].start_m, goal = world.queries[0].goal_m;
   planner.plan({obstacles, world.field, world.radius_m, start, goal}, start, {}, rng);
   PlanWorld smaller_robot = world, larger_robot = world;
@@ -176,7 +176,7 @@ TEST_CASE(
   CHECK(unsolvable > 10);
 }
 
-TEST_CASE("grids and cell decompositions report that no path exists") {
+TEST_CASE("grids and cell decompositions report that an enclosed goal is unreachable") {
   std::vector<Shape> ring;
   for (int i = 0; i < 24; ++i)
     ring.push_back(Circle{2 * Vec2(std::cos(i * 0.2618), std::sin(i * 0.2618)), 0.25});

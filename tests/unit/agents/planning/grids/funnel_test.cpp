@@ -42,7 +42,7 @@ double shortest_m(const Vec2& from, const std::vector<PortalEdge>& portals, cons
   return length.back();
 }
 
-TEST_CASE("the path through portals is the shortest one") {
+TEST_CASE("the path through portals is the shortest path") {
   const std::uint64_t seed = GENERATE(range(1, 101));
   CAPTURE(seed);
   Rng rng(seed);

@@ -91,7 +91,7 @@ void check_map(const TrapezoidalMap& map, std::int32_t half) {
   CHECK(area == Approx(side * side).epsilon(1e-12));
 }
 
-/// A trapezoid's neighbours, found by comparing with all trapezoids: they share part of a wall with it.
+/// Number of trapezoids that share part of a trapezoid's right wall, by comparing with all trapezoids.
 std::size_t count_right_neighbours(const TrapezoidalMap& map, const TrapezoidalMap::Trapezoid& t) {
   std::size_t count = 0;
   for (const TrapezoidalMap::Trapezoid& other : map.trapezoids()) {

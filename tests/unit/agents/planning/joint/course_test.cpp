@@ -67,7 +67,7 @@ TEST_CASE("a clipped trajectory equals the whole one within its interval and res
   }
 }
 
-TEST_CASE("a course agrees with sampling on whether a motion is clear of it") {
+TEST_CASE("a course and a sampled check agree on whether a motion is clear of the course") {
   int clear = 0, blocked = 0;
   for (std::uint64_t seed = 1; seed <= 600; ++seed) {
     CAPTURE(seed);

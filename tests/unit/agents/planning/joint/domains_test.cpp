@@ -58,7 +58,7 @@ TEST_CASE("a composite motion is free exactly if an independent check of its cou
   CHECK(blocked > 100);
 }
 
-TEST_CASE("an extension of the composite tree is free and brings it nearer to its target") {
+TEST_CASE("an extension of the composite tree is free and brings the tree nearer to its target") {
   int extended = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);

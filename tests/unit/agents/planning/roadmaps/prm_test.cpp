@@ -14,8 +14,8 @@ namespace sidestep::prm_test {
 
 using Roadmaps = Prm<DiscDomain>;
 
-/// The shortest path between the roadmap's last two nodes, by Bellman-Ford over the edges that are free in
-/// this world.
+/// Length of the shortest path between the roadmap's last two nodes, by Bellman-Ford over the edges that are
+/// free in this world.
 double shortest_on(const Roadmap<DiscDomain>& map, const DiscDomain& domain) {
   std::vector<double> length(map.size(), std::numeric_limits<double>::infinity());
   length[map.size() - 2] = 0;
@@ -124,7 +124,7 @@ bool goes_through_gap(const std::vector<Vec2>& path) {
   return false;
 }
 
-/// The shortest path between the last two nodes on a new roadmap with the same nodes.
+/// Length of the shortest path between the last two nodes of a new roadmap with the same nodes.
 double shortest_on_new(const Roadmap<DiscDomain>& old, const DiscDomain& domain) {
   Roadmap<DiscDomain> fresh;
   for (std::uint32_t node = 0; node < old.size(); ++node)
@@ -189,7 +189,7 @@ TEST_CASE("an old roadmap that keeps all blocked motions is as good as a new one
     ++compared;
   }
   CHECK(compared >= 8);
-  // Motions that are blocked in this world are edges, but not free edges.
+  // The roadmap keeps motions that are blocked in this world as edges, but not as free edges.
   CHECK(planner.roadmap().edges().size() > edges);
 }
 
@@ -248,7 +248,7 @@ TEST_CASE("connection within a radius joins a node with all visible nodes within
   CHECK(joined > 100);
 }
 
-TEST_CASE("a roadmap built in advance equals the one that the first query would build") {
+TEST_CASE("a roadmap built in advance equals the roadmap that the first query would build") {
   const PlanWorld world = make_world("circles", 1, 3);
   const ObstacleWorld obstacles(world.obstacles);
   const auto& [start, goal] = world.queries[0];

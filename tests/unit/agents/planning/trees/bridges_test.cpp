@@ -19,7 +19,7 @@ Tree random_tree(const BallDomain& domain, const BallDomain::State& root, int no
   return tree;
 }
 
-/// Floyd-Warshall over all nodes of both trees.
+/// Slow reference: Floyd-Warshall over all nodes of both trees.
 double shortest_by_brute_force(const Tree& a, const Tree& b,
                                const std::vector<std::pair<std::uint32_t, std::uint32_t>>& bridges) {
   const std::size_t n = a.size() + b.size();

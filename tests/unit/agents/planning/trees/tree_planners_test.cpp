@@ -76,7 +76,7 @@ TEST_CASE("two trees find valid paths in all worlds, and the same seed gives the
   plan_all_worlds<BidirectionalErrt<DiscDomain>>(BidirectionalErrtSettings{.bridges = 4}, seed, 0.9);
 }
 
-TEST_CASE("tree planners work in any domain") {
+TEST_CASE("tree planners solve queries in a domain that is unrelated to the floor") {
   const auto seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(seed);
   const BallDomain domain = divided_cube(true);

@@ -27,7 +27,7 @@ TEST_CASE("a cache that is not full stores every waypoint") {
     CHECK(contents(filled(replacement, rng)) == std::set{1, 2, 3, 4});
 }
 
-TEST_CASE("a full cache drops its oldest waypoints") {
+TEST_CASE("with first-in-first-out replacement, a full cache drops its oldest waypoints, used or not") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kOldest, rng);
   cache.use(0);
@@ -37,7 +37,7 @@ TEST_CASE("a full cache drops its oldest waypoints") {
   CHECK(contents(cache) == std::set{4, 5, 6, 7});
 }
 
-TEST_CASE("a full cache drops the least recently used waypoints") {
+TEST_CASE("with least-recently-used replacement, a full cache keeps a used waypoint") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
   cache.use(0);  // a plan grew towards waypoint 1
@@ -47,7 +47,7 @@ TEST_CASE("a full cache drops the least recently used waypoints") {
   CHECK(contents(cache) == std::set{1, 5, 6, 7});
 }
 
-TEST_CASE("a full cache drops its oldest waypoints if a plan used all of them") {
+TEST_CASE("with least-recently-used replacement, a full cache drops its oldest waypoints if all were used") {
   Rng rng(1);
   auto cache = filled(CacheReplacement::kLeastRecentlyUsed, rng);
   for (std::size_t i = 0; i < 4; ++i) cache.use(i);

@@ -25,7 +25,7 @@ class ReferenceGrid {
       for (int j = 0; j < cells_; ++j) free_[index(i, j)] = is_free(inflated_world, centre(i, j));
   }
 
-  /// Infinite if there is no path.
+  /// Length of the shortest path on the grid; infinite if there is no path.
   double length_m(const Vec2& start, const Vec2& goal) const {
     std::vector<double> length(free_.size(), std::numeric_limits<double>::infinity());
     using Item = std::tuple<double, int, int>;
@@ -163,7 +163,7 @@ TEST_CASE("the shortest path around a circle consists of two tangents and an arc
 
 TEST_CASE("the shortest path around a box turns at two corners") {
   const auto [exact, polyline, lazy] = plan_both(world_of({Box{{-1, -3}, {1, 0.5}}}), {-2, 0}, {2, 0});
-  // A tangent, the arc around a corner, the edge, the other arc, and a tangent.
+  // The path consists of a tangent, an arc around a corner, an edge, another arc, and a tangent.
   const double far = std::hypot(1, 0.5), straight = std::sqrt(far * far - 0.01);
   const double turn =
       std::numbers::pi / 2 - (std::numbers::pi / 2 - std::atan2(0.5, 1)) + std::asin(0.1 / far);
@@ -282,7 +282,7 @@ TEST_CASE("the shortest path around an angled wall turns once, at its corner") {
   for (const auto& walls :
        {std::vector<Shape>{vertical, horizontal}, std::vector<Shape>{horizontal, vertical}}) {
     const auto [exact, polyline, lazy] = plan_both(world_of(walls), {-0.5, 4}, {3.5, -0.5});
-    // Two tangents to the circle around the common corner, and the arc between them.
+    // The path consists of two tangents to the circle around the common corner and the arc between them.
     const double a = std::sqrt(16.25 - 0.01), b = std::sqrt(12.5 - 0.01);
     const double between = std::acos(Vec2(-0.5, 4).normalized().dot(Vec2(3.5, -0.5).normalized()));
     const double turn =

@@ -50,7 +50,7 @@ TEST_CASE("occupied cells block the same cells as boxes of the same size") {
   }
 }
 
-TEST_CASE("shapes and bitmaps outside the grid block nothing, and invalid ones are refused") {
+TEST_CASE("shapes and bitmaps outside the grid block no cells, and invalid shapes and bitmaps are refused") {
   CostGrid grid({.columns = 5, .rows = 5});
   block_shape(grid, Circle{{10, 10}, 1}, 0.5);
   block_shape(grid, Circle{{-10, 0.2}, 1}, 0.5);

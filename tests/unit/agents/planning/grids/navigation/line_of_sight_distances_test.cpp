@@ -67,7 +67,7 @@ class AllPairs {
     for (int y = 0; y < rows_; ++y)
       for (int x = 0; x < columns_; ++x)
         if (is_blocked(x, y) && !avoids(a, b, x, y)) return false;
-    // A motion between two blocked cells that meet at a corner or share an edge.
+    // A motion must not pass between two blocked cells that meet at a corner or share an edge.
     for (int y = 0; y <= rows_; ++y) {
       for (int x = 0; x <= columns_; ++x) {
         const Vec2 at(x, y);
@@ -112,7 +112,7 @@ LineOfSightDistances lengths_of(const CostGrid& grid, const Vec2& goal_m) {
   return lengths;
 }
 
-TEST_CASE("line-of-sight distances equal the shortest over all straight motions between corners") {
+TEST_CASE("line-of-sight distances equal those of a search over all straight motions between cell corners") {
   const double blocked = GENERATE(0.0, 0.1, 0.2, 0.4);
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(blocked, seed);

@@ -11,7 +11,7 @@ NavigationSettings with_kernel(GridKernel kernel) { return {.field = {.kernel = 
 
 struct Totals {
   int solved = 0;
-  double over_shortest = 0;  // mean excess over the shortest path
+  double over_shortest = 0;  // mean length relative to the shortest path
 };
 
 Totals plan_queries(const PlanWorld& world, const NavigationSettings& settings) {
@@ -179,7 +179,7 @@ TEST_CASE("a goal in a cut-off free cell is joined to a connected free cell") {
   CHECK(is_valid_path(world, plan.states, 1e-9));
 }
 
-TEST_CASE("without a path, the plan says so and stays at the start") {
+TEST_CASE("if there is no path, the plan reports an unreachable goal and contains only the start") {
   //  +---+
   //  | g |    s
   //  +---+

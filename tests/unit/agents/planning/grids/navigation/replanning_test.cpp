@@ -24,7 +24,7 @@ void change_costs(Rng& rng, CostGrid& grid, EStar& field) {
   }
 }
 
-TEST_CASE("a replanned field equals one computed from scratch, bit by bit") {
+TEST_CASE("a replanned field is bit-identical to a field computed from scratch") {
   const auto kernel = GENERATE(GridKernel::kNf1, GridKernel::kAlpha, GridKernel::kLsm,
                                GridKernel::kSecondOrderLsm, GridKernel::kLineOfSight);
   const auto exact_radius_cells = GENERATE(0, 4, 20);
@@ -48,7 +48,7 @@ TEST_CASE("a replanned field equals one computed from scratch, bit by bit") {
   }
 }
 
-TEST_CASE("costs may change while a field is partly propagated") {
+TEST_CASE("a partly propagated field is correct up to the requested cell after each change of costs") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -78,14 +78,14 @@ TEST_CASE("a field is propagated only as far as the robot") {
   field.propagate_until(near);
   const std::uint64_t first = field.expansions();
   CHECK(field.value(near) == Approx(40).epsilon(0.01));
-  CHECK(first < 6'000);  // The quarter disc of radius 40, and the part of the disc beyond the border at 20.
+  CHECK(first < 6'000);  // a disc with a radius of 40 cells, cut off 20 cells from its centre on two sides
   field.propagate_until(near);
   CHECK(field.expansions() == first);
   field.propagate();
   CHECK(field.expansions() >= 200 * 200);
 }
 
-TEST_CASE("replanning expands only cells whose value changes") {
+TEST_CASE("replanning expands few cells other than those whose values change") {
   for (const bool far : {false, true}) {
     const CostGrid grid({.columns = 200, .rows = 200});
     const GridLayout& layout = grid.layout();
