@@ -40,7 +40,7 @@ TEST_CASE("a study with invalid arguments is rejected before it begins") {
   CHECK_FALSE(std::filesystem::exists(folder.path()));
 }
 
-TEST_CASE("a study of buildings needs existing scenarios and planners that drive") {
+TEST_CASE("a study of buildings rejects missing scenarios and planners that cannot drive") {
   StudyFolder folder;
   const std::string file = SIDESTEP_SOURCE_DIR "/deploy/scenarios/house.yaml";
   CHECK(study({"buildings", "--out", folder.path()}) == kExitUsage);
@@ -58,7 +58,7 @@ TEST_CASE("a study of buildings needs existing scenarios and planners that drive
   CHECK_FALSE(std::filesystem::exists(folder.path()));
 }
 
-TEST_CASE("a study names an unwritable folder before it begins") {
+TEST_CASE("a study reports an unwritable folder before it begins") {
   const std::string name = GENERATE(as<std::string>(), "safety", "planning", "vision", "clutter", "corners",
                                     "explicit", "navigation", "potential", "camera");
   StudyFolder folder;

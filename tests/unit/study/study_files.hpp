@@ -9,7 +9,7 @@
 
 #include "tests/study/table/study_table.hpp"
 
-/// A row: cells by column name.
+/// A row of a table: cells by column name.
 using StudyRow = std::map<std::string, std::string>;
 
 /// A temporary folder for a study's files.
@@ -38,12 +38,12 @@ double number_in(const std::vector<StudyRow>& rows, const StudyRow& cells, const
 /// Runs an experiment with a seed.
 using Experiment = std::function<sidestep::StudyTable(std::uint64_t seed, const sidestep::ProgressCallback&)>;
 
-/// Checks what holds for every experiment: each row has a cell for each column, each plot has lines with
+/// Checks the properties of every experiment: each row has a cell for each column, each plot has lines with
 /// points, progress is reported up to the end, the same seed gives the same rows except for times, and a
 /// different seed gives different rows.
 void check_experiment(const Experiment& experiment);
 
-/// The sum of a column over the rows with the value `is` in the column `where`. Fails the test if there are
-/// no such rows.
+/// The sum of a column over the rows with the value `is` in the column `where`. Fails the test if no row has
+/// this value.
 double sum_of(const std::vector<StudyRow>& rows, const std::string& column, const std::string& where,
               const std::string& is);

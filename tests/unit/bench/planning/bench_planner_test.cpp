@@ -59,7 +59,7 @@ TEST_CASE("every planner in the benchmark returns a valid path and its planning 
   }
 }
 
-TEST_CASE("a planner gives up on a query when its time runs out") {
+TEST_CASE("a planner gives up on a query at its time limit") {
   // A wall separates start and goal.
   PlanWorld closed;
   closed.obstacles = {Box{{-0.1, -6}, {0.1, 6}}};
@@ -76,7 +76,7 @@ TEST_CASE("a planner gives up on a query when its time runs out") {
   }
 }
 
-TEST_CASE("our planners need as many iterations as their namesakes in OMPL") {
+TEST_CASE("our planners need about as many iterations as their namesakes in OMPL") {
   const std::string world = GENERATE(as<std::string>(), "maze", "circles");
   std::vector<PlanWorld> worlds;
   for (const std::uint64_t seed : {1, 2, 3, 4}) worlds.push_back(make_world(world, 100, seed));
@@ -90,7 +90,7 @@ TEST_CASE("our planners need as many iterations as their namesakes in OMPL") {
   }
 }
 
-TEST_CASE("broken planners have the faults that their names state, and unknown names are rejected") {
+TEST_CASE("planted planners have the faults that their names state, and unknown names are rejected") {
   const BenchmarkWorld world(make_world("u", 8, 1));
   const QueryFunction invalid = planted_planner("invalid-path").prepare(world, 1);
   const QueryFunction weak = planted_planner("weak-namesake").prepare(world, 1);

@@ -14,7 +14,7 @@ TEST_CASE("the free fraction of a motion ends a micrometre before its first cont
   CHECK(free_fraction(obstacles, {0, 0}, {0, 5}, 0.1) == 1);
 }
 
-TEST_CASE("a motion is free up to its free fraction and touches something just beyond it") {
+TEST_CASE("a motion is free up to its free fraction and touches an obstacle just beyond") {
   const auto seed = GENERATE(1u, 2u, 3u);
   CAPTURE(seed);
   const PlanWorld world = make_world("mixed", 1, seed);

@@ -16,7 +16,7 @@ BenchPlanner planner_of(std::string name, const Answer& answer) {
           }};
 }
 
-/// The correct answer: the shortest path.
+/// The correct answer to a query: the shortest path.
 TimedPlan right_answer(const BenchmarkWorld& world, const PlanQuery& query) {
   TangentGraph graph(world.obstacles, world.world.field, world.world.radius_m);
   const std::vector<Vec2> path = graph.plan(query.start_m, query.goal_m).states;
@@ -81,7 +81,7 @@ TEST_CASE("the benchmark does not check the path of a planner that gave up") {
         })}).empty());
 }
 
-TEST_CASE("a planner with a namesake fails if it solves significantly fewer queries than that") {
+TEST_CASE("a planner fails if it solves significantly fewer queries than its namesake") {
   const auto gives_up_every = [](int nth) {
     return [nth, count = std::make_shared<int>(0)](const BenchmarkWorld& world, const PlanQuery& query) {
       return ++*count % nth == 0 ? TimedPlan{} : right_answer(world, query);
@@ -95,7 +95,7 @@ TEST_CASE("a planner with a namesake fails if it solves significantly fewer quer
   const auto found = failures({peer, namesake(planner_of("weak", gives_up_every(4)), "peer")});
   REQUIRE(found.size() == 1);
   CHECK_THAT(found[0], StartsWith("weak solved 30 of 40 queries, its peer peer 40 of 40"));
-  // The OMPL planner may be the weaker one.
+  // It is not a failure if the namesake, the OMPL planner, is weaker.
   CHECK(failures({planner_of("weak peer", gives_up_every(4)), namesake(peer, "weak peer")}).empty());
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("every planner gets every query once, in blocks whose order the seed s
   CHECK(sequence(2) != asked);
 }
 
-TEST_CASE("a table gives a 99th percentile only for at least a thousand queries, and ratios of medians") {
+TEST_CASE("a table has ratios of medians, and a 99th percentile only from a thousand queries on") {
   const std::vector<BenchPlanner> planners{{"peer", "", false, {}}, {"ours", "peer", true, {}}};
   const std::size_t queries = GENERATE(999u, 1000u);
   std::vector<QueryBenchRow> rows(2);

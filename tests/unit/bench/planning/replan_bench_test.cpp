@@ -5,7 +5,7 @@
 
 namespace sidestep::replan_bench_test {
 
-TEST_CASE("planners replan valid paths among moving circles") {
+TEST_CASE("replanned paths among moving circles are valid") {
   CHECK(bench_replanning({"lazy-visibility", "bi-errt", "rrt-connect+cache", "estar", "nf1"}, 60, 1).empty());
 }
 

@@ -7,7 +7,7 @@
 
 namespace sidestep::significance_test {
 
-/// Slow reference: enumerates every choice of which trials succeed.
+/// Slow reference for Fisher's exact test: enumerates every choice of the trials that succeed.
 double enumerated_p(std::size_t successes, std::size_t trials, std::size_t other_successes,
                     std::size_t other_trials) {
   const std::size_t total = successes + other_successes;
@@ -32,7 +32,7 @@ TEST_CASE("Fisher's exact test gives the same probability as enumeration") {
         }
 }
 
-TEST_CASE("Fisher's exact test finds a real difference in a thousand queries and no spurious one") {
+TEST_CASE("Fisher's exact test finds a real difference in a thousand queries and no spurious difference") {
   CHECK(fewer_successes_p(1000, 1000, 1000, 1000) == Approx(1));
   CHECK(fewer_successes_p(990, 1000, 1000, 1000) < 0.01);
   CHECK(fewer_successes_p(996, 1000, 1000, 1000) > 0.01);

@@ -40,7 +40,7 @@ TEST_CASE("the distortion factors are NaN outside the domain of the lens") {
   CHECK(std::isnan(lens::distortion_factor(NAN)));
   CHECK(std::isnan(lens::undistortion_factor(-0.3001)));
   CHECK(std::isnan(lens::undistortion_factor(NAN)));
-  // Both limits belong to the same point, where dr_u/dr_d is 0.1.
+  // The limits of both factors belong to the same point, where dr_u/dr_d is 0.1.
   const double s = lens::distortion_factor(lens::kMinUndistortedKr2);
   CHECK(s * s * lens::kMinUndistortedKr2 == Approx(lens::kMinDistortedKr2));
   CHECK(1 + 3 * lens::kMinDistortedKr2 == Approx(0.1));

@@ -27,8 +27,8 @@ Settings settings_for(const TestDomain& domain) {
   return settings;
 }
 
-/// Answers every order from its own thread, and reports that robot 5 arrives at once. Robots above 7 do not
-/// exist.
+/// Answers every order from its own thread. Reports that robot 5 arrives as soon as it is ordered to drive.
+/// Robots with ids above 7 are unknown.
 class FakeCoordinator {
  public:
   explicit FakeCoordinator(const TestDomain& domain)
@@ -82,7 +82,7 @@ class FakeCoordinator {
   std::thread thread_;
 };
 
-TEST_CASE("a client repeats an order until it is answered") {
+TEST_CASE("a client repeats an order until a coordinator answers") {
   const TestDomain domain;
   Client client(settings_for(domain));
   const OrderId hold = client.hold_all(), unknown = client.cancel(8);
@@ -106,7 +106,7 @@ TEST_CASE("an operator's orders carry the operator's sender id") {
   CHECK(coordinator.last_sender() == static_cast<std::uint32_t>(Sender::kOperator));
 }
 
-TEST_CASE("setting a zone is complete once it is accepted, and setting it again replaces it") {
+TEST_CASE("a zone is set once a coordinator accepts the order, and setting the zone again replaces it") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -122,7 +122,7 @@ TEST_CASE("setting a zone is complete once it is accepted, and setting it again 
   CHECK(client.state(other)->phase == OrderPhase::kAccepted);
 }
 
-TEST_CASE("callbacks run on every change, may give orders, and never block when they wait") {
+TEST_CASE("a callback may give orders, and wait() returns immediately in a callback") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -160,7 +160,7 @@ TEST_CASE("several threads can use one client at the same time") {
   CHECK(accepted == 40);
 }
 
-TEST_CASE("a client knows what each robot is doing") {
+TEST_CASE("a client lists the robots that it has heard of with their current tasks") {
   const TestDomain domain;
   const FakeCoordinator coordinator(domain);
   Client client(settings_for(domain));
@@ -196,7 +196,7 @@ TEST_CASE("a client rejects invalid orders without asking a coordinator") {
   CHECK(zone_refusal_of({{{0, 0}}, kNan}) == Refusal::kMalformed);
   CHECK(zone_refusal_of({{{0, 0}}, -1}) == Refusal::kMalformed);
   CHECK(zone_refusal_of({{{0, 0}}, 0.3, 0.0}) == Refusal::kMalformed);
-  // In messages, this number means all robots.
+  // In messages, the robot id kAllRobots means all robots.
   CHECK(client.wait(client.resume(kAllRobots), kTimeout)->refusal == Refusal::kUnknownRobot);
   CHECK(client.wait(client.go(kAllRobots, {{0, 0}}), kTimeout)->refusal == Refusal::kUnknownRobot);
 }

@@ -76,7 +76,7 @@ TEST_CASE("a zone order applies to all robots and is complete when a coordinator
   CHECK(system.book.zones().size() == 1);
 }
 
-TEST_CASE("a zone that its own client moves is not reported as replaced") {
+TEST_CASE("a zone is not reported as replaced if its own client moves it") {
   System system;
   for (int i = 0; i < 100; ++i) {
     system.client.zone(1, disc(0.01 * i));
@@ -114,7 +114,7 @@ TEST_CASE("a client keeps a zone in force while it forgets older finished orders
     system.run_for(5ms);
   }
   const auto is_known = [&](OrderHandle handle) { return system.client.find(handle) != nullptr; };
-  // The last zone and the last hold are still in force.
+  // Besides kMaxFinal finished orders, the last zone and the last hold are known: they are in force.
   CHECK(static_cast<std::size_t>(std::ranges::count_if(handles, is_known)) == OrderClient::kMaxFinal + 2);
   CHECK(is_known(standing));
   CHECK(is_known(handles.back()));
@@ -175,7 +175,7 @@ TEST_CASE("a drive order and a hold that all coordinators have forgotten are sen
   CHECK(system.book.is_held(4));
 }
 
-TEST_CASE("an order that one coordinator has forgotten is sent again even if another still lists it") {
+TEST_CASE("an order that a coordinator has forgotten is sent again even if another coordinator lists it") {
   System system;
   const OrderHandle go = system.client.go(0, {{{1, 0}}});
   system.run_for(100ms);
@@ -311,7 +311,7 @@ TEST_CASE("a zone that another process with the same client name overwrites is r
   CHECK(system.client.find(zone)->phase == OrderPhase::kReplaced);
 }
 
-TEST_CASE("a client may send the next position of a zone as soon as the previous one is confirmed") {
+TEST_CASE("a client may send the next position of a zone once the previous position is confirmed") {
   System system;
   int sent = 1;
   system.client.on_change([&](const SentOrder&) {
@@ -372,7 +372,7 @@ TEST_CASE(
   CHECK((sent->order.number > hold.number) == is_clock_behind);
 }
 
-TEST_CASE("a robot follows the latest drive order even if the previous one was lost") {
+TEST_CASE("a robot follows the latest drive order even if the previous drive order was lost") {
   System system;
   system.answers_orders = false;
   const OrderHandle first = system.client.go(0, {{{1, 0}}});

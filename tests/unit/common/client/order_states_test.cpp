@@ -38,7 +38,7 @@ TEST_CASE("a thread waits until its order is over, regardless of other orders") 
   CHECK(seen == kArrived);
 }
 
-TEST_CASE("an order's state may still change after waiting threads have returned, until it is final") {
+TEST_CASE("an order's state may change after waiting threads have returned until the state is final") {
   OrderStates states;
   const OrderId zone = states.add();
   const OrderState accepted{OrderPhase::kAccepted, Refusal::kNone, 0, true};
@@ -50,7 +50,7 @@ TEST_CASE("an order's state may still change after waiting threads have returned
   CHECK(states.find(zone) == replaced);
 }
 
-TEST_CASE("waiting ends at its timeout, however short or long the timeout is") {
+TEST_CASE("a waiting thread returns at its timeout, whether that is extremely short or extremely long") {
   OrderStates states;
   const OrderId order = states.add();
   states.update(order, kDriving, false);
@@ -61,7 +61,7 @@ TEST_CASE("waiting ends at its timeout, however short or long the timeout is") {
   CHECK(states.wait(order, std::chrono::nanoseconds::max()) == kArrived);
 }
 
-TEST_CASE("all orders that may still change are remembered, but only the latest final ones") {
+TEST_CASE("all orders that may still change are remembered, but only the latest final orders") {
   OrderStates states;
   const OrderId open = states.add();
   std::vector<OrderId> orders;

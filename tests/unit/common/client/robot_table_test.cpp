@@ -87,7 +87,7 @@ TEST_CASE("the table shows which client's order a robot carries out and its prog
   CHECK(table.robots(kBegin)[0].remaining_s == 4);
 }
 
-TEST_CASE("a robot that is no longer heard or seen is not free") {
+TEST_CASE("a robot is not free if its agent has fallen silent or vision has lost it") {
   RobotTable table(kSelf);
   table.on_status(status_of(3), kBegin);
   table.on_world_state(world_with(3, 1, kBegin), kBegin);

@@ -6,7 +6,7 @@
 
 namespace sidestep::allocation_test {
 
-TEST_CASE("the counter counts an allocation") {
+TEST_CASE("the allocation counter counts an allocation") {
   const std::size_t before = allocation_count();
   const std::vector<int> numbers(100);
   CHECK(numbers.size() == 100);

@@ -13,7 +13,7 @@ constexpr double kTolerance_m = 1e-9;
 constexpr Structure kStructures[] = {Structure::kAutomatic, Structure::kLinear, Structure::kMasks,
                                      Structure::kTree};
 
-/// The distance from a path to the nearest shape, computed without any code of the structures.
+/// The distance from a path to the nearest shape, by brute force, independent of the structures under test.
 double exact_distance(const ObstacleWorld& world, const Vec2& from, const Vec2& to) {
   double nearest2 = kInfinite;
   for (const ObstacleId id : world.obstacles())
@@ -38,7 +38,7 @@ void check_queries(const ObstacleWorld& world, Rng& rng, double half_m, double m
     const Vec2 from = random_position(rng, 1.2 * half_m);
     const Vec2 to = rng.chance(0.1) ? from : from + random_displacement(rng, max_length_m);
     const double distance = exact_distance(world, from, to);
-    // Many radii are close to the value at which the answer changes.
+    // Many radii are close to the distance, where the answer changes.
     double radius = rng.chance(0.1) ? 0 : rng.uniform(0, 0.2 * half_m);
     if (rng.chance(0.5) && distance < half_m) radius = std::max(0.0, distance + rng.uniform(-1e-6, 1e-6));
     CAPTURE(from.x(), from.y(), to.x(), to.y(), radius, distance);
@@ -180,7 +180,7 @@ TEST_CASE("a world stays correct as obstacles are added, moved and removed") {
   }
 }
 
-TEST_CASE("an obstacle keeps its id while others are added and removed") {
+TEST_CASE("an obstacle keeps its id while other obstacles are added and removed") {
   ObstacleWorld world({Circle{{0, 0}, 1}, Box{{4, 0}, {5, 1}}, Circle{{9, 0}, 1}});
   const ObstacleId third{2};
   world.remove(ObstacleId{0});

@@ -48,7 +48,7 @@ inline Shape random_shape(Rng& rng, double half_m, double size_m) {
   }
 }
 
-/// Shapes of all kinds that together cover about a fifth of a square, however many there are.
+/// `count` shapes of all kinds. For any count they cover about a fifth of a square.
 inline std::vector<Shape> random_shapes(Rng& rng, std::size_t count, double half_m) {
   const double size_m = 0.4 * 2 * half_m / std::sqrt(static_cast<double>(count) + 1);
   std::vector<Shape> shapes;

@@ -59,7 +59,7 @@ TEST_CASE("the distance to a shape is the distance to the nearest point of its b
   }
 }
 
-TEST_CASE("the nearest boundary point and the facing disc are as far away as the shape") {
+TEST_CASE("the nearest boundary point and the facing disc are at the same distance as the shape") {
   Rng rng(2);
   int inside = 0;
   for (int i = 0; i < 2000; ++i) {

@@ -75,7 +75,7 @@ Vec3 random_vector(Rng& rng, double min, double max) {
   return {x, y, z};
 }
 
-TEST_CASE("the tree agrees with a search over all triangles") {
+TEST_CASE("the terrain tree agrees with a search over all triangles") {
   const std::uint64_t seed = GENERATE(range(1, 5));
   CAPTURE(seed);
   Rng rng(seed);

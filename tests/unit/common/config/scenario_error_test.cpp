@@ -249,7 +249,7 @@ TEST_CASE("starts and goals in blocked cells and unreadable maps are rejected") 
   CHECK_THAT(error("[1, 2]", "[0, 0]", "[1, 0]"), ContainsSubstring("scenario.yaml:1: map: "));
 }
 
-TEST_CASE("robots cross unknown map cells only if the scenario allows it, and a notice says so") {
+TEST_CASE("unknown map cells are free only if the scenario allows it, and a notice then reports them") {
   const test::MapFolder folder;
   // 4 x 4 m of 0.1 m cells: free for x < 0, unknown from x = 0 on.
   std::string image = "P5 40 40 255\n";
@@ -271,7 +271,7 @@ TEST_CASE("robots cross unknown map cells only if the scenario allows it, and a 
   CHECK_THROWS_WITH(load("unknown: perhaps\n", "[-2, -2, 0]"),
                     ContainsSubstring("scenario.yaml:2: unknown: "));
   check_rejected(kRobot + "unknown: free\n", 2, "there is no map");
-  // Paths below the user's home folder.
+  // A path that begins with ~ is relative to the user's home folder.
   const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
   setenv("HOME", (folder / "").c_str(), 1);
   const auto at_home = [&] {
@@ -310,7 +310,7 @@ TEST_CASE("text that is not a single YAML document is rejected with its line") {
   check_rejected(std::string(100000, '['), 1, "expected at most 500 nested brackets");
 }
 
-TEST_CASE("a file with too many values is rejected, even if anchors multiply them") {
+TEST_CASE("a file with too many values is rejected, even if anchors multiply the values") {
   std::string many = kRobot + "obstacles: [";
   for (int i = 0; i < 400'000; ++i) many += "0,";
   check_rejected(many + "]\n", 2, "more than 400000 values");

@@ -25,7 +25,7 @@ TEST_CASE("every shipped scenario loads") {
   CHECK(count >= 5);
 }
 
-TEST_CASE("the shipped scenarios match their names") {
+TEST_CASE("the shipped scenarios have the numbers of robots and the noise that their names state") {
   CHECK(load_scenario(kScenarios + "crossing.yaml").robots.size() == 8);
   CHECK(load_scenario(kScenarios + "crossing.yaml").obstacles.size() == 4);
   CHECK(load_scenario(kScenarios + "two-teams-22.yaml").robots.size() == 22);
@@ -82,7 +82,7 @@ TEST_CASE("a number of any type may have one leading plus") {
   CHECK(s.robots[0].goals[0].heading_rad == 3);
 }
 
-TEST_CASE("every key is read in its unit") {
+TEST_CASE("every scenario key is read and converted from its unit") {
   const Scenario s = parse_scenario(R"(name: all-keys
 field: {length_m: 12, width_m: 9}
 limits: {acceleration_mps2: 2.5, deceleration_mps2: 4, speed_mps: 1.5}
@@ -188,7 +188,7 @@ robots:
   CHECK(find_robot(s, 8) == nullptr);
 }
 
-TEST_CASE("a scenario without a name is named after its file, in any language") {
+TEST_CASE("a scenario without a name is named after its file, whose name may be in any language") {
   const auto [file, name] = GENERATE(table<std::string, std::string>({
       {"dir/lone.yaml", "lone"},
       {"dir/\xe4\xba\xa4\xe5\xb7\xae-\xc3\xa4.yaml", "\xe4\xba\xa4\xe5\xb7\xae-\xc3\xa4"},

@@ -68,7 +68,7 @@ TEST_CASE("maps that differ in one cell or in position are different rules") {
   }
 }
 
-TEST_CASE("rules are unchanged after sending") {
+TEST_CASE("rules survive conversion to text and parsing") {
   const SharedRules rules(scenario_of(kRobots));
   const auto received = SharedRules::parse(rules.text());
   REQUIRE(received);
@@ -77,7 +77,7 @@ TEST_CASE("rules are unchanged after sending") {
   CHECK(rules.differences(*received).empty());
 }
 
-TEST_CASE("a rule that differs is named with both values") {
+TEST_CASE("a difference between rules is described by its key and both values") {
   Scenario other = scenario_of(kRobots);
   const SharedRules own(other);
   other.margin_m = 0.02;
@@ -94,7 +94,7 @@ TEST_CASE("a rule that differs is named with both values") {
         "robots.blue is unknown instead of 0-2, 5, wings is 2 instead of unknown");
 }
 
-TEST_CASE("rules fit the largest roster and the most obstacles, and each obstacle matters") {
+TEST_CASE("the rules of the largest scenario fit a message and change with each of its obstacles") {
   std::string text = "field: {length_m: 1000, width_m: 1000}\nrobots:\n";
   for (int i = 0; i < 500; ++i)
     text += fmt::format("  - {{id: {}, start_m: [{}, 0], goals_m: [[{}, 1]]}}\n", 2 * i, i - 250, i - 250);

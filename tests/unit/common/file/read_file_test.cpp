@@ -21,7 +21,7 @@ TEST_CASE("a regular file is read completely, up to a maximum size") {
   CHECK_FALSE(read_file("/proc/self/status", 1'000'000).empty());
 }
 
-TEST_CASE("anything but a regular file is rejected at once") {
+TEST_CASE("a path that is not a regular file is rejected without reading") {
   const TemporaryFolder folder;
   REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
   CHECK_THROWS_WITH(read_file(folder.file("pipe"), 100), Equals("it is not a regular file"));
@@ -30,7 +30,7 @@ TEST_CASE("anything but a regular file is rejected at once") {
   CHECK_THROWS_WITH(read_file(folder.file("none"), 100), Equals("No such file or directory"));
 }
 
-TEST_CASE("a path may begin with the user's home folder") {
+TEST_CASE("a leading ~ in a path is replaced by the user's home folder") {
   CHECK(expand_home("~").starts_with("/"));
   CHECK(expand_home("~/maps/a.yaml") == expand_home("~") + "/maps/a.yaml");
   for (const char* path : {"", "a~", "~other/a", "/~/a", "./~"}) CHECK(expand_home(path) == path);

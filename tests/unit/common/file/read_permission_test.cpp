@@ -13,7 +13,7 @@ namespace sidestep::read_permission_test {
 
 namespace fs = std::filesystem;
 
-/// A tree that every user may read, inside a folder that every user may enter.
+/// A tree of folders that every user may read, in a folder that every user may enter.
 struct Tree {
   Tree() {
     fs::permissions(fs::path(file("")).parent_path(), fs::perms(0755));

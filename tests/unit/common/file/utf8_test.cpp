@@ -7,7 +7,7 @@
 
 namespace sidestep::utf8_test {
 
-TEST_CASE("valid UTF-8 sequences have a length and invalid ones have none") {
+TEST_CASE("the length of a UTF-8 sequence is zero if the sequence is invalid or a control character") {
   const auto [text, length] = GENERATE(table<std::string, std::size_t>({
       {"a", 1},
       {"\t", 1},

@@ -68,7 +68,7 @@ TEST_CASE("a full disk is reported") {
   CHECK_THROWS_WITH(write_file("/dev/full", "text"), "cannot write /dev/full: No space left on device");
 }
 
-TEST_CASE("links and devices are written in place") {
+TEST_CASE("writing to a link or a device does not replace it by a file") {
   const TemporaryFolder folder;
   write_file(folder.file("target"), "old");
   fs::create_symlink(folder.file("target"), folder.file("link"));

@@ -91,7 +91,7 @@ TEST_CASE("damaged images and data that is not an image are rejected") {
                     "/nowhere/a.png: cannot be read: No such file or directory");
 }
 
-TEST_CASE("the stated size of an image is read without decoding the image") {
+TEST_CASE("the size that an image's header states is read without decoding the image") {
   const auto size = [](std::string_view text) -> std::string {
     const auto found = stated_size(text);
     return found ? std::to_string(found->width_px) + " x " + std::to_string(found->height_px) : "none";

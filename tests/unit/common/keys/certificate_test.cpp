@@ -28,7 +28,7 @@ TEST_CASE("a certificate states its owner, issuer and validity period") {
   CHECK_FALSE(f.authority.certificate().identity());
 }
 
-TEST_CASE("a certificate survives DER encoding, and other bytes are not a certificate") {
+TEST_CASE("a certificate survives DER encoding, and bytes that are not a certificate are rejected") {
   const Fixture f;
   const std::vector<std::uint8_t> der = f.certificate.der();
   REQUIRE(Certificate::from_der(der));

@@ -58,7 +58,7 @@ TEST_CASE("each identity has exactly one text form, and other texts are rejected
   }
 }
 
-TEST_CASE("no identity may speak for another process") {
+TEST_CASE("no identity may use the sender id of another process") {
   std::set<std::uint32_t> senders{1, 2, 3, kMaxRobots - 1, client_id("a"), client_id("b")};
   for (const Sender sender : {Sender::kVision, Sender::kSimulator, Sender::kRobots, Sender::kOperator,
                               Sender::kReferee, Sender::kScenario})

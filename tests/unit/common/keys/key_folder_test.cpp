@@ -25,7 +25,7 @@ std::string problem_of(const std::string& folder, Time now) {
   return "";
 }
 
-TEST_CASE("loaded keys equal the issued ones") {
+TEST_CASE("loaded keys equal the issued keys") {
   TestKeys keys({"agent", "3"});
   const KeyFolder folder = load_key_folder(keys.folder_of("agent 3"), keys.now());
   CHECK(folder.identity == Identity{Role::kAgent, 3, 3});
@@ -34,7 +34,7 @@ TEST_CASE("loaded keys equal the issued ones") {
   for (const char* name : key_files::kAll) CHECK(fs::exists(folder.file(name)));
 }
 
-TEST_CASE("problems with keys are explained in plain words") {
+TEST_CASE("an error about unusable keys states the problem in plain words") {
   TestKeys keys({"agent", "3-4"}), others({"agent", "3"});
   const std::string folder = keys.folder_of("agent 3");
   const auto problem = [&] { return problem_of(folder, keys.now()); };
@@ -81,7 +81,7 @@ TEST_CASE("problems with keys are explained in plain words") {
                   fs::copy_options::overwrite_existing);
     CHECK_THAT(problem(), ContainsSubstring("expected the certificate of an identity"));
   }
-  SECTION("there is no folder") {
+  SECTION("the folder is missing") {
     CHECK_THAT(problem_of(folder + "-none", keys.now()), ContainsSubstring("does not exist"));
   }
 }

@@ -26,7 +26,7 @@ class TemporaryFile {
   TemporaryFolder folder_;
 };
 
-/// Alternating vision and tracked packets, one every 10 ms.
+/// Records of alternating vision and tracked packets, one every 10 ms.
 std::vector<LogRecord> random_records(Rng& rng, int count) {
   std::vector<LogRecord> records;
   for (int i = 0; i < count; ++i) {
@@ -52,7 +52,7 @@ LogReader reader_of(const std::string& content) {
   return LogReader(std::make_unique<std::istringstream>(content), "x.log");
 }
 
-/// All remaining records.
+/// Reads and returns all remaining records.
 std::vector<LogRecord> all_of(LogReader& reader) {
   std::vector<LogRecord> records;
   LogRecord record;
@@ -78,7 +78,7 @@ std::string error_of(const std::string& content) {
   return "accepted";
 }
 
-/// A big-endian record header.
+/// The header of a record, big-endian.
 std::string header(std::int64_t received_ns, std::int32_t type, std::int32_t size) {
   std::string bytes;
   for (int i = 7; i >= 0; --i) bytes += static_cast<char>(received_ns >> 8 * i & 0xff);
@@ -171,7 +171,7 @@ TEST_CASE("reading stops at an invalid record and reports its position") {
              ContainsSubstring("receive time 4611686018427387904"));
 }
 
-TEST_CASE("records of unknown types are skipped, whatever their length") {
+TEST_CASE("records of unknown types and any length are skipped") {
   LogReader reader = reader_of(kFileHeader + header(1, 6, 200'000) + std::string(200'000, 'x') +
                                header(2, 1, 0) + header(3, 3, 2) + "ab");
   const auto records = all_of(reader);

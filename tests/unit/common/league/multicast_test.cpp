@@ -45,7 +45,7 @@ bool is_readable(const MulticastReceiver& receiver) {
   return poll(&readable, 1, 0) > 0;
 }
 
-TEST_CASE("a multicast address with port is parsed, and the error for other text states what was expected") {
+TEST_CASE("a multicast address with port is parsed, and the error for other text states the expected form") {
   CHECK(parsed("224.5.23.2:10006") == "accepted as 224.5.23.2:10006");
   CHECK(parsed("239.255.255.255:65535") == "accepted as 239.255.255.255:65535");
   for (const char* text : {kVisionEndpoint, kTrackedEndpoint, kRefereeEndpoint}) {
@@ -98,7 +98,7 @@ TEST_CASE("a receiver gets neither another group's datagrams nor unicast datagra
   const Endpoint other{group.endpoint().address ^ 0x100, group.endpoint().port};
   MulticastReceiver receiver(group.endpoint(), kLeagueInterface), of_other(other, kLeagueInterface);
   MulticastSender sender(group.endpoint(), kLeagueInterface), to_other(other, kLeagueInterface);
-  // Sends to a unicast address.
+  // The destination is a unicast address.
   MulticastSender to_host({0x7f000001, group.endpoint().port}, kLeagueInterface);
   const Bytes wrong{std::byte{1}}, right{std::byte{2}};
   REQUIRE(to_other.send(wrong));

@@ -83,7 +83,7 @@ inline CameraCalibration random_calibration(Rng& rng) {
 }
 
 inline Geometry random_geometry(Rng& rng) {
-  // Whole millimetres, as on the wire.
+  // The wire format has whole millimetres.
   const auto length_m = [&] { return 0.001 * static_cast<double>(1 + rng.below(12000)); };
   Geometry geometry;
   FieldSize& field = geometry.field;

@@ -22,7 +22,7 @@ wire::vision::Packet message_of(std::span<const std::byte> bytes) {
   return message;
 }
 
-/// Equality within the single precision of millimetres on the wire.
+/// Checks equality within the single precision of millimetres on the wire.
 void check_close(double a, double b) { CHECK(a == Approx(b).epsilon(1e-6).margin(1e-6)); }
 void check_close(const Vec2& a, const Vec2& b) { CHECK((a - b).norm() <= 1e-6 * (1 + b.norm())); }
 void check_close(const Vec3& a, const Vec3& b) { CHECK((a - b).norm() <= 1e-6 * (1 + b.norm())); }

@@ -41,15 +41,15 @@ TEST_CASE("the distance transform equals a comparison of all pairs of cells") {
   for (int row = 0; row < bits.rows(); ++row) {
     for (int column = 0; column < bits.columns(); ++column, ++i) {
       const std::int32_t expected = slow_squared(bits, column, row);
-      if (squared[i] != expected) FAIL(column << ", " << row << ": " << squared[i] << " for " << expected);
+      if (squared[i] != expected) FAIL(column << ", " << row << ": " << squared[i] << ", not " << expected);
       const double distance = std::min(2047.0, std::sqrt(static_cast<double>(expected)));
       const double stored = field.centre_distance_cells({column, row});
-      if (!(std::abs(stored - distance) < 1.0 / 50)) FAIL(stored << " for " << distance);
+      if (!(std::abs(stored - distance) < 1.0 / 50)) FAIL(stored << " instead of " << distance);
     }
   }
 }
 
-TEST_CASE("the largest distances do not overflow") {
+TEST_CASE("the distances in the largest map do not overflow") {
   constexpr int kSide = 16'384;
   for (const bool is_wide : {true, false}) {
     BitGrid bits(is_wide ? kSide : 4, is_wide ? 4 : kSide);
@@ -62,7 +62,7 @@ TEST_CASE("the largest distances do not overflow") {
   }
 }
 
-TEST_CASE("lower bounds never exceed the exact distance") {
+TEST_CASE("the distance field's lower bound never exceeds the exact distance and is close to it") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);
   Rng rng(seed);
@@ -72,7 +72,7 @@ TEST_CASE("lower bounds never exceed the exact distance") {
     const Vec2 p = test::random_map_position(rng, map.grid());
     const double distance_m = map.distance_m(p), bound_m = field.lower_bound_m(p);
     if (!(bound_m <= distance_m && bound_m >= 0 && bound_m >= distance_m - 1.5 * map.grid().resolution_m))
-      FAIL("at " << p.x() << ", " << p.y() << ": " << bound_m << " for " << distance_m);
+      FAIL("at " << p.x() << ", " << p.y() << ": bound " << bound_m << " for distance " << distance_m);
   }
 }
 

@@ -13,7 +13,7 @@ namespace sidestep::floor_map_test {
 //   |  |# |     |
 //   |  +--+     |
 //   +-----------+
-TEST_CASE("the boxes of a map smaller than the field cover its blocked cells and everything around it") {
+TEST_CASE("the boxes of a map smaller than the field cover its blocked cells and the area around it") {
   int blocked = 0, free = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);

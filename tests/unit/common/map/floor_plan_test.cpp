@@ -8,7 +8,7 @@
 
 namespace sidestep::floor_plan_test {
 
-/// The number of free cells that the first free cell reaches across edges, and the number of all free cells.
+/// The number of free cells connected with the first one through shared edges, and the number of free cells.
 std::pair<int, int> reached_and_free(const OccupancyMap& map) {
   const MapGrid& grid = map.grid();
   BitGrid seen(grid.columns, grid.rows);

@@ -49,7 +49,7 @@ TEST_CASE("every beam of a scan is a ray in the beam's direction") {
     for (int beam = 0; beam < settings.beams; ++beam, ++all) {
       const float range_m = ranges_m[static_cast<std::size_t>(beam)];
       const double angle_rad = heading_rad + scanner.beam_angle_rad(beam);
-      // A ray that grazes an obstacle may miss it, so a ray slightly beside it may be right.
+      // A ray that grazes an obstacle may miss it, so the range of a slightly shifted ray is also accepted.
       bool agrees = false;
       for (const double turn_rad : {0.0, -1e-7, 1e-7}) {
         const double ray_m = cast_ray(scene, at, rotated({1, 0}, angle_rad + turn_rad), settings.max_range_m);

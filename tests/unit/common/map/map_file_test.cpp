@@ -52,7 +52,7 @@ TEST_CASE("occupancy probabilities follow map_server's rules") {
         "..###/");
 }
 
-TEST_CASE("the grey that map savers use for unknown cells means unknown, whatever the thresholds") {
+TEST_CASE("the grey value that map savers use for unknown cells means unknown for any thresholds") {
   const MapFolder folder;
   // Free, unknown, likely free, likely occupied, occupied.
   const std::string image = row_of(std::string("\xfe\xcd\xd2\x80\0", 5));
@@ -203,7 +203,7 @@ TEST_CASE("a map recorded by a mobile robot is read") {
   CHECK(map.grid().rows == 384);
   CHECK(map.grid().resolution_m == 0.05);
   CHECK(map.grid().origin_m == Vec2(-10, -10));
-  // At the robot's start, in the middle of a pillar, and in the unknown corner.
+  // Three points: the robot's start, the middle of a pillar, and the unknown corner.
   CHECK(map.distance_m({-2, -0.5}) > 0.3);
   CHECK(map.distance_m({0, 0}) == 0);
   CHECK(map.distance_m({-9.9, -9.9}) == 0);

@@ -52,12 +52,12 @@ inline const std::string kMapYaml =
     "image: map.pgm\nresolution: 0.1\norigin: [-1.5, 2.25, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n"
     "free_thresh: 0.196\n";
 
-/// A text in which one occurrence of a part is replaced.
+/// Returns the text with the first occurrence of `old_part` replaced.
 inline std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
   return text.replace(text.find(old_part), old_part.size(), new_part);
 }
 
-/// '#' for blocked and '.' for free cells; top row first, with '/' after each row.
+/// Draws the map with '#' for blocked and '.' for free cells; top row first, with '/' after each row.
 inline std::string drawing(const OccupancyMap& map) {
   std::string rows;
   for (int row = map.grid().rows - 1; row >= 0; --row, rows += '/')

@@ -24,14 +24,14 @@ TEST_CASE("a point is in the cell whose borders surround it") {
   }
 }
 
-TEST_CASE("distant points are outside, on their side of the map") {
+TEST_CASE("the cell of a distant point lies just outside the map on the side of the point") {
   const MapGrid grid{3, 2, 0.5, {1, 1}};
   const double infinite = std::numeric_limits<double>::infinity();
   CHECK(grid.cell_at({-1e300, infinite}) == Cell{-1, 2});
   CHECK(grid.cell_at({1e300, -infinite}) == Cell{3, -1});
 }
 
-TEST_CASE("the cells that meet a box are those whose closed squares overlap it") {
+TEST_CASE("the cells that meet a box are those whose closed squares intersect the box") {
   const std::uint64_t seed = GENERATE(range(1, 40));
   CAPTURE(seed);
   Rng rng(seed);
@@ -53,7 +53,7 @@ TEST_CASE("the cells that meet a box are those whose closed squares overlap it")
   }
 }
 
-TEST_CASE("grids out of range are rejected") {
+TEST_CASE("map grids with values out of range are rejected") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_NOTHROW(check({16'384, 4'096, 0.05, {0, 0}}));
   CHECK_NOTHROW(check({1, 1, 0.001, {-1e6, 1e6}}));

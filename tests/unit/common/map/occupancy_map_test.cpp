@@ -16,7 +16,7 @@ double distance_to_outside(const Vec2& p, const Box& map) {
   return std::min((p - map.min_m).minCoeff(), (map.max_m - p).minCoeff());
 }
 
-/// Checks every blocked cell.
+/// The distance from a point to the map, computed from every blocked cell and the outside.
 double slow_distance(const Vec2& p, const OccupancyMap& map) {
   double nearest_m = std::max(0.0, distance_to_outside(p, map.extent()));
   for (const Box& box : test::blocked_boxes(map))
@@ -24,7 +24,7 @@ double slow_distance(const Vec2& p, const OccupancyMap& map) {
   return nearest_m;
 }
 
-/// The distance from a path to a box, by ternary search: it is a convex function of the position.
+/// The distance from a path to a box, by ternary search: the distance is a convex function of the position.
 double slow_distance(const Vec2& from, const Vec2& to, const Box& box) {
   double low = 0, high = 1;
   const auto at = [&](double part) { return test::distance_to_box(from + part * (to - from), box); };
@@ -48,7 +48,7 @@ double slow_distance(const Vec2& from, const Vec2& to, const OccupancyMap& map) 
   return nearest_m;
 }
 
-/// '#' is blocked; the first line is the top row. Cells of one metre, starting at the origin.
+/// A map with cells of 1 m, starting at the origin. '#' is a blocked cell; the first line is the top row.
 OccupancyMap drawn(const std::vector<std::string>& rows) {
   BitGrid bits(static_cast<int>(rows[0].size()), static_cast<int>(rows.size()));
   for (int row = 0; row < bits.rows(); ++row)
@@ -136,7 +136,7 @@ TEST_CASE("the boxes of a region cover exactly its blocked cells without overlap
           return test::distance_to_box(middle, box) == 0;
         });
         const bool is_expected = map.is_blocked({column, row}) && overlap(cell, region);
-        if (covers != (is_expected ? 1 : 0)) FAIL("cell " << column << ", " << row << ": " << covers);
+        if (covers != (is_expected ? 1 : 0)) FAIL("cell " << column << ", " << row << ", boxes: " << covers);
       }
     }
     // A point of the region lies in an outside box if and only if it is outside the map or on its border.
@@ -220,7 +220,7 @@ TEST_CASE("rectangles cover exactly the blocked cells and cannot be extended") {
   if (!boxes->empty()) CHECK_FALSE(map.rectangles(boxes->size() - 1));
 }
 
-TEST_CASE("few rectangles cover simple maps") {
+TEST_CASE("simple maps are covered by few rectangles") {
   CHECK(drawn({"...", "..."}).rectangles(0)->empty());
   CHECK(drawn({"###", "###"}).rectangles(1)->size() == 1);
   const OccupancyMap room = drawn({"#####",  //

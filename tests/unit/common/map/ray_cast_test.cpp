@@ -12,7 +12,7 @@ namespace sidestep::ray_cast_test {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTolerance_m = 1e-9;
 
-/// Where a ray enters a box, computed by intersecting the slabs of both axes.
+/// The distance at which a ray enters a box, by intersecting the slabs of both axes; infinite if it misses.
 double entry_m(const Vec2& from, const Vec2& direction, const Box& box) {
   double enters_m = 0, leaves_m = kInfinite;
   for (int axis = 0; axis < 2; ++axis) {
@@ -28,13 +28,13 @@ double entry_m(const Vec2& from, const Vec2& direction, const Box& box) {
   return enters_m <= leaves_m ? enters_m : kInfinite;
 }
 
-/// Checks every blocked cell, slightly inflated.
+/// The range of a ray, by checking every blocked cell and the outside, inflated by `inflation_m`.
 double slow_cast(const std::vector<Box>& cells, const Box& map, const Vec2& from, const Vec2& direction,
                  double inflation_m) {
   double nearest_m = kInfinite;
   for (const Box& cell : cells)
     nearest_m = std::min(nearest_m, entry_m(from, direction, inflated(cell, inflation_m)));
-  // The outside, as four boxes larger than any map.
+  // The outside of the map consists of four boxes larger than any map.
   const double far_m = 1e4;
   for (const Box& outside :
        {Box{{-far_m, -far_m}, {map.min_m.x(), far_m}}, Box{{map.max_m.x(), -far_m}, {far_m, far_m}},

@@ -19,7 +19,7 @@ TEST_CASE("every colour has its own index and name") {
   CHECK(!colour_named(""));
 }
 
-TEST_CASE("colours are converted to YUV by the standard and back") {
+TEST_CASE("colours are converted to YUV as in BT.601 and survive the conversion back within rounding") {
   CHECK(yuv_of({255, 255, 255}) == Yuv{255, 128, 128});
   CHECK(yuv_of({0, 0, 0}) == Yuv{0, 128, 128});
   CHECK(yuv_of({255, 0, 0}) == Yuv{76, 85, 255});

@@ -77,7 +77,7 @@ TEST_CASE("sampled pose errors match the prediction") {
   Rng rng(seed);
   compare(butterfly(), rng);
   compare(random_rings(3, 1, rng), rng);
-  MarkerLayout lopsided;  // the centroid is far from the origin
+  MarkerLayout lopsided;  // its centroid is far from its origin
   lopsided.centre = {{0.05, 0.04}, 0.02};
   lopsided.dots = {{{0.09, 0.03}, 0.01}, {{0.06, 0.09}, 0.01}};
   compare(lopsided, rng);

@@ -5,7 +5,7 @@
 
 namespace sidestep::blockage_text_test {
 
-TEST_CASE("a clause describes the cause of a blockage") {
+TEST_CASE("the text about a blockage states its cause") {
   const auto text = [](msg::BlockReason reason) {
     return to_text(Blockage{reason, 5, {1.234, -2}, {0.5, 0.25}});
   };

@@ -29,7 +29,7 @@ msg::ClockReading reading_of(const std::string& host = "robot-7", const std::str
   return message;
 }
 
-TEST_CASE("a clock reading is decoded, whatever the clock shows") {
+TEST_CASE("a clock reading is decoded unchanged for any time that the clock shows") {
   const auto answer = decode(reading_of());
   REQUIRE(answer);
   CHECK(answer->process == 7);

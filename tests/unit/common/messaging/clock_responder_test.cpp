@@ -42,7 +42,7 @@ TEST_CASE("a process answers a probe with its clock, its host's clock and its ro
   CHECK(answers[0].scenario == "crossing");
 }
 
-TEST_CASE("a process answers probes at a bounded rate, however many arrive") {
+TEST_CASE("a process that receives many probes answers at a bounded rate") {
   SimNetwork network(1, time_from_ns(1'700'000'000'000'000'000), NetworkSpec{});
   SimBus client(network), process(network);
   const ClockResponder responder(process, {5, 77, 0.0005, "robot-5", "crossing"},

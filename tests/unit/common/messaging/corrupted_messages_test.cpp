@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages with random bytes: whatever the codecs accept must be within bounds.
+// Messages with random bytes: every value that a codec accepts must be within bounds.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -43,7 +43,7 @@ std::optional<Message> corrupted(const Topic<Message>& topic, const Message& ori
       bytes[rng.below(bytes.size())] = static_cast<std::uint8_t>(rng.bits());
       continue;
     }
-    // Eight-byte numbers are aligned.
+    // The position is a multiple of eight, because messages align eight-byte numbers.
     const std::uint64_t word = hostile_word(rng), begin = 8 * rng.below(bytes.size() / 8);
     for (std::size_t i = 0; i < 8; ++i) bytes[begin + i] = static_cast<std::uint8_t>(word >> (8 * i));
   }

@@ -35,7 +35,7 @@ TEST_CASE("drops are counted by reason and robot") {
   CHECK(sum.counts().size() == drops.counts().size());
 }
 
-TEST_CASE("memory does not grow with the number of robots, and no count is lost") {
+TEST_CASE("the memory of drop counters does not grow with the number of robots, and no count is lost") {
   DropCounters drops;
   for (RobotId robot = 0; robot < 100'000; ++robot) drops.count(DropReason::kMalformedCommand, robot);
   CHECK(drops.counts().size() == DropCounters::kCapacity);
@@ -98,7 +98,7 @@ TEST_CASE("invalid counters are refused") {
   CHECK(is_refused([](msg::Counters& m) { m.counts().resize(msg::MAX_COUNTERS + 1, m.counts()[0]); }));
 }
 
-TEST_CASE("a process publishes its own counters and its bus's once per second") {
+TEST_CASE("a process publishes its own counters and the counters of its bus once per second") {
   SimNetwork network{1, time_from_ns(1'000'000'000'000), {}};
   SimBus bus(network), outside(network);
   std::vector<msg::Counters> received;
@@ -118,7 +118,7 @@ TEST_CASE("a process publishes its own counters and its bus's once per second") 
   CHECK((*counts)[1].count == 2);
 }
 
-TEST_CASE("the simulated network counts lost messages and those that overflow a paused process's queue") {
+TEST_CASE("the simulated network counts lost messages and messages that overflow a paused process's queue") {
   NetworkSpec spec;
   spec.loss = 0.5;
   SimNetwork network{1, time_from_ns(1'000'000'000'000), spec};

@@ -32,7 +32,7 @@ TEST_CASE("without a fault every message arrives once without delay") {
   }
 }
 
-TEST_CASE("losses, bursts, duplicates and delays have the statistics of the fault") {
+TEST_CASE("losses, bursts, duplicates and delays have the statistics that the fault specifies") {
   const auto seed = GENERATE(range(std::uint64_t{1}, std::uint64_t{6}));
   CAPTURE(seed);
   Impairment impairment;

@@ -6,7 +6,7 @@
 
 namespace sidestep {
 
-TEST_CASE("a schema contains a type after all types that it uses, and nothing else") {
+TEST_CASE("a schema contains only a type and the types that it uses, each after the types it needs") {
   const std::string idl =
       "module a { const long N = 3;\n"
       "@final struct Unused { long x; };\n"

@@ -139,7 +139,7 @@ TEST_CASE("candidates whose base or start differs from the first candidate's are
   REQUIRE(proposal);
   for (std::size_t i = 0; i < msg::MAX_CANDIDATES; ++i)
     CHECK(proposal->candidates[i].has_value() == (i != 1 && i != 3));
-  // If the first candidate differs, all later ones are malformed.
+  // If the first candidate differs from all later candidates, the later candidates are malformed.
   message = full_proposal();
   message.candidates()[0].base(6);
   CHECK(decode(message, kNow)->candidates[0]);
@@ -181,7 +181,7 @@ TEST_CASE("a registration with invalid versions is decoded without versions") {
     const std::size_t other = (i + 1) % VersionSet::kCapacity;
     CHECK(is_malformed([=](Message& m) { m.versions()[i] = m.versions()[other]; }));
   }
-  // Entries beyond the count are not read.
+  // Versions beyond version_count are not read.
   CHECK_FALSE(is_malformed([](Message& m) { m.version_count(7), m.versions()[7].x_m(kNan); }));
   CHECK_FALSE(is_malformed([](Message& m) { m.version_count(0), m.is_absent(true); }));
 }
@@ -236,7 +236,7 @@ TEST_CASE("only a coordinator may send a coordinator's messages") {
   }
   state.header().sender(10007);
   verdict.header().sender(10007);
-  CHECK_FALSE(decode(state, kNow));  // names another coordinator
+  CHECK_FALSE(decode(state, kNow));  // the message names a coordinator other than its sender
   state.coordinator(7);
   CHECK(decode(state, kNow));
   CHECK(decode(verdict, kRobot));

@@ -105,7 +105,7 @@ TEST_CASE("an order memory of any size is sent on as many pages as necessary") {
     message.page_count(kMaxOrderPages);
     CHECK(decode(message, kNow));
     message.process(10000);
-    CHECK_FALSE(decode(message, kNow));  // in another process's name
+    CHECK_FALSE(decode(message, kNow));  // sent in the name of another process
   }
   REQUIRE(decoded.size() == orders.size());
   for (std::size_t i = 0; i < orders.size(); ++i) {

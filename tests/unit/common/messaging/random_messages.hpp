@@ -14,11 +14,11 @@ inline constexpr RobotId kRobot = 3;
 /// The receiver's clock.
 inline constexpr Time kNow = time_from_ns(1'800'000'000'000'000'000);
 
-/// Any incarnation, epoch or version number that a message may contain at kNow.
+/// A random incarnation, epoch or version number that a message may contain at kNow.
 inline std::uint64_t random_number(Rng& rng) {
   return rng.below(static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1))));
 }
-/// Any time that a message may contain at kNow.
+/// A random time that a message may contain at kNow.
 inline Time random_time(Rng& rng) { return time_from_ns(static_cast<std::int64_t>(random_number(rng))); }
 
 inline Version random_version(Rng& rng) {
@@ -28,7 +28,7 @@ inline Version random_version(Rng& rng) {
                   random_number(rng),
                   random_trajectory(rng),
                   rng.uniform(0, 0.1)};
-  // Intents are single precision in messages.
+  // Intents have single precision in messages.
   const auto single = [&](double max) {
     return static_cast<double>(static_cast<float>(rng.uniform(0, max)));
   };

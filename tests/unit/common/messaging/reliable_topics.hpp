@@ -12,18 +12,18 @@
 
 namespace sidestep {
 
-/// Tests of messages on a reliable topic (Qos::kEvent). They run on the simulated network and over DDS, so
-/// that the two behave alike. A rig has one process that writes and one that reads:
+/// Tests of messages on a reliable topic (Qos::kEvent). They run on the simulated network and over DDS, which
+/// must behave alike. A rig has a process that writes and a process that reads:
 ///
 ///     void start_writer(), kill_writer(), start_reader(), kill_reader()   kill as by kill -9
-///     void write(number, key)            makes the writer publish a message, and returns when it has
+///     void write(number, key)            makes the writer publish a message, and waits until it has
 ///     std::vector<std::uint64_t> received     the numbers that the reader has received, except 0
 ///     int markers                             how often the reader has received 0
 ///     void cut(), heal()                 block and unblock the writer's messages
 ///     void lose(fraction)                lose this fraction of messages at random
 ///     void run_for(duration)
 ///     bool wait_until(condition)         false if the condition stays false for very long
-///     void stop_writer(duration)         SIGSTOP, then SIGCONT; then publishes 1 at once
+///     void stop_writer(duration)         SIGSTOP, then SIGCONT; then immediately publishes 1
 namespace reliable_topics {
 
 using std::chrono::milliseconds;
@@ -58,7 +58,7 @@ void write_all(Rig& rig, const Numbers& numbers, std::uint32_t keys = 1) {
   for (const std::uint64_t number : numbers) rig.write(number, static_cast<std::uint32_t>(number) % keys);
 }
 
-/// Whether the reader receives another message, with this number, from now on.
+/// Writes a message with this number. Returns whether the reader receives it.
 template <typename Rig>
 bool hears(Rig& rig, std::uint64_t number) {
   rig.write(number, 0);

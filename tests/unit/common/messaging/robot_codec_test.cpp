@@ -15,7 +15,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kHostileTimes_ns[] = {to_ns(kNow + std::chrono::hours(1)), -1, to_ns(kMaxTime) + 1,
                                              to_ns(Time::max()), to_ns(Time::min())};
-/// Invalid values of an incarnation, epoch or version number.
+/// Values that are invalid as an incarnation, epoch or version number.
 constexpr std::uint64_t kHostileNumbers[] = {static_cast<std::uint64_t>(to_ns(kNow + std::chrono::hours(1))),
                                              std::uint64_t{1} << 62, std::uint64_t{1} << 63,
                                              std::numeric_limits<std::uint64_t>::max()};
@@ -192,7 +192,7 @@ TEST_CASE("feedback of a robot that has not received a command contains no comma
   CHECK_FALSE(decode(message, kRobot, kNow)->command);
 }
 
-TEST_CASE("a robot is absent if it is lifted and executes nothing") {
+TEST_CASE("a robot counts as absent if it is lifted and executes no version") {
   RobotReport robot_report;
   CHECK_FALSE(robot_report.is_absent());
   robot_report.is_lifted = true;

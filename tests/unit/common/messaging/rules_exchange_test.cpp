@@ -63,12 +63,12 @@ TEST_CASE("two processes with different rules refuse each other's messages, and 
   CHECK(drops_of(b.bus).total(DropReason::kOtherRules) == 200);
   const std::string refuses_b = "refuses coordinator 1, which has different rules",
                     refuses_a = "refuses coordinator, which has different rules";
-  // b learns first that a is there; a learns of b from b's rules.
+  // b refuses a before it has received a's rules. a receives b's rules before it has refused b.
   CHECK(b.mismatches == std::vector{refuses_a, refuses_a + ": margin_m is 0.01 instead of 0.02"});
   CHECK(a.mismatches == std::vector{refuses_b + ": margin_m is 0.02 instead of 0.01"});
 }
 
-TEST_CASE("a process with rules refuses messages without rules, and a process without rules accepts them") {
+TEST_CASE("a process with rules refuses messages without rules, and a process without rules accepts all") {
   SimNetwork network = lossless();
   Process with(network, 10000, 0.01), without(network, 10001, std::nullopt);
   with.publish();
@@ -78,7 +78,7 @@ TEST_CASE("a process with rules refuses messages without rules, and a process wi
   CHECK(without.received == 2);
 }
 
-TEST_CASE("rules are sent rarely, however many messages are refused") {
+TEST_CASE("rules are sent at a bounded rate when many messages are refused") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01), b(network, 10001, 0.02);
   int sent = 0;
@@ -92,8 +92,8 @@ TEST_CASE("rules are sent rarely, however many messages are refused") {
   CHECK(a.mismatches.size() == 2);
 }
 
-TEST_CASE("one refused message is enough for both sides to name the difference") {
-  // The process that refuses it has not sent its rules before, so no process has discovered its writer.
+TEST_CASE("a single refused message makes both sides name the difference") {
+  // The refusing process has not sent its rules before, so no process has discovered its writer.
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01), b(network, 10001, 0.02);
   network.run_until(network.now() + 1s);
@@ -105,7 +105,7 @@ TEST_CASE("one refused message is enough for both sides to name the difference")
             "refuses coordinator, which has different rules: margin_m is 0.01 instead of 0.02"});
 }
 
-TEST_CASE("of any number of made-up processes, 256 are named and then one every ten seconds") {
+TEST_CASE("of thousands of made-up processes, 256 are named and then one more every ten seconds") {
   SimNetwork network = lossless();
   Process a(network, 10000, 0.01);
   a.bus.subscribe(topics::kRegistration, [](const msg::Registration&) {});
@@ -120,7 +120,7 @@ TEST_CASE("of any number of made-up processes, 256 are named and then one every 
   }
   CHECK(drops_of(a.bus).total(DropReason::kOtherRules) == 5000);
   CHECK(a.mismatches.size() == 257);
-  // A process that really has different rules is also named, within twice that time.
+  // A real process with different rules is also named, within twenty seconds.
   Process b(network, 10001, 0.02);
   const auto is_b = [](const std::string& text) { return text.find("coordinator 1") != std::string::npos; };
   for (int i = 0; i < 2000 && std::ranges::none_of(a.mismatches, is_b); ++i) {

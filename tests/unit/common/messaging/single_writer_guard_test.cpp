@@ -17,7 +17,7 @@ constexpr Duration kCycle = 16ms;
 // Incarnations of different processes.
 constexpr std::uint64_t kOne = 1'000'000, kTwo = 2'000'000, kThree = 3'000'000;
 
-TEST_CASE("all messages from a single process are used, even after breaks") {
+TEST_CASE("all messages from a single process are used, even after pauses") {
   SingleWriterGuard sender;
   for (const Duration at : {0ms, 16ms, 500ms, 3000ms, 20000ms})
     CHECK(sender.receive(7, kBegin + at) == Outcome::kCounts);
@@ -84,7 +84,7 @@ TEST_CASE("a process that has just started trusts no sender until it has listene
   for (int i = 0; i < 100; ++i) CHECK(sender.receive(1, now += kCycle) == Outcome::kCounts);
 }
 
-TEST_CASE("a process that starts while two others send trusts neither, whichever it hears first") {
+TEST_CASE("a process that starts while two others send trusts neither in any order of messages") {
   const auto seed = GENERATE(range(1u, 101u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -113,7 +113,7 @@ TEST_CASE("a receiver whose clock was set back still trusts and follows senders"
     Time now = kBegin;
     for (; now < kBegin + listening; now += kCycle) (void)sender.receive(kOne, now);
     CHECK(sender.receive(kOne, now + kCycle) == Outcome::kCounts);
-    // The process ends, and another one takes its place.
+    // The process ends, and another process takes its place.
     now += SingleWriterGuard::kGoneAfter + kCycle;
     (void)sender.receive(kTwo, now);
     CHECK(sender.receive(kTwo, now + listening + kCycle) == Outcome::kCounts);
@@ -127,7 +127,7 @@ TEST_CASE("a receiver whose clock was set back still trusts and follows senders"
   }
 }
 
-TEST_CASE("messages from three or more competing processes are ignored too") {
+TEST_CASE("messages from three or more competing processes are ignored") {
   const auto seed = GENERATE(range(1u, 51u));
   CAPTURE(seed);
   Rng rng(seed);
@@ -140,7 +140,7 @@ TEST_CASE("messages from three or more competing processes are ignored too") {
   }
 }
 
-TEST_CASE("a robot that raises its incarnation is heard at once, and its older messages are refused") {
+TEST_CASE("a robot that raises its incarnation is heard immediately, and its older messages are refused") {
   SingleWriterGuard sender;
   Time now = kBegin;
   for (std::uint64_t incarnation = 0; incarnation < 5; ++incarnation) {
@@ -149,7 +149,7 @@ TEST_CASE("a robot that raises its incarnation is heard at once, and its older m
     CHECK(sender.receive(kOne + incarnation, now += 1ms) == Outcome::kRefused);
     now += SingleWriterGuard::kGoneAfter;
   }
-  // A process that began much later is another one, and so is one that began earlier.
+  // A process that began much later or earlier is another process.
   CHECK(sender.receive(kOne + 5, now) == Outcome::kCounts);
   CHECK(sender.receive(kOne + 5 + SingleWriterGuard::kMaxRaise + 1, now) == Outcome::kRefused);
   CHECK(sender.receive(kOne - 1, now) != Outcome::kCounts);

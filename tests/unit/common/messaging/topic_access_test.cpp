@@ -23,7 +23,7 @@ std::set<std::string> topics_of(const Identity& who,
   return result;
 }
 
-TEST_CASE("only judges read the ground truth, and watchers write nothing that moves a robot") {
+TEST_CASE("only judges may read the ground truth, and viewers and judges may not write any topic") {
   for (const Role role : kAllRoles) {
     const Identity who{role, 0, 0, "a"};
     CAPTURE(to_text(who));
@@ -53,7 +53,7 @@ TEST_CASE("agents and robots can access only their own robots' channels") {
   }
 }
 
-TEST_CASE("agents exchange no messages with each other, but all other cooperating processes do") {
+TEST_CASE("agents exchange messages with all processes except other agents and other agents' robots") {
   const auto exchange = [](const char* a, const char* b) {
     return exchange_messages(identity(a), identity(b));
   };

@@ -27,7 +27,7 @@ TEST_CASE("a version survives encoding and decoding bit for bit") {
   }
 }
 
-TEST_CASE("a version with a non-finite or implausible number is refused") {
+TEST_CASE("a version that contains a non-finite or implausible number is refused") {
   Rng rng(2);
   Version version{1, 1, 1, 0, random_trajectory(rng)};
   const auto good = encode(version);

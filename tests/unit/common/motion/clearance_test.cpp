@@ -58,7 +58,7 @@ TEST_CASE("the clearance never exceeds the distance at any time, over two millio
     }
     const double min_separation_m = rng.uniform(0, 0.5);
     if (is_clear(a, b, min_separation_m) != (clearance_m(a, b, min_separation_m) >= 0))
-      FAIL("pair " << pair << " at " << min_separation_m);
+      FAIL("is_clear() of pair " << pair << " with separation " << min_separation_m);
   }
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("robots that meet between two samples are not clear") {
   CHECK_FALSE(is_clear(a, b, 0.19));
 }
 
-TEST_CASE("robots are compared at equal times, so one may cross where the other has been") {
+TEST_CASE("robots are compared at equal times, so a robot may cross the former position of another") {
   // b crosses the origin 0.5 s after a.
   const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 0.5);
   const auto b = moving(kBegin + from_seconds(0.3), {0, -0.6}, {0, 1.5}, {0, 0}, 0.4);
@@ -103,16 +103,16 @@ TEST_CASE("robots are compared at equal times, so one may cross where the other 
   CHECK_FALSE(is_clear(a, late, 0.19));
 }
 
-TEST_CASE("the overlap begins at the later of the two starts") {
-  // b is elsewhere at a's start: its trajectory is undefined before its own start.
+TEST_CASE("two trajectories are compared from the later of their starts") {
+  // Only a's rest position counts: b's trajectory is undefined before its start.
   const auto a = moving(kBegin, {0, 0}, {2, 0}, {0, 0}, 1.0);
   const auto b = Trajectory::resting(kBegin + from_seconds(0.5), {0, 0});
   CHECK(clearance_m(a, b, 0) == Approx(1.0).margin(1e-6));
   CHECK(is_clear(a, b, 0.19));
 }
 
-TEST_CASE("the smaller of two minima counts, whether it is the first or the second") {
-  // a passes b, reverses and passes it again: one parabola with two close passes.
+TEST_CASE("the clearance is the smaller of two minima of the distance in either order") {
+  // a passes b, reverses and passes b again: one parabola with two close passes.
   const auto b = Trajectory::resting(kBegin, {0, 0.3});
   const auto first_deeper = moving(kBegin, {-0.5, 0.25}, {2.4, 0.1}, {-4, 0}, 1.0);
   const auto second_deeper = moving(kBegin, {-0.5, 0.45}, {2.4, -0.1}, {-4, 0}, 1.0);
@@ -122,7 +122,7 @@ TEST_CASE("the smaller of two minima counts, whether it is the first or the seco
   CHECK(clearance_m(second_deeper, b, 0) < 0.08);
 }
 
-TEST_CASE("equal motions, resting robots and empty phases have a clearance") {
+TEST_CASE("the clearance is exact for equal motions, resting robots and phases of zero duration") {
   const auto a = moving(kBegin, {0, 0}, {1, 1}, {1, 0}, 0.2),
              b = moving(kBegin, {0.3, 0}, {1, 1}, {1, 0}, 0.2);
   CHECK(clearance_m(a, b, 0) == Approx(0.3).margin(1e-8));
@@ -137,13 +137,13 @@ TEST_CASE("equal motions, resting robots and empty phases have a clearance") {
   CHECK(clearance_m(c, empty, 0) == Approx(0.5).margin(1e-8));
 }
 
-TEST_CASE("the clearance covers all time, including long after both trajectories have ended") {
+TEST_CASE("the clearance covers all time, including robots at rest long after their trajectories end") {
   const auto a = moving(kBegin, {0, 0}, {1, 0}, {0, 0}, 0.1);
   const auto b = Trajectory::resting(kBegin + std::chrono::hours(24), a.rest_position_m() + Vec2(0.1, 0));
   CHECK(clearance_m(a, b, 0) == Approx(0.1).margin(1e-8));
 }
 
-TEST_CASE("a motion with NaN is clear of nothing, however far away") {
+TEST_CASE("a motion with NaN is not clear of any robot or shape, even at a distance") {
   const double bad = std::numeric_limits<double>::quiet_NaN();
   const Trajectory far = Trajectory::resting(kBegin, {40, 30});
   const Trajectory good = moving(kBegin, {0, 0}, {1, 0.5}, {0.5, 0}, 0.3);
@@ -159,7 +159,7 @@ TEST_CASE("a motion with NaN is clear of nothing, however far away") {
   }
 }
 
-TEST_CASE("a static disc equals a robot at rest") {
+TEST_CASE("the clearance from a static disc equals the clearance from a robot at rest") {
   Rng rng(31);
   for (int i = 0; i < 10'000; ++i) {
     const Trajectory a = random_trajectory(rng);

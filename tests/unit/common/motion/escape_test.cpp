@@ -6,7 +6,7 @@
 
 namespace sidestep::escape_test {
 
-/// Sampled, so never below the true distance.
+/// The distance between two trajectories from `from` on. Because of sampling, never below the true distance.
 double sampled_distance_m(const Trajectory& a, const Trajectory& b, Time from) {
   const Time to = std::max({a.end(), b.end(), from}) + std::chrono::milliseconds(1);
   double smallest = 1e9;
@@ -52,7 +52,7 @@ TEST_CASE("the relaxed separation is the minimum separation or the base's distan
   CHECK(smaller > 50);
 }
 
-TEST_CASE("a robot that is too close to a blocked cell may leave it but not come nearer") {
+TEST_CASE("a robot that is too close to a blocked cell may move away from the cell but not nearer") {
   MapGrid grid;
   grid.columns = grid.rows = 40, grid.resolution_m = 0.1, grid.origin_m = {-2, -2};
   BitGrid blocked(grid.columns, grid.rows);

@@ -20,7 +20,7 @@ TEST_CASE("A(v) reaches F ahead and sideways and D behind") {
   CHECK_FALSE(is_admissible({-3.01, 0}, {0, 0}, kLimits));
 }
 
-TEST_CASE("samples lie in A(v) and fill it, and limited accelerations respect the speed limit") {
+TEST_CASE("samples lie in A(v) and fill A(v), and limited accelerations respect the speed limit") {
   Rng rng(1);
   const Duration cycle{16'666'667};
   double furthest_behind = 0, furthest_ahead = 0;
@@ -39,7 +39,7 @@ TEST_CASE("samples lie in A(v) and fill it, and limited accelerations respect th
   CHECK(furthest_behind < -4.9);
 }
 
-TEST_CASE("an acceleration may be held if and only if it is admissible at every moment") {
+TEST_CASE("an acceleration may be held if and only if it is admissible throughout") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);

@@ -52,12 +52,12 @@ TEST_CASE("tracking errors and clock offsets within the budget do not cause cont
       const Vec2 body_a = a.state_at(t + off_a).position_m, body_b = b.state_at(t + off_b).position_m;
       const double lost = margin - ((body_a - body_b).norm() - 2 * budget.tracking_bound_m);
       REQUIRE(lost <= budget.required_margin_m());
-      // The tight bound: clocks that differ by twice the bound at the speed of one robot.
+      // A tighter bound: the clocks differ by twice the clock bound, at the speed of one robot.
       REQUIRE(lost <= 2 * budget.tracking_bound_m + 2 * budget.clock_bound_s * budget.speed_mps + 1e-9);
       max_clock_share = std::max(max_clock_share, lost - 2 * budget.tracking_bound_m);
     }
   }
-  // Without an effect of the clock offsets, the test would prove nothing.
+  // The clock offsets have an effect; otherwise the test would prove nothing.
   CHECK(max_clock_share > 0.001);
 }
 

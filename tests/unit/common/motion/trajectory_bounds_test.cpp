@@ -17,12 +17,12 @@ TEST_CASE("a trajectory stays within the disc of its bounds") {
     for (int k = 0; k < 20; ++k) {
       const Time t = trajectory.start() + from_seconds(rng.uniform(0, 1.1 * seconds));
       const double off = (trajectory.state_at(t).position_m - bounds.disc.centre_m).norm();
-      if (off > bounds.disc.radius_m) FAIL("trajectory " << i << ": " << off << " m");
+      if (off > bounds.disc.radius_m) FAIL("trajectory " << i << " is " << off << " m off");
     }
   }
 }
 
-TEST_CASE("bounds are batchable with at most two non-empty phases of moderate size") {
+TEST_CASE("bounds are batchable if the trajectory has at most two non-empty phases and moderate numbers") {
   const Time start = time_from_ns(5);
   Trajectory trajectory(start, {{0, 0}, {1, 0}});
   trajectory.append(Duration{0}, {3, 0});

@@ -10,7 +10,7 @@ namespace sidestep::validity_test {
 
 const MotionLimits kLimits;
 
-TEST_CASE("violations of limits, rest and workspace are detected") {
+TEST_CASE("a trajectory beyond the limits, without a rest or outside the workspace is invalid") {
   FloorRules rules;
   rules.field = {4, 3};
   rules.obstacles = {Circle{{1, 0}, 0.1}};
@@ -32,7 +32,7 @@ TEST_CASE("violations of limits, rest and workspace are detected") {
   CHECK(check_workspace(stop_from({0, 1}, {1, 0}, {0, 0}, 0.1), rules) == Validity::kValid);
   CHECK(check_workspace(stop_from({0, 0}, {2, 0}, {0, 0}, 0.3), rules) == Validity::kObstacle);
   CHECK(check_workspace(stop_from({0, 1.2}, {0, 2}, {0, 0}, 0.1), rules) == Validity::kOutsideField);
-  // Leaves the field and returns within one phase whose ends are inside.
+  // The robot leaves the field and returns within one phase.
   CHECK(check_workspace(stop_from({0, 1.3}, {0, 1}, {0, -3}, 0.66), rules) == Validity::kOutsideField);
 }
 
@@ -49,11 +49,11 @@ TEST_CASE("a phase that brakes at D may not continue at D after the velocity has
   CHECK(held_for({1, 0}, {-5, 0}, 0.201) == Validity::kBeyondLimits);
   CHECK(held_for({1, 0}, {-5, 0}, 0.4) == Validity::kBeyondLimits);
   CHECK(held_for({1, 0}, {-3, 0}, 0.4) == Validity::kValid);
-  // Across the velocity at the end, although it brakes at the start.
+  // The acceleration brakes at the start of the phase and is across the velocity at its end.
   CHECK(held_for({0.5, 0.1}, {-4.5, 0}, 0.05) == Validity::kValid);
   CHECK(held_for({0.5, 0.1}, {-4.5, 0}, 0.11) == Validity::kBeyondLimits);
   CHECK(held_for({0, 1}, {0, -4.9}, 0.21) == Validity::kBeyondLimits);
-  // Beyond the limits in a later phase.
+  // The second phase exceeds the limits.
   Trajectory later(t, {{0, 0}, {0.5, 0}});
   later.append(from_seconds(0.1), {3, 0});
   later.append(from_seconds(0.2), {-5, 0});

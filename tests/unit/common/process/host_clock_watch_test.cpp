@@ -11,8 +11,8 @@ namespace sidestep::host_clock_watch_test {
 
 using namespace std::chrono_literals;
 
-/// A process with a wrong clock, whose host's clock is set during the test, and one with the right clock that
-/// sends a heartbeat and a robot report every 20 ms.
+/// A process with a wrong clock, whose host's clock is set during the test, and a process with the right
+/// clock that sends a heartbeat and a robot report every 20 ms.
 struct Scene {
   SimNetwork network{1, time_from_ns(1'700'000'000'000'000'000), NetworkSpec{}};
   SimBus bus, other;

@@ -12,7 +12,7 @@ namespace sidestep::output_paths_test {
 
 namespace fs = std::filesystem;
 
-TEST_CASE("an output that is also an input or another output is rejected, whatever path names it") {
+TEST_CASE("an output file that is also an input or another output is rejected under any path to it") {
   const TemporaryFolder folder;
   const std::string scenario = folder.file("scenario.yaml"), report = folder.file("report.json");
   write_file(scenario, "robots: []");

@@ -7,7 +7,7 @@
 
 namespace sidestep::process_identity_test {
 
-TEST_CASE("each process of a run has the keys for its name") {
+TEST_CASE("the identity of each process of a run follows from its process id") {
   const Scenario scenario = load_scenario(SIDESTEP_SCENARIO);
   for (const char* name : {"agent 0", "agent 7", "coordinator 1", "vision", "simulator"}) {
     CAPTURE(name);

@@ -19,7 +19,7 @@ TEST_CASE("drops are counted by reason and robot") {
   CHECK(drops.total() == 8);
 }
 
-TEST_CASE("a reason that never occurred takes no space") {
+TEST_CASE("a drop reason that never occurred has no entry") {
   DropCounters drops;
   const std::size_t rows = drops.counts().size();
   drops.count(DropReason::kLateFact, RobotId{3}, 0);
@@ -32,7 +32,7 @@ TEST_CASE("a reason that never occurred takes no space") {
   CHECK(drops.total() == 4);
 }
 
-TEST_CASE("once space for robots runs out, drops are counted without the robot") {
+TEST_CASE("drops are counted without the robot if the counters are full") {
   DropCounters drops;
   for (RobotId robot = 0; robot < 1000; ++robot) drops.count(DropReason::kLateFact, robot, 2);
   CHECK(drops.counts().size() == DropCounters::kCapacity);

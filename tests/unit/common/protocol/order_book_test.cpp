@@ -33,8 +33,8 @@ RememberedOrder zone(ClientId client, std::uint32_t zone_number, OrderNumber num
   return remembered;
 }
 
-/// The rules in words, from the list of all orders: a robot is held if it has a hold after which neither the
-/// hold's owner nor an operator has sent a resume for the robot.
+/// Whether a robot is held, from the list of all orders: it has a hold after which neither the hold's owner
+/// nor an operator has sent a resume for the robot.
 bool is_held_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot) {
   const auto concerns = [=](const Order& o) { return o.robot == robot || o.robot == kAllRobots; };
   return std::ranges::any_of(orders, [&](const RememberedOrder& h) {
@@ -47,7 +47,7 @@ bool is_held_by_reference(const std::vector<RememberedOrder>& orders, RobotId ro
   });
 }
 
-/// The latest drive order or cancel of a rank.
+/// The latest drive order or cancel of a rank for a robot, from the list of all orders.
 const Order* drive_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot, Rank rank) {
   const Order* last = nullptr;
   for (const RememberedOrder& o : orders) {
@@ -60,7 +60,7 @@ const Order* drive_by_reference(const std::vector<RememberedOrder>& orders, Robo
   return last;
 }
 
-TEST_CASE("order books that hear the same orders in any sequence agree with each other and with the rules") {
+TEST_CASE("order books that merge the same orders in any sequence agree with each other and the reference") {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     INFO("seed " << seed);
     Rng rng(seed);
@@ -78,7 +78,7 @@ TEST_CASE("order books that hear the same orders in any sequence agree with each
     OrderBook first, second;
     for (const RememberedOrder& o : orders) first.merge(o);
     for (std::size_t i = orders.size(); i-- > 0;) {
-      // Out of order, and some orders twice.
+      // The second book merges the orders in reverse, and some orders twice.
       second.merge(orders[i]);
       second.merge(orders[rng.below(static_cast<std::uint32_t>(orders.size()))]);
     }
@@ -99,7 +99,7 @@ TEST_CASE("order books that hear the same orders in any sequence agree with each
   }
 }
 
-TEST_CASE("only a hold's owner or an operator can lift it, even for one robot of a hold of all") {
+TEST_CASE("only a hold's owner or an operator can lift the hold, even for one robot of a hold of all") {
   OrderBook book;
   book.merge(hold(kAllRobots, kAnna, 10));
   book.merge(resume(kAllRobots, kBert, 11));
@@ -123,18 +123,18 @@ TEST_CASE("an order is identified by its number, and a late order changes nothin
   CHECK(book.merge(go(3, kAnna, 10)) == OrderBook::Outcome::kKnown);
   CHECK(book.merge(go(3, kBert, 9)) == OrderBook::Outcome::kReplaced);
   CHECK(book.merge(go(3, kBert, 11)) == OrderBook::Outcome::kStored);
-  CHECK(book.merge(go(3, kOperator, 5)) == OrderBook::Outcome::kStored);  // has its own place
+  CHECK(book.merge(go(3, kOperator, 5)) == OrderBook::Outcome::kStored);  // operators' orders are separate
   CHECK(book.newest_number() == 11);
 }
 
-TEST_CASE("an order's progress never goes back, and a robot leaves a finished order when it begins another") {
+TEST_CASE("an order's progress never goes back, and a robot that begins an order leaves a finished order") {
   OrderBook book;
   book.merge(go(3, kAnna, 10));
   book.merge(go(3, kOperator, 11));
   CHECK(book.report(3, kOperator, 11, {msg::OrderState::ORDER_ARRIVED, 0}));
   CHECK_FALSE(book.report(3, kOperator, 11, {msg::OrderState::ORDER_DRIVING, 0}));
   CHECK_FALSE(
-      book.report(3, 0, 0, {msg::OrderState::ORDER_ACCEPTED, 0}));  // a new agent, which knows no order
+      book.report(3, 0, 0, {msg::OrderState::ORDER_ACCEPTED, 0}));  // from a new agent, which has no order
   CHECK(book.drive_order(3, Rank::kOperator)->progress.is_finished());
   CHECK(book.report(3, kAnna, 10, {msg::OrderState::ORDER_DRIVING, 0}));
   CHECK(book.drive_order(3, Rank::kOperator)->progress.state == msg::OrderState::ORDER_LEFT);
@@ -155,7 +155,7 @@ RememberedOrder removal(ClientId client, std::uint32_t zone_number, OrderNumber 
   return remembered;
 }
 
-TEST_CASE("a zone stays until removed, each client numbers its own zones, and their number is bounded") {
+TEST_CASE("a zone stays until removed, and the numbers of zones and holds are bounded") {
   OrderBook book;
   book.merge(zone(kAnna, 1, 10));
   book.merge(zone(kBert, 1, 11));
@@ -174,7 +174,7 @@ TEST_CASE("a zone stays until removed, each client numbers its own zones, and th
   CHECK(book.is_held(1));
 }
 
-TEST_CASE("of two orders with the same number, the one from the client with the higher id wins") {
+TEST_CASE("of two orders with the same number, the order of the client with the higher id wins") {
   for (const auto kind : {msg::OrderKind::ORDER_GO, msg::OrderKind::ORDER_CANCEL}) {
     const RememberedOrder of_anna = order(kind, 3, kAnna, 10), of_bert = go(3, kBert, 10);
     OrderBook first, second;
@@ -222,7 +222,7 @@ TEST_CASE("lifted holds and removed zones free their places permanently") {
   CHECK(most <= OrderBook::kMaxResumes + OrderBook::kMaxRemovals);
 }
 
-TEST_CASE("the owner can lift any number of holds, one by one or all at once") {
+TEST_CASE("the owner can lift any number of its holds, one by one or with one resume") {
   for (const bool all_at_once : {true, false}) {
     OrderBook book;
     OrderNumber number = 0;
@@ -253,7 +253,7 @@ TEST_CASE("an operator's resume of all robots removes all holds and resumes of c
 }
 
 TEST_CASE(
-    "a late repetition of a lifted hold or a removed zone is recognised, however many were lifted since") {
+    "a late repetition of a lifted hold or a removed zone is refused, even after thousands of later ones") {
   OrderBook book;
   OrderNumber number = 100;
   const Order first_hold = hold(3, kAnna, ++number).order, first_zone = zone(kAnna, 0, ++number).order;
@@ -267,12 +267,12 @@ TEST_CASE(
   }
   CHECK_FALSE(book.is_held(3));
   CHECK(book.zones().empty());
-  // New holds are admitted, also from the operator.
+  // New holds of clients and operators are admitted.
   CHECK(book.admit(hold(3, kAnna, ++number).order) == OrderBook::Outcome::kStored);
   CHECK(book.admit(hold(4, kOperator, 5).order) == OrderBook::Outcome::kStored);
 }
 
-TEST_CASE("a robot released from a hold of all robots stays released, whatever else is lifted") {
+TEST_CASE("a robot released from a hold of all robots stays released while many other holds are lifted") {
   OrderBook book;
   OrderNumber number = 0;
   book.admit(hold(kAllRobots, kAnna, ++number).order);
@@ -310,7 +310,7 @@ TEST_CASE("clients can release every robot of a large fleet one by one from a ho
   CHECK(held_in(book) == static_cast<int>(kMaxRobots));
   CHECK(book.admit(resume(kAllRobots, third, ++number).order) == OrderBook::Outcome::kStored);
   CHECK(held_in(book) == 0);
-  // Lifting the hold frees its space.
+  // Lifting kAnna's hold frees the space of its exceptions.
   CHECK(book.admit(resume(kAllRobots, kAnna, ++number).order) == OrderBook::Outcome::kStored);
   book.admit(hold(kAllRobots, third, ++number).order);
   CHECK(book.admit(resume(3, third, ++number).order) == OrderBook::Outcome::kStored);
@@ -328,7 +328,7 @@ TEST_CASE("the number of exceptions from holds of all robots that other processe
   CHECK(book.is_held(0));  // beyond the bound, a robot stays held
 }
 
-TEST_CASE("orders that another process remembers are never refused, however full the book is") {
+TEST_CASE("orders that another process remembers are accepted even if the order book is full") {
   OrderBook book;
   OrderNumber number = 0;
   for (RobotId robot = 0; robot < OrderBook::kMaxHolds; ++robot)

@@ -14,7 +14,7 @@ TEST_CASE("the reason for an epoch is described with the silence in milliseconds
   CHECK(describe(returned) == "no heartbeat of a higher epoch for 400 ms after yielding to it");
 }
 
-TEST_CASE("the reason for an epoch names which process knew a higher epoch") {
+TEST_CASE("the reason for an epoch names the process that knew a higher epoch or shared it") {
   CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_COORDINATOR, 1, Duration{0}, 77}) ==
         "coordinator 1 has the higher epoch 77");
   CHECK(describe({msg::RoleReason::ROLE_EPOCH_OF_AGENT, 5, Duration{0}, 77}) ==

@@ -11,9 +11,9 @@ using test::command;
 using test::rest_version;
 using test::TestMemory;
 
-TEST_CASE("among versions with the same start, the lower number goes first, whatever order they arrive in") {
+TEST_CASE("of versions with the same start, the lower number goes first in either order of arrival") {
   const bool is_lower_first = GENERATE(true, false);
-  // The second version continues the first one or their common base.
+  // Whether the higher version continues the lower one; otherwise both continue the initial rest.
   const bool is_chain = GENERATE(true, false);
   CAPTURE(is_lower_first, is_chain);
   TestMemory memory;

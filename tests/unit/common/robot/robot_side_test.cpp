@@ -188,7 +188,7 @@ TEMPLATE_TEST_CASE("a robot whose estimated pose or velocity is not finite has n
   side.begin_at_rest(0, 0);
   REQUIRE(side.may_report());
   Estimate<TestType> estimate;
-  // The motion under way is read only for an own stop.
+  // The motion under way is read only for an own stop, which an error of 1 m causes.
   if (field >= 4) estimate.position_m.x = 1;
   estimate.under_way.part_count = 1;
   estimate.under_way.parts[0].duration_ns = 50'000'000;
@@ -204,7 +204,7 @@ TEMPLATE_TEST_CASE("a robot whose estimated pose or velocity is not finite has n
   CHECK_FALSE(side.has_pose());
   CHECK_FALSE(side.may_report());
   CHECK_FALSE(side.is_off_reference());
-  // The robot accepts nothing until it has found its pose, where it makes an own stop.
+  // The robot accepts no version until it has found its pose, where it makes an own stop.
   const Version version = rest_version(101, 0, 50);
   CHECK(side.on_command(command(100, 1, &version), at_ms(2), memory));
   CHECK_FALSE(side.has_pending());
@@ -224,12 +224,12 @@ TEMPLATE_TEST_CASE("a robot that does not know its position error stops with the
   RobotSide<TestType> side({}, {});
   side.begin_at_rest(0, 0);
   Estimate<TestType> estimate;
-  SECTION("its position error is not finite") {
+  SECTION("the position error is not finite") {
     estimate.position_m.x = TestType(0.004);  // within the bound if there were no uncertainty
     estimate.position_error_rms_m = nan;
     REQUIRE(side.needs_uncertainty(at_ms(1), estimate.position_m));
   }
-  SECTION("its displacement is not finite") {
+  SECTION("the displacement is not finite") {
     estimate.position_m.x = TestType(0.0031);
     estimate.jump_m = nan;
   }
@@ -286,14 +286,14 @@ TEST_CASE("a robot without a pose accepts no version") {
   side.check_reference(at_ms(2), {}, memory);
   CHECK_FALSE(side.is_off_reference());
   side.find_pose();
-  CHECK_FALSE(side.may_report());  // it has no version yet that begins at its pose
+  CHECK_FALSE(side.may_report());  // no version begins at its pose yet
   side.check_reference(at_ms(3), {}, memory);
   CHECK(side.may_report());
   CHECK(side.is_off_reference());
   CHECK(side.own_stop_reason() == OwnStopReason::kRestart);
 }
 
-TEST_CASE("a robot whose clock is set back makes an own stop numbered above everything it received") {
+TEST_CASE("a robot whose clock is set back makes an own stop numbered above all versions it received") {
   const std::int64_t back_ns = GENERATE(1'000'000, 5'000'000'000, 3'500'000'000'000);
   CAPTURE(back_ns);
   TestMemory memory;
@@ -322,7 +322,7 @@ TEST_CASE("a robot whose clock is set back makes an own stop numbered above ever
   CHECK(robot_report.executing->start_ns == now_ns + 1'000'000);
   CHECK(robot_report.executing->number >= 102 + RobotSide<double>::kOwnNumberGap);
   CHECK(robot_report.executing->vx_mps == estimate.velocity_mps.x);
-  // By the new clock that version would be in time, but it was granted by the old one.
+  // By the new clock, `pending` would be in time, but it was granted according to the old clock.
   (void)side.on_command(command(100, 1, &pending), now_ns + 2'000'000, memory);
   CHECK_FALSE(side.switch_next(before_ns + 20'000'000));
 }
@@ -331,7 +331,7 @@ TEST_CASE("a lifted robot whose clock is set back stays lifted and has no pendin
   TestMemory memory;
   RobotSide<double> side({}, {});
   side.begin_at_rest(1, 2);
-  // Lifted before it could make its own stop.
+  // The robot is lifted before it can make its own stop.
   side.set_clock_back(at_ms(5000));
   side.lift(at_ms(5000), 1, 2);
   REQUIRE(side.may_report());

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-TEST_CASE("a version repeated by the robot side equals the received one bit for bit") {
+TEST_CASE("a version repeated by the robot side equals the received version bit for bit") {
   Rng rng(21);
   for (int i = 0; i < 1000; ++i) {
     const msg::Version received = encode(test::random_version(7, 100 + static_cast<VersionNumber>(i), rng));

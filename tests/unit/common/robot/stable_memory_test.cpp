@@ -36,7 +36,7 @@ TEST_CASE("a robot whose memory fails neither obeys nor acknowledges a new agent
   CHECK_FALSE(side.on_command(command(100, 8, &version), at_ms(2), memory));
   CHECK(side.robot_report(at_ms(3)).obeyed_incarnation == 100);
   CHECK(side.robot_report(at_ms(3)).obeyed_epoch == 7);
-  // The robot's first version would have to be stored too, because it must know afterwards that it has moved.
+  // The first version is also refused, because the robot would have to store that it has moved.
   CHECK(side.on_command(command(100, 7, &version), at_ms(4), memory));
   CHECK(side.robot_report(at_ms(60)).executing->number == 0);
   CHECK(side.counts().refused_unstored == 3);
@@ -46,7 +46,7 @@ TEST_CASE("a robot whose memory fails neither obeys nor acknowledges a new agent
   CHECK(side.robot_report(at_ms(80)).executing->number == 102);
 }
 
-TEST_CASE("a restarted robot refuses what it refused before and still knows that it has moved") {
+TEST_CASE("a restarted robot still refuses superseded agents and epochs and knows that it has moved") {
   TestMemory memory;
   {
     RobotSide<float> side({}, {});

@@ -13,12 +13,12 @@ namespace sidestep::clock_offset_test {
 const Time kBegin = time_from_ns(1'800'000'000'000'000'000);  // a typical host clock
 constexpr Duration kPeriod{16'666'667};
 
-/// Two clocks and messages between them with random delays: the ground truth for the estimates.
+/// The ground truth for the estimates: two clocks, and messages between them with random delays.
 struct TwoClocks {
   Rng rng;
   Duration offset;  // offset of the peer's clock at kBegin
   double drift_ppm = 0;
-  double min_s, mean_s;  ///< of an exponentially distributed delay above a minimum
+  double min_s, mean_s;  ///< delay: a minimum plus an exponentially distributed part
   double loss = 0;
 
   Duration true_offset(Time local) const {
@@ -88,7 +88,7 @@ TEST_CASE("the uncertainty falls to that of the fastest exchange even if 30 % of
   CHECK_FALSE(measured.at(now)->is_beyond(from_seconds(0.005)));
 }
 
-TEST_CASE("one exchange bounds the offset by its two delays, and several by their intersection") {
+TEST_CASE("one exchange bounds the offset by its delays, and several exchanges by their intersection") {
   ClockOffset measured;
   CHECK_FALSE(measured.at(kBegin));
   // The peer's clock is 10 ms ahead: 3 ms there, 1 ms until the reply, 2 ms back.
@@ -150,9 +150,9 @@ TEST_CASE("invalid timestamps change nothing") {
   ClockOffset measured;
   REQUIRE(measured.add(exchange_ms(0, 1, 2, 3)));
   const auto before = measured.at(kBegin + from_seconds(0.003));
-  CHECK_FALSE(measured.add(exchange_ms(10, 11, 12, 9)));     // received before it was sent
-  CHECK_FALSE(measured.add(exchange_ms(10, 12, 11, 13)));    // the peer replied before it received
-  CHECK_FALSE(measured.add(exchange_ms(-11'000, 1, 2, 3)));  // longer than any exchange takes
+  CHECK_FALSE(measured.add(exchange_ms(10, 11, 12, 9)));     // the answer arrives before the request leaves
+  CHECK_FALSE(measured.add(exchange_ms(10, 12, 11, 13)));    // the peer answers before the request arrives
+  CHECK_FALSE(measured.add(exchange_ms(-11'000, 1, 2, 3)));  // the exchange takes too long
   constexpr std::int64_t kValid = 1'000'000'000'000'000;
   const std::vector<std::int64_t> hostile{0, -1, std::numeric_limits<std::int64_t>::min(),
                                           std::numeric_limits<std::int64_t>::max(), to_ns(kMaxTime) + 1};

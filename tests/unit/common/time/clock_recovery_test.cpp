@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-/// A process and the processes whose messages it hears, in true time.
+/// A process that hears messages of other processes. `now` is true time.
 struct Scene {
   ClockRecovery recovery;
   Time now = kBegin;
@@ -37,7 +37,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a process adopts its host's clock once that agrees with others and its own does not") {
+TEST_CASE("a process adopts its host's clock if the host's clock agrees with others and its own does not") {
   const Duration wrong = GENERATE(Duration(-24h), Duration(-1h), Duration(-1s), Duration(-20ms),
                                   Duration(300ms), Duration(2s), Duration(24h));
   const Duration delay = GENERATE(Duration(100us), Duration(5ms));
@@ -65,7 +65,7 @@ TEST_CASE("a step of the host's clock changes nothing while another process agre
   Scene scene;
   scene.host_ahead = step;
   CHECK_FALSE(scene.adopts(0s, delay, 20));
-  // It makes no difference if a process started since then agrees with the host.
+  // The clock is kept even if a second process, started after the step, agrees with the host.
   for (int i = 0; i < 20; ++i) {
     scene.hear(1, 0s, delay);
     scene.hear(2, step, delay);
@@ -81,7 +81,7 @@ TEST_CASE("a process keeps its clock if it is in use or its host's clock has not
   CHECK_FALSE(scene.adopts(0s, 1ms, 20));
 }
 
-TEST_CASE("a process keeps its clock if neither that nor its host's clock agrees with others") {
+TEST_CASE("a process keeps its clock if neither its own nor its host's clock agrees with others") {
   Scene scene;
   scene.own_ahead = -24h;
   scene.host_ahead = -12h;
@@ -113,7 +113,7 @@ TEST_CASE("evidence is collected afresh when the host's clock is set again or a 
   CHECK(scene.adopts(0s, 1ms, 1));
 }
 
-TEST_CASE("made-up references cannot exhaust memory or make a process adopt another clock") {
+TEST_CASE("messages with made-up references do not exhaust memory or make a process adopt another clock") {
   Scene scene;
   scene.host_ahead = 1h;
   for (int period = 0; period < 5; ++period) {

@@ -10,7 +10,7 @@
 
 namespace sidestep::histogram_test {
 
-TEST_CASE("a quantile is at most one bucket above the value from sorting") {
+TEST_CASE("a quantile is at most one bucket above the quantile of the sorted durations") {
   const std::uint64_t seed = GENERATE(1, 2, 3, 4, 5, 6, 7, 8);
   CAPTURE(seed);
   Rng rng(seed);
@@ -62,7 +62,7 @@ TEST_CASE("durations beyond the last edge count in the last bucket, whose quanti
   CHECK(histogram.quantile(0.1) == std::chrono::hours(10));
 }
 
-TEST_CASE("merging two histograms equals adding all durations to one") {
+TEST_CASE("merging two histograms equals adding all durations to one histogram") {
   const std::uint64_t seed = 9;
   CAPTURE(seed);
   Rng rng(seed);

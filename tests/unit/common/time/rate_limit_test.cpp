@@ -7,14 +7,14 @@ namespace sidestep::rate_limit_test {
 
 Time after_ms(int ms) { return time_from_ns(1'000'000'000'000) + std::chrono::milliseconds(ms); }
 
-TEST_CASE("a burst of events is admitted at once and then one event per period") {
+TEST_CASE("a rate limit admits a burst of events immediately and then one event per period") {
   RateLimit limit(3, std::chrono::seconds(1));
   int admitted = 0;
   for (int ms = 0; ms < 5000; ms += 10) admitted += limit.admit(after_ms(ms)) ? 1 : 0;
   CHECK(admitted == 3 + 4);
 }
 
-TEST_CASE("a clock that is set back blocks events no longer than a burst takes") {
+TEST_CASE("after a clock is set back, events are blocked for at most the periods of one burst") {
   const int back_ms = GENERATE(1, 900, 2500, 3'600'000);
   CAPTURE(back_ms);
   RateLimit limit(3, std::chrono::seconds(1));

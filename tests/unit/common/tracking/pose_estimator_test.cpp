@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
-// A robot on a circle whose odometry has a constant scale error, with delayed fixes.
+// A robot that drives in a circle, with a constant scale error of its odometry and delayed fixes.
 struct Circling {
   explicit Circling(std::uint64_t seed, double scale_error)
       : rng(seed), scale(1 + scale_error), estimator({1, 0}, 0, kBegin, {0.01, 0.005, 0.0015}) {}
@@ -63,7 +63,7 @@ TEST_CASE("late and noisy fixes keep the estimate within a fraction of their noi
   CHECK((run.estimator.velocity_mps() - 1.5 * left_of(run.position(run.now))).norm() < 0.02);
 }
 
-TEST_CASE("a fix is compared with the estimate at its capture time, not with the current one") {
+TEST_CASE("a fix is compared with the estimate at the fix's capture time, not with the current estimate") {
   PoseEstimator estimator({0, 0}, 0, kBegin, {});
   Time now = kBegin;
   for (int i = 0; i < 100; ++i) estimator.advance(now += kPeriod, {{2, 0}, 0}, {0, 0}, 0);
@@ -92,7 +92,7 @@ TEST_CASE("an invalid fix changes nothing") {
   CHECK(estimator.position_m() == before);
 }
 
-TEST_CASE("a fix older than the history is refused, and one within it is used") {
+TEST_CASE("a fix older than the estimator's history is refused, and a fix within it is used") {
   PoseEstimator estimator({0, 0}, 0, kBegin, {});
   Time now = kBegin;
   for (int i = 0; i < 1000; ++i) estimator.advance(now += kPeriod, {}, {0, 0}, 0);

@@ -16,7 +16,7 @@ std::string yaml_error(const std::string& text) {
   return "accepted";
 }
 
-TEST_CASE("a tab that indents a line is reported, whatever the line contains") {
+TEST_CASE("a tab that indents a line is reported as the error") {
   const auto [text, line] = GENERATE(table<std::string, int>({
       {"robots:\n\t- {id: 0}\n", 2},
       {"field:\n  length_m: 3\n\twidth_m: 3\n", 3},
@@ -30,12 +30,12 @@ TEST_CASE("a tab that indents a line is reported, whatever the line contains") {
         "file.yaml:" + std::to_string(line) + ": a tab indents this line, expected spaces");
 }
 
-TEST_CASE("tabs elsewhere are allowed, and other errors are not mistaken for tabs") {
+TEST_CASE("tabs after the indentation are allowed, and other errors are not mistaken for tabs") {
   CHECK(yaml_error("a:\t[1,\t2]\t# three\ttabs\n") == "accepted");
   CHECK_THAT(yaml_error("a: [1,\tb: {\n"), ContainsSubstring("not YAML"));
 }
 
-TEST_CASE("a merge key adds another mapping's entries that this mapping lacks") {
+TEST_CASE("a merge key adds the entries of another mapping that its own mapping lacks") {
   const auto [text, expected] = GENERATE(table<std::string, std::string>({
       {"[&a {x: 1, y: 2}, {<<: *a, y: 3}]", "[{x: 1, y: 2}, {y: 3, x: 1}]"},
       {"[{<<: {x: 1}}]", "[{x: 1}]"},

@@ -55,7 +55,7 @@ TEST_CASE("the closest approach of two paths is found to micrometres below the c
   CHECK(near > 20);
 }
 
-TEST_CASE("a fast approach after a long rest is found, whichever path starts first and whichever is fast") {
+TEST_CASE("a fast approach after a long rest is found for either order of the paths and their starts") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -74,7 +74,7 @@ TEST_CASE("a fast approach after a long rest is found, whichever path starts fir
   }
 }
 
-TEST_CASE("the time of the closest approach is found, and times before the given one are not searched") {
+TEST_CASE("the time of the closest approach is found, and times before `from` are not searched") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -117,7 +117,7 @@ TEST_CASE("two robots that brake slowly towards each other are found to come nea
     const double angle_rad = rng.uniform(0, 6), cutoff_m = 0.02;
     const auto braking = [&](double sign) {
       const double speed_mps = rng.uniform(1, 3), seconds = rng.uniform(2, 20);
-      // They meet at the origin, late in their motion.
+      // The robots meet at the origin, late in their motion.
       const double way_m = speed_mps * seconds / 2 * rng.uniform(0.8, 1);
       const Vec2 from_m = -sign * way_m * Vec2(1, 0) + Vec2(0, rng.uniform(-0.02, 0.02));
       Trajectory trajectory(time_from_ns(1'000'000'000) + from_seconds(rng.uniform(0, 1)),
@@ -164,7 +164,7 @@ TEST_CASE("implausible versions are rejected") {
     SECTION("in x") { version.vx_mps(sign * 101); }
     SECTION("in y") { version.vy_mps(sign * 101); }
   }
-  SECTION("the acceleration is higher than any robot's, in the last phase too") {
+  SECTION("the acceleration of the last phase is higher than any robot's") {
     last.ax_mps2(sign * 999), last.ay_mps2(-sign * 999);
     CHECK(is_sane(version));
     SECTION("in x") { last.ax_mps2(sign * 1001); }

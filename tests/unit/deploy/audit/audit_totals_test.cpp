@@ -39,7 +39,7 @@ TEST_CASE("an audit with enough coverage and no findings passes") {
   CHECK(totals.verdict() == AuditVerdict::kPassed);
 }
 
-TEST_CASE("an audit that covers 95 % judges and one that covers 94.9 % does not") {
+TEST_CASE("an audit that covers 95 % of each share judges, and an audit that covers 94.9 % of one does not") {
   for (double Coverage::*part :
        {&Coverage::messages, &Coverage::versions, &Coverage::pairs, &Coverage::time, &Coverage::reference}) {
     AuditTotals totals = covered();
@@ -99,13 +99,13 @@ TEST_CASE("a run is not judged if any coverage share is below the minimum, and t
     totals.is_cut_off = true;
     reason = "the recording is damaged, so its end is missing";
   }
-  SECTION("nothing happened") {
+  SECTION("no message shows that robots could move") {
     totals.run_s = 0;
     reason = "no received message shows that robots could move";
   }
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
   CHECK(verdict_line(totals) == "not judged: " + reason);
-  // Violations that were found count, however low the coverage.
+  // Violations count even with low coverage.
   totals.violations = 1;
   CHECK(totals.verdict() == AuditVerdict::kFailed);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bounded memories of an audited robot, compared with slow and simple ones.
+// The bounded memories of an audited robot, compared with slow and simple references.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -33,7 +33,7 @@ TEST_CASE("an epoch memory agrees with a complete set of epochs about the sixtee
   }
 }
 
-TEST_CASE("an own stop belongs to the epoch whose ledger listed it, whatever was registered") {
+TEST_CASE("an own stop belongs only to the epoch whose ledger listed it, even if registered in others") {
   KnownVersion known;
   for (Epoch epoch = 10; epoch <= 200; epoch += 10) known.registered_in.add(epoch);
   known.granted_in = 3;
@@ -158,7 +158,7 @@ TEST_CASE("the newest matching proposal of the last sixteen is found") {
   AuditedRobot robot;
   CHECK(robot.find_proposal(0) == nullptr);
   for (std::uint64_t i = 1; i <= 40; ++i) {
-    // Two agents use every number.
+    // Two agents each propose every number.
     const std::uint64_t number = 10 * ((i + 1) / 2);
     propose(robot, number, static_cast<std::int64_t>(1000 + i), i % 2);
     const std::uint64_t evicted = i > 16 ? i - 16 : 0;
@@ -194,7 +194,7 @@ TEST_CASE("the newest matching proposal of the last sixteen is found") {
   CHECK(robot.max_evicted_proposal == 200);
 }
 
-/// Why a robot report excludes a version, found by applying one rule after the other.
+/// Slow reference: why a robot report excludes a version.
 Exclusion slow_exclusion(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& v) {
   const bool begins_later = v.has_content && v.path.start_ns() > robot_report.at_ns;
   if (robot_report.is_lifted && robot_report.executing == 0) {
@@ -211,7 +211,7 @@ Exclusion slow_exclusion(const AuditedRobot::ReceivedReport& robot_report, const
   return Exclusion::kNone;
 }
 
-TEST_CASE("a robot report excludes the versions that the robot no longer executes") {
+TEST_CASE("a robot report excludes versions for the same reasons as a slow reference") {
   std::map<Exclusion, int> found;
   for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
     CAPTURE(seed);
@@ -245,7 +245,7 @@ TEST_CASE("a robot report excludes the versions that the robot no longer execute
     CHECK(found[e] > 100);
 }
 
-TEST_CASE("live versions are the recent ones with known content, and their disc contains all of them") {
+TEST_CASE("live versions are the recent versions with known content, and their disc contains them all") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -295,7 +295,7 @@ TEST_CASE("live versions are the recent ones with known content, and their disc 
   }
 }
 
-TEST_CASE("a robot whose clock was set back forgets all times of that clock") {
+TEST_CASE("after a robot's clock is set back, all times of the old clock are forgotten") {
   AuditedRobot robot;
   robot.forget_times();
   CHECK_FALSE(robot.last_report);
@@ -310,7 +310,7 @@ TEST_CASE("a robot whose clock was set back forgets all times of that clock") {
   for (const KnownVersion& known : robot.versions) CHECK(known.executed_until_ns == kAlways);
 }
 
-TEST_CASE("a robot on a new floor keeps only its id and the epochs of the former floor") {
+TEST_CASE("after reset() only a robot's id and the highest epoch of its former floor are known") {
   AuditedRobot robot;
   robot.id = 7;
   robot.registered.emplace().epoch = 5;

@@ -47,7 +47,7 @@ TEST_CASE("recent versions stay recent when older ones are evicted or arrive lat
   CHECK(first_recent(robot) == 7);
 }
 
-TEST_CASE("a late version is recent even if higher ones were excluded long ago") {
+TEST_CASE("a version that arrives late is recent even if higher versions were excluded long ago") {
   AuditedRobot robot;
   for (const VersionNumber number : {2u, 4u, 6u}) {
     KnownVersion& known = robot.find_or_insert(number);
@@ -99,7 +99,7 @@ TEST_CASE(
   CHECK(exclusion_by(lifted, *robot.find(11)) == Exclusion::kLifted);
 }
 
-TEST_CASE("a version that was late by a clock that has been set back is possible again") {
+TEST_CASE("a version excluded as late is possible again once the robot's clock has been set back") {
   AuditedRobot robot = robot_with(5, 3);
   robot.last_report.emplace().at_ns = 1000;
   robot.find(4)->exclusion = Exclusion::kLate;
@@ -113,7 +113,7 @@ TEST_CASE("a version that was late by a clock that has been set back is possible
   CHECK(first_recent(robot) <= 4);
 }
 
-TEST_CASE("the versions executed between two others are known if every base is known") {
+TEST_CASE("a version continues another if the bases of all versions between them are known and match") {
   AuditedRobot robot;
   for (const VersionNumber number : {3u, 5u, 6u, 9u})
     add_content(robot, number, number == 9 ? 6 : number - 1, 0);
@@ -123,7 +123,7 @@ TEST_CASE("the versions executed between two others are known if every base is k
   CHECK(robot.continues(5, 9));
   CHECK(robot.continues(4, 5));
   CHECK_FALSE(robot.continues(3, 9));  // the content of version 4 is unknown
-  CHECK_FALSE(robot.continues(7, 9));  // 9 does not continue 7
+  CHECK_FALSE(robot.continues(7, 9));  // version 9 does not continue version 7
   CHECK_FALSE(robot.continues(9, 6));
   CHECK_FALSE(robot.continues(3, 8));
 }
@@ -144,8 +144,8 @@ TEST_CASE("executed versions stay counted even after they are forgotten") {
     known.excluded_ns = 10;
   }
   const auto check = [&] {
-    CHECK(robot.executed_versions().all == 7);     // 4 to 10
-    CHECK(robot.executed_versions().traced == 2);  // 7 and 8
+    CHECK(robot.executed_versions().all == 7);     // versions 4 to 10
+    CHECK(robot.executed_versions().traced == 2);  // versions 7 and 8
   };
   check();
   robot.forget(11);
@@ -169,7 +169,7 @@ TEST_CASE("a robot's initial rest does not count as an agent's version, but vers
   }
 }
 
-TEST_CASE("a version is found near its former index") {
+TEST_CASE("find_near() finds a version from any former index") {
   AuditedRobot robot = robot_with(10, 0);
   const std::size_t size = robot.versions.size();
   for (VersionNumber number = 1; number <= 11; ++number) {

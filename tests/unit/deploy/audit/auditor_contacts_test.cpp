@@ -29,7 +29,7 @@ TEST_CASE("contacts are reported one by one in the order of the ground truth") {
   CHECK(shown.auditor.totals().unidentified_contacts == 0);
 }
 
-TEST_CASE("the robots of the last eight simultaneous contacts are known") {
+TEST_CASE("of many simultaneous contacts only the last eight are reported with their robots") {
   const auto [added, unidentified] = GENERATE(table<int, std::uint64_t>({{8, 0}, {9, 1}, {20, 12}}));
   GroundTruthStage shown;
   shown.run(50ms);
@@ -39,7 +39,7 @@ TEST_CASE("the robots of the last eight simultaneous contacts are known") {
   CHECK(shown.auditor.totals().unidentified_contacts == unidentified);
 }
 
-TEST_CASE("crashes of moving robots are reported, and crashes beyond the list are reported together") {
+TEST_CASE("up to eight simultaneous crashes are reported one by one, and further crashes as one") {
   GroundTruthStage shown;
   shown.run(50ms);
   SECTION("one crash") {
@@ -77,7 +77,7 @@ TEST_CASE("crashes of moving robots are reported, and crashes beyond the list ar
   }
 }
 
-TEST_CASE("an auditor that joins a run judges only what happens from then on") {
+TEST_CASE("an auditor that joins a run does not judge earlier contacts and crashes") {
   GroundTruthStage shown(kIncomplete);
   for (int i = 0; i < 100; ++i) (void)shown.header("truth", 30'000, shown.incarnation);
   shown.touch(0, 1);
@@ -101,7 +101,7 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
   shown.push(0);
   shown.run(30ms);
   std::uint64_t undecided = 1;
-  SECTION("a robot is not shown any more") { shown.truth.robots().resize(1); }
+  SECTION("ground truth stops showing a robot") { shown.truth.robots().resize(1); }
   SECTION("messages were missed while a robot was disturbed") {
     (void)shown.header("truth", 30'000, shown.incarnation);
   }
@@ -119,7 +119,7 @@ TEST_CASE("a contact is undecided if the disturbance that excuses it may have be
   CHECK(shown.count(AuditRule::kContact) == 1 - undecided);
 }
 
-TEST_CASE("robots up to a millimetre apart may be in contact and push each other") {
+TEST_CASE("robots up to a millimetre apart count as touching and pass on a disturbance") {
   const double apart_m = GENERATE(0.1805, 0.1815);
   GroundTruthStage shown;
   shown.run(50ms);

@@ -94,7 +94,7 @@ TEST_CASE("only versions beyond the limits are reported") {
   CHECK(within > 50);
 }
 
-TEST_CASE("driving at F, braking at D and the speed limit are allowed and slightly more is not") {
+TEST_CASE("acceleration F, deceleration D and the speed limit are allowed, and slightly more is reported") {
   const double more = GENERATE(0.0, 0.0015, 0.0025);
   CAPTURE(more);
   Stage stage;
@@ -159,7 +159,7 @@ TEST_CASE("only versions that leave the field are reported") {
   CHECK(inside > 50);
 }
 
-TEST_CASE("a robot outside the field may return in steps but not leave farther") {
+TEST_CASE("a robot outside the field may return in steps but not drive farther away") {
   const auto [to_m, is_reported] = GENERATE(table<double, bool>({{3.04, false}, {3.06, true}}));
   CAPTURE(to_m);
   Scenario scenario = stage_scenario();
@@ -179,7 +179,7 @@ TEST_CASE("a robot outside the field may return in steps but not leave farther")
 /// The distance that the robot's centre must keep from edges.
 double separation_m(const Scenario& scenario) { return scenario.radius_m + scenario.margin_m; }
 
-TEST_CASE("a version that comes too near an obstacle is reported unless its base was as near") {
+TEST_CASE("a version that comes too near an obstacle is reported unless its base came equally near") {
   int near = 0, clear = 0, excused = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
@@ -254,7 +254,7 @@ TEST_CASE("a base of unknown content excuses nothing") {
   scenario.robots[0].start_m = {-0.41, 0};
   Stage stage(scenario);
   stage.begin();
-  stage.decide(0, 1, 1);  // was not proposed
+  stage.decide(0, 1, 1);  // grants a version that was not proposed
   stage.violations.clear();
   msg::Version version = stage.next(stage.rest(0), 2);
   append(version, 1, {0.05, 0});
@@ -283,7 +283,7 @@ TEST_CASE("blocked map cells are obstacles") {
   stage.grant(version);
   INFO(stage.lines());
   CHECK(stage.count(AuditRule::kObstacle) == (closer_m > 0 ? 1 : 0));
-  // A second version that begins there and comes no nearer is excused by its base.
+  // The second version begins where the first one ends and comes no nearer, so its base excuses it.
   stage.command(version);
   stage.advance(2500ms);
   stage.robot_reports[0].executing(version);
@@ -329,7 +329,7 @@ TEST_CASE("a version that does not start after its base is reported") {
   CHECK(stage.violations.size() == stage.count(AuditRule::kContinuity));
 }
 
-TEST_CASE("a version has the inflation of its base, or none if it begins at rest") {
+TEST_CASE("a version must have the inflation of its base, or no inflation if it begins at rest") {
   Stage stage;
   stage.robot_reports[0].executing().inflation_m(0.01);
   stage.begin();
@@ -342,7 +342,7 @@ TEST_CASE("a version has the inflation of its base, or none if it begins at rest
     return stage.count(AuditRule::kInflation);
   };
   SECTION("the same inflation") { CHECK(grant(0.01, 0) == 0); }
-  SECTION("another inflation") { CHECK(grant(0.009, 0) == 1); }
+  SECTION("a different inflation") { CHECK(grant(0.009, 0) == 1); }
   SECTION("no inflation at rest") { CHECK(grant(0, 0) == 0); }
   SECTION("no inflation in motion") { CHECK(grant(0, 0.5) == 1); }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of a run an audit covered, and its verdict as a result.
+// The share of a run that an audit covered, and the resulting verdict.
 #include "common/config/shared_rules.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
@@ -19,7 +19,7 @@ void require_covered(const AuditTotals& totals) {
   CHECK(totals.coverage.reference >= 0.99);
 }
 
-TEST_CASE("an audit that hears everything covers everything") {
+TEST_CASE("an audit that hears all messages covers the whole run") {
   const AuditTotals totals = audit_of(crossing(), kComplete);
   require_covered(totals);
   CHECK(totals.coverage.share() == 1);
@@ -44,7 +44,7 @@ TEST_CASE("an audit that hears 60 % of the messages does not pass") {
   CHECK_THAT(verdict_line(totals), ContainsSubstring("% of the messages were missed"));
 }
 
-TEST_CASE("an audit that finds a violation fails the run, however little it hears") {
+TEST_CASE("an audit that finds a violation fails the run even with low coverage") {
   History history = degraded(crossing(), 5, 0.2, Duration{0});
   history.scenario.margin_m += 0.005;
   const AuditTotals totals = audit_of(history, {});
@@ -63,7 +63,7 @@ AuditTotals audit_without(const AuditInput& input) {
   return audit_of(history, input);
 }
 
-TEST_CASE("an audit that stops hearing one kind of message does not pass, although there is no gap") {
+TEST_CASE("an audit that stops hearing messages of one type does not pass even without a gap in numbers") {
   const AuditInput input;
   AuditTotals totals;
   SECTION("robot reports") {
@@ -144,7 +144,7 @@ TEST_CASE("a silent robot is covered but a robot whose reports are missed is not
     // Closes the gap in the message numbers, as if the robot had not sent the removed messages.
     if (is_of_robot && !were_sent)
       feedback->header().message_number(feedback->header().message_number() - removed);
-    // Removes the messages that would tell what the robot executed meanwhile.
+    // Removes the messages that would show which versions the robot executed during the gap.
     const auto* command = std::get_if<msg::Command>(&received.message);
     if (command && command->robot() == 2 && received.at >= from - 100ms && received.at < until) continue;
     const auto* proposal = std::get_if<msg::Proposal>(&received.message);
@@ -162,7 +162,7 @@ TEST_CASE("a silent robot is covered but a robot whose reports are missed is not
 }
 
 TEST_CASE(
-    "missed robot reports do not lower the time coverage if all versions executed meanwhile are known") {
+    "missed robot reports do not lower the time coverage if all versions executed in the gap are known") {
   History history = crossing();
   const Time from = history.messages.front().at + 1500ms;
   history.remove_if<msg::Feedback>([&](const msg::Feedback& f) {

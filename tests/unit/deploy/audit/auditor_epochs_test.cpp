@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single robot reports prove about epochs, registrations and incarnations of robots.
+// Single robot reports as evidence about epochs, registrations and incarnations of robots.
 #include "common/motion/safety_budget.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
@@ -32,13 +32,13 @@ TEST_CASE("a robot must not execute a version sent under an older epoch than it 
     stage.report(0);
     stage.command(first);
   }
-  SECTION("the version was sent after that report") {
+  SECTION("the version was sent after the first report with the newer epoch") {
     obey();
     stage.report(0);
     stage.command(first);
     is_stale = true;
   }
-  SECTION("the version was sent after that report under the newer epoch") {
+  SECTION("the version was sent under the newer epoch after its first report") {
     obey();
     ++stage.epoch;
     stage.command(first);
@@ -102,7 +102,7 @@ TEST_CASE(
   CHECK(stage.count(AuditRule::kAllRegistered) == (is_proposed && !is_obeyed ? 1 : 0));
 }
 
-/// Robot 0 executes version 1 of the previous epoch when its agent registers in the next one.
+/// Robot 0 executes version 1 of the previous epoch when its agent registers in the next epoch.
 struct Registering : Stage {
   explicit Registering(const AuditInput& input) : Stage(stage_scenario(), input) {
     begin();
@@ -124,8 +124,7 @@ struct Registering : Stage {
   msg::Version first;
 };
 
-TEST_CASE(
-    "an agent must register what its robot executes, after the robot has acknowledged agent and epoch") {
+TEST_CASE("an agent must register its robot's version after the robot has acknowledged agent and epoch") {
   const bool is_complete = GENERATE(true, false);
   Registering stage(is_complete ? kComplete : kIncomplete);
   std::uint64_t missing = 0, early = 0;
@@ -134,7 +133,7 @@ TEST_CASE(
     stage.register_versions(0, {stage.rest(0)});
     missing = 1;
   }
-  SECTION("the unregistered version was replaced by one of the new epoch") {
+  SECTION("the unregistered version was replaced by a version of the new epoch") {
     stage.register_versions(0, {stage.rest(0)});
     stage.register_versions(1, {stage.rest(1)});
     stage.robot_reports[1].obeyed_epoch(stage.epoch);
@@ -168,7 +167,7 @@ TEST_CASE(
   CHECK(stage.violations.size() == missing + early);
 }
 
-TEST_CASE("a robot that obeys an older agent has not acknowledged the one that registers") {
+TEST_CASE("a robot that obeys an older agent has not acknowledged the agent that registers") {
   Registering stage(kComplete);
   stage.robot_reports[0].obeyed_incarnation(Stage::kAgent);
   msg::Registration registration;

@@ -20,7 +20,7 @@ Time rest_begin(History& history) {
   return begin;
 }
 
-TEST_CASE("a contact soon after a push is excused, but one long after is not") {
+TEST_CASE("a contact soon after a push is excused, but a contact long after a push is not") {
   const bool is_complete = GENERATE(true, false);
   const auto [after, is_excused] = GENERATE(table<Duration, bool>({{50ms, true}, {400ms, false}}));
   CAPTURE(is_complete, to_seconds(after));
@@ -64,7 +64,7 @@ TEST_CASE("excused contacts are listed by cause and pair, with the share of excu
   CHECK(totals.excused_contacts == 3);
   CHECK(totals.violations == 0);
   CHECK(totals.excused_time_share() > 0);
-  // Robots 2 and 5 are disturbed, which concerns 13 of 28 pairs, for at most two of four seconds.
+  // Robots 2 and 5, which are in 13 of 28 pairs, are disturbed for at most two of four seconds.
   CHECK(totals.excused_time_share() < 13.0 / 28 / 2);
 }
 

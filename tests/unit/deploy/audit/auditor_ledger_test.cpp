@@ -40,7 +40,7 @@ TEST_CASE("a correct run breaks no rule") {
   CHECK(totals.received == 199 * 6 + 4);
 }
 
-TEST_CASE("a command with a permanently denied candidate is reported, whatever the message order") {
+TEST_CASE("a command with a permanently denied candidate is reported in any order of the messages") {
   using msg::Reason;
   const auto [reason, is_final] = GENERATE(table<Reason, bool>({{Reason::REASON_NOT_CONTINUOUS, true},
                                                                 {Reason::REASON_BEYOND_LIMITS, true},
@@ -135,7 +135,7 @@ TEST_CASE("versions are granted in increasing order within each epoch") {
   Stage stage;
   stage.begin();
   stage.grant(stage.next(stage.rest(0), 10));
-  SECTION("a lower number") {
+  SECTION("a lower number is granted") {
     stage.grant(stage.next(stage.rest(0), 4));
     CHECK(stage.count(AuditRule::kVersionOrder) == 1);
     stage.grant(stage.next(stage.rest(0), 7));
@@ -143,15 +143,15 @@ TEST_CASE("versions are granted in increasing order within each epoch") {
     stage.grant(stage.next(stage.rest(0), 11));
     CHECK(stage.count(AuditRule::kVersionOrder) == 2);
   }
-  SECTION("a higher number") { stage.grant(stage.next(stage.rest(0), 11)); }
-  SECTION("a lower number of another robot") { stage.grant(stage.next(stage.rest(1), 4)); }
+  SECTION("a higher number is granted") { stage.grant(stage.next(stage.rest(0), 11)); }
+  SECTION("a lower number of another robot is granted") { stage.grant(stage.next(stage.rest(1), 4)); }
   SECTION("a lower number in a new epoch and a higher number in the former epoch") {
     ++stage.epoch;
     stage.robot_reports[0].obeyed_epoch(stage.epoch), stage.robot_reports[1].obeyed_epoch(stage.epoch);
     stage.begin();
     stage.grant(stage.next(stage.rest(0), 4));
     CHECK(stage.violations.empty());
-    // This coordinator does not know yet that it was superseded.
+    // The coordinator of the former epoch does not know yet that it was superseded.
     --stage.epoch;
     stage.grant(stage.next(stage.rest(0), 8));
     ++stage.epoch;
@@ -342,7 +342,7 @@ TEST_CASE("a version whose verdict was missed is judged if a page of its proposa
   if (is_certain) CHECK(stage.violations.size() == found);
 }
 
-TEST_CASE("nothing is granted to a held robot except the place where it is put down") {
+TEST_CASE("no version is granted to a held robot except the place where it is put down") {
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
   stage.begin();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which versions of a lifted robot the ledger must keep.
+// The versions of a lifted robot that the ledger must keep.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
 
@@ -35,14 +35,14 @@ struct Lifted : Stage {
   msg::Version second, place, later;
 };
 
-TEST_CASE("the ledger may drop a lifted robot's old versions but not its new place and what continues it") {
+TEST_CASE("the ledger may drop a lifted robot's old versions but not its new place or versions from there") {
   Lifted lifted;
   const msg::Version other = lifted.rest(1);
   SECTION("all versions are kept") {
     lifted.show_page({lifted.second, lifted.place, lifted.later, other});
     CHECK(lifted.violations.empty());
   }
-  SECTION("the version that continues the last executed one is dropped") {
+  SECTION("the version that continues the last executed version is dropped") {
     lifted.show_page({lifted.place, lifted.later, other});
     CHECK(lifted.violations.empty());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An auditor on a bus hears everything that it audits.
+// An auditor on a bus hears every message that it audits.
 #include <map>
 
 #include "tests/catch.hpp"
@@ -191,7 +191,7 @@ TEST_CASE("an auditor on a bus hears orders and which processes remember them") 
   CHECK(run.forgotten() == expected);
 }
 
-TEST_CASE("time passes for an auditor on a bus even without messages") {
+TEST_CASE("an auditor on a bus advances its time even without messages") {
   Listening run;
   for (const RobotId robot : {0u, 1u}) {
     msg::Feedback robot_report;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single messages of agents and coordinators: which ones are invalid, and what they prove.
+// Which single messages of agents and coordinators are invalid, and what valid messages prove.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
 
@@ -187,7 +187,7 @@ msg::CoordinatorState state(Stage& stage, msg::CoordinatorMode mode,
   return state;
 }
 
-TEST_CASE("a coordinator that reports missing registrations after it has granted is reported once") {
+TEST_CASE("a coordinator that reports a missing registration after a grant is reported once") {
   constexpr auto kMode = msg::CoordinatorMode::COORDINATOR_REGISTERING;
   const bool is_complete = GENERATE(true, false);
   Stage stage(stage_scenario(), is_complete ? kComplete : kIncomplete);
@@ -227,7 +227,7 @@ TEST_CASE("a coordinator that reports missing registrations after it has granted
       msg::CoordinatorState late = state(stage, kMode, {1});
       late.header().stamp_ns(to_ns(stage.now) - 1);
       stage.auditor.on_coordinator(late, stage.now);
-      // An auditor that receives every message immediately knows this from its own clock.
+      // An auditor that receives every message immediately knows the order from its own clock.
       expected = is_complete ? 1 : 0;
     }
   }
@@ -250,7 +250,7 @@ TEST_CASE("an agent never returns to a lower epoch") {
   command(stage, 5);
   command(stage, 6);
   std::uint64_t expected = 0;
-  SECTION("the same epoch and higher ones") {
+  SECTION("the same epoch and higher epochs") {
     for (const Epoch epoch : {6u, 7u, 7u, 9u}) command(stage, epoch);
   }
   SECTION("a lower epoch") {
@@ -288,7 +288,7 @@ TEST_CASE("an agent never returns to a lower epoch") {
   CHECK(stage.violations.size() == expected);
 }
 
-TEST_CASE("a run begins when all robots are heard and may move, or a second after they may move") {
+TEST_CASE("a run begins once all robots may move and are heard, at most a second after they may move") {
   Stage stage(stage_scenario(), kIncomplete);
   const auto run_s = [&] {
     stage.auditor.advance(stage.now);

@@ -72,7 +72,7 @@ TEST_CASE(
   CHECK(count(totals, AuditRule::kAllRegistered) == 0);
 }
 
-TEST_CASE("two agents may use the same proposal number, even if an auditor hears only one of them") {
+TEST_CASE("two agents may use the same proposal number, even if the auditor misses one agent's proposal") {
   History history = crossing();
   const Switch s = first_moving_switch(history);
   // Adds a restarted agent that proposes the same number and is granted its second candidate.
@@ -93,7 +93,7 @@ TEST_CASE("two agents may use the same proposal number, even if an auditor hears
 
 TEST_CASE("a robot that starts beside an obstacle may drive away, even if its earlier versions were missed") {
   History history = crossing();
-  // Ends before the first of the other robots passes there.
+  // The history ends before the first of the other robots passes the obstacle.
   const Time end = history.messages.front().at + 1500ms;
   std::erase_if(history.messages, [&](const ReceivedMessage& received) { return received.at > end; });
   std::optional<Vec2> start_m;
@@ -169,7 +169,7 @@ TEST_CASE("a robot that is put down elsewhere raises no false alarm if its lifti
         [](const msg::Feedback& robot_report) { return robot_report.is_lifted(); });
     require_no_violation(audit_of(history, {}));
   }
-  SECTION("all but one report from its lifting until it drives are missed") {
+  SECTION("all reports but one from the lifting until the robot drives are missed") {
     bool was_lifted = false;
     std::erase_if(history.messages, [&](const ReceivedMessage& received) {
       const auto* robot_report = std::get_if<msg::Feedback>(&received.message);
@@ -196,7 +196,7 @@ TEST_CASE("a contact before an auditor joined is not judged") {
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE("a contact of a disturbed robot is not judged if messages were missed, but other contacts are") {
+TEST_CASE("if messages were missed, contacts of disturbed robots are not judged, but other contacts are") {
   const bool is_of_disturbed = GENERATE(true, false);
   CAPTURE(is_of_disturbed);
   History history = crossing();

@@ -14,12 +14,12 @@ namespace sidestep::auditor_pairs_test {
 /// Two versions, with the lower robot id first.
 using Pair = std::array<std::pair<RobotId, VersionNumber>, 2>;
 
-/// What a history states about one version. Times are those of the messages.
+/// The facts about one version in a history. Times are the times of messages.
 struct Past {
   Version version;
   bool is_registered = false;
   std::int64_t granted_ns = kAlways;  ///< kAlways: not granted by a verdict
-  std::int64_t excluded_ns = kNever;  ///< the first report after which its robot cannot execute it any more
+  std::int64_t excluded_ns = kNever;  ///< first report after which the robot cannot execute it
   std::int64_t executed_until_ns = kAlways;
 };
 using Pasts = std::map<std::pair<RobotId, VersionNumber>, Past>;
@@ -77,7 +77,7 @@ Pasts pasts_of(History& history) {
   return pasts;
 }
 
-/// The part of a trajectory from a time on.
+/// The part of a trajectory from `from` on.
 Trajectory remainder(const Trajectory& whole, Time from) {
   if (from <= whole.start()) return whole;
   Trajectory rest(from, whole.state_at(from));
@@ -90,7 +90,7 @@ Trajectory remainder(const Trajectory& whole, Time from) {
   return rest;
 }
 
-/// The judgement of a pair; for a borderline pair, rounding decides whether it is reported.
+/// Whether a pair must be reported. For a borderline pair, rounding decides.
 enum class Judgement : std::uint8_t { kClear, kTooClose, kBorderline };
 
 class SlowJudge {
@@ -110,7 +110,7 @@ class SlowJudge {
   }
 
  private:
-  /// Whether the base of `later` was already too close and `later` comes no closer.
+  /// kClear if the base of `later` was already too close and `later` comes no closer.
   Judgement excuse(const Past& later, const Past& other) const {
     if (later.version.number == 0) return Judgement::kTooClose;
     const Version& base = pasts_.at({later.version.robot, later.version.base}).version;
@@ -131,7 +131,7 @@ class SlowJudge {
   double robots_m_;
 };
 
-/// The pairs for which `were_together` holds, by judgement.
+/// The pairs that are not clear and for which `were_together` holds, with their judgements.
 std::map<Pair, Judgement> judged_pairs(const Scenario& scenario, const Pasts& pasts,
                                        const std::function<bool(const Past&, const Past&)>& were_together) {
   const SlowJudge judge(scenario, pasts);
@@ -164,15 +164,15 @@ int count(const std::map<Pair, Judgement>& pairs, Judgement judgement) {
       std::ranges::count_if(pairs, [=](const auto& pair) { return pair.second == judgement; }));
 }
 
-/// Whether some ledger held both versions at one time: no report had excluded the earlier one before the
-/// later one was granted. Registered versions were in the ledger before.
+/// Whether some ledger held both versions at the same time: no report had excluded either version before both
+/// were granted. Registered versions were in the ledger before any grant.
 bool were_in_ledger(const Past& a, const Past& b) {
   const bool is_granted = a.granted_ns != kAlways || b.granted_ns != kAlways;
   const std::int64_t both_ns = std::max(a.granted_ns, b.granted_ns);
   return is_granted && a.excluded_ns >= both_ns && b.excluded_ns >= both_ns;
 }
 
-/// Whether reports prove, despite the errors of both clocks, that both were executed at one time.
+/// Whether reports prove simultaneous execution of the versions, despite the errors of both clocks.
 bool were_executed(const Past& a, const Past& b, std::int64_t clock_bound_ns) {
   const Time from = std::max(a.version.trajectory.start(), b.version.trajectory.start());
   const std::int64_t until_ns = std::min(a.executed_until_ns, b.executed_until_ns);
@@ -187,7 +187,7 @@ History too_close(double less_m) {
   return history;
 }
 
-/// Checks that each pair that is too close is reported once, and no other pair is.
+/// Checks that each pair that is too close is reported once, and that no clear pair is reported.
 void check_reported(const std::map<Pair, Judgement>& expected, const std::map<Pair, int>& reported) {
   for (const auto& [pair, judgement] : expected) {
     CAPTURE(pair[0].first, pair[0].second, pair[1].first, pair[1].second);
@@ -223,7 +223,7 @@ TEST_CASE("an audit that hears no grants reports exactly the pairs that were exe
   check_reported(expected, reported_pairs(history, kComplete));
 }
 
-TEST_CASE("reports of a robot whose clock is out of bounds prove no pair") {
+TEST_CASE("reports of a robot whose clock is out of bounds do not prove that a pair was too close") {
   const std::size_t place = GENERATE(0u, 1u);
   History history = too_close(0.15);
   history.remove_if<msg::Verdict>([](const msg::Verdict&) { return true; });
@@ -243,7 +243,7 @@ TEST_CASE("reports of a robot whose clock is out of bounds prove no pair") {
         static_cast<std::ptrdiff_t>(before.size()) - std::ranges::count_if(before, involves));
 }
 
-TEST_CASE("an audit that may miss messages reports most pairs that are too close and no others") {
+TEST_CASE("an audit that may miss messages reports most pairs that are too close and no other pairs") {
   const double less_m = GENERATE(0.05, 0.15);
   const bool has_pages = GENERATE(true, false);
   CAPTURE(less_m, has_pages);

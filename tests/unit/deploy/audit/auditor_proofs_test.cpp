@@ -34,7 +34,7 @@ struct NarrowStage : Stage {
   msg::Version closer;
 };
 
-TEST_CASE("a version that comes too close to a registered one is reported when it is granted") {
+TEST_CASE("a version that comes too close to a registered version is reported when it is granted") {
   const bool is_other_first = GENERATE(true, false);
   NarrowStage narrow(kComplete);
   if (is_other_first) narrow.report(1);
@@ -70,7 +70,7 @@ TEST_CASE("repeating a verdict does not change the time of the grant") {
   CHECK(narrow.too_close() == 1);
 }
 
-TEST_CASE("an excluded version is still compared for a while, because other reports may arrive later") {
+TEST_CASE("an excluded version is still compared with versions whose reports arrive soon afterwards") {
   NarrowStage narrow(kComplete);
   narrow.grant(narrow.closer);
   narrow.report(0);
@@ -91,11 +91,11 @@ TEST_CASE("a robot's own stop is compared only with versions granted after a pag
   narrow.robot_reports[0].executing(stop);
   narrow.robot_reports[0].is_off_reference(true);
   narrow.report(0);
-  narrow.violations.clear();  // the stop does not brake
+  narrow.violations.clear();  // reported because the stop does not brake
   const msg::Version version = moving(narrow.next(narrow.rest(1), 2), -0.01);
   if (!is_listed) narrow.grant(version);
   narrow.page({stop, narrow.rest(1)});
-  narrow.violations.clear();  // the page lacks the version
+  narrow.violations.clear();  // reported because the page lacks `version`
   if (is_listed) narrow.grant(version);
   for (int i = 0; i < 3; ++i) {
     narrow.advance(5ms);
@@ -139,7 +139,7 @@ TEST_CASE("forgotten versions break no rule") {
   for (VersionNumber number = first; number < first + count; ++number)
     stage.grant(stage.next(stage.rest(0), number, 1s));
   REQUIRE(stage.violations.empty());
-  // The rest and the first versions are forgotten: 64 remain.
+  // The initial rest and the lowest versions are forgotten: 64 versions remain.
   const VersionNumber forgotten = first + count - 64 - 1;
   SECTION("a command contains the last forgotten version") {
     stage.command(stage.next(stage.rest(0), forgotten, 1s));
@@ -165,7 +165,7 @@ TEST_CASE("the first twenty of many violations are kept, and all are counted") {
   Stage stage;
   stage.begin();
   for (VersionNumber number = 1; number <= 30; ++number) {
-    stage.decide(0, number, number);  // was not proposed
+    stage.decide(0, number, number);  // grants a version that was not proposed
   }
   CHECK(stage.violations.size() >= 30);
   const AuditTotals totals = stage.auditor.totals();
@@ -195,7 +195,7 @@ TEST_CASE("times of two robots are compared only while both clocks are within bo
   narrow.report(0);
   narrow.report(1);
   narrow.advance(500ms);
-  // It is proven what the first robot has executed up to now. Then its clock jumps.
+  // Reports prove which versions the first robot has executed. Then its clock jumps.
   narrow.report(first);
   msg::Feedback late = narrow.robot_reports[first];
   narrow.advance(1ms);
@@ -206,7 +206,7 @@ TEST_CASE("times of two robots are compared only while both clocks are within bo
   CHECK(narrow.too_close() == (is_sound ? 1 : 0));
 }
 
-TEST_CASE("pages prove that the ledger held a registered version when it granted another one") {
+TEST_CASE("pages before and after a grant prove that the ledger held a registered version at the grant") {
   NarrowStage narrow(kIncomplete);
   const std::vector<msg::Version> before{narrow.rest(0), narrow.rest(1)},
       after{narrow.rest(0), narrow.closer, narrow.rest(1)};
@@ -322,20 +322,20 @@ TEST_CASE("two granted versions that are too close together are reported, whiche
   narrow.grant(version);
   narrow.grant(other);
   std::uint64_t expected = 1;
-  SECTION("both are on one page") { narrow.page({rest, version, other_rest, other}); }
-  SECTION("they are on two pages") {
+  SECTION("one page lists both versions") { narrow.page({rest, version, other_rest, other}); }
+  SECTION("two pages list one version each") {
     narrow.page({rest, version});
     narrow.page({other_rest, other});
   }
-  SECTION("they are on two pages in reverse order") {
+  SECTION("two pages list one version each, in reverse order") {
     narrow.page({other_rest, other});
     narrow.page({rest, version});
   }
-  SECTION("only one of them is on a page") {
+  SECTION("only one version is listed on a page") {
     narrow.page({rest, other_rest, other});
     expected = 0;
   }
-  SECTION("one of them is on a page of another epoch") {
+  SECTION("one version is listed on a page of another epoch") {
     narrow.page({rest, version});
     ++narrow.epoch;
     narrow.page({other_rest, other});

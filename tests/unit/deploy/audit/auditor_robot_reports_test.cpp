@@ -204,8 +204,8 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
       });
     });
   }
-  SECTION("a push excuses only its own robot's displacement for a while") {
-    // The pushed robot (-1: none; 2 is the displaced one), and the time from the push to the displacement.
+  SECTION("a push excuses a displacement of the pushed robot for a while") {
+    // The id of the pushed robot (-1: none; robot 2 is displaced), and the time from push to displacement.
     const auto [pushed, late, is_reported] = GENERATE(
         table<int, Duration, bool>({{-1, 0ms, true}, {2, 0ms, false}, {2, 1200ms, true}, {3, 0ms, true}}));
     CAPTURE(pushed, to_seconds(late), is_reported);
@@ -240,7 +240,7 @@ TEST_CASE("ground truth that contradicts the guarantee is reported under its rul
     CHECK(count(totals, AuditRule::kContact) > 0);
   }
   SECTION("a pushed robot and robots that it pushes in turn have contacts") {
-    // The last pair, and the numbers of excused and reported contacts.
+    // The pair of the last contact, and the numbers of excused and reported contacts.
     const auto [first, second, excused, reported] =
         GENERATE(table<RobotId, RobotId, std::uint64_t, std::uint64_t>(
             {{4, 5, 3, 0}, {0, 1, 2, 1}, {5, msg::NO_ROBOT, 3, 0}, {1, msg::NO_ROBOT, 2, 1}}));

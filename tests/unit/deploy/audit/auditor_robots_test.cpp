@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single robot reports prove.
+// Single robot reports as evidence.
 #include "common/motion/safety_budget.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
@@ -18,32 +18,32 @@ TEST_CASE("a report that contradicts the previous report is counted as one viola
   REQUIRE(stage.violations.empty());
   msg::Feedback& robot_report = stage.robot_reports[0];
   std::uint64_t expected = 0;
-  SECTION("it has the same time") { robot_report.valid_at_ns(to_ns(stage.now)); }
-  SECTION("it has an earlier time") {
+  SECTION("the report has the same time") { robot_report.valid_at_ns(to_ns(stage.now)); }
+  SECTION("the report has an earlier time") {
     robot_report.valid_at_ns(to_ns(stage.now) - 1);
-    // The version starts later, too.
+    // The executed version also starts later than the report.
     expected = 2;
   }
-  SECTION("it obeys an older agent") {
+  SECTION("the robot obeys an older agent") {
     robot_report.obeyed_incarnation(Stage::kAgent - 1);
     // The robot has not acknowledged the agent that registered, either.
     stage.report(0);
     CHECK(stage.count(AuditRule::kFacts) == 1);
     return;
   }
-  SECTION("it obeys a newer agent") { robot_report.obeyed_incarnation(Stage::kAgent + 1); }
-  SECTION("it obeys an older epoch") {
+  SECTION("the robot obeys a newer agent") { robot_report.obeyed_incarnation(Stage::kAgent + 1); }
+  SECTION("the robot obeys an older epoch") {
     robot_report.obeyed_epoch(stage.epoch - 1);
     // The robot cannot have registered in the epoch of the grant, either.
     stage.report(0);
     CHECK(stage.count(AuditRule::kFacts) == 1);
     return;
   }
-  SECTION("it obeys a newer epoch") { robot_report.obeyed_epoch(stage.epoch + 1); }
-  SECTION("it executes the initial rest") {
+  SECTION("the robot obeys a newer epoch") { robot_report.obeyed_epoch(stage.epoch + 1); }
+  SECTION("the robot executes the initial rest") {
     stage.advance(1ms);
     robot_report.executing(stage.rest(0));
-    // Executing the version has excluded the rest.
+    // The report that the robot executes the version has excluded the rest.
     expected = 2;
   }
   stage.report(0);
@@ -71,7 +71,7 @@ TEST_CASE("a report with an earlier time is a violation only if no clock was set
   stage.report(0);
   const std::int64_t early_ns = to_ns(stage.now) - 100'000;
   std::uint64_t expected = 0;
-  SECTION("it follows directly") { expected = 1; }
+  SECTION("the report follows directly") { expected = 1; }
   SECTION("a report was missed") {
     (void)stage.header("feedback", 0);
     expected = is_complete ? 1 : 0;
@@ -105,18 +105,18 @@ TEST_CASE("a robot may switch only from a version's base to the version") {
   SECTION("the robot switches across several unreported versions") {
     stage.robot_reports[0].executing(third);
   }
-  SECTION("the robot switches to a version at rest that does not continue the executed one") {
+  SECTION("the robot switches to a version at rest that does not continue the executed version") {
     // A version at rest on base 0: if reports may have been missed, the robot may have been lifted and put
     // down.
     stage.robot_reports[0].executing(other);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("the robot switches to a moving version that does not continue the executed one") {
+  SECTION("the robot switches to a moving version that does not continue the executed version") {
     stage.advance(10ms);
     stage.robot_reports[0].executing(moved);
     expected = 1;
   }
-  SECTION("the new version's base is no longer executed") {
+  SECTION("the robot has already left the new version's base") {
     stage.robot_reports[0].executing(second);
     stage.report(0);
     stage.advance(20ms);
@@ -140,7 +140,7 @@ TEST_CASE("a robot may switch only from a version's base to the version") {
   check_only(stage, AuditRule::kSwitch, expected);
 }
 
-TEST_CASE("each reason that excludes a version is checked by its own rule") {
+TEST_CASE("a robot that executes an excluded version breaks the rule of the reason for its exclusion") {
   Stage stage;
   stage.begin();
   const msg::Version first = stage.next(stage.rest(0), 1, 50ms);
@@ -276,47 +276,47 @@ TEST_CASE(
                tracking_m = stage.scenario.tracking_bound_m + 0.0005;
   stage.begin();
   bool is_reported = false;
-  SECTION("it is within the drift bound for long") { report_errors(stage, repeated(drift_m - 1e-6, 100)); }
-  SECTION("it is beyond the drift bound for 26 ms") { report_errors(stage, repeated(drift_m + 1e-6, 27)); }
-  SECTION("it is beyond the drift bound for 27 ms") {
+  SECTION("the robot is within the drift bound") { report_errors(stage, repeated(drift_m - 1e-6, 100)); }
+  SECTION("the robot is 26 ms beyond the drift bound") { report_errors(stage, repeated(drift_m + 1e-6, 27)); }
+  SECTION("the robot is beyond the drift bound for 27 ms") {
     report_errors(stage, repeated(drift_m + 1e-6, 28));
     is_reported = true;
   }
-  SECTION("it is beyond the drift bound twice for 26 ms") {
+  SECTION("the robot is beyond the drift bound twice for 26 ms") {
     report_errors(stage, repeated(drift_m + 1e-6, 27));
     report_errors(stage, {0});
     report_errors(stage, repeated(drift_m + 1e-6, 27));
   }
-  SECTION("it is within the tracking bound for 26 ms") {
+  SECTION("the robot is within the tracking bound for 26 ms") {
     report_errors(stage, repeated(tracking_m - 1e-6, 27));
   }
-  SECTION("it is beyond the tracking bound for a millisecond") {
+  SECTION("the robot is beyond the tracking bound for a millisecond") {
     report_errors(stage, repeated(tracking_m + 1e-6, 2));
   }
-  SECTION("it is beyond the tracking bound for longer") {
+  SECTION("the robot is beyond the tracking bound for longer than a millisecond") {
     report_errors(stage, repeated(tracking_m + 1e-6, 3));
     is_reported = true;
   }
-  SECTION("it is beyond the tracking bound repeatedly") {
+  SECTION("the robot is beyond the tracking bound repeatedly") {
     for (int i = 0; i < 10; ++i) report_errors(stage, {tracking_m + 1e-6, tracking_m + 1e-6, 0});
   }
-  SECTION("it is beyond the tracking bound, but reports were missed in between") {
+  SECTION("the robot is beyond the tracking bound, but reports were missed in between") {
     report_errors(stage, repeated(tracking_m + 1e-6, 2));
     (void)stage.header("feedback", 0);
     report_errors(stage, repeated(tracking_m + 1e-6, 2));
   }
-  SECTION("it is beyond the tracking bound while off its reference or lifted") {
+  SECTION("the robot is beyond the tracking bound while off its reference or lifted") {
     const bool is_lifted = GENERATE(true, false);
     stage.robot_reports[0].is_off_reference(!is_lifted);
     stage.robot_reports[0].is_lifted(is_lifted);
     report_errors(stage, repeated(1, 50));
   }
-  SECTION("it is within the drift bound plus its inflation") {
+  SECTION("the robot is within the drift bound plus its inflation") {
     stage.robot_reports[0].executing().inflation_m(0.02);
     report_errors(stage, repeated(0.02 + drift_m - 1e-6, 100));
     stage.violations.clear();  // the inflation has no base
   }
-  SECTION("it is beyond the tracking bound plus its inflation") {
+  SECTION("the robot is beyond the tracking bound plus its inflation") {
     Stage inflated(stage_scenario(), is_complete ? kComplete : kIncomplete);
     inflated.robot_reports[0].executing().inflation_m(0.02);
     inflated.begin();
@@ -325,7 +325,7 @@ TEST_CASE(
     report_errors(inflated, repeated(0.02 + tracking_m + 1e-6, 3));
     CHECK(inflated.count(AuditRule::kTracking) > 0);
   }
-  SECTION("its clock is out of bounds") {
+  SECTION("the robot's clock is out of bounds") {
     for (int i = 0; i < 50; ++i) {
       stage.advance(1ms);
       stage.robot_reports[0].tracking_error_m(1);
@@ -338,7 +338,7 @@ TEST_CASE(
   CHECK(stage.violations.size() == stage.count(AuditRule::kTracking));
 }
 
-TEST_CASE("a clock counts as sound up to its bound, ahead and behind") {
+TEST_CASE("a clock counts as sound if it is ahead or behind by at most its bound") {
   const auto [ahead, is_sound] = GENERATE(table<Duration, bool>(
       {{1ms + 1us, true}, {1ms + 1001ns, false}, {-1ms - 1us, true}, {-1ms - 1001ns, false}}));
   CAPTURE(ahead.count());

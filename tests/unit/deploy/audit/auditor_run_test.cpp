@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a run lasts.
+// The duration of a run.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/stage.hpp"
 

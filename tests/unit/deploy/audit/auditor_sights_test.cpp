@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single world states from vision prove if no ground truth is received.
+// Single world states from vision as evidence, without ground truth.
 #include <cmath>
 
 #include "tests/catch.hpp"
@@ -103,13 +103,13 @@ TEST_CASE("a robot that vision shows out of place for longer than 300 ms is repo
   CHECK(seen.position() == (is_reported ? 1 : 0));
   CHECK(seen.violations.size() == seen.position());
   CHECK(seen.auditor.totals().max_position_error_m == Approx(bound_m + excess_m));
-  // A later displacement counts separately.
+  // A later displacement is reported separately.
   seen.place(0, home + Vec2(0.2, 0.2));
   seen.run(400ms);
   CHECK(seen.position() == (is_reported ? 2 : 1));
 }
 
-TEST_CASE("only uninterrupted displacements are reported") {
+TEST_CASE("a displacement is reported only if it lasts without interruption") {
   const bool is_complete = GENERATE(true, false);
   Seen seen(is_complete ? kComplete : kIncomplete);
   seen.run(2s);
@@ -117,33 +117,33 @@ TEST_CASE("only uninterrupted displacements are reported") {
   seen.place(0, away);
   seen.run(250ms);
   std::uint64_t expected = 0;
-  SECTION("one observation in place interrupts it") {
+  SECTION("an observation in place interrupts the displacement") {
     seen.place(0, home);
     seen.run(17ms);
     seen.place(0, away);
   }
-  SECTION("a report of being off its reference interrupts it") {
+  SECTION("a report that the robot is off its reference interrupts the displacement") {
     seen.robot_reports[0].is_off_reference(true);
     seen.run(17ms);
     seen.robot_reports[0].is_off_reference(false);
   }
-  SECTION("a missed report interrupts it") {
+  SECTION("a missed report interrupts the displacement") {
     (void)seen.header("feedback", 0);
     expected = is_complete ? 1 : 0;
   }
-  SECTION("a clock out of bounds interrupts it") {
+  SECTION("a clock out of bounds interrupts the displacement") {
     seen.advance(16ms);
     seen.show();
     seen.robot_reports[0].valid_at_ns(to_ns(seen.now + 50ms));
     seen.report(0);
     seen.robot_reports[0].valid_at_ns(0);
   }
-  SECTION("nothing interrupts it") { expected = 1; }
+  SECTION("nothing interrupts the displacement") { expected = 1; }
   seen.run(150ms);
   CHECK(seen.position() == expected);
 }
 
-TEST_CASE("an auditor that joins a run does not know what displaced a robot earlier") {
+TEST_CASE("an auditor that joins a run does not report robots displaced before it joined") {
   const bool is_complete = GENERATE(true, false);
   Seen seen(is_complete ? kComplete : kIncomplete);
   seen.place(0, {-1.3, 0});
@@ -185,7 +185,7 @@ TEST_CASE(
   CHECK((seen.auditor.totals().excused_displacements > 0) == (expected == 0));
 }
 
-TEST_CASE("if there is ground truth, it decides whether a robot is disturbed, not the operator's message") {
+TEST_CASE("with ground truth, an operator's message does not decide whether a robot is disturbed") {
   Seen seen;
   msg::GroundTruth truth;
   truth.robots().resize(1);
@@ -206,7 +206,7 @@ TEST_CASE("if there is ground truth, it decides whether a robot is disturbed, no
   CHECK(seen.position() == 1);
 }
 
-TEST_CASE("once ground truth has replaced vision, vision is no longer used") {
+TEST_CASE("once ground truth has replaced vision, vision is not used") {
   Seen seen;
   seen.run(2s);
   msg::GroundTruth truth;
@@ -316,7 +316,7 @@ TEST_CASE("an observation with NaN, infinity or an unknown robot is counted as i
   CHECK(seen.violations.empty());
 }
 
-TEST_CASE("an older observation does not replace a newer one") {
+TEST_CASE("an older observation does not replace a newer observation") {
   Seen seen;
   seen.run(2s);
   msg::WorldState late = seen.world;

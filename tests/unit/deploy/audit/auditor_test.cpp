@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An unmodified history breaks no rule. Each modification of one detail must be reported under the rule that
-// it breaks.
+// An unmodified history breaks no rule. If one detail of it is modified, the audit must report the rule that
+// the modification breaks.
 #include "deploy/audit/auditor.hpp"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST_CASE("the inflations of both robots add to the distance that their versions
     (is_too_close(middle_m, 0) ? too_much_m : slack_m) = middle_m;
   }
   CAPTURE(slack_m);
-  // Only together do they exceed the slack of 1 mm.
+  // Only the sum of both inflations exceeds the slack of 1 mm.
   const double more_m = slack_m - 0.001;
   CHECK_FALSE(is_too_close(more_m, 0.00045));
   CHECK(is_too_close(more_m, 0.00055));
@@ -260,7 +260,7 @@ TEST_CASE("each breach by an agent is reported under its rule") {
       });
     });
   }
-  SECTION("the agent sends another candidate than the granted one, in an incomplete history") {
+  SECTION("the agent sends a candidate that was not granted, in an incomplete history") {
     History history = crossing();
     const Switch s = first_moving_switch(history);
     history.each<msg::Verdict>([&](msg::Verdict& v, Time) {
@@ -373,7 +373,7 @@ TEST_CASE("an attested absence stays valid in its epoch even if the agent regist
   CHECK(count(totals, AuditRule::kAllRegistered) == (is_in_time ? 0 : 1));
 }
 
-TEST_CASE("a coordinator that resumes after many epochs still knows what was registered with it") {
+TEST_CASE("a coordinator that resumes after many epochs may use its old registrations") {
   const AuditTotals totals = audit_tampered_crossing([](History& h) {
     // Adds forty successive coordinators with which every agent registers.
     std::vector<ReceivedMessage> messages;
@@ -394,7 +394,7 @@ TEST_CASE("a coordinator that resumes after many epochs still knows what was reg
   CHECK(totals.violations == 0);
 }
 
-TEST_CASE("an epoch memory holds the highest epochs and knows which lower ones it may have evicted") {
+TEST_CASE("an epoch memory holds the highest epochs and knows which lower epochs it may have evicted") {
   EpochMemory memory;
   CHECK_FALSE(memory.may_have_held(0));
   CHECK_FALSE(memory.may_have_held(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What single ground-truth messages prove.
+// Single messages of ground truth as evidence.
 #include <algorithm>
 
 #include "tests/catch.hpp"
@@ -31,7 +31,7 @@ TEST_CASE("a robot farther from its reference than the tracking bound plus its i
   CHECK(shown.auditor.totals().max_position_error_m == Approx(error_m));
 }
 
-TEST_CASE("a robot is compared with its reference only if it certainly had one throughout") {
+TEST_CASE("a robot is compared with its reference only if it was certainly on its reference throughout") {
   const bool is_complete = GENERATE(true, false);
   GroundTruthStage shown(is_complete ? kComplete : kIncomplete);
   shown.run(50ms);
@@ -40,22 +40,22 @@ TEST_CASE("a robot is compared with its reference only if it certainly had one t
   shown.truth.robots()[0].reference_error_m(0.5);
   std::uint64_t expected = 0;
   bool is_off_before = false, is_off_after = false;
-  SECTION("it was off its reference before") { is_off_before = true; }
-  SECTION("it is off its reference afterwards") { is_off_after = true; }
-  SECTION("it was lifted before") {
+  SECTION("the robot was off its reference before") { is_off_before = true; }
+  SECTION("the robot is off its reference afterwards") { is_off_after = true; }
+  SECTION("the robot was lifted before") {
     shown.robot_reports[0].is_lifted(true);
     shown.report(0);
     shown.robot_reports[0].is_lifted(false);
     shown.advance(1ms);
   }
-  SECTION("it is lifted afterwards") {
+  SECTION("the robot is lifted afterwards") {
     shown.show();
     shown.robot_reports[0].is_lifted(true);
     shown.report(0);
     CHECK(shown.violations.empty());
     return;
   }
-  SECTION("it was always on its reference") { expected = 1; }
+  SECTION("the robot was always on its reference") { expected = 1; }
   SECTION("a report was missed in between") {
     (void)shown.header("feedback", 0);
     expected = is_complete ? 1 : 0;
@@ -146,7 +146,7 @@ TEST_CASE("a robot without a reference in the simulator may be out of place for 
   check_only(shown, AuditRule::kPosition, 1);
 }
 
-TEST_CASE("only the displacement of a disturbed robot is excused") {
+TEST_CASE("a displacement is excused only if the robot was disturbed") {
   const bool is_disturbed = GENERATE(true, false);
   GroundTruthStage shown;
   shown.run(50ms);
@@ -165,7 +165,7 @@ TEST_CASE("a robot that a coordinator names as displaced is excused if it was ev
   GroundTruthStage shown;
   shown.run(50ms);
   if (was_disturbed) shown.push(0);
-  // The robot is back in place, and moved a second time without any disturbance.
+  // The robot is back in place. Then it is displaced again without a new disturbance.
   shown.run(2s);
   REQUIRE(shown.violations.empty());
   msg::CoordinatorState state;
@@ -182,13 +182,13 @@ TEST_CASE("a robot that a coordinator names as displaced is excused if it was ev
   CHECK((shown.position() == 0) == is_excused);
 }
 
-TEST_CASE("a moving robot is excused until it has had time to hear of a disturbance and brake") {
+TEST_CASE("a moving robot is excused while it may still need time to hear of a disturbance and brake") {
   const auto is_excused_after = [](Duration duration) {
     GroundTruthStage shown;
     shown.truth.robots()[1].vx_mps(1);
     shown.run(50ms);
     shown.push(0);
-    shown.run(110ms);  // back in place and at rest
+    shown.run(110ms);  // the pushed robot is back in place and at rest
     shown.run(duration);
     shown.touch(0, 1);
     shown.run(20ms);
@@ -214,7 +214,7 @@ TEST_CASE("positions that are not finite or belong to unknown robots are not use
 }
 
 TEST_CASE("a robot is back in place only within the tracking bound of a version that a ledger has held") {
-  // Contacts of robots that are back in place are no longer excused.
+  // Contacts of robots that are back in place are not excused.
   const auto [off_m, is_in_place] = GENERATE(table<double, bool>({{0.004, true}, {0.006, false}}));
   CAPTURE(off_m);
   GroundTruthStage shown;
@@ -223,21 +223,21 @@ TEST_CASE("a robot is back in place only within the tracking bound of a version 
   shown.truth.robots()[0].x_m(-1 + off_m);
   shown.truth.robots()[0].reference_error_m(off_m);
   bool expected = is_in_place;
-  SECTION("it executes its version") {}
-  SECTION("it executes its own stop") {
+  SECTION("the robot executes its version") {}
+  SECTION("the robot executes its own stop") {
     msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
     shown.robot_reports[0].executing(stop);
     shown.robot_reports[0].is_off_reference(true);
     expected = false;
   }
-  SECTION("it executes its own stop, which the ledger has held") {
+  SECTION("the robot executes its own stop, which the ledger has held") {
     msg::Version stop = shown.next(shown.rest(0), 9, 0ms);
     shown.robot_reports[0].executing(stop);
     shown.robot_reports[0].is_off_reference(true);
     shown.run(10ms);
     shown.show_page({stop, shown.rest(1)});
   }
-  SECTION("it is off the floor") {
+  SECTION("the robot is off the floor") {
     shown.robot_reports[0].is_lifted(true);
     expected = false;
   }

@@ -14,7 +14,7 @@ History seen_crossing() {
   return history;
 }
 
-/// Changes what vision shows of one robot between `from` and `until` after the beginning.
+/// Changes vision's observations of one robot between `from` and `until` after the beginning.
 void change_sight(History& history, RobotId robot, Duration from, Duration until,
                   const std::function<void(msg::TrackedRobot&, const msg::WorldState&)>& change) {
   const Time begin = history.messages.front().at;
@@ -31,7 +31,7 @@ void shift(msg::TrackedRobot& robot, double x_m) {
   robot.observed_x_m(robot.observed_x_m() + x_m);
 }
 
-/// Shows a robot beside another one at this distance.
+/// Shows a robot beside another robot at this distance.
 void put_beside(msg::TrackedRobot& robot, const msg::WorldState& world, RobotId other, double distance_m) {
   for (const msg::TrackedRobot& tracked : world.robots()) {
     if (tracked.robot() != other) continue;
@@ -62,7 +62,7 @@ TEST_CASE("an incomplete history without ground truth raises no false alarm") {
   CHECK((totals.verdict() == AuditVerdict::kPassed) == (loss == 0));
 }
 
-TEST_CASE("with ground truth, vision is not used, whatever it shows") {
+TEST_CASE("with ground truth, vision is not used even if it shows a displacement") {
   History history = crossing();
   change_sight(history, 2, 1500ms, 2500ms,
                [](msg::TrackedRobot& robot, const msg::WorldState&) { shift(robot, 0.5); });

@@ -43,7 +43,7 @@ TEST_CASE("stamps of a clock that was set back do not show the order until the p
   CHECK(stamps.are_in_order(kSender + 1, 1));
 }
 
-TEST_CASE("of very many process runs, the stamps of the latest ones still give the order") {
+TEST_CASE("after thousands of process runs, the stamps of the latest runs still give the order") {
   ComparableStamps stamps;
   for (Incarnation run = 1; run <= 10'000; ++run) {
     stamps.record(0, header(1, 100, run));

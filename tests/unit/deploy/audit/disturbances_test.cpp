@@ -44,7 +44,7 @@ struct Floor {
   Time now = kBegin;
 };
 
-TEST_CASE("only contacts of a disturbed robot are excused, and they state the cause") {
+TEST_CASE("only contacts of a disturbed robot are excused, and the excuse states the cause") {
   Floor floor;
   CHECK_FALSE(floor.contact(0, 1));
   floor.push(0, 1s);
@@ -88,7 +88,7 @@ TEST_CASE("a robot whose clock has jumped is excused until it rests, even if it 
   CHECK_FALSE(floor.contact(0, 2));
 }
 
-TEST_CASE("the excuse of a pair ends when both robots have rested since the disturbance") {
+TEST_CASE("a pair is excused until both robots have rested since the disturbance") {
   Floor floor;
   floor.push(0, 500ms);
   floor.run(500ms);
@@ -101,7 +101,7 @@ TEST_CASE("the excuse of a pair ends when both robots have rested since the dist
 }
 
 TEST_CASE(
-    "a contact of a disturbed robot with a still moving robot is excused until that could have stopped") {
+    "a disturbed robot's contact with a moving robot is excused until that robot has had time to brake") {
   Floor floor;
   floor.robots[1]->speed_mps = 1;
   floor.push(0);
@@ -121,7 +121,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a disturbed robot that drives on is back once it is in place a while after the disturbance") {
+TEST_CASE("a disturbed robot that keeps driving is back once it is in place a while after the disturbance") {
   Floor floor;
   floor.robots[0]->speed_mps = 1;
   floor.push(0);
@@ -136,7 +136,7 @@ TEST_CASE("a disturbed robot that drives on is back once it is in place a while 
   CHECK_FALSE(floor.disturbances.is_displaced(0));
 }
 
-TEST_CASE("no excuse lasts for ever") {
+TEST_CASE("an excuse ends even if the robot never returns or the disturbance has no known end") {
   Floor floor;
   const bool is_lifted = GENERATE(false, true);
   CAPTURE(is_lifted);
@@ -153,7 +153,7 @@ TEST_CASE("no excuse lasts for ever") {
   CHECK_FALSE(floor.contact(0, std::nullopt));
 }
 
-TEST_CASE("an excuse never lasts much longer than a minute, whatever end or clock is reported") {
+TEST_CASE("an excuse ends after about a minute even if a late end is reported or the clock is set back") {
   Floor floor;
   floor.push(0, 1h);
   SECTION("the reported end is in an hour") {}
@@ -162,20 +162,20 @@ TEST_CASE("an excuse never lasts much longer than a minute, whatever end or cloc
   CHECK_FALSE(floor.contact(0, 1));
 }
 
-TEST_CASE("the excuse of a pair in conflict lasts until the two are apart again") {
+TEST_CASE("a pair that is in conflict stays excused until the two robots are apart again") {
   Floor floor;
   floor.robots[1]->position_m = {0.185, 0};
   floor.push(0);
   floor.run(3s);
   CHECK_FALSE(floor.contact(0, 2));
-  SECTION("too close for the margin") { CHECK(floor.contact(0, 1) == Cause("push")); }
-  SECTION("too close for one robot's inflation") {
+  SECTION("the robots are too close for the margin") { CHECK(floor.contact(0, 1) == Cause("push")); }
+  SECTION("the robots are too close for one robot's inflation") {
     floor.robots[1]->position_m = {0.195, 0};
     floor.robots[0]->inflation_m = 0.01;
     floor.run(1s);
     CHECK(floor.contact(0, 1) == Cause("push"));
   }
-  SECTION("apart") {
+  SECTION("the robots are apart") {
     floor.robots[1]->position_m = {0.195, 0};
     floor.run(20ms);
     CHECK_FALSE(floor.contact(0, 1));
@@ -209,7 +209,7 @@ TEST_CASE("two robots in contact do not keep each other disturbed") {
   CHECK_FALSE(floor.contact(1, 2));
 }
 
-TEST_CASE("an operator's message names the cause of a disturbance, otherwise it is unknown") {
+TEST_CASE("the cause of a disturbance is unknown unless an operator's message names it") {
   Floor floor;
   SECTION("no message names the cause") {
     floor.disturbances.disturb(0, floor.now, floor.now);
@@ -244,7 +244,7 @@ TEST_CASE("a disturbance that is reported repeatedly counts once") {
   CHECK_FALSE(floor.contact(0, 1));
 }
 
-TEST_CASE("the excused time is the time in which a contact would have been excused, summed over pairs") {
+TEST_CASE("the excused time is the sum over pairs of the time in which a contact would be excused") {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);

@@ -34,7 +34,7 @@ struct GroundTruthStage : Stage {
       for (RobotId robot = 0; robot < 2; ++robot) report(robot);
     }
   }
-  /// From now on the simulator counts one more contact.
+  /// Adds one contact to the simulator's count.
   void touch(RobotId first, RobotId second) {
     msg::ContactPair& contact = truth.recent_contacts()[truth.contacts() % msg::MAX_CONTACTS];
     contact.first(first);

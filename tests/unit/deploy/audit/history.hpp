@@ -27,7 +27,7 @@ struct History {
   Scenario scenario;
   std::vector<ReceivedMessage> messages;
 
-  /// All messages of one type, in order, with their times.
+  /// Calls back with each message of one type and its time, in order.
   template <typename Message>
   void each(const std::function<void(Message&, Time)>& use) {
     for (ReceivedMessage& received : messages) {
@@ -41,7 +41,7 @@ struct History {
       return message && is_removed(*message);
     });
   }
-  /// Announces an operator's push of this robot at `at`; ground truth reports it from then on.
+  /// Adds an operator's announcement of a push of this robot, and lets ground truth report it from `at` on.
   void push(RobotId robot, Time at);
   /// From `at` onwards, ground truth reports one more contact; without a second robot, it is a contact with
   /// an obstacle.
@@ -64,7 +64,7 @@ class HistoryRecorder {
 
 /// The messages of a simulated run of this duration; the same seed gives the same history.
 History history_of(const Scenario& scenario, std::uint64_t seed, Duration duration);
-/// The messages of a run during which `act` gives orders and kills processes.
+/// The messages of a run that `act` drives: it may give orders and kill processes.
 History history_of(const Scenario& scenario, std::uint64_t seed, const std::function<void(SimSystem&)>& act);
 
 AuditTotals audit_of(const History& history, const AuditInput& input);

@@ -66,7 +66,7 @@ std::uint64_t violations(AuditRule rule, const std::function<void(History&)>& ta
   return count(totals, rule);
 }
 
-TEST_CASE("a grant to a robot while its coordinator remembers a hold of it breaks a rule") {
+TEST_CASE("a grant to a robot breaks a rule while the coordinator remembers a hold of the robot") {
   const auto hold = [](std::uint32_t robot) {
     return remembered(msg::OrderKind::ORDER_HOLD, robot, kClient, 1000);
   };
@@ -104,7 +104,7 @@ TEST_CASE("a grant between two holds breaks no rule if the first hold was lifted
         }) == 0);
 }
 
-TEST_CASE("a grant that seems later than a hold only because a clock was set back breaks no rule") {
+TEST_CASE("a grant before a hold breaks no rule if a clock set back makes the grant seem later") {
   // The hold begins after the last grant, while the clock is behind for a second.
   const auto held = [](Duration set_back) {
     return violations(AuditRule::kHeld, [&](History& h) {
@@ -234,7 +234,7 @@ TEST_CASE("a new coordinator that does not remember an order that an agent remem
   for (const auto kind : {msg::OrderKind::ORDER_HOLD, msg::OrderKind::ORDER_GO}) {
     CAPTURE(static_cast<int>(kind));
     CHECK(violations_after_takeover([&](History& h) { forget(h, kind); }) == 1);
-    // No agent is known to have announced the order to it, because the agents have restarted.
+    // The agents have restarted, so no agent is known to have announced the order to the coordinator.
     CHECK(violations_after_takeover([&](History& h) {
             forget(h, kind);
             h.remove_if<msg::OrderStatus>([](const msg::OrderStatus&) { return true; });

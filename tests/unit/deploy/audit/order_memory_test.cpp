@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the order memories of coordinators prove, message by message.
+// The order memories of coordinators as evidence, message by message.
 #include "tests/catch.hpp"
 #include "tests/unit/deploy/audit/order_run.hpp"
 
@@ -72,7 +72,7 @@ TEST_CASE("a grant breaks no rule unless it was certainly made while the hold wa
   CHECK(run.found.empty());
 }
 
-TEST_CASE("a grant at the time of the second memory may have followed it") {
+TEST_CASE("a grant with the time of the second order memory breaks no rule") {
   Run run;
   run.remember(kFirst, {hold(4, 100)});
   run.grant(kFirst, 4, 31);
@@ -83,7 +83,7 @@ TEST_CASE("a grant at the time of the second memory may have followed it") {
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
-TEST_CASE("a hold announced after a memory without it is in force, even if that memory arrives last") {
+TEST_CASE("a hold announced after an order memory is in force even if the memory's last page is late") {
   Run run;
   const msg::OrderMemory first = run.page(kFirst, {}, 0, 2), second = run.page(kFirst, {}, 1, 2),
                          told = run.page(kFirst, {hold(4, 100)}, 0, 0);
@@ -104,7 +104,7 @@ TEST_CASE("a verdict breaks the rule if any earlier verdict that it may repeat a
   CHECK(run.count(AuditRule::kHeld) == 1);
 }
 
-TEST_CASE("the newest grant of a robot counts, however late an older verdict arrives") {
+TEST_CASE("the newest grant of a robot counts even if an older verdict arrives later") {
   Run run;
   run.remember(kFirst, {hold(4, 100)});
   run.grant(kFirst, 4, 31);
@@ -114,7 +114,7 @@ TEST_CASE("the newest grant of a robot counts, however late an older verdict arr
   CHECK(run.found == std::vector<Found>{{AuditRule::kHeld, 4, std::max<VersionNumber>(31, second), 7}});
 }
 
-TEST_CASE("a memory counts only if all of its pages were received in one sequence") {
+TEST_CASE("an order memory counts only if all of its pages are received in one sequence") {
   Run run;
   const std::vector<msg::RememberedOrder> holds{hold(4, 100)};
   run.remember(kFirst, holds);
@@ -161,14 +161,14 @@ TEST_CASE("a coordinator that forgets a confirmed order is reported once, with t
 
 TEST_CASE("a coordinator may forget an order that it has not certainly confirmed") {
   Run run;
-  SECTION("it did not answer the order") { run.send(hold(4, 100)); }
-  SECTION("it answered that the order was replaced") {
+  SECTION("the coordinator did not answer the order") { run.send(hold(4, 100)); }
+  SECTION("the coordinator answered that the order was replaced") {
     run.send(hold(4, 100));
     run.answer(kFirst, hold(4, 100), msg::OrderResult::RESULT_REPLACED);
   }
   SECTION("no process sent the order") { run.answer(kFirst, hold(4, 100)); }
   SECTION("the order is a resume") { run.confirm(kFirst, resume(4, 100)); }
-  SECTION("it confirmed the order at the time of the memory") {
+  SECTION("the coordinator confirmed the order at the time of the memory") {
     run.confirm(kFirst, hold(4, 100));
     run.now_ns -= 1'000'000;
   }
@@ -181,7 +181,7 @@ TEST_CASE("a coordinator may forget an order that it has not certainly confirmed
   CHECK(run.found.empty());
 }
 
-TEST_CASE("of two confirmed orders on the same subject, the one with the higher number must be remembered") {
+TEST_CASE("of two confirmed orders on one subject, the order with the higher number must be remembered") {
   const bool is_in_order = GENERATE(true, false);
   const bool is_kept = GENERATE(true, false);
   CAPTURE(is_in_order, is_kept);
@@ -192,7 +192,7 @@ TEST_CASE("of two confirmed orders on the same subject, the one with the higher 
   CHECK(run.count(AuditRule::kForgottenOrder) == (is_kept ? 0 : 1));
 }
 
-TEST_CASE("all clients' drive orders share one place, but operator, referee and scenario have their own") {
+TEST_CASE("drive orders of all clients replace each other but not those of operator, referee and scenario") {
   const auto go = [](std::uint32_t client, std::uint64_t number) {
     return order(msg::OrderKind::ORDER_GO, 4, client, number);
   };
@@ -213,7 +213,7 @@ TEST_CASE("all clients' drive orders share one place, but operator, referee and 
 }
 
 TEST_CASE(
-    "of two orders with the same number, the one from the client with the higher id replaces the other") {
+    "of two orders with the same number, the order of the client with the higher id replaces the other") {
   const auto go = [](std::uint32_t client) { return order(msg::OrderKind::ORDER_GO, 4, client, 100); };
   Run run;
   run.confirm(kFirst, go(kClient));
@@ -242,7 +242,7 @@ TEST_CASE("a coordinator that remembers many resumes or zone removals may have d
   run.confirm(kFirst, lost);
   run.remember(kFirst, memory);
   CHECK(run.count(AuditRule::kForgottenOrder) == (are_many ? 0 : 1));
-  // The same holds for later memories, because dropped orders do not return.
+  // Later order memories are not judged either, because dropped orders do not return.
   run.confirm(kFirst, lost);
   run.remember(kFirst, {});
   CHECK(run.count(AuditRule::kForgottenOrder) == (are_many ? 0 : 2));
@@ -268,7 +268,7 @@ TEST_CASE("a grant during a hold of all robots is not judged once resumes may ha
   CHECK(run.count(AuditRule::kHeld) == (robot == 4 ? 1 : 0));
 }
 
-TEST_CASE("only the latest of very many orders are judged") {
+TEST_CASE("of thousands of orders only the latest are judged") {
   Run run;
   SECTION("confirmed orders") {
     for (std::uint32_t i = 0; i < kMaxKept + 10; ++i) run.confirm(kFirst, hold(i, 100 + i));

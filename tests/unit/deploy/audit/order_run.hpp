@@ -45,7 +45,7 @@ inline msg::RememberedOrder resume(std::uint32_t robot, std::uint64_t number,
   return order(msg::OrderKind::ORDER_RESUME, robot, client, number);
 }
 
-/// Robots 3, 4 and 5, and two coordinators. Each call is one message, a millisecond after the previous one.
+/// An audit of robots 3, 4 and 5 and two coordinators. Each call sends a message, 1 ms after the last call.
 struct Run {
   explicit Run(bool is_complete = true)
       : audit({3, 4, 5}, is_complete, stamps,

@@ -146,7 +146,7 @@ TEST_CASE("an agent that reports being held remembers the only hold sent to it s
   run.status(4, false);
   bool is_known = true;
   SECTION("only this hold was sent") { run.begin(); }
-  SECTION("only this hold was sent, and it was repeated") {
+  SECTION("only this hold was sent, and it was sent twice") {
     run.begin();
     run.send(run.lost);
   }
@@ -154,11 +154,11 @@ TEST_CASE("an agent that reports being held remembers the only hold sent to it s
     run.lost = hold(msg::ALL_ROBOTS, 100);
     run.begin();
   }
-  SECTION("another robot's hold was sent too") {
+  SECTION("another robot's hold was also sent") {
     run.begin();
     run.send(hold(5, 90));
   }
-  SECTION("an order of another kind was sent too") {
+  SECTION("an order of another kind was also sent") {
     run.begin();
     run.send(order(msg::OrderKind::ORDER_GO, 4, kClient, 90));
   }
@@ -217,7 +217,7 @@ TEST_CASE("a status report that is late or not from the robot's agent proves not
   CHECK(run.forgotten() == 0);
 }
 
-TEST_CASE("what counts is the time at which the restarted agent learned an order") {
+TEST_CASE("a restarted agent knows an order from the time at which it learned the order again") {
   CoordinatorSuccession run;
   run.begin();
   run.learn();

@@ -29,7 +29,7 @@ TEST_CASE("a source that is heard often counts as heard all the time") {
 
 TEST_CASE("if a source is never heard, nothing is covered") { CHECK(one_second(2).share(at(1s), true) == 0); }
 
-TEST_CASE("time that has not begun or is empty is not covered") {
+TEST_CASE("the covered share is zero before the beginning and at the beginning") {
   ReceptionCoverage time(1);
   time.hear(0, at(1s), kEverything);
   CHECK(time.share(at(2s), true) == 0);
@@ -47,7 +47,7 @@ TEST_CASE("only silence during which messages were missed lowers the coverage") 
     time.hear(0, at(2s), 500ms);
     CHECK(time.share(at(2s), true) == Approx(0.75));
   }
-  SECTION("messages of more than the silence were missed") {
+  SECTION("messages of a longer time than the silence were missed") {
     time.hear(0, at(2s), 5s);
     CHECK(time.share(at(2s), true) == Approx(0.5));
   }
@@ -91,7 +91,7 @@ double slow_share(const std::vector<std::vector<Duration>>& heard_at, Duration e
   return covered / static_cast<double>(count);
 }
 
-TEST_CASE("the covered share of several sources agrees with counting milliseconds") {
+TEST_CASE("the covered share of several sources matches a count of every millisecond") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -112,7 +112,7 @@ TEST_CASE("the covered share of several sources agrees with counting millisecond
   }
 }
 
-TEST_CASE("every silence counts, however many there are") {
+TEST_CASE("each of a thousand silences lowers the coverage") {
   ReceptionCoverage time(1);
   time.begin(kBegin);
   for (int i = 1; i <= 1000; ++i) {

@@ -16,7 +16,7 @@ Scenario scenario(double noise_m) {
   return s;
 }
 
-/// Shows two robots to a detector, frame by frame.
+/// Shows two robots to a contact detector, frame by frame.
 struct Frames {
   explicit Frames(double noise_m = 0.0005) : contacts(scenario(noise_m)) {}
 
@@ -115,7 +115,7 @@ TEST_CASE("positions more than 20 ms apart in time are not compared") {
   CHECK(found == begins);
 }
 
-TEST_CASE("after missed world states, a contact observed once must be observed twice again") {
+TEST_CASE("after missed world states, a contact must again be observed twice") {
   Frames frames;
   CHECK(frames.show_apart(0.17) == 0);
   frames.contacts.on_missed();
@@ -139,11 +139,11 @@ TEST_CASE("positions observed at different times are extrapolated to one time") 
                        {at_ns + 19'000'000, Vec2(x_m + 2 * 0.019 - 0.21, 0), velocity_mps, true}})
               .empty());
   }
-  // Without extrapolation they would seem to overlap.
+  // Without extrapolation the robots would seem to overlap.
   CHECK(0.21 - 2 * 0.019 < 0.18);
 }
 
-TEST_CASE("robots at the guaranteed distance are never in contact, and robots that touch are found soon") {
+TEST_CASE("robots at the guaranteed distance are never reported, and robots that touch are found soon") {
   for (const double noise_m : {0.0005, 0.001, 0.002}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       CAPTURE(noise_m, seed);

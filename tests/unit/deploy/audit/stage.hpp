@@ -17,7 +17,7 @@ Scenario stage_scenario();
 /// auditor receives immediately. By default everything follows the protocol.
 class Stage {
  public:
-  static constexpr std::uint32_t kCoordinator = 10'000;    ///< the sender's id
+  static constexpr std::uint32_t kCoordinator = 10'000;    ///< sender id
   static constexpr Incarnation kProcessIncarnation = 500;  ///< of every process except the agents
   static constexpr Incarnation kAgent = 700;
 
@@ -67,7 +67,7 @@ class Stage {
   std::map<std::tuple<std::string_view, std::uint32_t, Incarnation>, std::uint64_t> sent_;
 };
 
-/// Checks that only this rule was broken, this often.
+/// Checks that only this rule was broken, `expected` times.
 void check_only(const Stage& stage, AuditRule rule, std::uint64_t expected);
 
 /// Changes the version so that it reaches this speed along x within one second and brakes for another second.

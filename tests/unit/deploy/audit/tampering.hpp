@@ -27,7 +27,7 @@ Switch first_moving_switch(History& history);
 /// The audit of a copy of crossing() after `tamper` has modified it.
 AuditTotals audit_tampered_crossing(const std::function<void(History&)>& tamper);
 
-/// Fails the test unless the audit of the modified history reports the rule.
+/// Fails the test unless the audit of the modified history reports a violation of the rule.
 void require_violation(AuditRule rule, const std::function<void(History&)>& tamper);
 
 }  // namespace sidestep

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever an auditor misses, it finds no violation that a complete audit does not find.
+// An auditor that misses messages finds no violation that a complete audit does not find.
 #include <cstdlib>
 #include <fmt/format.h>
 #include <iostream>
@@ -14,9 +14,9 @@ namespace sidestep::thinned_history_test {
 
 using namespace std::chrono_literals;
 
-/// All messages of a trial of the random campaign, with deaths, partitions, second agents, pushes, lifted
-/// robots, clocks that are set, and so on. nullopt if the campaign does not judge the trial by its audit
-/// because some process believed a second simulator.
+/// All messages of a trial of the random campaign, with faults such as deaths, partitions, second agents,
+/// pushes, lifted robots and clocks that are set. nullopt if the campaign does not judge the trial by its
+/// audit because some process believed a second simulator.
 std::optional<History> history_of_trial(std::uint64_t seed) {
   const Trial trial = sample_trial(seed, 12s, std::nullopt);
   History history{trial.scenario, {}};
@@ -33,7 +33,7 @@ struct Counts {
   double compared_pairs = 0, all_pairs = 0;
 };
 
-/// Audits histories of trials whole and thinned.
+/// Audits the histories of trials, each complete and with losses.
 Counts audit_thinned(std::uint64_t first, std::uint64_t count, std::uint64_t losses) {
   Counts counts;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
@@ -76,7 +76,7 @@ std::uint64_t number(const char* name, std::uint64_t otherwise) {
   return text ? std::strtoull(text, nullptr, 10) : otherwise;
 }
 
-TEST_CASE("whatever an audit of a campaign's run misses, it raises no false alarm", "[slow]") {
+TEST_CASE("an audit of a campaign's run raises no false alarm when it misses messages", "[slow]") {
   const Counts counts = audit_thinned(1, 20, 10);
   CAPTURE(text_of(counts));
   CHECK(counts.failed == 0);
@@ -84,7 +84,7 @@ TEST_CASE("whatever an audit of a campaign's run misses, it raises no false alar
   CHECK(counts.compared_pairs > 0.05 * counts.all_pairs);
 }
 
-TEST_CASE("whatever an audit of a campaign's run misses, it raises no false alarm, in a thousand runs",
+TEST_CASE("audits of a thousand campaign runs raise no false alarm when they miss messages",
           "[.long][slow]") {
   // SIDESTEP_FIRST_SEED and SIDESTEP_SEEDS choose a subset of the runs.
   const Counts counts = audit_thinned(number("SIDESTEP_FIRST_SEED", 1), number("SIDESTEP_SEEDS", 1000), 10);

@@ -9,7 +9,7 @@
 
 namespace sidestep {
 
-/// What an auditor on a bad network hears of a history.
+/// The messages of a history that an auditor on a bad network receives.
 struct Thinned {
   std::vector<Delivery> deliveries;  ///< in order of arrival; they point into the history
   std::string losses;                ///< a description of the losses

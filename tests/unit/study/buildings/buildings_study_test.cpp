@@ -17,7 +17,7 @@ Scenario two_rooms(bool has_door) {
                         "rooms.yaml");
 }
 
-TEST_CASE("robots reach random places again and again, and the same seed gives the same run") {
+TEST_CASE("robots reach several random places each, and the same seed gives the same run") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   const BuildingResult first = run_building(two_rooms(true), std::chrono::seconds(60), seed);

@@ -31,7 +31,7 @@ TEST_CASE("only a robot that is pushed or whose target moves gets a new plan") {
   const std::uint64_t seed = GENERATE(5u, 6u);
   CAPTURE(seed);
   CHECK(drive(DriveEvent::kNone, PixelPlanner::kCells, seed).replans == 0);
-  // Two new plans for the target; its new place may lie where the moving robot cannot turn at once.
+  // The target needs two new plans, and more if the moving robot cannot turn towards its new place.
   const int replans = drive(DriveEvent::kTargetMoves, PixelPlanner::kCells, seed).replans;
   CHECK(replans >= 2);
   CHECK(replans <= 6);

@@ -8,7 +8,7 @@
 
 namespace sidestep::clutter_study_test {
 
-TEST_CASE("the quick study drives every robot among people without a crash in motion") {
+TEST_CASE("in the quick clutter study every robot drives among people without a crash in motion") {
   StudyFolder folder;
   StudyOptions options;
   options.folder = folder.path();

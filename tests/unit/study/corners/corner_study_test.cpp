@@ -40,7 +40,7 @@ TEST_CASE("in the quick study of doorways no robot moves when it is touched") {
   for (const StudyRow& row : rows) CHECK(row.at("crashes_in_motion") == "0");
 }
 
-TEST_CASE("in doorway scenes people walk through no wall, many hardly fit, and all step out") {
+TEST_CASE("in doorway scenes people do not walk through walls, many hardly fit, and all step out") {
   int tight = 0, people = 0;
   for (std::size_t kind = 0; kind < kDoorwayKinds.size(); ++kind) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -66,7 +66,7 @@ TEST_CASE("in doorway scenes people walk through no wall, many hardly fit, and a
   CHECK(tight > people / 4);
 }
 
-TEST_CASE("in corner scenes people walk through no obstacle, and the robot does not see its goal") {
+TEST_CASE("in corner scenes people do not walk through obstacles, and the robot cannot see its goal") {
   for (std::size_t kind = 0; kind < kCornerKinds.size(); ++kind) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       CAPTURE(kCornerKinds[kind], seed);

@@ -59,7 +59,7 @@ TEST_CASE("the check of joint plans names every kind of fault") {
   CHECK(missing.fault() == "not every robot has a course");
 }
 
-TEST_CASE("the check of joint plans notices a robot that jumps") {
+TEST_CASE("the check of joint plans reports a robot that jumps") {
   Passing jump;
   const Vec2 from(-0.9, 0.15), to = jump.problem.goals_m[0];
   Course course(Time{}, jump.problem.starts_m[0]);

@@ -31,7 +31,7 @@ TEST_CASE("the quantiles of a distribution do not depend on the order of its val
   }
 }
 
-TEST_CASE("the median and mean of no values are 0") {
+TEST_CASE("the median and mean of an empty distribution are 0") {
   CHECK(Distribution().median() == 0);
   CHECK(Distribution().mean() == 0);
 }

@@ -12,7 +12,7 @@ TEST_CASE("the experiment on cache strategies depends only on its seed") {
   });
 }
 
-TEST_CASE("with each strategy, replans keep fewer nodes the more often they grow towards waypoints") {
+TEST_CASE("with each strategy, replans that grow towards waypoints more often keep fewer nodes") {
   const auto seed = GENERATE(1u, 4u);
   CAPTURE(seed);
   const auto rows = rows_of(cache_strategies({{0, 0.2, 0.7}, 2, 200}, seed, [](auto, auto) {}));

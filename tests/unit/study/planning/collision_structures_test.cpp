@@ -36,7 +36,7 @@ TEST_CASE("the obstacles of a grid are at the centres of equal squares") {
   CHECK(centres.size() == 64);
 }
 
-TEST_CASE("a wrong answer is found where structures disagree") {
+TEST_CASE("a structure that disagrees with the others and gives a wrong answer is reported") {
   const CollisionProblem problem(64, 200, true, 1);
   CollisionAnswers right{"right", 1e-9, {}};
   for (const Segment& motion : problem.motions)
@@ -73,7 +73,7 @@ TEST_CASE("all collision structures of the study agree with an exact comparison"
   }
 }
 
-TEST_CASE("the obstacles of a collision problem cover the same area, whatever their number") {
+TEST_CASE("the obstacles of a collision problem cover the same area for any number of obstacles") {
   const std::size_t obstacles = GENERATE(256u, 4096u);
   CAPTURE(obstacles);
   const CollisionProblem problem(obstacles, 10, true, 3);

@@ -23,7 +23,7 @@ TEST_CASE("the experiment on roadmap connections depends only on its seed") {
   });
 }
 
-TEST_CASE("roadmaps solve more queries with more edges and fewer after obstacles have moved") {
+TEST_CASE("roadmaps with more edges solve more queries, and roadmaps solve fewer after obstacles move") {
   const auto seed = GENERATE(1u, 20u);
   CAPTURE(seed);
   const auto rows = rows_of(roadmap_connections(sizes(4, 20), seed, [](auto, auto) {}));
@@ -47,7 +47,7 @@ TEST_CASE("roadmaps solve more queries with more edges and fewer after obstacles
     CHECK(of(name, many, "0", "queries") == 80);
     CHECK(of(name, many, "0", "median_length") >= 1);
   }
-  // Edges in all directions solve more queries with fewer edges.
+  // Roadmaps with edges in all directions solve more queries with fewer edges.
   CHECK(of("sectors", "4", "0", "edges_per_node") < of("nearest", "4", "0", "edges_per_node"));
   CHECK(of("sectors", "4", "0", "solved_percent") > of("nearest", "4", "0", "solved_percent"));
 }

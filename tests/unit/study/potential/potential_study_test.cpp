@@ -58,7 +58,7 @@ TEST_CASE("a drive ends at the goal, at a contact, in a local minimum or at the 
   const FieldDrive arrives = drive_by(straight, open, nothing);
   CHECK(arrives.end == DriveEnd::kArrived);
   CHECK(arrives.reversals == 0);
-  // At 0.5 m/s, plus at most a second for speeding up and slowing down.
+  // The robot drives at 0.5 m/s and needs at most an additional second to accelerate and brake.
   CHECK(arrives.seconds > arrives.length_m / 0.5);
   CHECK(arrives.seconds < arrives.length_m / 0.5 + 1);
   for (std::size_t i = 1; i < arrives.path_m.size(); ++i)
@@ -72,7 +72,7 @@ TEST_CASE("a drive ends at the goal, at a contact, in a local minimum or at the 
   CHECK(drive_by(round, far, nothing).end == DriveEnd::kTimeLimit);
 }
 
-TEST_CASE("every method drives straight where nothing is in the way") {
+TEST_CASE("every method drives straight if there is no obstacle") {
   using Kind = FieldMethod::Kind;
   const PlanWorld open = open_world();
   const ObstacleWorld nothing;

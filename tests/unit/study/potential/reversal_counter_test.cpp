@@ -23,13 +23,13 @@ int counted(const std::vector<double>& headings_rad) {
   return counter.reversals();
 }
 
-/// By definition: take the longest sequence of headings, in order, in which each differs from the one before
-/// by more than the threshold, alternately to the left and to the right. It has one turn more than there are
-/// reversals.
+/// The number of reversals by definition: one less than the number of turns in the longest sequence of
+/// headings, in order, in which each heading differs from the previous one by more than the threshold,
+/// alternately to the left and to the right.
 int slowly_counted(const std::vector<double>& headings_rad) {
   int most = 0;
   std::vector<int> left(headings_rad.size(), 0),
-      right(headings_rad.size(), 0);  // turns; the last one is left or right
+      right(headings_rad.size(), 0);  // numbers of turns, by the last turn
   for (std::size_t i = 0; i < headings_rad.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double turn = headings_rad[i] - headings_rad[j];
@@ -69,7 +69,7 @@ TEST_CASE("a wave has two reversals per period, and a circle and a straight line
   CHECK(counted(std::vector<double>(100, 1.5)) == 0);
 }
 
-TEST_CASE("a robot that stands still has no heading") {
+TEST_CASE("the jitter of a robot at rest has no reversals and no length") {
   ReversalCounter counter(kThreshold_rad);
   for (int i = 0; i < 100; ++i) counter.add({1e-4 * (i % 2), 0});
   CHECK(counter.reversals() == 0);

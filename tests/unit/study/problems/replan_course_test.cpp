@@ -37,7 +37,7 @@ TEST_CASE("on a replan course the robot and the obstacles keep their speeds and 
   CHECK(driven_m > 8);
 }
 
-TEST_CASE("a replan course finds a path that touches a circle") {
+TEST_CASE("a replan course rejects a path that touches a circle") {
   ReplanCourse course(50, 1);
   int crossed = 0;
   for (int cycle = 0; cycle < 50; ++cycle) {
@@ -50,7 +50,7 @@ TEST_CASE("a replan course finds a path that touches a circle") {
   CHECK(crossed > 0);
 }
 
-TEST_CASE("the same seed gives the same replan course and a different seed a different one") {
+TEST_CASE("the same seed gives the same replan course and a different seed a different course") {
   ReplanCourse a(100, 3), b(100, 3), c(100, 4);
   for (int cycle = 0; cycle < 100; ++cycle)
     for (ReplanCourse* course : {&a, &b, &c}) course->step();

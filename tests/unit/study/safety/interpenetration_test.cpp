@@ -5,7 +5,7 @@
 
 namespace sidestep::interpenetration_test {
 
-TEST_CASE("a disc that passes through another counts depth times time, and one contact") {
+TEST_CASE("a disc that passes through another disc counts one contact and the integral of the depth") {
   // One disc passes through the centre of a resting disc at 1 m/s. The depth is 0.2 m minus the distance,
   // which is |t| metres, so its integral is 0.2 m times 0.2 s.
   Interpenetration meter(2, 0.1);
@@ -19,7 +19,7 @@ TEST_CASE("a disc that passes through another counts depth times time, and one c
   CHECK(meter.min_clearance_m() == Approx(-0.2).margin(1e-3));
 }
 
-TEST_CASE("discs that approach and part without contact count only their clearance") {
+TEST_CASE("for discs that approach and part without contact only the clearance is recorded") {
   Interpenetration meter(3, 0.1);
   for (const double gap : {0.3, 0.05, 0.3}) {
     const Vec2 positions[] = {{0, 0}, {0.2 + gap, 0}, {5, 5}};

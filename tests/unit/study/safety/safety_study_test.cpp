@@ -47,7 +47,7 @@ TEST_CASE("robots without safety search traverse as fast as their limits allow")
     const Scenario scenario = traversal_scenario(settings, seed);
     const RobotSpec& robot = scenario.robots.front();
     const double path_m = (robot.goals.front().position_m - robot.start_m).norm();
-    // Accelerating to full speed v and braking take v/F + v/D, and cover v/2 times that time.
+    // Accelerating to full speed v and braking take v/F + v/D seconds, at a mean speed of v/2.
     const double ramps_s = scenario.limits.speed_mps *
                            (1 / scenario.limits.acceleration_mps2 + 1 / scenario.limits.deceleration_mps2);
     const double straight_line_s = ramps_s / 2 + path_m / scenario.limits.speed_mps;
@@ -59,7 +59,7 @@ TEST_CASE("robots without safety search traverse as fast as their limits allow")
   }
 }
 
-TEST_CASE("the same seed gives the same floor and a different seed a different one") {
+TEST_CASE("the same seed gives the same floor and a different seed a different floor") {
   const Scenario a = traversal_scenario({}, 5), b = traversal_scenario({}, 5), c = traversal_scenario({}, 6);
   REQUIRE(a.robots.size() == 8);
   std::size_t moved = 0;

@@ -26,7 +26,7 @@ TEST_CASE("robots in frames are identified and located correctly") {
   REQUIRE(rows.size() == 8);
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("colours"), row.at("light"), row.at("robots"));
-    // Dark and tinted light need their own thresholds.
+    // In dark and tinted light the default thresholds fit badly.
     const bool is_hard = row.at("colours") == "default" && row.at("light") == "both";
     CHECK(std::stod(row.at("found_percent")) >= (is_hard                                ? 85
                                                  : row.at("light") == "one dot covered" ? 99
@@ -38,7 +38,7 @@ TEST_CASE("robots in frames are identified and located correctly") {
   }
 }
 
-TEST_CASE("pose errors are as large as the errors of the dots predict") {
+TEST_CASE("pose errors agree with the prediction from the errors of the dots") {
   const auto rows = rows_of(marker_errors({.frames = 200, .noises = {2, 6}}, 3, [](auto, auto) {}));
   for (const StudyRow& row : rows) {
     CAPTURE(row.at("noise"));

@@ -38,7 +38,7 @@ std::pair<double, double> reference(const World& world, const Vec2& from, const 
   return {std::sqrt(distance2), fraction};
 }
 
-/// Compares random queries with the reference and with the linear search, and returns how many touch.
+/// Checks random queries against the reference and a linear search. Returns the number that touch.
 template <typename World>
 int check_queries(const World& world, Rng& rng, double half_m, double max_length_m, int queries) {
   std::vector<Shape> shapes;
@@ -48,7 +48,7 @@ int check_queries(const World& world, Rng& rng, double half_m, double max_length
   for (int i = 0; i < queries; ++i) {
     const Vec2 from = random_position(rng, 1.2 * half_m);
     const Vec2 to = from + random_displacement(rng, rng.chance(0.1) ? 4 * half_m : max_length_m);
-    // Many radii are close to the value at which the answer changes.
+    // Many radii are close to the distance, where the answer changes.
     const double distance = reference(world, from, to, 0).first;
     double radius = rng.chance(0.1) ? 0 : rng.uniform(0, 0.5 * max_length_m);
     if (rng.chance(0.5) && distance < half_m) radius = std::max(0.0, distance + rng.uniform(-1e-6, 1e-6));

@@ -39,11 +39,11 @@ struct Fixture {
     keys[certificate.serial()] = key;
     return certificate;
   }
-  /// The announcement that the owner of the certificate's key makes. It is signed once for each id.
+  /// The announcement signed with the certificate's own key. Each announcement is signed only once.
   const std::vector<std::uint8_t>& announced(const ParticipantId& id, const Certificate& certificate,
                                              const std::string& version = kVersion,
                                              std::optional<Time> given_start = std::nullopt) {
-    // Of two participants, the one with the higher number started earlier, unless the test says otherwise.
+    // A participant with a higher number started earlier, unless `given_start` is set.
     const Time started = given_start.value_or(kBegin - Duration((id[10] << 8 | id[11]) * 1'000));
     const std::string serial = certificate.serial();
     auto& result = announcements[{id, serial, version, started}];
@@ -115,7 +115,7 @@ TEST_CASE("an announcement with one flipped bit is refused") {
   }
 }
 
-TEST_CASE("an announcement is valid for one participant only") {
+TEST_CASE("an announcement is valid for only one participant") {
   Fixture f;
   const Certificate agent = f.issue("agent 3"), thief = f.issue("agent 4");
   const ParticipantId id = id_with(agent, 1), other = id_with(agent, 2);
@@ -123,7 +123,7 @@ TEST_CASE("an announcement is valid for one participant only") {
     return f.admission.on_announcement(who, announced, f.now).refusal;
   };
   CHECK(refusal(other, f.announced(id, agent)) == Refusal::kOtherSignature);
-  // The signature fits neither another key nor another start.
+  // A signature is not valid for another key or another start time.
   CHECK(refusal(id, credentials(agent, f.keys.at(thief.serial()), kVersion, id, f.now)) ==
         Refusal::kOtherSignature);
   std::vector<std::uint8_t> later = f.announced(id, agent);
@@ -135,7 +135,7 @@ TEST_CASE("an announcement is valid for one participant only") {
   CHECK(refusal(id, f.announced(id, agent)) == Refusal::kNone);
 }
 
-TEST_CASE("a flood of made-up participants delays a genuine one but does not keep it out") {
+TEST_CASE("a flood of made-up participants delays a genuine participant but does not keep it out") {
   Fixture f;
   const Certificate robot = f.issue("agent 3"), idle = f.issue("agent 4");
   const bool is_known = GENERATE(true, false);
@@ -216,7 +216,7 @@ TEST_CASE("only silent participants are forgotten") {
   CHECK(f.admission.newly_refused(f.now) == std::vector{id_with(silent)});
 }
 
-TEST_CASE("participants that share a certificate cannot take the places of all others") {
+TEST_CASE("participants that share a certificate cannot displace all other participants") {
   Fixture f;
   const Certificate thief = f.issue("agent 3"), other = f.issue("agent 4");
   for (std::uint16_t i = 0; i < 2000; ++i, f.now += 3ms)
@@ -225,7 +225,7 @@ TEST_CASE("participants that share a certificate cannot take the places of all o
   CHECK(f.announce(id_with(other), other) == Refusal::kNone);
 }
 
-TEST_CASE("unauthenticated participants are admitted at a low rate and genuine ones at any rate") {
+TEST_CASE("unauthenticated participants are admitted at a low rate, and authenticated ones at any rate") {
   Fixture f;
   const Certificate thief = f.issue("agent 3"), other = f.issue("agent 4");
   std::uint16_t strangers = 0, admitted = 0, genuine = 0;
@@ -248,18 +248,18 @@ TEST_CASE("replayed announcements delay a genuine restart by a bounded time") {
   Fixture f;
   const Certificate robot = f.issue("agent 3"), idle = f.issue("agent 4");
   const int strangers = GENERATE(24, 40, 400), attacked_for_s = GENERATE(0, 600);
-  // If the clock of a host was set back, its latest start is not the greatest.
+  // If the clock of a host was set back, its latest process does not have the highest start time.
   const bool is_clock_right = GENERATE(true, false);
   CAPTURE(strangers, attacked_for_s, is_clock_right);
-  // The announcements of these processes are repeated once a second, before the genuine process announces
-  // itself.
+  // Announces all strangers. This happens once a second, before the genuine process announces itself.
+  // Returns the number of admitted strangers.
   const auto strangers_announce = [&] {
     int admitted = 0;
     for (int i = 0; i < strangers; ++i)
       admitted += f.announce(id_with(robot, static_cast<std::uint16_t>(i)), robot) == Refusal::kNone;
     return admitted;
   };
-  // A genuine participant stays, whatever the strangers do.
+  // A genuine participant stays admitted during the whole attack.
   const ParticipantId twin = id_with(robot, 50'000), restarted = id_with(robot, 50'001);
   REQUIRE(f.announce(twin, robot, kVersion, kBegin + 1s) == Refusal::kNone);
   f.admission.on_authenticated(twin);
@@ -303,7 +303,7 @@ TEST_CASE("a process that was silent for a while does not wait behind replayed a
   CHECK(f.announce(genuine, robot, kVersion, started) == Refusal::kNone);
 }
 
-TEST_CASE("when many processes with one key start at once, the latest ones keep their places") {
+TEST_CASE("if many processes with one key start together, the latest ones stay admitted") {
   Fixture f;
   const Certificate op = f.issue("operator");
   const auto start = [&](std::uint16_t i) { return kBegin + i * Duration(10ms); };
@@ -324,12 +324,12 @@ TEST_CASE("a start time far in the future does not count as the latest") {
   f.now += 30min;
   for (std::uint16_t i = 2; i < 100; ++i) static_cast<void>(f.announce(id_with(robot, i), robot));
   CHECK(f.announce(id_with(robot, 200), robot, kVersion, f.now) == Refusal::kNone);
-  // Impossible times do no harm either.
+  // Start times that are impossible do no harm either.
   for (const auto ns : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()})
     CHECK(f.announce(id_with(robot, 300), robot, kVersion, time_from_ns(ns)) == Refusal::kTooMany);
 }
 
-TEST_CASE("places taken with many stolen certificates are freed for a genuine participant") {
+TEST_CASE("participants with many stolen certificates are displaced by a genuine participant") {
   Fixture f;
   std::vector<Certificate> stolen;
   for (std::size_t i = 0; i * Admission::kMaxPerCertificate < Admission::kMaxParticipants; ++i)
@@ -348,7 +348,7 @@ TEST_CASE("places taken with many stolen certificates are freed for a genuine pa
   CHECK(f.admission.newly_refused(f.now).size() == 1);
 }
 
-TEST_CASE("a displaced participant waits longer each time, until it has proved genuine") {
+TEST_CASE("a displaced participant waits longer each time until it proves that it is genuine") {
   Fixture f;
   const Certificate robot = f.issue("agent 3", 24h);
   const ParticipantId slow = id_with(robot, 60'000);
@@ -381,7 +381,7 @@ TEST_CASE("a displaced participant waits longer each time, until it has proved g
   }
 }
 
-TEST_CASE("signature checks are limited in number, and known certificates need none") {
+TEST_CASE("the number of signature checks is limited, and known certificates need none") {
   Fixture f;
   const Certificate known = f.issue("agent 3");
   CHECK(f.announce(id_with(known), known) == Refusal::kNone);
@@ -411,7 +411,7 @@ TEST_CASE("unused certificates are dropped to make room for later ones") {
     const ParticipantId id = id_with(later);
     CHECK(f.announce(id, later) == Refusal::kNone);
     f.admission.on_authenticated(id);
-    CHECK(f.admission.admits(id_with(first), f.now));  // is heard, so it is not forgotten
+    CHECK(f.admission.admits(id_with(first), f.now));  // the participant is heard, so it is not forgotten
     if (i % 100 == 0) static_cast<void>(f.admission.newly_refused(f.now));
   }
   REQUIRE(f.admission.identity_of(id_with(first)));

@@ -13,7 +13,7 @@
 
 namespace sidestep::bus_test {
 
-/// Publishes a random message until it arrives on the other bus, and compares the two.
+/// Publishes a random message until it arrives on the other bus, and requires that it arrives unchanged.
 template <typename Message>
 void check_round_trip(const Topic<Message>& topic, DdsBus& from, DdsBus& to, std::uint64_t seed) {
   INFO("topic " << topic.name << " seed " << seed);
@@ -120,7 +120,7 @@ TEST_CASE("one shared topic carries the states of hundreds of robots") {
   CHECK(run_until(all_are_received, coordinator));
 }
 
-TEST_CASE("a reader gets only the latest of several waiting states, unless it keeps them all") {
+TEST_CASE("a reader gets only the latest of several waiting states unless it keeps all states") {
   constexpr std::uint64_t kStates = 20;
   DdsSettings settings = test_settings("keeper");
   settings.keeps_all = true;
@@ -138,7 +138,7 @@ TEST_CASE("a reader gets only the latest of several waiting states, unless it ke
     return !kept.empty() && !acted_on.empty();
   };
   REQUIRE(run_until(are_connected, keeper, actor));
-  // States replace each other only while the readers' bus does not run, which a busy machine may prevent.
+  // A busy machine may run the readers' bus after each state, so that no state is replaced: try again.
   std::uint64_t frames = 0;
   bool has_replaced = false;
   const auto have_replaced = [&] {
@@ -178,7 +178,7 @@ TEST_CASE("all events arrive in order") {
   auto writer = from.advertise(kEvent);
   msg::Verdict event;
   event.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator));
-  // Volatile: messages sent before discovery may be missing, but none after the first received one.
+  // Messages sent before discovery may be lost, but none after the first one that is received.
   const auto is_matched = [&] {
     writer.publish(event, from.now());
     return !numbers.empty();

@@ -13,7 +13,7 @@ namespace sidestep::datagram_check_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Little-endian 2-byte and 4-byte numbers, and zeros.
+/// Builds the body of a submessage from little-endian 2-byte and 4-byte numbers, and zeros.
 struct Body {
   Bytes bytes;
   Body& u16(std::uint32_t value) { return append(value, 2); }
@@ -23,7 +23,7 @@ struct Body {
     return *this;
   }
   Body& sequence_number(std::uint32_t value, std::uint32_t high = 0) { return u32(high).u32(value); }
-  /// Any reader, and the writer that announces endpoints unless another one is given.
+  /// The ids of reader and writer. By default: any reader, and the writer that announces endpoints.
   Body& entities(const Bytes& writer = {0, 0, 3, 0xc2}, const Bytes& reader = {0, 0, 0, 0}) {
     for (const Bytes* entity : {&reader, &writer}) bytes.insert(bytes.end(), entity->begin(), entity->end());
     return *this;
@@ -36,7 +36,6 @@ struct Body {
   }
 };
 
-/// One submessage, or several that belong together.
 Bytes submessage(std::uint8_t kind, const Body& body, std::uint8_t flags = 1) {
   Bytes result{kind, flags};
   const Body size = Body().u16(static_cast<std::uint32_t>(body.bytes.size()));
@@ -72,7 +71,7 @@ Bytes gap(std::uint32_t start, std::uint32_t bits, std::size_t words) {
 Bytes heartbeat(std::uint32_t first, std::uint32_t last) {
   return submessage(0x07, Body().entities().sequence_number(first).sequence_number(last).u32(1));
 }
-/// A discovery message with this number from this writer to this reader.
+/// A submessage of a discovery message with this sequence number from this writer to this reader.
 Bytes numbered(std::uint8_t kind, std::uint32_t low, std::uint32_t high,
                const Bytes& writer = {0, 0, 3, 0xc2}, const Bytes& reader = {0, 0, 0, 0}) {
   const Body number = Body().entities(writer, reader).sequence_number(low, high);
@@ -125,7 +124,7 @@ std::vector<Bytes> valid_submessages() {
 
 bool passes(const Bytes& bytes) { return !checked_datagram(bytes).empty(); }
 
-TEST_CASE("everything that processes with keys send passes, except the statistics at its end") {
+TEST_CASE("every submessage of a process with keys passes, and statistics at the end are removed") {
   const std::vector<Bytes> all = valid_submessages();
   for (const Bytes& one : all) {
     CAPTURE(int{one[0]});
@@ -154,7 +153,7 @@ TEST_CASE("statistics that are misplaced, repeated, alone or of the wrong size a
   for (const std::size_t size : {0u, 52u, 60u}) CHECK_FALSE(passes(datagram({data(), statistics(size)})));
 }
 
-TEST_CASE("submessages with contradictory numbers are dropped") {
+TEST_CASE("submessages of unknown kinds or with contradictory numbers are dropped") {
   const std::vector<std::pair<const char*, Bytes>> bad{
       {"an unknown kind", submessage(0x20, Body().zeros(8))},
       {"one that fills up", submessage(0x01, Body().zeros(8))},
@@ -224,7 +223,7 @@ TEST_CASE("only discovery messages may be unencrypted") {
   for (const std::uint8_t kind : {0x06, 0x07, 0x08, 0x15}) {
     CAPTURE(int{kind});
     CHECK(passes(datagram({numbered(kind, 5, 0, {0, 0, 3, 0xc2}, {0, 0, 3, 0xc7})})));
-    // Announcements of participants to participants that have proved their keys.
+    // Announcements sent to participants that have proved their keys.
     CHECK(passes(datagram({numbered(kind, 5, 0, {0xff, 1, 1, 0xc2}, {0xff, 1, 1, 0xc7})})) == is_version_3);
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02})})));
     CHECK_FALSE(passes(datagram({numbered(kind, 5, 0, {0, 0, 1, 0x02}, {0, 0, 1, 0x07})})));
@@ -237,7 +236,7 @@ TEST_CASE("only discovery messages may be unencrypted") {
   }
 }
 
-TEST_CASE("whatever passes after random changes is a prefix of the datagram and passes again") {
+TEST_CASE("if a corrupted datagram passes, the passed part is a prefix of the datagram and passes again") {
   const std::uint64_t seed = GENERATE(1u, 2u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -262,7 +261,7 @@ TEST_CASE("whatever passes after random changes is a prefix of the datagram and 
   CHECK(passed < 90'000);
 }
 
-TEST_CASE("without keys, statistics are removed or dropped and other software is heard") {
+TEST_CASE("without keys, statistics are removed or dropped, and unknown submessages pass") {
   const auto rest = [](const std::vector<Bytes>& parts) {
     return without_statistics(datagram(parts)).size();
   };

@@ -74,7 +74,7 @@ TEST_CASE("a timer never fires early") {
   CHECK(fired >= due);
 }
 
-TEST_CASE("a timer that is always due again does not starve sources") {
+TEST_CASE("a timer that is always due does not starve sources") {
   EventLoop loop;
   int turns = 0;
   std::function<void()> again = [&] {
@@ -93,7 +93,7 @@ TEST_CASE("a timer that is always due again does not starve sources") {
   CHECK(turns >= 2);
 }
 
-TEST_CASE("a source that never runs dry does not starve timers") {
+TEST_CASE("a source that always has more events does not starve timers") {
   EventLoop loop;
   Counter source([] { return true; });
   loop.notify(source);
@@ -127,7 +127,7 @@ TEST_CASE("calls posted by other threads wake the loop and run in order in its t
   CHECK(std::ranges::count(threads, std::this_thread::get_id()) == kCalls);
 }
 
-TEST_CASE("a call that always posts itself again does not starve timers") {
+TEST_CASE("a call that keeps posting itself does not starve timers") {
   EventLoop loop;
   std::function<void()> again = [&] { loop.post(again); };
   loop.post(again);
@@ -189,7 +189,7 @@ TEST_CASE("a readable descriptor calls back without starving timers and sources"
   close(ends[1]);
 }
 
-TEST_CASE("a readable descriptor wakes a sleeping loop, and a closed one does not keep it awake") {
+TEST_CASE("a readable descriptor wakes a sleeping loop, and a closed descriptor lets it sleep") {
   int ends[2];
   REQUIRE(pipe(ends) == 0);
   EventLoop loop;
@@ -298,9 +298,9 @@ TEST_CASE("the process's clock never runs backwards, across threads and loops") 
   CHECK(backwards == 0);
 }
 
-TEST_CASE("the process's clock agrees with the host's clock until that is set") {
+TEST_CASE("the process's clock agrees with the host's clock until the host's clock is set") {
   const auto host = [] { return Time{std::chrono::system_clock::now().time_since_epoch()}; };
-  // The two can differ only by the slewing of a time daemon.
+  // The clocks may differ only because a time daemon slews the host's clock.
   const Duration slewed = std::chrono::seconds(1);
   const Time before = host(), now = EventLoop::now(), after = host();
   CHECK(now > before - slewed);

@@ -42,7 +42,7 @@ struct Property {
   Bytes value;
 };
 
-/// In network byte order: one parameter of four bytes, and the end marker.
+/// Participant data in network byte order: one parameter of four bytes, and the end marker.
 const Bytes kParticipantData{0, 0x15, 0, 4, 2, 3, 0, 0, 0, 1, 0, 0};
 
 std::vector<Property> request() {
@@ -87,7 +87,7 @@ TEST_CASE("handshake messages pass in either byte order") {
   CHECK(is_handshake_message(big));
 }
 
-TEST_CASE("a handshake message with other tokens, names or sizes is refused") {
+TEST_CASE("a handshake message with an unknown token or name or a wrong size is refused") {
   const auto with = [](std::size_t index, const Property& property) {
     std::vector<Property> result = request();
     result[index] = property;

@@ -34,7 +34,7 @@ msg::CameraImage numbered_image(std::uint32_t camera, int number, std::size_t by
   return image;
 }
 
-/// Receives images, and counts those that differ from the sent ones.
+/// Receives images and counts images that differ from the sent images.
 struct Watcher {
   Watcher(const DdsSettings& settings, std::size_t bytes) : bus(settings), expected_bytes(bytes) {
     bus.subscribe<msg::CameraImage>(topics::kImages, [this](const msg::CameraImage& image) {
@@ -56,7 +56,7 @@ DdsSettings settings_of(const std::string& name, bool faults) {
   return settings;
 }
 
-/// Sends images of two cameras at 100 Hz for ever.
+/// Sends images of two cameras at 100 Hz until the process ends.
 void send(DdsBus& bus, Writer<msg::CameraImage>& writer, std::size_t bytes, int number) {
   msg::CameraImage image = numbered_image(static_cast<std::uint32_t>(number % 2), number, bytes);
   writer.publish(image, bus.now());

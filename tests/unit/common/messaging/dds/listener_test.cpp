@@ -79,7 +79,7 @@ TEST_CASE("a listener receives the raw bytes of a topic of unknown type") {
   CHECK(received <= bus.now());
 }
 
-TEST_CASE("a writer that offers more than the reader requests causes no mismatch") {
+TEST_CASE("a writer that offers a stronger QoS than the reader requests causes no mismatch") {
   DiscoveredEndpoint writer = endpoint(true);
   DiscoveredEndpoint reader = endpoint(false);
   CHECK(qos_mismatches(writer, reader).empty());

@@ -5,8 +5,7 @@
 
 namespace sidestep::open_network_test {
 
-TEST_CASE(
-    "without keys a process starts only where other machines cannot reach it, unless told to be insecure") {
+TEST_CASE("without keys a process starts only if other machines cannot reach it, unless it may be insecure") {
   DdsSettings settings;
   CHECK_NOTHROW(require_safe_network(settings));
   settings.interface = "127.0.0.2";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which messages the filter passes and logs. admission_test.cpp tests its decisions.
+// Tests which messages the filter passes and logs. admission_test.cpp tests whom it admits.
 #include "common/messaging/dds/participant_filter.hpp"
 
 #include <algorithm>
@@ -77,7 +77,7 @@ TEST_CASE("a process may send only what its keys permit, and each violation is l
   CHECK(text.find(line, text.find(line) + 1) == std::string::npos);
 }
 
-TEST_CASE("the revocation list is reread when it changes, and a broken list changes nothing") {
+TEST_CASE("the revocation list is read again when it changes, and an unreadable list changes nothing") {
   Fixture f;
   const CaptureStderr log;
   const ParticipantId agent = f.announce("agent 3"), viewer = f.announce("viewer");

@@ -22,7 +22,7 @@ DdsSettings settings_with(const TestKeys& keys) {
   return settings;
 }
 
-TEST_CASE("if keys look right but Fast DDS refuses them, its own reason is reported") {
+TEST_CASE("if Fast DDS refuses keys that look right, the error contains the reason of Fast DDS") {
   const TestKeys keys({"agent", "3"});
   const Authority authority(keys.folder() + "/public/permissions_ca.cert.pem",
                             keys.folder() + "/private/permissions_ca.key.pem");

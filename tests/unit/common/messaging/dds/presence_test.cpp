@@ -46,7 +46,7 @@ TEST_CASE("a participant that announces no presence is never refused or forgotte
   CHECK(a.presence.notices(a.now).empty());
 }
 
-TEST_CASE("a silent participant is removed once and refused until it has forgotten us too") {
+TEST_CASE("a silent participant is removed once and refused until it confirms that it has forgotten us") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   a.run_until(a.now + kSilenceLimit - 1s);
@@ -65,13 +65,13 @@ TEST_CASE("a silent participant is removed once and refused until it has forgott
   const PresenceNotice outdated{kSelf, Kind::kAgreed, notices[0].number + 1};
   CHECK_FALSE(a.hears(std::array{outdated}));
   CHECK_FALSE(a.presence.accept(kOther, a.now));
-  CHECK_FALSE(a.hears(std::array{PresenceNotice{kOther, Kind::kAgreed, notices[0].number}}));  // not for us
+  CHECK_FALSE(a.hears(std::array{PresenceNotice{kOther, Kind::kAgreed, notices[0].number}}));  // not to us
   CHECK_FALSE(a.presence.accept(kOther, a.now));
   CHECK_FALSE(a.hears(std::array{PresenceNotice{kSelf, Kind::kAgreed, notices[0].number}}));
   CHECK(a.presence.accept(kOther, a.now));
 }
 
-TEST_CASE("a participant that learns it was forgotten removes the other side once and confirms this") {
+TEST_CASE("a participant that was forgotten removes the other side once and confirms the removal") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   CHECK(a.hears(std::array{forgotten(kSelf, 7)}));
@@ -87,7 +87,7 @@ TEST_CASE("a participant that learns it was forgotten removes the other side onc
   CHECK(a.hears(std::array{forgotten(kSelf, 9), forgotten(kSelf, 9)}));
 }
 
-TEST_CASE("a process that was itself stopped forgets no other process") {
+TEST_CASE("a process that was stopped itself does not forget other processes") {
   Clocked a;
   CHECK_FALSE(a.hears({}));
   a.run_until(a.now + 1s);
@@ -97,7 +97,7 @@ TEST_CASE("a process that was itself stopped forgets no other process") {
   CHECK(a.presence.accept(kOther, a.now));
 }
 
-TEST_CASE("the memory for forgotten participants is bounded, and the oldest are dropped first") {
+TEST_CASE("the number of remembered forgotten participants is bounded, and the oldest are dropped first") {
   Clocked a;
   const auto id = [](std::size_t i) {
     return ParticipantId{9, static_cast<std::uint8_t>(i >> 8), static_cast<std::uint8_t>(i)};
@@ -109,7 +109,7 @@ TEST_CASE("the memory for forgotten participants is bounded, and the oldest are 
   CHECK(a.removed.size() == 2);
   CHECK_FALSE(a.presence.accept(id(0), a.now));
   CHECK_FALSE(a.presence.on_announcement(kSelf, id(5000), {}, a.now));
-  CHECK(a.presence.accept(id(0), a.now));        // no longer tracked
+  CHECK(a.presence.accept(id(0), a.now));        // forgotten itself
   CHECK_FALSE(a.presence.accept(id(1), a.now));  // still refused
   for (std::size_t i = 0; i < Presence::kMaxPeers; ++i) {
     if (i != 1) CHECK(a.presence.accept(id(i), a.now));
@@ -128,23 +128,23 @@ TEST_CASE("an announcement names a bounded number of participants") {
   CHECK(count >= Presence::kMaxNotices / 2);
 }
 
-/// Two participants and a model of what Fast DDS knows. Each side counts how often it has removed the other
-/// side. They are matched if each has discovered the other since the other last removed it; if only one side
-/// removes the other, they stay unmatched. Each side also acknowledges its knowledge, and the acknowledgement
-/// arrives late. A side that mistakes an acknowledgement from before a removal for a newer one is misled
-/// permanently.
+/// Two participants and a model of the knowledge of Fast DDS. Each side counts how often it has removed the
+/// other side. The sides are matched if each has discovered the other since the other last removed it; if
+/// only one side removes the other, they stay unmatched. Each side also acknowledges its knowledge, and the
+/// acknowledgement arrives late. A side that takes an acknowledgement from before a removal for a newer
+/// acknowledgement is misled permanently.
 struct Pair {
   struct Side {
     Presence presence;
     ParticipantId id{};
-    bool knows = false;       ///< whether it knows the other side
-    int generation = 0;       ///< how often it has removed the other side
+    bool knows = false;       ///< whether this side knows the other side
+    int generation = 0;       ///< number of times that this side removed the other
     int seen_generation = 0;  ///< the other side's generation when this side discovered it
     bool is_misled = false;   ///< misled by an outdated acknowledgement
     bool is_stopped = false, was_stopped = false;
     Time next_announcement{};
     std::multimap<Time, std::function<void()>> late;
-    std::deque<std::function<void()>> arrived;  ///< messages that arrived while it was stopped
+    std::deque<std::function<void()>> arrived;  ///< messages that arrived while the side was stopped
   };
 
   explicit Pair(std::uint64_t seed) : rng(seed) {
@@ -227,7 +227,7 @@ struct Pair {
   Time now = time_from_ns(0) + 1h;
 };
 
-TEST_CASE("two participants find each other again after any stops and cuts of any duration") {
+TEST_CASE("two participants find each other again after stops and cuts of any duration") {
   const std::uint64_t seed = GENERATE(range(1, 200));
   CAPTURE(seed);
   Pair pair(seed);

@@ -45,7 +45,7 @@ std::set<std::string> shared_memory_of(pid_t process) {
   return result;
 }
 
-TEST_CASE("a reader that requests more than the writer offers is reported on both sides") {
+TEST_CASE("a reader that requests a stronger QoS than the writer offers is reported on both sides") {
   DdsBus reader(test_settings());
   DdsBus writer(test_settings());
   const CaptureStderr captured;
@@ -239,14 +239,14 @@ TEST_CASE("a process killed with kill -9 leaves no shared memory behind") {
     const std::string path = "/dev/shm/sidestep-test-" + std::to_string(getpid());
     const std::ofstream file(path);
     std::filesystem::remove(path);
-    REQUIRE_FALSE(shared_memory_of(getpid()).empty());  // shows that such a file would be found
+    REQUIRE_FALSE(shared_memory_of(getpid()).empty());  // the search finds a deleted file that is still open
   }
   DdsBus bus(test_settings());
   int received = 0;
   bus.subscribe<msg::Verdict>(topics::kVerdict, 1, [&](const msg::Verdict&) { ++received; });
   Victim victim;
   CHECK(run_until([&] { return received > 5; }, bus));
-  CHECK(shared_memory_of(victim.pid).empty());  // shows that the victim leaves nothing behind
+  CHECK(shared_memory_of(victim.pid).empty());  // so nothing can remain after its death
   CHECK(victim.kill_now());
 }
 
@@ -287,7 +287,7 @@ void stop_and_continue(int rounds, std::size_t count, std::uint64_t seed) {
     std::vector<Time> until;
     for (std::size_t i = 0; i < count; ++i) {
       REQUIRE(kill(victims[i]->pid, SIGSTOP) == 0);
-      // The first victim sleeps long enough to be forgotten for certain; the others may only come close.
+      // The first victim is stopped long enough to be forgotten in any case; the others may not be.
       until.push_back(bus.now() + kSilenceLimit +
                       (i == 0 ? from_seconds(2) : from_seconds(rng.uniform(-1, 4))));
     }
@@ -370,7 +370,7 @@ TEST_CASE("two hundred neighbours that leave at any moment do not disturb other 
   let_neighbours_leave(200, 4);
 }
 
-TEST_CASE("a process is known while it is alive and forgotten some seconds after it is killed") {
+TEST_CASE("a listener knows a process while it is alive and forgets it seconds after it is killed") {
   DdsListener listener(test_settings("listener"));
   Victim victim;
   REQUIRE(run_until([&] { return is_known(listener, victim.name); }, listener));

@@ -26,7 +26,7 @@ inline DdsSettings test_settings(const std::string& participant = "test") {
   return domain.settings(participant);
 }
 
-/// Runs the buses in turn until the condition holds. Returns false if it does not before the deadline.
+/// Runs the buses in turn until the condition holds. Returns false if the deadline passes first.
 template <typename Condition, typename... Buses>
 bool run_until(Condition condition, Buses&... buses) {
   const Time deadline = EventLoop::now() + kDeadline;

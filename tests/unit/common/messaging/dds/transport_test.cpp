@@ -26,7 +26,7 @@ struct Connection {
                     }));
     writer = here.advertise(topics::kVerdict, kRobot);
   }
-  /// Sends until the condition holds. Returns false if it never does.
+  /// Sends until the condition holds. Returns false if it does not hold before the deadline.
   template <typename Condition>
   bool send_until(Condition condition) {
     return run_until(
@@ -91,19 +91,19 @@ TEST_CASE("a cut blocks all messages except an operator's until it ends") {
   CHECK(faults_received == 2);
 }
 
-TEST_CASE("messages are delayed, duplicated and reordered, and delayed ones disappear with their reader") {
+TEST_CASE("a fault delays, duplicates and reorders messages, and delayed messages end with their reader") {
   Connection connection;
   REQUIRE(connection.send_until([&] { return !connection.numbers.empty(); }));
   const Duration min_delay{2'000'000};
   connection.there.impair({0.2, 1, 0.5, min_delay, Duration{20'000'000}, Duration{100'000'000}, false}, 7);
-  // Once a later message has arrived, no undelayed one is still on its way.
+  // Once a later message has arrived, no message without delay is still on its way.
   const std::uint64_t before = connection.last_sent;
   REQUIRE(connection.send_until([&] { return connection.numbers.back() > before + 1; }));
   connection.numbers.clear();
   connection.delays.clear();
   REQUIRE(connection.send_until([&] { return connection.numbers.size() > 200; }));
   CHECK(*std::min_element(connection.delays.begin(), connection.delays.end()) >= min_delay);
-  // A reader that keeps the last sample accepts no older one after it, so overtaken messages are lost.
+  // A reader that keeps only the last sample refuses older samples, so overtaken messages are lost.
   CHECK(connection.numbers.back() - connection.numbers.front() > connection.numbers.size());
   // At this point messages are still delayed, and the readers are destroyed before they arrive.
 }

@@ -112,7 +112,7 @@ TEST_CASE("a sequence of exactly the type's maximum length is accepted in either
   CHECK_FALSE(decoder.accepts(too_long));
 }
 
-TEST_CASE("a payload that is too short is refused, whatever its length") {
+TEST_CASE("a payload that is too short by any number of bytes is refused") {
   Rng rng(9);
   msg::Command command = random_message<msg::Command>(rng, false, 0);
   msg::WorldState world = random_message<msg::WorldState>(rng, true, 3);

@@ -30,7 +30,7 @@ Odometry random_odometry(Rng& rng) {
   return message;
 }
 
-TEST_CASE("a twist has the bytes that ROS 2 writes") {
+TEST_CASE("an encoded twist has the same bytes as a twist written by ROS 2") {
   Twist twist;
   twist.linear = {1, -0.5, 0};
   twist.angular = {0, 0, 2};
@@ -72,7 +72,7 @@ TEST_CASE("odometry survives encoding and decoding in both byte orders, and trun
   CHECK(received.linear[0] == 1);
 }
 
-TEST_CASE("odometry with false text lengths is refused") {
+TEST_CASE("odometry that states wrong text lengths is refused") {
   Rng rng(4);
   const Odometry sent = random_odometry(rng);
   const std::vector<std::uint8_t> valid = bytes_of(kOdometry, &sent);

@@ -36,7 +36,7 @@ struct Received {
   std::vector<std::uint64_t> numbers;
   std::vector<double> delays_s;
 };
-/// Publishes 1 .. count, a millisecond apart.
+/// Publishes the numbers from 1 to `count`, a millisecond apart, and returns what arrives.
 Received send_through(const NetworkSpec& network, std::uint64_t seed, std::uint64_t count,
                       const Topic<msg::CoordinatorState>& topic = topics::kCoordinator) {
   SimNetwork net(seed, kBegin, network);
@@ -99,7 +99,7 @@ TEST_CASE("all events arrive once and in order on a network that loses and dupli
   CHECK(std::ranges::is_sorted(received.numbers));
 }
 
-TEST_CASE("the same seed gives the same run and a different seed a different one") {
+TEST_CASE("the same seed gives the same run and a different seed a different run") {
   const auto spec = delays(0, 0.15, 0.3, 0.1);
   const auto first = send_through(spec, 5, 500), again = send_through(spec, 5, 500),
              other = send_through(spec, 6, 500);

@@ -8,7 +8,7 @@
 
 namespace sidestep::event_queue_test {
 
-TEST_CASE("near and far events come in order of time, and at equal times in order of insertion") {
+TEST_CASE("events are returned in order of time, and at equal times in order of insertion") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u, 4u, 5u);
   CAPTURE(seed);
   Rng rng(seed);
@@ -38,7 +38,7 @@ TEST_CASE("near and far events come in order of time, and at equal times in orde
   }
 }
 
-TEST_CASE("an event may be inserted before one whose time was already requested") {
+TEST_CASE("an event may be inserted before an event whose time next_time() has returned") {
   EventQueue<int> queue;
   queue.push(time_from_ns(5'000'000'000), 1);
   CHECK(queue.next_time() == time_from_ns(5'000'000'000));

@@ -12,7 +12,7 @@ namespace sidestep::links_test {
 using namespace std::chrono_literals;
 const Time kBegin = time_from_ns(1'000'000'000);
 
-/// Three processes; the first one sends numbered messages to the others, a millisecond apart.
+/// Three processes. The first process sends numbered messages to the others, a millisecond apart.
 struct Rig {
   SimNetwork network{1, kBegin, {}};
   ProcessId ids[3] = {network.new_process(), network.new_process(), network.new_process()};
@@ -92,7 +92,7 @@ TEST_CASE("link delays are right-skewed, within their bounds and have about the 
   CHECK(static_cast<double>(above_mean) / count == Approx(0.368).epsilon(0.05));
 }
 
-TEST_CASE("a cut affects one direction of one link and can be ended") {
+TEST_CASE("a cut blocks one direction of one link until it is ended") {
   Rig rig;
   LinkQuality cut;
   cut.is_cut = true;
@@ -121,7 +121,7 @@ TEST_CASE("links can be set in any order and keep their qualities as links are a
   CHECK_FALSE(links.find(3, 20));
 }
 
-TEST_CASE("a paused process does nothing and then handles everything at once and in order") {
+TEST_CASE("a paused process does nothing and after the pause handles all messages and timers in order") {
   Rig rig;
   int fired = 0;
   rig.far.at(kBegin + 100ms, [&] { ++fired; });
@@ -138,7 +138,7 @@ TEST_CASE("a paused process does nothing and then handles everything at once and
   CHECK(rig.near_received.size() == 50);
 }
 
-TEST_CASE("a pause inside another pause neither ends it nor reorders messages") {
+TEST_CASE("a shorter or longer pause during a pause does not end it early and does not reorder messages") {
   const bool is_longer = GENERATE(false, true);
   CAPTURE(is_longer);
   Rig rig;
@@ -150,7 +150,7 @@ TEST_CASE("a pause inside another pause neither ends it nor reorders messages") 
   CHECK(std::ranges::is_sorted(rig.far_received));
 }
 
-TEST_CASE("a paused process queues a limited number of messages, and a restarted one is not paused") {
+TEST_CASE("a paused process queues a limited number of messages, and a restarted process is not paused") {
   Rig rig;
   rig.far.pause(kBegin + 500ms, 10);
   rig.send(50);
@@ -253,10 +253,10 @@ TEST_CASE("processes forget each other after a silence of six seconds in one dir
   pair.set_cut(true);
   pair.send(1);
   pair.run_for(6100ms);
-  pair.send(2);  // b has forgotten a, so a receives nothing either
+  pair.send(2);  // b has forgotten a, so a receives nothing
   pair.run_for(100ms);
   pair.set_cut(false);
-  pair.send(3);  // they have not discovered each other again
+  pair.send(3);  // a and b have not discovered each other again
   pair.run_for(3s);
   pair.send(4);
   pair.run_for(1s);
@@ -264,7 +264,7 @@ TEST_CASE("processes forget each other after a silence of six seconds in one dir
   CHECK(pair.at_b == std::vector<std::uint64_t>{4});
 }
 
-TEST_CASE("a short cut right after a start delays discovery, but a later one does not") {
+TEST_CASE("a short cut right after a start delays discovery, but a later cut does not") {
   ReliablePair pair;
   pair.run_for(10s);
   SimBus late(pair.network, {pair.network.new_process()});
@@ -297,7 +297,7 @@ TEST_CASE("reliable messages do not change the losses and delays of other messag
     receiver.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
       received.emplace_back(state.epoch(), network.now());
     });
-    // Both topics draw one delay for each message.
+    // Each message of either topic draws one random delay.
     const auto& topic = topics::kAttestation;
     receiver.subscribe(topic, [](const msg::AbsenceAttestation&) {});
     auto writer = sender.advertise(topics::kCoordinator);
@@ -319,7 +319,7 @@ TEST_CASE("reliable messages do not change the losses and delays of other messag
     std::ranges::sort(numbers);
     return numbers;
   };
-  // With the pauses, heartbeats and resent messages occur between the states.
+  // With pauses of 1 ms, heartbeats and resent reliable messages are sent between the states.
   CHECK(run(true) == run(false));
 }
 

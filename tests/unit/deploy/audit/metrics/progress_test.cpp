@@ -50,7 +50,7 @@ TEST_CASE("a progress line shows the largest measured clock offset") {
   CHECK(metrics.report().max_clock_offset_s == 0.0001);
 }
 
-TEST_CASE("a progress table has one line per robot and counts the robots that do not fit") {
+TEST_CASE("a progress table has one line per robot and states how many robots do not fit") {
   RunMetrics metrics(kFive);
   msg::AgentStatus status;
   status.robot(2);

@@ -125,7 +125,7 @@ TEST_CASE("reports of one run on machines of different speed differ only under w
   CHECK(a == b);
 }
 
-TEST_CASE("the failure reason lists everything that went wrong in one line, and is empty otherwise") {
+TEST_CASE("the failure reason lists all failures in one line and is empty without a failure") {
   Report report = example();
   CHECK_THAT(summary(report), EndsWith("failed: 1 of 2 arrived\n"));
   report.abort_reason = "time limit of 60 s";
@@ -219,7 +219,7 @@ TEST_CASE("excused contacts do not fail a run, but other contacts do") {
   CHECK(report.verdict() == AuditVerdict::kNotJudged);
 }
 
-TEST_CASE("a run whose audit covered too little neither passes nor fails") {
+TEST_CASE("a run neither passes nor fails if its audit covered too little") {
   Report report = example();
   report.arrived = report.robots;
   report.audit = covered();
@@ -242,7 +242,7 @@ TEST_CASE("a run whose audit covered too little neither passes nor fails") {
   CHECK_THAT(summary(report), EndsWith("\nfailed: 1 of 2 arrived\n"));
 }
 
-TEST_CASE("a report states the audit's coverage and reference, and what it excused and why") {
+TEST_CASE("a report states the audit's coverage and reference and the causes of excused contacts") {
   Report report = example();
   report.audit = covered();
   report.audit->coverage = {0.99, 0.98, 0.97, 0.96, 1};

@@ -90,9 +90,9 @@ TEST_CASE("arrival time runs from the first grant until the robot settles at its
 
   metrics.on_truth(
       truth(1, 2.0, {body(3, 0.99, 0, 0.5), body(7, 0.5, 1)}));             // robot 3 drives through its goal
-  metrics.on_truth(truth(2, 3.0, {body(3, 1.01, 0), body(7, 1, 1, 1)}));    // rests at it
-  metrics.on_truth(truth(3, 3.5, {body(3, 1.03, 0), body(7, 1.5, 1, 1)}));  // is pushed off it
-  metrics.on_truth(truth(4, 4.0, {body(3, 1.019, 0, 0.019), body(7, 1.99, 1)}));  // and returns
+  metrics.on_truth(truth(2, 3.0, {body(3, 1.01, 0), body(7, 1, 1, 1)}));    // robot 3 rests
+  metrics.on_truth(truth(3, 3.5, {body(3, 1.03, 0), body(7, 1.5, 1, 1)}));  // robot 3 is pushed
+  metrics.on_truth(truth(4, 4.0, {body(3, 1.019, 0, 0.019), body(7, 1.99, 1)}));  // robot 3 returns
   metrics.on_truth(truth(5, 5.0, {body(3, 1, 0), body(7, 2, 1)}));
   CHECK(metrics.arrived() == 0);
   metrics.on_status(status(3, 1, kArrived));
@@ -138,7 +138,7 @@ TEST_CASE("the straight-line time agrees with slow integration") {
     MotionLimits limits;
     RobotSpec robot;
     robot.goals = {Goal{{goal_m, 0}, std::nullopt}};
-    // Accelerate in small steps while the braking distance allows it.
+    // The reference accelerates in small steps while the braking distance allows.
     double x = 0, v = 0, t = 0;
     const double dt = 1e-5;
     while (goal_m - x > 1e-6) {
@@ -218,7 +218,7 @@ TEST_CASE("a dead incarnation whose clock was ahead does not override its succes
   CHECK(metrics.arrived() == 1);
 }
 
-TEST_CASE("the status of a fencing incarnation counts only if no other incarnation reports") {
+TEST_CASE("the status of a fencing agent counts only if no other incarnation of the agent reports") {
   RunMetrics metrics(kTwo);
   metrics.on_coordinator(state(1, 0, kGranting));
   metrics.on_truth(truth(1, 1, {body(3, 1, 0)}));
@@ -413,7 +413,7 @@ TEST_CASE("a process's latest counters are summed over robots and incarnations")
   CHECK_THAT(summary(report), ContainsSubstring("refused: 100 other_rules by simulator\n"));
 }
 
-TEST_CASE("memory for counters is bounded, however many processes, incarnations and robots appear") {
+TEST_CASE("memory for counters is bounded when thousands of processes, incarnations and robots appear") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);
@@ -427,7 +427,7 @@ TEST_CASE("memory for counters is bounded, however many processes, incarnations 
   CHECK(report.counters.at("monitor").at(DropReason::kUnusedByMonitor) == 5000);
 }
 
-TEST_CASE("a process that was restarted very often is still counted, and nothing is counted twice") {
+TEST_CASE("the counters of a process that was restarted very often are summed without double counting") {
   RunMetrics metrics(kTwo);
   DropCounters drops;
   drops.count(DropReason::kOtherRules);
@@ -449,7 +449,7 @@ msg::WorldState world(double at_s, double x_m, double vx_mps) {
   return message;
 }
 
-TEST_CASE("without ground truth a robot has arrived if its agent says so and vision shows it at its goal") {
+TEST_CASE("without ground truth a robot has arrived if its agent and vision report it at its goal") {
   RunMetrics metrics(kTwo);
   CHECK_FALSE(metrics.has_seen_robots());
   metrics.on_status(status(3, 1, msg::AgentState::AGENT_ARRIVED));
@@ -465,7 +465,7 @@ TEST_CASE("without ground truth a robot has arrived if its agent says so and vis
   CHECK(metrics.arrived() == 1);
   metrics.on_status(status(3, 2, msg::AgentState::AGENT_DRIVING));
   CHECK(metrics.arrived() == 0);
-  // Ground truth takes precedence once there is any.
+  // Ground truth takes precedence once it is received.
   metrics.on_status(status(3, 3, msg::AgentState::AGENT_ARRIVED));
   metrics.on_truth(truth(1, 4, {body(3, 0.5, 0)}));
   metrics.on_world_state(world(5, 1, 0));

@@ -107,7 +107,7 @@ TEST_CASE("bag merge orders messages by their time of reception") {
   CHECK_FALSE(std::filesystem::exists(folder.file("e.mcap")));
 }
 
-TEST_CASE("bag cut uses the part of a damaged recording before the damage, and reports the damage") {
+TEST_CASE("bag cut copies a damaged recording up to the damage and reports the damage") {
   const TemporaryFolder folder;
   record(folder.file("a.mcap"), 1000, 2500);
   std::filesystem::resize_file(folder.file("a.mcap"), std::filesystem::file_size(folder.file("a.mcap")) / 2);

@@ -162,7 +162,7 @@ TEST_CASE("reading a damaged MCAP file does no harm and reports the damage") {
   }
 }
 
-TEST_CASE("sizes that an MCAP file merely claims allocate no memory") {
+TEST_CASE("no memory is allocated for sizes that an MCAP file states without containing the data") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const std::string magic(kMcapMagic.begin(), kMcapMagic.end());
@@ -179,10 +179,10 @@ TEST_CASE("sizes that an MCAP file merely claims allocate no memory") {
   CHECK(read(file).damage == "a chunk claims to contain 209715200 bytes, more than the limit of 67108864");
 }
 
-TEST_CASE("schemas and channels cannot exhaust memory, however many and large they are") {
+TEST_CASE("an MCAP file with many large schemas and channels is refused before it exhausts memory") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
-  // The same schema again and again: number 7, without a name and encoding, with a megabyte of text.
+  // A schema record, which the file repeats: number 7, without name and encoding, with a megabyte of text.
   const std::string text(1 << 20, 'x');
   const std::string schema = std::string("\x03\x0e\x00\x10\x00\x00\x00\x00\x00", 9) +
                              std::string("\x07\x00", 2) + std::string(8, '\0') +
@@ -195,7 +195,7 @@ TEST_CASE("schemas and channels cannot exhaust memory, however many and large th
   CHECK_THAT(read(file).damage, ContainsSubstring("schemas and channels take more than"));
 }
 
-TEST_CASE("a chunk that contains anything but schemas, channels and messages counts as damaged") {
+TEST_CASE("a chunk with records other than schemas, channels and messages counts as damaged") {
   const TemporaryFolder folder;
   const std::string file = folder.file("test.mcap");
   const auto kind = GENERATE(McapRecordKind::kAttachment, McapRecordKind::kMetadata, McapRecordKind::kChunk,
@@ -256,7 +256,7 @@ TEST_CASE("a file that is not an MCAP file is rejected with its name") {
   CHECK_THROWS_WITH(full.close(), "/dev/full: No space left on device");
 }
 
-TEST_CASE("a recording that cannot be written is reported once, as soon as that is known") {
+TEST_CASE("a failure to write a recording is reported once, as soon as it occurs") {
   McapWriter full("/dev/full");
   std::vector<std::string> failures;
   full.on_failure([&](const std::string& failure) { failures.push_back(failure); });

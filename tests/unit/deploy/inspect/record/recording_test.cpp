@@ -30,8 +30,8 @@ void write(const std::string& path, const std::vector<char>& bytes) {
   std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-/// Records a scenario for this long and returns the live auditor's findings. `prepare` may change the system
-/// before it runs.
+/// Records a scenario for `duration` and returns the totals of the live auditor. `prepare` may change the
+/// system before it runs.
 AuditTotals record_run(
     const std::string& path, Duration duration,
     const std::function<void(SimSystem&)>& prepare = [](SimSystem&) {},
@@ -135,7 +135,7 @@ TEST_CASE("a truncated recording is played up to the cut, and the truncation is 
     write(file, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
     const AuditedPlayback played = play(file);
     CHECK(played.result.messages > before);
-    // The file grows nearly evenly with the messages; less so in the middle of compressed blocks.
+    // The file grows nearly in proportion to the messages, except within compressed blocks.
     CHECK(played.result.messages > static_cast<double>(all * tenth) / 10 * (is_compressed ? 0.6 : 0.9));
     CHECK(played.result.messages < all);
     CHECK(played.result.damage != "");
@@ -220,7 +220,7 @@ TEST_CASE("a recording shows the robots in other programs' 3-D panels") {
   CHECK(scenes >= 7);
 }
 
-TEST_CASE("events that no message describes are recorded and played back in order") {
+TEST_CASE("events of the run that are not messages are recorded and played back in order") {
   const TemporaryFolder folder;
   {
     RecordingWriter writer(folder.file("a.mcap"), {"one", "robots: []\n", nullptr, true});

@@ -55,7 +55,7 @@ int replay(std::vector<std::string> arguments) {
   return action();
 }
 
-/// Runs a replay in another thread, with a bus of the same domain in this one. Returns the exit code.
+/// Runs a replay in a new thread, and a bus of the same domain in this thread. Returns the exit code.
 int replay_beside(DdsBus& bus, const std::vector<std::string>& arguments) {
   std::atomic<bool> is_over = false;
   int exit_code = -1;
@@ -88,7 +88,7 @@ TEST_CASE("a replay writes each message as recorded at its recorded time") {
     CHECK(headers[i].message_number() == i + 1);
     CHECK(headers[i].stamp_ns() == static_cast<std::int64_t>((i + 1) * 20'000'000));
   }
-  // 9 intervals of 20 ms at half speed.
+  // The recording has 9 intervals of 20 ms and is played at half speed.
   CHECK(to_seconds(received.back() - received.front()) > 0.3);
 }
 

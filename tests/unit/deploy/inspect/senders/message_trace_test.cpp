@@ -34,7 +34,7 @@ TEST_CASE("missed messages are counted by the gaps in message numbers") {
   CHECK(trace.record(2, head_of(1, 0), now).is_newest);
 }
 
-TEST_CASE("messages before the first received one are neither received nor missed") {
+TEST_CASE("messages before the first received message count as neither received nor missed") {
   MessageTrace trace(5ms);
   const Time now = time_from_ns(1'000'000'000);
   for (const std::uint64_t number : {10u, 12u, 9u, 8u}) (void)trace.record(1, head_of(number, 0), now);
@@ -52,7 +52,7 @@ TEST_CASE("received and missed messages agree with sets of their numbers") {
     std::vector<std::pair<double, std::uint64_t>> arrivals;
     for (std::uint64_t number = 1 + rng.below(1000), left = 500; left > 0; ++number, --left) {
       for (int copy = 0; copy < 2; ++copy) {
-        // Delayed by up to thirty messages.
+        // Messages are delayed by up to thirty messages.
         if (copy == 0 ? !rng.chance(loss) : rng.chance(0.1))
           arrivals.emplace_back(static_cast<double>(number) + rng.uniform(0, 30), number);
       }

@@ -9,7 +9,7 @@
 namespace sidestep {
 
 /// Fails the test unless an independently decoded message equals the output of describe(), which has words
-/// for enumerators, leaves out the unused elements of arrays, and sums up histograms.
+/// for enumerators, omits the unused elements of arrays, and replaces histograms by quantiles.
 inline void require_same_fields(const nlohmann::ordered_json& described,
                                 const nlohmann::ordered_json& decoded) {
   if (described.is_object() && !described.contains("p50_us")) {

@@ -46,7 +46,7 @@ std::string idl_body(const std::string& idl, const std::string& declaration) {
   return idl.substr(open + 1, idl.find('}', open) - open - 1);
 }
 
-/// The last word of each piece that ends with the separator.
+/// The last word before each separator.
 std::vector<std::string> last_words(const std::string& text, char separator) {
   const std::string blanks = " \n";
   std::istringstream pieces(text);
@@ -216,7 +216,7 @@ TEST_CASE("text is described as text and an image by its size") {
   msg::ClockReading reading;
   reading.place().assign(text.begin(), text.end());
   CHECK(describe(topics::kClockReading, &reading)["place"] == text);
-  // Larger than the number of elements that a message of numbers may have.
+  // An image may have more bytes than other sequences may have elements.
   msg::CameraImage image;
   image.pixels().assign(12'000'000, 'a');
   image.image_format(msg::ImageFormat::IMAGE_RGB);
@@ -231,7 +231,7 @@ TEST_CASE("laser beams without a range are described in words") {
   CHECK(describe(topics::kScan, &scan)["ranges_m"] == Json{1.5, "no hit", "too near", "lost"});
 }
 
-TEST_CASE("an enumerator is described by the words of its IDL name, and an unknown one by its number") {
+TEST_CASE("an enumerator is described by the words of its IDL name, and an unknown value by its number") {
   const std::string idl = without_comments(idl_text());
   const auto check = [&](const char* name, const std::string& prefix, auto describe_value) {
     const std::vector<std::string> enumerators = idl_enumerators(idl, name);
@@ -295,7 +295,7 @@ TEST_CASE("an enumerator is described by the words of its IDL name, and an unkno
   });
 }
 
-TEST_CASE("logs and pages use the same words for enumerators as descriptions") {
+TEST_CASE("logs and web pages use the same words for enumerators as describe()") {
   const std::string idl = without_comments(idl_text());
   const auto check = [&](const char* name, const std::string& prefix, const auto& texts) {
     const std::vector<std::string> enumerators = idl_enumerators(idl, name);
@@ -327,7 +327,7 @@ TEST_CASE("the README of the audit lists every drop reason") {
   }
 }
 
-TEST_CASE("a count beyond its array shows the whole array and the unmodified count") {
+TEST_CASE("a count larger than its array is shown unchanged, with the whole array") {
   msg::Proposal proposal;
   proposal.candidate_count(255);
   proposal.candidates()[0].phase_count(200);

@@ -135,7 +135,7 @@ TEST_CASE("a rate is the number of gaps per second, shown with the shortest and 
   CHECK(rate.bytes_per_second == Approx(400 / 0.040));
 }
 
-TEST_CASE("a gap that spans two calls is not lost") {
+TEST_CASE("a gap that spans two calls of take_recent() is reported by the second call") {
   RateMeter meter;
   meter.add(at_ms(0), 1);
   meter.add(at_ms(10), 1);
@@ -150,7 +150,7 @@ TEST_CASE("a gap that spans two calls is not lost") {
   CHECK(meter.total().samples == 3);
 }
 
-TEST_CASE("simultaneous samples have no rate") {
+TEST_CASE("samples that all arrive at the same time have a rate of 0") {
   RateMeter meter;
   meter.add(at_ms(5), 10);
   meter.add(at_ms(5), 10);
@@ -158,7 +158,7 @@ TEST_CASE("simultaneous samples have no rate") {
   CHECK(meter.total().bytes_per_second == 0);
 }
 
-TEST_CASE("the table names the first members of a fleet and counts them all") {
+TEST_CASE("the table of topics names the first agents of a fleet and counts all of them") {
   std::vector<DiscoveredEndpoint> endpoints{endpoint("vision", true, false)};
   for (int i = 0; i < 22; ++i) endpoints.push_back(endpoint("agent-" + std::to_string(i), false, false));
   const std::string table = topic_table(endpoints);
@@ -168,7 +168,7 @@ TEST_CASE("the table names the first members of a fleet and counts them all") {
   CHECK_THAT(table, !ContainsSubstring("MISMATCH"));
 }
 
-TEST_CASE("the table shows a mismatch with the affected endpoints") {
+TEST_CASE("the table of topics shows a mismatch with the affected endpoints") {
   const std::string table = topic_table(
       {endpoint("vision", true, false), endpoint("logger", false, true), endpoint("agent", false, false)});
   CHECK_THAT(table, ContainsSubstring(
@@ -259,7 +259,7 @@ TEST_CASE("lost, repeated, reordered and late messages of a topic are counted by
   CHECK_THAT(table, Matches("[^]*\ncoordinator \\(2\\) +1 +0 +0 +0  0\\.000 [^]*"));
 }
 
-TEST_CASE("of very many senders of a topic, the most recently heard are shown") {
+TEST_CASE("if a topic has thousands of senders, the most recently heard senders are shown") {
   SenderMeter meter;
   for (std::uint32_t i = 0; i < SenderMeter::kMaxStreams + 5; ++i) {
     msg::Header header;
@@ -327,7 +327,7 @@ TEST_CASE("topic echo prints other programs' topics by a user-supplied IDL file"
   CAPTURE(outcome.out, outcome.err);
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.out, Matches("[^\n]*frames[^\n]*\n[^\n]*77[^\n]*\n[^\n]*77[^\n]*\n"));
-  // The bytes are not a message of another type.
+  // The bytes cannot be decoded as a message of another type.
   const Outcome wrong = topic(
       {"echo", "world", "--idl", folder.file("world.idl"), "--type", "sidestep::msg::GroundTruth", "--once"});
   CHECK(wrong.exit_code == kExitFailure);

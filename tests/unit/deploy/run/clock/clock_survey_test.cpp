@@ -33,7 +33,7 @@ struct Scene {
   }
 };
 
-TEST_CASE("a process's clock is compared with this machine's or another process's") {
+TEST_CASE("a process's clock is compared with the clock of this machine or of another process") {
   Scene scene;
   scene.ask(3, 10ms);
   scene.ask(kCoordinator, 9ms);
@@ -52,7 +52,7 @@ TEST_CASE("a process's clock is compared with this machine's or another process'
   CHECK(scene.row(3, 77).verdict == ClockVerdict::kNotMeasured);
 }
 
-TEST_CASE("a clock is within the bound, beyond it, or its interval is too wide to tell") {
+TEST_CASE("a clock is reported as within the bound, beyond the bound or too uncertain to tell") {
   Scene scene;
   scene.ask(0, 0s);
   scene.ask(1, 300us);
@@ -80,7 +80,7 @@ TEST_CASE("clocks agree if each is measured and none is proven to be beyond the 
   CHECK_FALSE(all_agree(scene.survey.rows(scene.now, {})));
 }
 
-TEST_CASE("answers to others, to probes that were never sent, and from earlier runs do not count") {
+TEST_CASE("answers to other clients, to unsent probes and from earlier runs of a process are ignored") {
   Scene scene;
   const auto answer = [&](std::uint32_t client, Time sent) {
     return ClockAnswer{3, 1, client, sent, scene.now, scene.now, 0s, 0.0005, "host", "scenario"};
@@ -97,7 +97,7 @@ TEST_CASE("answers to others, to probes that were never sent, and from earlier r
   CHECK(scene.row(3).offset->high < Duration(1ms));
 }
 
-TEST_CASE("a process that falls silent is first marked as not measured and then left out") {
+TEST_CASE("a process that falls silent is first marked as not measured and then removed") {
   Scene scene;
   scene.ask(3, 0s);
   scene.now += 3s;

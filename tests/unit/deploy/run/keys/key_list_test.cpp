@@ -13,8 +13,7 @@ std::vector<std::string> texts(const std::vector<std::string>& words) {
   return result;
 }
 
-TEST_CASE(
-    "identities are listed one after another, and a range gives one key per process except for robots") {
+TEST_CASE("a range of numbers gives one key per process, except that a range of robots gives one key") {
   using Texts = std::vector<std::string>;
   CHECK(texts({"agent", "3"}) == Texts{"agent 3"});
   CHECK(texts({"agent 3"}) == Texts{"agent 3"});

@@ -37,7 +37,7 @@ TEST_CASE("private keys are readable only by their owner") {
   CHECK(fs::status(keys.folder() + "/private").permissions() == fs::perms::owner_all);
 }
 
-TEST_CASE("the two authorities are different") {
+TEST_CASE("the authorities for identities and permissions have different keys") {
   const TestKeys keys({});
   const auto load = [&](const char* name) { return Certificate::load(keys.folder() + "/public/" + name); };
   const Certificate identities = load(key_files::kIdentityAuthority),
@@ -54,7 +54,7 @@ TEST_CASE("new authorities never overwrite keys") {
   CHECK_THROWS_WITH(KeyStore(keys.folder() + "/public"), ContainsSubstring("sidestep keys init"));
 }
 
-TEST_CASE("a new key replaces the former one, which stays valid until it is revoked") {
+TEST_CASE("a new key replaces the former key, which stays valid until it is revoked") {
   TestKeys keys({"agent", "3"});
   const std::string first = Certificate::load(keys.folder_of("agent 3") + "/cert.pem").serial();
   keys.issue({Role::kAgent, 3, 3});
@@ -82,12 +82,12 @@ TEST_CASE("revoking one identity does not affect the others") {
   CHECK_THROWS(keys.folder_of("agent 4"));
 }
 
-TEST_CASE("several identities are revoked at once, whether or not some of them already are") {
+TEST_CASE("several identities are revoked together even if some of them are already revoked") {
   TestKeys keys({"agent", "0-3"});
   const std::vector<Identity> all{
       {Role::kAgent, 0, 0}, {Role::kAgent, 2, 2}, {Role::kAgent, 3, 3}, {Role::kVision}};
   CHECK(keys.revoke(all[1]) == 1);
-  // The leftovers of a killed process, and a file that is not a certificate.
+  // A file that a killed process has left, and a file that is not a certificate.
   write_file(keys.folder() + "/public/issued/ab.pem.4711.tmp", "half");
   write_file(keys.folder() + "/public/issued/77.pem", "none");
   const auto done = keys.store().revoke(all, keys.now());
@@ -147,7 +147,7 @@ void interleave(int rounds, std::uint64_t seed) {
   int killed = 0;
   for (int round = 0; round < rounds; ++round) {
     CAPTURE(round);
-    // A list of several hundred keys takes long to read.
+    // Reading a list of several hundred keys takes long.
     if (round % 50 == 49) {
       keys = std::make_unique<TestKeys>(std::vector<std::string>{"agent", "0-3"});
       revoked.clear();
@@ -198,7 +198,7 @@ void interleave(int rounds, std::uint64_t seed) {
   CHECK(killed > rounds / 10);
 }
 
-TEST_CASE("a key reported as revoked stays revoked, whatever other processes do and however they die") {
+TEST_CASE("a key reported as revoked stays revoked while other processes change the folder and are killed") {
   interleave(200, 71);
 }
 

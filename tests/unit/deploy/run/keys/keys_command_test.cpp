@@ -40,7 +40,7 @@ TEST_CASE("keys are made, replaced, revoked and shown") {
   CHECK(run({"keys", "issue", "agent", "3", "--again", "--days", "2", "--keys", keys}).empty());
   CHECK(Certificate::load(agent + "/cert.pem").serial() != first);
   const Certificate second = Certificate::load(agent + "/cert.pem");
-  // Hosts whose clocks are slightly behind accept it, too.
+  // Hosts whose clocks are slightly behind accept the key.
   CHECK(second.not_after() - second.not_before() == std::chrono::hours(48) + std::chrono::minutes(10));
   CHECK(run({"keys", "show", "--keys", keys}).empty());
   CHECK(run({"keys", "revoke", "agent", "3", "--keys", keys}).empty());
@@ -51,7 +51,7 @@ TEST_CASE("keys are made, replaced, revoked and shown") {
   CHECK_FALSE(fs::exists(keys + "/enclaves/vision"));
 }
 
-TEST_CASE("all keys of a scenario are made at once, and existing ones stay") {
+TEST_CASE("all keys of a scenario are made with one command, and existing keys stay") {
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys");
   const std::string scenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
@@ -63,7 +63,7 @@ TEST_CASE("all keys of a scenario are made at once, and existing ones stay") {
   CHECK(Certificate::load(keys + "/enclaves/agent-3/cert.pem").serial() == first);
 }
 
-TEST_CASE("usage errors are explained") {
+TEST_CASE("an error about wrong usage states the mistake") {
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys");
   CHECK_THAT(run({"keys", "issue", "vision", "--keys", keys}),
@@ -91,7 +91,7 @@ TEST_CASE("new keys and revocations are valid even on hosts whose clocks are ten
   CHECK_NOTHROW(load_key_folder(agent, behind));
 }
 
-TEST_CASE("a user who may not read the authorities' keys gets an error that says so") {
+TEST_CASE("a user without read permission for the authorities' keys gets an error that states this") {
   SIDESTEP_NEEDS_ROOT();
   const TemporaryFolder temporary;
   const std::string keys = temporary.file("keys"), closed = keys + "/private";

@@ -26,7 +26,7 @@ namespace {
 struct Fixture {
   Fixture() {
     std::string name = (fs::temp_directory_path() / "sidestep-ssh-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
+    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
     folder = name;
     write("ssh", "#!/bin/sh\nwhile [ \"${1#-}\" != \"$1\" ]; do shift; done\necho \"$1\" >" + path("target") +
                      "\nshift\nexec sh -c \"$*\"\n");
@@ -55,7 +55,7 @@ struct Fixture {
     std::ifstream file(path(name));
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  /// Waits until a file exists, or until it no longer does.
+  /// Waits until a file exists, or until it does not exist.
   bool wait_for(ProcessGroup& group, const std::string& file, bool exists = true) const {
     const Time deadline = EventLoop::now() + std::chrono::seconds(30);
     while (fs::exists(file) != exists && EventLoop::now() < deadline)
@@ -98,7 +98,7 @@ TEST_CASE("a local process is started directly, and a process in a namespace by 
         expected);
 }
 
-TEST_CASE("agents run at low priority except on robots' own computers") {
+TEST_CASE("agents run at low priority except on hosts that are robots' own computers") {
   const Fixture fixture;
   ProcessSpec vision = agent_spec(fixture);
   vision.program = "sidestep-vision";
@@ -157,7 +157,7 @@ TEST_CASE("over ssh the process gets its own keys, and no other user there can r
   CHECK(to_text(copied.identity) == "agent 3");
   for (const char* name : key_files::kAll) CHECK_FALSE(fs::is_symlink(copied.file(name)));
 
-  // A new list of revoked keys replaces the former one.
+  // A new list of revoked keys replaces the former list.
   RevokedKeys revoked(process.keys);
   const Time now = EventLoop::now();
   CHECK_FALSE(revoked.changed(now));

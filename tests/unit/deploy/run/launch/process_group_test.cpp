@@ -108,13 +108,13 @@ TEST_CASE("a child runs at the requested priority") {
   wait_for_line(group, "polite", std::to_string(std::min(getpriority(PRIO_PROCESS, 0) + 3, 19)));
 }
 
-TEST_CASE("a program that does not exist is rejected at once") {
+TEST_CASE("starting a program that does not exist throws an exception") {
   ProcessGroup group(log_path());
   CHECK_THROWS_WITH(group.start({"ghost", {"/nowhere/ghost"}, false}),
                     ContainsSubstring("cannot start ghost (/nowhere/ghost): No such file"));
 }
 
-TEST_CASE("a program that cannot be executed says why in its last lines") {
+TEST_CASE("if a program cannot be executed, the last lines of the child state the reason") {
   const std::string path = log_path() + ".script";
   std::ofstream(path) << "not a program\n";
   std::filesystem::permissions(path, std::filesystem::perms::owner_all);
@@ -147,7 +147,7 @@ TEST_CASE("a child with `restart` is started again as a new process after each d
   CHECK(group.poll(0ms).empty());
 }
 
-TEST_CASE("a child that keeps dying is restarted less and less often, but promptly after a long life") {
+TEST_CASE("a child that keeps dying is restarted with growing delays, and promptly after a long life") {
   ProcessGroup group(log_path());
   pid_t pid = group.start(shell("mortal", "exec sleep 1000", true));
   const auto restart_delay = [&] {
@@ -162,7 +162,7 @@ TEST_CASE("a child that keeps dying is restarted less and less often, but prompt
   CHECK(restart_delay() < 1s);
   for (int i = 0; i < 3; ++i) (void)restart_delay();
   CHECK(restart_delay() > 1500ms);
-  // Lives for more than two seconds.
+  // The child lives for more than two seconds.
   CHECK(group.poll(2100ms).empty());
   CHECK(restart_delay() < 1s);
   CHECK(restart_delay() < 1s);
@@ -205,7 +205,7 @@ TEST_CASE("terminating ends children by SIGTERM, then by SIGKILL, and restarts n
   CHECK(group.poll(0ms).empty());
 }
 
-TEST_CASE("a restarted child reads its input again, and a child ends when its stdin is closed") {
+TEST_CASE("a restarted child reads its input again, and terminating closes a child's stdin") {
   ProcessGroup group(log_path());
   const std::string text(100'000, 'x');
   group.start({"reader", {"/bin/sh", "-c", "head -c 100000 | wc -c; read end; echo over"}, true, text});
@@ -222,7 +222,7 @@ TEST_CASE("a restarted child reads its input again, and a child ends when its st
   CHECK(twice.last_lines("reader") == std::vector<std::string>{"abc", "abc"});
 }
 
-TEST_CASE("a child gets more input while it runs, and all of it again after a restart") {
+TEST_CASE("input can be added while a child runs, and a restarted child gets all input again") {
   ProcessGroup group(log_path());
   const auto until = SteadyClock::now() + kDeadline;
   const auto wait_for_lines = [&](std::vector<std::string> expected) {
@@ -244,7 +244,7 @@ TEST_CASE("a child gets more input while it runs, and all of it again after a re
   CHECK(group.last_lines("deaf") == std::vector<std::string>{"end"});
 }
 
-TEST_CASE("a child can get more input than its stdin holds, and one that does not read does no harm") {
+TEST_CASE("input may exceed the buffer of a child's stdin, and a child that does not read does no harm") {
   ProcessGroup group(log_path());
   const std::string text(8 << 20, 'x');
   group.start({"reader", {"/bin/sh", "-c", "head -c 8388608 | wc -c"}, false, text});

@@ -120,7 +120,7 @@ TEST_CASE("a director's failed request throws an exception in the director") {
   CHECK(code == 0);
 }
 
-TEST_CASE("a director that is asked to end may finish its work, but is not replaced if it dies instead") {
+TEST_CASE("a director that is asked to end may finish its work and is not replaced if it dies") {
   Fixture f;
   const pid_t self = getpid();
   const auto ends_well = [&](Processes& processes, const Deaths&) {
@@ -154,7 +154,7 @@ TEST_CASE("a director that is ending its processes is not asked to end again and
   const pid_t self = getpid();
   const auto ends_slowly = [&](Processes& processes, const Deaths&) {
     obey_sigterm();
-    // Ends later than the keeping process would ask again.
+    // The agent ends only after the time at which the keeping process would ask the director again.
     (void)processes.start(
         shell("agent", "trap 'sleep 1.5; exit 0' TERM; echo ready; while :; do sleep 0.01; done"));
     wait_for([&] { return !processes.last_lines("agent").empty(); });
@@ -192,7 +192,7 @@ TEST_CASE("a stopped director that is asked to end is killed and reported, and i
   f.shutdown_timeout = 500ms;
   const pid_t self = getpid();
   const int code = f.keep([&](Processes& processes, const Deaths&) {
-    obey_sigterm();  // the signal may come before the next line but one
+    obey_sigterm();  // the signal may arrive before kill() returns
     write_file(f.file("pid"), std::to_string(processes.start(shell("agent", "exec sleep 1000"))));
     kill(self, SIGINT);
     std::raise(SIGSTOP);

@@ -7,7 +7,7 @@
 
 namespace sidestep::goal_text_test {
 
-TEST_CASE("a goal is a place with or without a heading") {
+TEST_CASE("a goal is parsed from a place with or without a heading") {
   CHECK(parse_goal("1.2,-0.4").position_m == Vec2(1.2, -0.4));
   CHECK_FALSE(parse_goal("1.2,-0.4").heading_rad);
   CHECK(parse_goal("-1,2,1.5").heading_rad == 1.5);

@@ -18,7 +18,7 @@ std::string usage_error(const std::vector<std::string>& arguments) {
   return action ? "" : "no action";
 }
 
-TEST_CASE("orders on the command line are checked before anything is sent") {
+TEST_CASE("an invalid order on the command line is rejected before anything is sent") {
   CHECK(usage_error({"go", "3", "1.2,-0.4"}).empty());
   CHECK(usage_error({"go", "3", "-1.2,-0.4", "0,0,1.57", "--wait", "--speed", "0.5"}).empty());
   CHECK(usage_error({"go", "--file", "goals.yaml"}).empty());
@@ -40,7 +40,7 @@ TEST_CASE("orders on the command line are checked before anything is sent") {
   CHECK_THAT(usage_error(many), ContainsSubstring("at most 64"));
 }
 
-TEST_CASE("zones on the command line are checked before anything is sent") {
+TEST_CASE("an invalid zone on the command line is rejected before anything is sent") {
   CHECK(usage_error({"zone", "1", "0,0", "1,0", "1,1"}).empty());
   CHECK(usage_error({"zone", "1", "-1,-0.5", "--radius", "0.3", "--speed", "0.5"}).empty());
   CHECK(usage_error({"zone", "4294967295", "0,0", "1,0", "--radius", "0.3", "--client", "ball"}).empty());

@@ -18,7 +18,7 @@ std::string usage_error(const std::vector<std::string>& arguments) {
   return action ? "" : "no action";
 }
 
-TEST_CASE("referee commands are checked before anything is sent") {
+TEST_CASE("an invalid referee command is rejected before anything is sent") {
   CHECK(usage_error({"referee", "HALT"}).empty());
   CHECK(usage_error({"referee", "BALL_PLACEMENT_BLUE", "--place", "-1,0.5"}).empty());
   CHECK_THAT(usage_error({"referee"}), ContainsSubstring("COMMAND"));

@@ -7,7 +7,7 @@
 
 namespace sidestep::zone_text_test {
 
-TEST_CASE("a zone has corners, and needs a radius if the corners alone enclose no area") {
+TEST_CASE("a zone needs corners, and also a radius if the corners enclose no area") {
   const Zone disc = parse_zone({"1,-2"}, 0.3, std::nullopt);
   REQUIRE(disc.corners_m.size() == 1);
   CHECK(disc.corners_m[0] == Vec2(1, -2));

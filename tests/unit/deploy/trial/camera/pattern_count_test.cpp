@@ -39,7 +39,7 @@ bool are_similar(const ColourMap& a, const ColourMap& b) {
   return true;
 }
 
-/// Compares every colouring with all accepted ones under every rotation that could map one dot to another.
+/// Counts colourings that differ from all counted ones under every rotation that could map a dot to another.
 std::uint64_t slow_count(const MarkerLayout& layout, std::uint64_t colours) {
   const std::size_t dots = layout.dots.size();
   std::set<double> angles;
@@ -61,7 +61,7 @@ std::uint64_t slow_count(const MarkerLayout& layout, std::uint64_t colours) {
     bool is_unique = true;
     for (const double a : angles) {
       const ColourMap rotated_map = colour_map(layout, pattern, a);
-      // Angles near a multiple of a full turn are the identity.
+      // A rotation by nearly a multiple of a full turn is the identity.
       const bool is_rotation = std::abs(std::remainder(a, 2 * std::numbers::pi)) > 1e-3;
       if (is_rotation && are_similar(rotated_map, unrotated)) is_unique = false;
       for (const ColourMap& other : accepted)
@@ -98,7 +98,7 @@ TEST_CASE("known numbers of patterns are reproduced") {
     CHECK(countable_patterns(random_rings(beads, 1, rng), 2) == necklaces[beads - 2]);
 }
 
-TEST_CASE("a dot of another size or position breaks a symmetry") {
+TEST_CASE("a dot of a different size or position breaks a symmetry") {
   Rng rng(23);
   MarkerLayout layout = random_rings(4, 1, rng);
   CHECK(rotational_symmetries(layout).size() == 4);

@@ -10,7 +10,7 @@ using State = AttestationExchange::State;
 
 constexpr Time kBegin = time_from_ns(1'000'000'000);
 
-TEST_CASE("an attestation is repeated until the coordinator no longer waits for the robot") {
+TEST_CASE("an attestation is repeated until the coordinator stops waiting for the robot") {
   AttestationExchange exchange(7, kBegin);
   CHECK(exchange.update(true, kBegin));
   CHECK_FALSE(exchange.update(true, kBegin + 199ms));
@@ -18,12 +18,12 @@ TEST_CASE("an attestation is repeated until the coordinator no longer waits for 
   CHECK(exchange.state() == State::kPending);
   CHECK_FALSE(exchange.update(false, kBegin + 300ms));
   CHECK(exchange.state() == State::kAccepted);
-  // A new epoch may await the robot again, but then the operator must check again.
+  // In a new epoch the coordinator may wait for the robot again, but then the operator must check again.
   CHECK_FALSE(exchange.update(true, kBegin + 1s));
   CHECK(exchange.state() == State::kAccepted);
 }
 
-TEST_CASE("an attestation ends after a timeout and says why") {
+TEST_CASE("an attestation that is not accepted ends after a timeout with the reason") {
   AttestationExchange exchange(7, kBegin);
   const bool is_missing = GENERATE(true, false);
   CAPTURE(is_missing);

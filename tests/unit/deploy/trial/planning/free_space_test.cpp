@@ -9,7 +9,7 @@
 
 namespace sidestep::free_space_test {
 
-/// Labels the connected cells of a grid by flood fill. Distances come from signed_distance alone.
+/// Labels the connected cells of a grid by flood fill, with distances from signed_distance().
 class Grid {
  public:
   Grid(const PlanWorld& world, double cell_m) : cell_m_(cell_m) {
@@ -29,11 +29,11 @@ class Grid {
   Vec2 centre_m(int i) const { return corner_m_ + cell_m_ * Vec2(i % columns_, i / columns_); }
   int size() const { return columns_ * rows_; }
 
-  /// Two cells with the same label are joined by a free path: between the centres of neighbours, every point
-  /// is within half a cell of one of the centres.
+  /// Labels cells so that cells with the same label are joined by a free path: every point between the
+  /// centres of neighbours is within half a cell of one of the centres.
   std::vector<int> surely_joined() const { return labels(cell_m_ / 2, false); }
-  /// Two cells with different labels are not joined by any free path: each cell with a free point counts, and
-  /// a path may pass diagonally from one cell to the next.
+  /// Labels cells so that cells with different labels are not joined by any free path: each cell with a free
+  /// point has a label, and a path may pass diagonally from a cell to the next.
   std::vector<int> possibly_joined() const { return labels(-cell_m_ * std::sqrt(0.5) - 1e-9, true); }
 
  private:
@@ -69,7 +69,7 @@ class Grid {
   std::vector<double> clearance_m_;
 };
 
-/// Obstacles of all kinds, enough of them to enclose some free positions.
+/// A world with enough obstacles of all kinds to enclose some free positions.
 PlanWorld crowded_world(std::uint64_t seed) {
   Rng rng(seed);
   PlanWorld world;
@@ -149,7 +149,7 @@ TEST_CASE("free space connects and separates the same positions as a flood fill"
   CHECK(undecided < joined / 10);
 }
 
-TEST_CASE("free space distinguishes a gap a nanometre too narrow from one a nanometre wider than needed") {
+TEST_CASE("a gap 1 nm wider than needed connects positions, and a gap 1 nm too narrow does not") {
   PlanWorld world;
   world.radius_m = 0.1;
   for (const double excess_m : {-1e-9, 1e-9}) {
@@ -175,14 +175,14 @@ TEST_CASE("a closed ring separates its inside from its outside, but an open ring
                   ".#####.", ".#.a.#.", ".#....b", ".#####."}));
 }
 
-TEST_CASE("a wall from side to side separates, even if its boxes meet only at corners") {
+TEST_CASE("a wall from side to side separates positions even if its boxes meet only at corners") {
   CHECK_FALSE(connects({"a.#....",  //
                         "..#....", "...#...", "....#.b"}));
   CHECK(connects({"a.#....",  //
                   "..#....", ".......", "....#.b"}));
 }
 
-TEST_CASE("two islands inside one ring do not separate, but a wall across the ring does") {
+TEST_CASE("two islands inside a ring do not separate positions, but a wall across the ring does") {
   CHECK(connects({"#########",  //
                   "#.......#", "#a.#.#.b#", "#.......#", "#########"}));
   CHECK_FALSE(connects({"#########",  //

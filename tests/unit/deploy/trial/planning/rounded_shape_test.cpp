@@ -9,7 +9,7 @@ namespace sidestep::rounded_shape_test {
 
 constexpr double kStep_m = 0.05;
 
-/// Points all over a shape without its radius, at most kStep_m apart in each direction.
+/// Points that cover a shape without its radius, at most kStep_m apart in each direction.
 std::vector<Vec2> points_of(const RoundedShape& shape) {
   const std::vector<Vec2>& corners = shape.corners_m;
   std::vector<Vec2> points;

@@ -31,7 +31,7 @@ TEST_CASE("an unknown world name is rejected") {
   CHECK_THROWS_WITH(make_world("ocean", 1, 1), ContainsSubstring("ocean") && ContainsSubstring("maze"));
 }
 
-TEST_CASE("the path check finds a path that touches an obstacle or leaves the field") {
+TEST_CASE("the path check rejects paths that touch an obstacle or leave the field") {
   PlanWorld world;
   world.obstacles = {Circle{{0, 0}, 0.5}};
   CHECK(is_valid_path(world, {{-2, 0.61}, {2, 0.61}}, 0));
@@ -42,7 +42,7 @@ TEST_CASE("the path check finds a path that touches an obstacle or leaves the fi
   CHECK_FALSE(is_valid_path(world, {}, 0));
 }
 
-TEST_CASE("the path check finds micrometre contacts between the corners of a path") {
+TEST_CASE("the path check rejects paths with micrometre contacts between their corners") {
   PlanWorld world;
   world.radius_m = 0.1;
   for (const Shape& shape :

@@ -31,8 +31,8 @@ BuildingOptions small_building(const Folder& folder) {
   return options;
 }
 
-/// The cells that are connected with a cell through cells whose centres are far enough from walls for a
-/// robot.
+/// The cells that a robot can reach from a position, through cells whose centres are far enough from walls
+/// for the robot.
 class FloodFill {
  public:
   FloodFill(const Scenario& scenario, const Vec2& from) : map_(scenario.map->cells()) {
@@ -52,7 +52,7 @@ class FloodFill {
     }
   }
 
-  /// Whether a cell within 15 cm was reached.
+  /// Whether a cell within 15 cm of `p` can be reached.
   bool reaches_near(const Vec2& p) const {
     const Cell at = map_.cell_at(p);
     for (int column = at.column - 3; column <= at.column + 3; ++column)
@@ -70,7 +70,7 @@ class FloodFill {
   std::vector<bool> reached_;
 };
 
-TEST_CASE("all places of a random building are connected, and robots are apart at each of them") {
+TEST_CASE("all places of a random building are connected, and robots at different places are apart") {
   const auto kind = GENERATE(from_range(kBuildingKinds));
   const std::uint64_t seed = GENERATE(range<std::uint64_t>(1, 6));
   CAPTURE(kind, seed);
@@ -98,7 +98,7 @@ TEST_CASE("all places of a random building are connected, and robots are apart a
   }
 }
 
-TEST_CASE("the same options give the same building, and a different seed gives a different one") {
+TEST_CASE("the same options give the same building, and a different seed gives a different building") {
   const Folder folder;
   BuildingOptions options = small_building(folder);
   write_building(options);

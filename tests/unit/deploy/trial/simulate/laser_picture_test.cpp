@@ -45,7 +45,7 @@ TEST_CASE("a picture of a laser's view shows the scan, where people may step out
   CHECK(count(svg, "<polygon") == 2);
   CHECK(count(svg, "stroke='#cf222e'") > 2);
   CHECK(count(svg, "<circle") >= 2);           // the robot and the track
-  CHECK(count(svg, "stroke='#bf8700'") == 2);  // its outline and its velocity
+  CHECK(count(svg, "stroke='#bf8700'") == 2);  // the track's outline and velocity
   CHECK(count(svg, ">7</text>") == 1);
 }
 

@@ -5,7 +5,7 @@
 
 namespace sidestep::run_picture_test {
 
-/// A robot that drives from x = 0 to x = 1 m in one second, and a resting robot that is seen half as long.
+/// The picture of a robot that drives 1 m along x in 1 s and a resting robot that is seen half as long.
 std::string picture() {
   Scenario scenario;
   scenario.robots.resize(2);
@@ -28,7 +28,7 @@ TEST_CASE(
     "in the picture of a run each robot drives from its start to its end and rests there for a moment") {
   const std::string svg = picture();
   CAPTURE(svg);
-  // 200 pixels per metre, relative to where the robot is drawn: at its end.
+  // The scale is 200 pixels per metre. Values are relative to the robot's end, where the robot is drawn.
   CHECK_THAT(svg, ContainsSubstring("values='-200,0;") && ContainsSubstring(";-100,0;"));
   CHECK_THAT(svg, ContainsSubstring(";-20,0;0,0;") || ContainsSubstring(";-20,0;-20,0;0,0;"));
   CHECK_THAT(svg, ContainsSubstring("values='0,0;0,0;"));

@@ -19,7 +19,7 @@ TEST_CASE("a range of seeds has a first and a last seed") {
   CHECK(parsed("18446744073709551615..18446744073709551615").first == 18446744073709551615U);
 }
 
-TEST_CASE("other text and more than a million seeds are rejected") {
+TEST_CASE("text that is not a range of seeds and ranges of more than a million seeds are rejected") {
   const auto text = GENERATE("", "1", "1..", "..1", "1..-1", "-1..1", "2..1", "1...2", "1..2 ", " 1..2",
                              "a..b", "1..99999999999999999999");
   CAPTURE(text);

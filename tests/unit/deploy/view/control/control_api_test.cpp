@@ -44,7 +44,7 @@ struct ControlledRun {
   double x_m(std::size_t index) const { return truth.robots()[index].x_m(); }
 };
 
-TEST_CASE("a robot is sent to a place by HTTP, and its order can be followed") {
+TEST_CASE("an HTTP request sends a robot to a place, and the state of its order can be read") {
   ControlledRun run;
   const WebResponse answer =
       run.request("POST", "/api/robots/3/order", R"({"goals": [[0, -1], [1, -1, 1.57]]})");
@@ -57,7 +57,7 @@ TEST_CASE("a robot is sent to a place by HTTP, and its order can be followed") {
   CHECK(run.x_m(0) == Approx(1).margin(0.03));
 }
 
-TEST_CASE("robots are held and resumed and orders canceled by HTTP") {
+TEST_CASE("HTTP requests hold robots, resume robots and cancel orders") {
   ControlledRun run;
   (void)run.request("POST", "/api/robots/3/order", R"({"goals": [[2, -1]]})");
   run.system.run_for(500ms);
@@ -76,7 +76,7 @@ TEST_CASE("robots are held and resumed and orders canceled by HTTP") {
   CHECK(run.x_m(0) == Approx(canceled_m).margin(0.005));
 }
 
-TEST_CASE("zones are set and removed and faults are caused by HTTP") {
+TEST_CASE("HTTP requests set zones, remove zones and cause faults") {
   ControlledRun run;
   CHECK(run.phase(run.request("POST", "/api/zones/1",
                               R"({"corners": [[0, 0], [1, 0], [1, 1]], "radius_m": 0.1})")) == "sent");
@@ -95,7 +95,7 @@ TEST_CASE("zones are set and removed and faults are caused by HTTP") {
   CHECK(parse_json(run.request("POST", "/api/recording/start").body).at("error") == "the disk is full");
 }
 
-TEST_CASE("requests without the right to command have no effect") {
+TEST_CASE("requests without the token are refused and have no effect") {
   ControlledRun run;
   for (const char* path :
        {"/api/robots/3/order", "/api/hold", "/api/zones/1", "/api/robots/3/fault", "/api/bookmark"}) {

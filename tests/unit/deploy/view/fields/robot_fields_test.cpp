@@ -48,7 +48,7 @@ TEST_CASE("a robot's navigation function falls towards its goal, and its band is
   Run run("crossing.yaml");
   const RobotId robot = run.scenario.robots[0].id;
   const Vec2 goal = run.scenario.robots[0].goals.front().position_m;
-  // Runs until the robot drives, but is not near its goal yet.
+  // Runs until the robot drives but is still far from its goal.
   const auto is_driving = [&] {
     const auto known = run.monitor.floor().robots().find(robot);
     return known != run.monitor.floor().robots().end() && known->second.granted && known->second.feedback &&
@@ -77,7 +77,7 @@ TEST_CASE("the local grid of a robot with a laser shows walls of its map") {
   Run run("house-laser.yaml");
   run.system.run_for(1s);
   const RobotId robot = run.scenario.robots[0].id;
-  (void)run.json(robot);  // simulates a viewer from now on
+  (void)run.json(robot);  // the first request of a viewer
   run.system.run_for(2s);
   const Json json = run.json(robot);
   const Json& local = json.at("local");

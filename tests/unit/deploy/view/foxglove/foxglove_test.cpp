@@ -129,7 +129,7 @@ TEST_CASE("a client gets messages only from channels that it subscribes to") {
   publish();
 }
 
-TEST_CASE("invalid messages from clients are rejected, and writing is not supported") {
+TEST_CASE("invalid messages from clients are rejected, and requests to publish get an error status") {
   FoxgloveServer server;
   FakeClient client;
   server.add(client);
@@ -143,7 +143,7 @@ TEST_CASE("invalid messages from clients are rejected, and writing is not suppor
     CHECK_FALSE(server.on_message(client, bad));
   CHECK(server.on_message(client, R"({"op":"advertise","channels":[]})"));
   CHECK(client.texts.back().at("op") == "status");
-  // The answer quotes the operation, cut off in the middle of a character.
+  // The operation is quoted in the answer and truncated in the middle of a character.
   CHECK(server.on_message(client, R"({"op":")" + std::string(99, 'a') + "\u00e9\"}"));
   CHECK(client.texts.back().at("op") == "status");
 }

@@ -25,7 +25,7 @@ struct Watched {
   }
 };
 
-TEST_CASE("each contact is one event, even if several are reported at once") {
+TEST_CASE("each contact is one event, even if one message reports several contacts") {
   Watched w;
   msg::GroundTruth truth;
   truth.header().incarnation(1);
@@ -37,11 +37,11 @@ TEST_CASE("each contact is one event, even if several are reported at once") {
   w.hear(truth);
   CHECK(w.kinds() == "contact contact contact ");
   CHECK(w.log.since(2)[0].text == "robot 0 touches an obstacle");
-  // If there are more contacts than a message lists, the latest ones are events.
+  // If a message reports more contacts than it lists, the listed contacts are events.
   truth.contacts(1'000'000);
   w.hear(truth);
   CHECK(w.log.count() == 3 + msg::MAX_CONTACTS);
-  // Another simulator starts its counts from zero.
+  // The counts of a new simulator start from zero.
   truth.header().incarnation(2);
   truth.contacts(1);
   truth.crashes_while_moving(1);
@@ -133,7 +133,7 @@ TEST_CASE("a flood of orders from made-up senders causes few events") {
     w.now += 100us;
   }
   CHECK(w.log.count() <= 2'100);
-  // Later events are shown again, and repetitions are not.
+  // Later events are logged, and repetitions are not.
   w.now += 60s;
   const std::uint64_t before = w.log.count();
   w.hear(order);
@@ -143,7 +143,7 @@ TEST_CASE("a flood of orders from made-up senders causes few events") {
   CHECK(w.log.count() == before + 1);
 }
 
-TEST_CASE("a flood of made-up senders with different rules causes few events and hides no later one") {
+TEST_CASE("a flood of made-up senders with different rules causes few events and hides no later event") {
   Watched w;
   for (std::uint32_t i = 0; i < 100'000; ++i) {
     w.watch.on_refused(1'000'000 + i, w.now);
@@ -157,7 +157,7 @@ TEST_CASE("a flood of made-up senders with different rules causes few events and
   CHECK(w.log.since(before)[0].text == "agent 3 has different rules: its messages are refused");
 }
 
-TEST_CASE("a log forgets the oldest events, and numbering continues") {
+TEST_CASE("a full event log forgets the oldest events, and numbering continues") {
   EventLog log;
   for (std::size_t i = 0; i < EventLog::kMaxEvents + 10; ++i) log.add({0, {}, Severity::kInfo, "x", "", {}});
   CHECK(log.since(0).size() == EventLog::kMaxEvents);

@@ -78,7 +78,7 @@ TEST_CASE("a viewer sees the newest moment, a paused moment or a playback") {
   CHECK(time.update(history, at_ms(1)) == at_ms(1010));
 }
 
-TEST_CASE("playing stops at either end, and times beyond the ends show the ends") {
+TEST_CASE("a playback stops at either end, and seeking beyond an end shows the end") {
   const History history = filled(100);
   ViewerTime time;
   time.play(at_ms(900), 1, at_ms(0));

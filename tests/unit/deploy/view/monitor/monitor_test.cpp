@@ -97,7 +97,7 @@ struct MonitoredRun {
   const Json& promise() const { return viewer.states.at("panels").at("promise"); }
 };
 
-TEST_CASE("viewers see where robots are, what they execute and what panels say about them") {
+TEST_CASE("viewers get robots' positions, executed versions and the data of the panels") {
   MonitoredRun run;
   run.system.run_for(2s);
   CHECK(run.viewer.frames >= 60);
@@ -132,7 +132,7 @@ TEST_CASE("a viewer that sends deeply nested JSON is disconnected") {
   CHECK_FALSE(run.send(R"({"op":)" + nested + "}"));
 }
 
-TEST_CASE("the lamp shows that the guarantee has held and states the smallest clearance") {
+TEST_CASE("after a run without violations the lamp shows a kept guarantee and the smallest clearance") {
   MonitoredRun run;
   run.system.run_for(6s);
   CHECK(run.promise().at("state") == "kept");
@@ -142,7 +142,7 @@ TEST_CASE("the lamp shows that the guarantee has held and states the smallest cl
   CHECK(run.promise().at("coverage") > 0.95);
 }
 
-TEST_CASE("without the scenario nothing is judged, and robots are found by their messages") {
+TEST_CASE("without a scenario the guarantee is not judged, and robots are found from their messages") {
   MonitoredRun run(false);
   run.system.run_for(3s);
   CHECK(run.promise().at("state") == "not judged");
@@ -153,7 +153,7 @@ TEST_CASE("without the scenario nothing is judged, and robots are found by their
 TEST_CASE("a run that breaks the guarantee causes an event and changes the lamp") {
   MonitoredRun run;
   run.system.run_for(1s);
-  // A person carries a robot into another one: reported by the simulator as a contact.
+  // The simulator reports a contact, as if a person had carried a robot into another robot.
   msg::GroundTruth touch = run.truth;
   touch.header().message_number(touch.header().message_number() + 1'000'000);
   touch.contacts(touch.contacts() + 1);
@@ -193,7 +193,7 @@ TEST_CASE("a viewer can seek back while the run continues") {
   CHECK(run.viewer.time_s() == Approx(end_s + 2.1).margin(0.1));
 }
 
-TEST_CASE("a viewer gets all messages of the channel that it inspects and of no other") {
+TEST_CASE("a viewer gets all messages of the channel that it inspects and no other messages") {
   MonitoredRun run;
   run.system.run_for(500ms);
   CHECK(run.viewer.inspected == 0);

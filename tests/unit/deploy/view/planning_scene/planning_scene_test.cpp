@@ -47,7 +47,7 @@ TEST_CASE("while obstacles are dragged, each plan avoids them at their current p
   CHECK(solved > 80);
 }
 
-TEST_CASE("the roadmap stays while obstacles move and shows which parts are blocked") {
+TEST_CASE("the roadmap keeps its nodes while obstacles move and shows which parts are blocked") {
   PlanningScene scene(5);
   const Json before = scene.json();
   REQUIRE(scene.apply({{"op", "move"}, {"what", 0u}, {"x", 0}, {"y", 0}}));
@@ -58,7 +58,7 @@ TEST_CASE("the roadmap stays while obstacles move and shows which parts are bloc
   int states[3] = {};
   for (const Json& edge : after.at("edges")) ++states[edge[2].get<int>()];
   CHECK(states[1] > 0);
-  CHECK(states[2] > states[1]);  // only what the search needed was checked again
+  CHECK(states[2] > states[1]);  // only edges that the search needed were checked
 }
 
 TEST_CASE("invalid messages change nothing") {

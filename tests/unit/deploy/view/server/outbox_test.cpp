@@ -13,7 +13,7 @@ std::string all_of(Outbox& outbox) {
   return all;
 }
 
-TEST_CASE("a slow viewer gets all events but only the newest of each state") {
+TEST_CASE("a slow viewer gets all events but only the newest message of each state") {
   Outbox outbox;
   for (int i = 0; i < 100; ++i) {
     outbox.put_state(0, message("frame" + std::to_string(i)));
@@ -23,7 +23,7 @@ TEST_CASE("a slow viewer gets all events but only the newest of each state") {
   CHECK(all_of(outbox) == "event0 event40 event80 panels99 frame99 ");
 }
 
-TEST_CASE("states take turns, so that none of them starves") {
+TEST_CASE("no state starves, because states are sent in turn") {
   Outbox outbox;
   std::string taken;
   for (int i = 0; i < 6; ++i) {

@@ -14,7 +14,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
-// The types name their executor and leave compression out, because both would double the time of compiling.
+// One named executor and no compression: the general executor and compression double the compile time.
 using Protocol = asio::ip::tcp;
 using TcpStream = beast::basic_stream<Protocol, asio::io_context::executor_type>;
 
@@ -88,7 +88,7 @@ SocketClient::~SocketClient() {
     impl_->context.restart();
     impl_->context.run_for(std::chrono::seconds(1));  // ends a read in progress
   } catch (const std::exception&) {
-    // The connection is gone in any case.
+    // The result does not matter, because the connection is closed.
   }
 }
 

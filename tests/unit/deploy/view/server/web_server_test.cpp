@@ -82,7 +82,7 @@ bool wait_until(const std::function<bool()>& condition) {
   return condition();
 }
 
-/// Sends these bytes on a connection and returns what arrives within a second.
+/// Sends these bytes on a new connection and returns the bytes that arrive within a second.
 std::string raw_exchange(std::uint16_t port, const std::string& bytes) {
   const int fd = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -101,7 +101,7 @@ std::string raw_exchange(std::uint16_t port, const std::string& bytes) {
   return received;
 }
 
-TEST_CASE("a web server answers requests and checks who sent them") {
+TEST_CASE("a web server answers requests and refuses other hosts, other origins and invalid requests") {
   const TestServer server;
   const HttpAnswer answer = http_request(server.port(), "POST", "/a%20b?c=d", {}, "body");
   CHECK(answer.status == 200);
@@ -155,7 +155,7 @@ TEST_CASE("only a viewer whose messages are invalid or too long is disconnected"
   CHECK(wait_until([&] { return server.closed == 3; }));
 }
 
-TEST_CASE("an exception in a handler ends only that answer or that viewer") {
+TEST_CASE("an exception in a handler affects only the request or viewer that caused it") {
   TestServer server;
   SocketClient other(server.port(), "one"), viewer(server.port(), "one");
   viewer.send("throw");
@@ -211,7 +211,7 @@ TEST_CASE("fifty viewers are served, and connections beyond the limit are refuse
   CHECK(refused >= 50);
 }
 
-TEST_CASE("a viewer that does not read its events is disconnected, but not while it still receives them") {
+TEST_CASE("a viewer that does not read its events is disconnected, but not during a send") {
   TestServer server;
   server.on_tick = [](WebSocket& socket) {
     socket.send_event({std::make_shared<const std::string>(100'000, 'x'), false});
@@ -222,7 +222,7 @@ TEST_CASE("a viewer that does not read its events is disconnected, but not while
   CHECK(http_request(server.port(), "GET", "/").status == 200);
 }
 
-TEST_CASE("a server whose address is already in use reports that") {
+TEST_CASE("starting a server whose address is in use fails with the reason") {
   const TestServer server;
   CHECK_THROWS_WITH(WebServer({"127.0.0.1", server.port(), {}, ""}, {"one"}, {}),
                     ContainsSubstring("Address already in use"));

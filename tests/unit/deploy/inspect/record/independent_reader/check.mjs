@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Usage: node check.mjs RECORDING DESCRIPTIONS
-// Decodes all messages of a recording by the schemas in it, and compares every field with what `sidestep topic echo`
-// prints (one line of JSON per message, in the same order). Prints how much was compared; exit code 1 at the first
-// difference.
+// Decodes all messages of a recording by the recording's schemas, and compares every field with the output of
+// `sidestep topic echo` (one line of JSON per message, in the same order). Prints the number of compared messages and
+// fields; exit code 1 at the first difference.
 import fs from "node:fs";
 import { McapIndexedReader } from "@mcap/core";
 import { parseIDL } from "@foxglove/omgidl-parser";
@@ -44,7 +44,7 @@ function compareText(path, ours, theirs) {
   }
   if (ours === String(theirs) || ours === `unknown ${theirs}`) return true;
   if (/^[0-9a-f]{16}$/.test(ours) && BigInt("0x" + ours) === BigInt(theirs)) return true;
-  // An enumerator's word: always the same word for this number, and for no other number.
+  // The word of an enumerator must be the same each time, and different for each number.
   if (!words.has(path)) words.set(path, new Map());
   const known = words.get(path);
   const [number] = [...known].find(([, word]) => word === ours) ?? [theirs];
@@ -74,7 +74,7 @@ function compare(path, ours, theirs) {
   }
 }
 
-/// Sidestep prints quantiles instead of the counts.
+/// Compares only the total count, because Sidestep prints quantiles instead of the counts.
 function compareHistogram(path, ours, theirs) {
   ++fields;
   const counts = Object.values(theirs).find((value) => typeof value !== "number" && typeof value !== "bigint");
@@ -82,7 +82,7 @@ function compareHistogram(path, ours, theirs) {
   if (sum !== ours.count) fail(path, ours, theirs);
 }
 
-/// Whole numbers that a double cannot hold become bigints.
+/// Parses JSON. Whole numbers that a double cannot hold become bigints.
 function parse(line) {
   const marked = line.replace(/([:[,])(-?\d{16,})(?=[,}\]])/g, '$1"#number $2"');
   return JSON.parse(marked, (key, value) =>

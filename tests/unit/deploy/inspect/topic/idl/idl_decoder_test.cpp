@@ -17,7 +17,7 @@ Json decode(const std::string& idl, const Bytes& bytes) {
   return decode_by_idl(*parse_idl(idl, "test.idl").at("T"), bytes);
 }
 
-TEST_CASE("our messages are decoded by their IDL exactly as by the generated code") {
+TEST_CASE("messages of our topics are decoded by their IDL exactly as by the generated code") {
   const IdlTypes types = parse_idl(kIdlText, "idl");
   Rng rng(5);
   for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
@@ -47,7 +47,7 @@ TEST_CASE("both byte orders and both versions of the encoding are decoded") {
   CHECK(decode(idl, {0, 6, 0, 0, 5, 0, 0, 0, 0x3f, 0xf8, 0, 0, 0, 0, 0, 0}) == expected);
 }
 
-TEST_CASE("the sizes that encoding version 2 states are skipped") {
+TEST_CASE("the sizes of structs and sequences in encoding version 2 are skipped") {
   // An appendable struct and a sequence of structs begin with their size; a sequence of numbers does not.
   const std::string idl =
       "@final struct P { octet x; }; @appendable struct T { sequence<P> parts; octet raw[2]; };";
@@ -62,7 +62,7 @@ TEST_CASE("text, enumerators and nested arrays are decoded") {
         Json{{"s", "hi"}, {"known", "TWO"}, {"unknown", 9}, {"a", {{1, 2}, {3, 4}}}, {"c", "c"}});
 }
 
-TEST_CASE("on request, octet sequences are decoded to text, and long or unbounded ones to their size") {
+TEST_CASE("on request octet sequences are decoded to text, and long or unbounded sequences to their size") {
   const IdlTypes types = parse_idl(
       "@final struct T { octet a[2]; sequence<octet, 65536> b, c; sequence<octet, 65537> d; sequence<octet> "
       "e; "
@@ -77,7 +77,7 @@ TEST_CASE("on request, octet sequences are decoded to text, and long or unbounde
                     IdlDecodingError);
 }
 
-TEST_CASE("bytes that are not a message are refused, whatever sizes they claim") {
+TEST_CASE("bytes that are not a message are refused even if they state huge sizes") {
   const std::string idl = "@final struct T { sequence<octet, 4> a; string<3> s; };";
   const auto check = [](const std::string& text, const Bytes& bytes, const std::string& reason) {
     CAPTURE(reason);

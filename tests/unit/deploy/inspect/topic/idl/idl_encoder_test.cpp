@@ -13,7 +13,7 @@ namespace sidestep::idl_encoder_test {
 using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
-TEST_CASE("our messages and their keys are encoded by their IDL exactly as by the generated code") {
+TEST_CASE("our messages and their keys are encoded by IDL exactly as by the generated code") {
   const IdlTypes types = parse_idl(kIdlText, "idl");
   Rng rng(7);
   for_each_topic([&]<typename Message>(const Topic<Message>& topic) {
@@ -26,7 +26,7 @@ TEST_CASE("our messages and their keys are encoded by their IDL exactly as by th
       Bytes bytes{0, 1, 0, 0};
       append_cdr(topic, &message, bytes);
       const Json json = decode_by_idl(type, bytes);
-      // Compared as JSON, because a signalling NaN of the random message becomes a quiet one.
+      // Compared as JSON, because a signalling NaN of the random message becomes a quiet NaN.
       CHECK(json_text(decode_by_idl(type, encode_by_idl(type, json))) == json_text(json));
       CHECK(encode_by_idl(type, json).size() == bytes.size());
       CHECK(key_by_idl(type, json) == topic.type.cdr_key(&message));
@@ -40,7 +40,7 @@ const IdlTypes kTypes = parse_idl(
     "e; sequence<P, 2> p; octet n[2]; boolean f; char c; short i; };",
     "test.idl");
 
-TEST_CASE("omitted members are zero") {
+TEST_CASE("members that the JSON omits are encoded as zero") {
   CHECK(encode_by_idl(*kTypes.at("P"), Json::object()) == Bytes{0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   const Json all = decode_by_idl(*kTypes.at("T"), encode_by_idl(*kTypes.at("T"), Json::object()));
   CHECK(all == Json{{"a", 0},
@@ -62,7 +62,7 @@ TEST_CASE("the key is encoded from the key members, big-endian and aligned") {
   CHECK_THROWS_WITH(key_by_idl(*long_key.at("T"), Json::object()), ContainsSubstring("more than 16 bytes"));
 }
 
-TEST_CASE("invalid UTF-8 in a rejected value does not suppress the reason") {
+TEST_CASE("the reason for a rejected value is reported even if the value is invalid UTF-8") {
   CHECK_THROWS_AS(encode_by_idl(*kTypes.at("T"), {{"b", "\xff"}}), IdlEncodingError);
 }
 

@@ -80,7 +80,7 @@ TEST_CASE("the types of all our topics can be parsed") {
   }
 }
 
-TEST_CASE("a file includes others relative to itself, each once") {
+TEST_CASE("an IDL file includes other files relative to its folder, and each file once") {
   const TemporaryFolder folder;
   write_file(folder.file("main.idl"),
              "#include \"parts/a.idl\"\n#include \"b.idl\"\nstruct Main { A a; B b; };");
@@ -109,7 +109,7 @@ TEST_CASE("invalid IDL is rejected with the file, the line and the reason") {
   check("const long N = 9223372036854775807 + 1;", "1: a number is too large");
   check("const long N = -9223372036854775807 - 1; const long M = -N;", "1: a number is too large");
   check("struct A : B { long x; };", "1: there is no struct 'B'");
-  // A list of empty structs could claim any number of elements.
+  // A sequence of empty structs could state any number of elements.
   check("struct E {}; struct A { E x[9000000]; };", "1: the elements of a list contain no values");
   check("struct E {}; struct F { E e; }; struct A { sequence<F> x; };",
         "1: the elements of a list contain no values");

@@ -96,7 +96,7 @@ TEST_CASE("an invalid hosts file is rejected with the line and the expected valu
   check_refused(with(kTwoHosts, "{ssh: robot@far.example}", "{namespace: ../x}"),
                 "hosts.yaml:9: ", "expected letters");
   check_refused(with(kTwoHosts, "10.1.0.2", "far.example"), "hosts.yaml:10: ", "IPv4 address");
-  // A C function would see only the part before the zero byte.
+  // A C function would read only the part before the zero byte.
   check_refused(with(kTwoHosts, "10.1.0.2", R"("10.1.0.2\0 x")"), "hosts.yaml:10: ", "without zero bytes");
   check_refused(with(kTwoHosts, "/opt/sidestep/bin", R"("/opt\0/bin")"),
                 "hosts.yaml:11: ", "without zero bytes");
@@ -157,7 +157,7 @@ TEST_CASE("the shipped hosts files fit any scenario") {
   }
 }
 
-TEST_CASE("peers are the addresses of the hosts and the launcher, and any others that are listed") {
+TEST_CASE("peers are the addresses of the hosts, of the launcher and of the listed peers") {
   const Hosts none = parse_hosts(kTwoHosts, "hosts.yaml");
   CHECK(none.peers.empty());
   const Hosts hosts = parse_hosts("peers: hosts\n" + std::string(kTwoHosts), "hosts.yaml");

@@ -60,7 +60,7 @@ TEST_CASE("a random building's map covers the floor and is centred on it") {
   }
 }
 
-TEST_CASE("robots fit through the doors of random buildings, however wide the robots are") {
+TEST_CASE("narrow and wide robots fit through the doors of random buildings") {
   const double radius_m = GENERATE(0.09, 0.6);
   CAPTURE(radius_m);
   double sum = 0;

@@ -13,7 +13,7 @@ TEST_CASE("the upper bound of a rate agrees with tables of the Poisson distribut
   CHECK(upper_bound_95(0, 3000) == Approx(0.00099857).epsilon(1e-4));
 }
 
-TEST_CASE("a trial result survives a round trip through a line of text") {
+TEST_CASE("a trial result survives writing to a line of text and parsing") {
   TrialResult result;
   result.seed = 18446744073709551615ULL;
   result.failures = {"a \"quoted\" thing", "two\nlines"};

@@ -49,12 +49,12 @@ TEST_CASE("a partition cuts links for its duration, even if two partitions overl
   player.run_until(3400ms);
   const auto within = verdicts.answered;
   CHECK(within <= before + 3);
-  // Agents that missed verdicts propose less often for a while.
+  // Agents that missed verdicts propose less often for some time.
   player.run_until(5500ms);
   CHECK(verdicts.answered > within + 8);
 }
 
-TEST_CASE("a killed process stays dead until it is started, and a second agent runs beside the first") {
+TEST_CASE("a killed process stays dead until it is started, and a second agent runs beside the first agent") {
   const Scenario scenario = pair_of_robots();
   FaultPlan plan =
       plan_of(scenario, {{1s, Kill{"vision"}}, {2s, Start{"vision"}}, {3s, Start{twin_process(1)}}}, 20s);
@@ -126,7 +126,7 @@ TEST_CASE("the operator attests the absence of a robot that was taken away while
   CHECK(system.metrics().report().audit->violations == 0);
 }
 
-TEST_CASE("if all processes that knew the orders restart, the operator resumes robots and sends them on") {
+TEST_CASE("if all processes that knew orders restart, the operator resumes robots and sends new orders") {
   const Scenario scenario = pair_of_robots();
   std::vector<TimedFault> faults;
   for (const std::string& process : {agent_process(0), agent_process(1), coordinator_process(0)})
@@ -163,7 +163,7 @@ TEST_CASE("when all faults end, link qualities recover and partitions end") {
   CHECK(verdicts.answered > 10);
 }
 
-TEST_CASE("the same seed gives the same trial result and a different seed a different one") {
+TEST_CASE("the same seed gives the same trial result and a different seed a different result") {
   const auto outcome = [](std::uint64_t seed) {
     Report report;
     run_trial(sample_trial(seed, 10s, std::nullopt), &report);

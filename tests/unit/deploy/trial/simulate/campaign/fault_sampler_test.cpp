@@ -14,7 +14,7 @@ namespace sidestep::fault_sampler_test {
 
 using namespace std::chrono_literals;
 
-TEST_CASE("random scenes have the specified size and density, and no two are alike") {
+TEST_CASE("random scenes have the specified sizes and densities and differ from each other") {
   std::set<std::string> seen;
   std::size_t min_robots = 100, max_robots = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -162,7 +162,7 @@ TEST_CASE("every kind of fault occurs in a sensible share of the trials, and som
   }
 }
 
-TEST_CASE("robots' clocks are either within every coordinator's bound, or far beyond it and listed") {
+TEST_CASE("a robot's clock is either within every coordinator's bound or listed and far beyond the bound") {
   int with_clocks = 0, beyond = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);

@@ -22,7 +22,7 @@ struct Trial {
     order.goals = std::move(goals);
     clients.give(order);
   }
-  /// A resume by an operator of whom the judge does not know.
+  /// Sends an operator's resume of all robots without telling the judge.
   void resume_unknown_to_judge() {
     system.send(
         {msg::OrderKind::ORDER_RESUME, kAllRobots, kOperator, static_cast<OrderNumber>(to_ns(system.now()))});
@@ -46,7 +46,7 @@ TEST_CASE("a trial fails if a held robot moves, but not if it was resumed") {
   CHECK(trial.clients.failures().empty() == is_resumed);
 }
 
-TEST_CASE("a trial does not fail if a carried robot pushes a held one") {
+TEST_CASE("a trial does not fail if a carried robot pushes a held robot") {
   Trial trial;
   trial.give(msg::OrderKind::ORDER_HOLD, kAllRobots, kClient);
   trial.system.run_for(4s);
@@ -68,7 +68,7 @@ TEST_CASE("a trial does not fail if a carried robot pushes a held one") {
   CHECK(trial.clients.failures().empty());
 }
 
-TEST_CASE("a held robot without power may coast to rest, however long that takes") {
+TEST_CASE("a trial does not fail while a held robot without power coasts to rest") {
   Trial trial;
   trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1.5, 1.5}}});
   trial.system.run_for(900ms);

@@ -27,7 +27,7 @@ TrialResult result_of(std::uint64_t seed) {
 
 void append(const std::string& file, const std::string& text) { std::ofstream(file, std::ios::app) << text; }
 
-TEST_CASE("results of a campaign are read again, except for an incomplete last line") {
+TEST_CASE("all written results of a campaign are read back, except for an incomplete last line") {
   const Folder folder;
   {
     ResultsFile results(folder.file(), "campaign A");

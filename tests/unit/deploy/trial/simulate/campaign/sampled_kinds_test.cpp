@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything that a campaign may sample is sampled: each branch of each sampler, and each field of each
-// fault.
+// Checks that a campaign samples everything that it may sample: each branch of each sampler, and each field
+// of each fault.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

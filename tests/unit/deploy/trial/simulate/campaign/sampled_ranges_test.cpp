@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sampled sizes fill their ranges and do not leave them.
+// Sampled numbers fill their ranges and do not leave them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,7 +24,7 @@ using Kind = msg::DisturbanceKind;
 
 constexpr Duration kHealedAt{48'000'000'000}, kDuration{60'000'000'000};
 
-/// The smallest and the largest of several values, by name.
+/// The minimum and the maximum of the values with the same name.
 class Extremes {
  public:
   void add(const std::string& name, double value) {
@@ -36,7 +36,7 @@ class Extremes {
     max = std::max(max, value);
   }
   void add(const std::string& name, Duration value) { add(name, to_seconds(value)); }
-  /// Checks that the values lie between both limits, and come as near to them as 1/100 to 1/30 of the range.
+  /// Checks that the values lie between both limits and come within 1/30 of the range of each limit.
   void check(const std::string& name, double low, double high) const { check(name, low, high, high - low); }
   /// Like check(), for values whose orders of magnitude are equally likely.
   void check_log(const std::string& name, double low, double high) const {

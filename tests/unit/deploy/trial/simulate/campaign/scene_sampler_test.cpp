@@ -31,7 +31,7 @@ TEST_CASE("about half of the random scenes use the default planner, and every dr
   }
 }
 
-TEST_CASE("in random scenes robots can reach all of their goals") {
+TEST_CASE("robots in random scenes can reach all of their goals") {
   int scenes = 0;
   // Scene 647 has a pocket between an obstacle and the border that no robot can enter.
   for (std::uint64_t seed = 647; scenes < 8; ++seed) {

@@ -52,7 +52,7 @@ struct Judged {
   }
 };
 
-TEST_CASE("a trial without a reason to fail passes") {
+TEST_CASE("a trial without a failure passes") {
   Judged judged;
   CHECK(judged.failures().empty());
   judged.end(0, RobotEnd::kLifted, msg::AgentState::AGENT_ABSENT);
@@ -62,7 +62,7 @@ TEST_CASE("a trial without a reason to fail passes") {
   CHECK(judged.failures().empty());
 }
 
-TEST_CASE("a trial fails for each of its reasons and states it") {
+TEST_CASE("a trial fails for each kind of failure and states the reason") {
   Judged judged;
   SECTION("there was a contact") {
     judged.result.contacts = 1;

@@ -43,7 +43,7 @@ TEST_CASE("a walk leaves out places that cannot be reached") {
   CHECK(crosses != is_divided);
 }
 
-TEST_CASE("a floor without room for a disc has no free place") {
+TEST_CASE("no free place is found for a disc that does not fit on the floor") {
   Scenario scenario;
   scenario.field = {1, 1};
   scenario.obstacles = {Circle{{0, 0}, 0.5}};

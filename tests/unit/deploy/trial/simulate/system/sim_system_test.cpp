@@ -17,7 +17,7 @@ std::string outcome(SimSystem& system) {
   return to_json(report);
 }
 
-TEST_CASE("the same seed gives the same run and a different seed a different one") {
+TEST_CASE("the same seed gives the same report and a different seed a different report") {
   Scenario scenario = crossing();
   scenario.network.loss = 0.1;
   std::string outcomes[3];
@@ -33,7 +33,7 @@ TEST_CASE("the same seed gives the same run and a different seed a different one
   CHECK(outcomes[0] != outcomes[2]);
 }
 
-TEST_CASE("the robot of a killed agent comes to rest, and the others arrive") {
+TEST_CASE("the robot of a killed agent comes to rest, and the other robots arrive") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   CAPTURE(seed);
   SimSystem system(crossing(), seed);
@@ -46,7 +46,7 @@ TEST_CASE("the robot of a killed agent comes to rest, and the others arrive") {
     for (const RobotProgress& progress : system.metrics().progress()) {
       if (progress.robot == 3) return progress;
     }
-    FAIL("no robot 3");
+    FAIL("robot 3 is missing");
     return RobotProgress{};
   };
   CHECK(row().speed_mps < 0.02);
@@ -79,7 +79,7 @@ TEST_CASE("all robots arrive after a process is killed and restarted") {
   CHECK(system.metrics().report().firmware_violations == 0);
 }
 
-TEST_CASE("with two coordinators all robots arrive although one of them dies") {
+TEST_CASE("with two coordinators all robots arrive although a coordinator dies") {
   const std::string process = GENERATE("coordinator", "coordinator 1");
   const bool comes_back = GENERATE(false, true);
   CAPTURE(process, comes_back);

@@ -95,7 +95,7 @@ TEST_CASE("no contact: not judged if ground truth is missing at the end or the r
   check_passes(ExpectNoContact{kBoth, {}}, gap);
 }
 
-TEST_CASE("clearance: fails at the first moment when it is too small") {
+TEST_CASE("clearance: fails at the first moment when the clearance is too small") {
   RunHistory history = run();
   check_passes(ExpectMinClearance{0.02}, history);
   for (TruthSample& sample : history.truths) sample.min_clearance_m = sample.at_s >= 7 ? 0.004 : 0.02;
@@ -104,7 +104,7 @@ TEST_CASE("clearance: fails at the first moment when it is too small") {
   check_not_judged(ExpectMinClearance{0.005}, history, "ground truth is missing after 5.9");
 }
 
-TEST_CASE("at rest: must rest within the span and for as long as expected") {
+TEST_CASE("at rest: fails if a robot does not rest within the span or moves before the expected time ends") {
   const RunHistory history = run();
   check_passes(ExpectAtRest{kOne, {3.5, 4.1}, 0}, history);
   check_passes(ExpectAtRest{kOne, {3.5, 4.1}, 3}, history);
@@ -121,14 +121,14 @@ TEST_CASE("at rest: not judged without ground truth, for robots off the floor or
   remove_truth(history, 3, 4.5);
   check_not_judged(ExpectAtRest{kOne, {2, 4}, 0}, history, "ground truth is missing after 2.9");
   history = run();
-  // A robot that was not heard from may have moved.
+  // A robot may have moved while ground truth was missing.
   remove_truth(history, 6, 6.5);
   check_not_judged(ExpectAtRest{kOne, {5, 5.5}, 2}, history, "ground truth is missing after 5.9");
   check_not_judged(ExpectAtRest{{{7}, false}, {2, 4}, 0}, run(), "robot 7 was not on the floor");
   check_not_judged(ExpectAtRest{{{2}, false}, {2, 4}, 0}, run_until(3), "the run ended at 3.000 s");
 }
 
-TEST_CASE("moving: must move at least once within the span") {
+TEST_CASE("moving: fails if a robot does not move within the span") {
   RunHistory history = run();
   check_passes(ExpectMoving{kOne, {3.9, 6}}, history);
   check_fails(ExpectMoving{kOne, {5, 6}}, history, 6,
@@ -139,7 +139,7 @@ TEST_CASE("moving: must move at least once within the span") {
   check_not_judged(ExpectMoving{{{7}, false}, {5, 6}}, run(), "robot 7 was not on the floor");
 }
 
-TEST_CASE("speed limit: fails at the first moment when it is exceeded") {
+TEST_CASE("speed limit: fails at the first moment when a robot exceeds the limit") {
   RunHistory history = run();
   check_passes(ExpectMaxSpeed{kOne, 0.02, 4.1, 9}, history);
   check_passes(ExpectMaxSpeed{kOne, 0.02, 4.1, std::nullopt}, history);
@@ -149,7 +149,7 @@ TEST_CASE("speed limit: fails at the first moment when it is exceeded") {
   check_not_judged(ExpectMaxSpeed{kOne, 2, 0, std::nullopt}, run_until(5, "interrupted"), "aborted");
 }
 
-TEST_CASE("takeover: another coordinator must grant in a higher epoch in time") {
+TEST_CASE("takeover: fails unless another coordinator grants in a higher epoch in time") {
   RunHistory history = run_until(3);
   history.end.at_s = 10;
   history.coordinators.push_back({3.1, 1, 201, false});
@@ -167,7 +167,7 @@ TEST_CASE("takeover: another coordinator must grant in a higher epoch in time") 
   check_fails(ExpectTakeover{{3, 3.3}}, history, 3.3, "no other coordinator granted");
 }
 
-TEST_CASE("named: each robot must be named for the right reason within the span") {
+TEST_CASE("named: fails unless each robot is named for the right reason within the span") {
   RunHistory history = run();
   history.notices = {{2, 1, NoticeKind::kMissing}, {5.2, 1, NoticeKind::kDisplaced}};
   const auto named = [](NoticeKind as, double from_s, double to_s) {
@@ -183,7 +183,7 @@ TEST_CASE("named: each robot must be named for the right reason within the span"
   check_not_judged(named(NoticeKind::kConflict, 4, 6), history, "no active coordinator was heard");
 }
 
-TEST_CASE("violations: fails at the first one, and is not judged if the audit covered too little") {
+TEST_CASE("violations: fails at the first violation, and is not judged if the audit covered too little") {
   RunHistory history = run();
   check_passes(ExpectNoViolations{}, history);
   history.end.shortfall = "34.5 % of the messages were missed";
@@ -209,7 +209,7 @@ TEST_CASE("arrivals: fails with the robot that has not arrived or arrives too la
   check_not_judged(ExpectNotArrived{{{2}, false}}, run_until(5, "interrupted"), "aborted");
 }
 
-TEST_CASE("different rules: the expected process must be named") {
+TEST_CASE("different rules: fails unless the expected process is reported") {
   RunHistory history = run();
   check_fails(ExpectMismatch{"agent 1"}, history, 10, "no process is reported");
   history.end.mismatches["agent 2"] = "margin_m is 0.02 instead of 0.01";
@@ -218,7 +218,7 @@ TEST_CASE("different rules: the expected process must be named") {
   check_not_judged(ExpectMismatch{"agent 1"}, run_until(5, "interrupted"), "aborted");
 }
 
-TEST_CASE("a failure outweighs what could not be judged, and the reasons of several robots are joined") {
+TEST_CASE("a failed robot outweighs robots that cannot be judged, and reasons of several robots are joined") {
   const RobotSet robots{{7, 2, 8}, false};
   check_fails(ExpectMoving{{{1, 7}, false}, {5, 6}}, run(), 6, "robot 1 did not move");
   check_not_judged(ExpectMoving{robots, {5, 6}}, run(),

@@ -55,7 +55,7 @@ constexpr auto kGranting = msg::CoordinatorMode::COORDINATOR_GRANTING;
 constexpr auto kRegistering = msg::CoordinatorMode::COORDINATOR_REGISTERING;
 constexpr auto kStandby = msg::CoordinatorMode::COORDINATOR_STANDBY;
 
-TEST_CASE("times count from the first heartbeat of a coordinator that grants") {
+TEST_CASE("times are measured from the first heartbeat of a coordinator that grants") {
   Fixture run;
   run.send_state(1, 0, kStandby);
   run.send_state(0, 40, kRegistering);
@@ -102,7 +102,7 @@ TEST_CASE("contacts are recorded once with their robots, and contacts beyond a m
   CHECK(run.history().unidentified_contacts == 5);
 }
 
-TEST_CASE("notices of coordinators and agents are recorded, and the last heartbeat shows who is missing") {
+TEST_CASE("notices of coordinators and agents are recorded, and the last heartbeat lists missing robots") {
   Fixture run;
   msg::RobotNotice notice;
   notice.robot(4);

@@ -66,7 +66,7 @@ void check_expectation_rejected(const std::string& expectation, const std::strin
   check_rejected("expect:\n  - {" + expectation + "}\n", kLines + 2, why);
 }
 
-TEST_CASE("faults of processes are read") {
+TEST_CASE("process faults are parsed from a test's YAML") {
   CHECK(action_of<Kill>("at_s: 1, kill: agent 4").process == "agent 4");
   CHECK(action_of<Kill>("at_s: 1, kill: agent 4 (twin)").process == "agent 4 (twin)");
   CHECK(action_of<Kill>("at_s: 1, kill: active coordinator").process == kActiveCoordinator);
@@ -95,7 +95,7 @@ TEST_CASE("a process restarts with another scenario, whose path is relative to t
       ContainsSubstring("that scenario has no agent 9"));
 }
 
-TEST_CASE("a partition separates processes from all others or from named ones") {
+TEST_CASE("a partition separates processes from all other processes or from named processes") {
   const auto all = action_of<Partition>("at_s: 1, partition: [coordinator, vision]");
   CHECK(all.from == ProcessNames{"coordinator", "vision"});
   CHECK(all.to == ProcessNames{"simulator", "coordinator 1", "agent 0", "agent 1", "agent 4"});
@@ -110,7 +110,7 @@ TEST_CASE("a partition separates processes from all others or from named ones") 
   CHECK_FALSE(out.is_two_way);
 }
 
-TEST_CASE("network faults have the same values as in `sidestep fault network`") {
+TEST_CASE("network faults accept the same values as `sidestep fault network`") {
   const auto fault = action_of<ImpairmentFault>(
       "at_s: 1, network: all, loss: 0.3, burst: 5, duplicate: 0.1, delay_ms: [5, 20, 150]");
   using std::chrono::milliseconds;
@@ -121,7 +121,7 @@ TEST_CASE("network faults have the same values as in `sidestep fault network`") 
   CHECK(action_of<ImpairmentFault>("at_s: 1, network: agent 1, clear: true").quality == kUnimpairedLink);
 }
 
-TEST_CASE("disturbances of robots are read") {
+TEST_CASE("robot disturbances are parsed from a fault's YAML") {
   using Kind = msg::DisturbanceKind;
   CHECK(disturbance_of("at_s: 1, push: 4, velocity_mps: [0.5, -1]").push_mps == Vec2(0.5, -1));
   CHECK(disturbance_of("at_s: 1, push: 4, velocity_mps: [0.5, -1]").robot == 4);
@@ -142,7 +142,7 @@ TEST_CASE("disturbances of robots are read") {
   CHECK(with_fault("at_s: 1, carry: 1, to_m: [1, 2], seconds: 3").faults[0].end_s() == 4);
 }
 
-TEST_CASE("expectations are read") {
+TEST_CASE("expectations are parsed from a test's YAML") {
   const auto contact = check_of<ExpectNoContact>("no_contact: all, except: 4");
   CHECK(contact.robots.is_all);
   CHECK(contact.robots.ids == std::vector<RobotId>{0, 1, 4});
@@ -234,7 +234,7 @@ TEST_CASE("invalid expectations are rejected with their line") {
   check_rejected("expect: []\n", kLines + 1, "expect: expected at least one element");
 }
 
-TEST_CASE("a scenario with faults and expectations is also a scenario, with the same rules as without them") {
+TEST_CASE("a test file also loads as a scenario, with the same rules as without faults and expectations") {
   const Scenario plain = parse_scenario(kScenario, "file.yaml");
   const Scenario with_keys = parse_scenario(
       kScenario + "faults: [{at_s: 1, kill: agent 1}]\nexpect: [{no_contact: all}]\n", "file.yaml");

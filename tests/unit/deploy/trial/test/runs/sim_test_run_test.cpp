@@ -36,7 +36,7 @@ TEST_CASE("a test without faults passes and ends soon after the last arrival") {
   CHECK(result.run_s < 6);
 }
 
-TEST_CASE("an unmet expectation fails with its line, the moment and the reason") {
+TEST_CASE("an unmet expectation fails with its line, the time and the reason") {
   const TestResult result = result_of(
       "faults: [{at_s: 1, kill: agent 1}]\nexpect:\n  - {no_contact: all}\n  - {arrived: 1, by_s: 4}\n"
       "  - {moving: 1, after_s: 2, within_s: 1}\n  - {max_speed_mps: 0.5, robots: 2, to_s: 3}\n");
@@ -63,7 +63,7 @@ TEST_CASE("the same seed gives the same outcome") {
   CHECK(arrivals(3) != arrivals(4));
 }
 
-TEST_CASE("faults of processes: killed, restarted by a fault or by the scenario, and paused") {
+TEST_CASE("process faults kill, restart and pause processes") {
   check_passes(
       "faults: [{at_s: 1, kill: agent 1}, {at_s: 2, restart: agent 1}]\n"
       "expect: [{at_rest: 1, within_s: 0.8}, {moving: 1, after_fault: 1, within_s: 3}, {arrived: all}]\n");
@@ -78,7 +78,7 @@ TEST_CASE("faults of processes: killed, restarted by a fault or by the scenario,
       "expect: [{takeover: true, within_ms: 300}, {arrived: all}]\n");
 }
 
-TEST_CASE("faults of the network: a partition and a cut end after their time") {
+TEST_CASE("a partition and a cut of the network end after their durations") {
   check_passes(
       "faults: [{at_s: 1, partition: coordinator, seconds: 1}]\n"
       "expect: [{at_rest: all, within_s: 0.8}, {moving: all, after_s: 2, within_s: 2}, {arrived: all}]\n");

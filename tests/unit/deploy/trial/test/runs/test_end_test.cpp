@@ -15,7 +15,7 @@ FaultTest test_with(const std::string& keys) {
       "file.yaml");
 }
 
-/// When the run ends if these robots have arrived from 5 s on.
+/// The time at which the run ends if these robots have arrived from 5 s on.
 double end_s(const std::string& keys, const std::set<RobotId>& arriving) {
   TestEnd end(test_with(keys));
   for (int i = 0;; ++i) {
