@@ -22,21 +22,21 @@ constexpr Duration kSilence{1'000'000'000};
 
 }  // namespace
 
-CoordinatorNode::CoordinatorNode(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self,
+CoordinatorNode::CoordinatorNode(Bus& bus, const FloorSpec& floor, const CoordinatorIdentity& self,
                                  bool is_standby)
     : bus_(bus),
       self_(self),
-      cycle_(scenario.cycle),
-      max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
-      failover_(self, is_standby, bus.now(), {roster_of(scenario), scenario.cycle}),
-      coordinator_(floor_rules(scenario), roster_of(scenario), failover_.epoch(), max_clock_difference_,
-                   scenario.cycle),
-      order_service_(bus, scenario, self, coordinator_, events_, [this] { publish_state(); }),
+      cycle_(floor.cycle),
+      max_clock_difference_(max_clock_difference(floor.clock_bound_s)),
+      failover_(self, is_standby, bus.now(), {roster_of(floor), floor.cycle}),
+      coordinator_(floor_rules(floor), roster_of(floor), failover_.epoch(), max_clock_difference_,
+                   floor.cycle),
+      order_service_(bus, floor, self, coordinator_, events_, [this] { publish_state(); }),
       counters_(bus, process_of(self.number), self.incarnation,
                 [this](DropCounters& drops) { count_drops(drops); }) {
   state_writer_ = bus_.advertise(topics::kCoordinator);
   ledger_writer_ = bus_.advertise(topics::kLedger);
-  for (const RobotSpec& robot : scenario.robots) {
+  for (const RobotSpec& robot : floor.robots) {
     verdict_writers_.emplace(robot.id, bus_.advertise(topics::kVerdict, robot.id));
     bus_.subscribe(topics::kFeedback, robot.id, [this, id = robot.id](const msg::Feedback& message) {
       handle_or_count(decode(message, id, bus_.now()), DropReason::kMalformedFeedback, id);

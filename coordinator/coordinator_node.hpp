@@ -21,7 +21,7 @@ namespace sidestep {
 /// coordinators.
 class CoordinatorNode {
  public:
-  CoordinatorNode(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self, bool is_standby);
+  CoordinatorNode(Bus& bus, const FloorSpec& floor, const CoordinatorIdentity& self, bool is_standby);
   CoordinatorNode(const CoordinatorNode&) = delete;
   CoordinatorNode& operator=(const CoordinatorNode&) = delete;
 

@@ -6,9 +6,9 @@
 
 namespace sidestep {
 
-OrderKeeper::OrderKeeper(const Scenario& scenario, std::uint32_t coordinator_id)
-    : field_(scenario.field), radius_m_(scenario.radius_m), id_(coordinator_id) {
-  for (const RobotSpec& robot : scenario.robots) has_goals_[robot.id] = !robot.goals.empty();
+OrderKeeper::OrderKeeper(const FloorSpec& floor, std::uint32_t coordinator_id)
+    : field_(floor.field), radius_m_(floor.radius_m), id_(coordinator_id) {
+  for (const RobotSpec& robot : floor.robots) has_goals_[robot.id] = !robot.goals.empty();
 }
 
 bool OrderKeeper::merge(const RememberedOrder& order) {

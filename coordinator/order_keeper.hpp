@@ -23,7 +23,7 @@ class OrderKeeper {
   static constexpr std::size_t kMaxMergedHolds = 4 * kMaxRobots;
   static constexpr std::size_t kMaxMergedZones = 3 * kMaxCoordinators * OrderBook::kMaxZones;
 
-  OrderKeeper(const Scenario& scenario, std::uint32_t coordinator_id);
+  OrderKeeper(const FloorSpec& floor, std::uint32_t coordinator_id);
 
   /// Processes an order from a client and returns the answer.
   msg::OrderResult on_order(const Order& order);

@@ -17,7 +17,7 @@ constexpr Duration kRegisteringPeriod{200'000'000};
 
 }  // namespace
 
-OrderService::OrderService(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self,
+OrderService::OrderService(Bus& bus, const FloorSpec& floor, const CoordinatorIdentity& self,
                            Coordinator& coordinator, const EventReporter& events,
                            std::function<void()> changed)
     : bus_(bus),
@@ -25,7 +25,7 @@ OrderService::OrderService(Bus& bus, const Scenario& scenario, const Coordinator
       coordinator_(coordinator),
       events_(events),
       changed_(std::move(changed)),
-      orders_(scenario, process_of(self.number)),
+      orders_(floor, process_of(self.number)),
       answer_writer_(bus.advertise(topics::kOrderAnswer)),
       memory_writer_(bus.advertise(topics::kOrderMemory)) {
   apply_holds();

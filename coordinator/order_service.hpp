@@ -20,7 +20,7 @@ namespace sidestep {
 class OrderService {
  public:
   /// `changed` is called when the published part of the coordinator's state has changed.
-  OrderService(Bus& bus, const Scenario& scenario, const CoordinatorIdentity& self, Coordinator& coordinator,
+  OrderService(Bus& bus, const FloorSpec& floor, const CoordinatorIdentity& self, Coordinator& coordinator,
                const EventReporter& events, std::function<void()> changed);
   OrderService(const OrderService&) = delete;
   OrderService& operator=(const OrderService&) = delete;

@@ -6,19 +6,19 @@
 namespace sidestep {
 namespace {
 
-const RobotSpec& spec_of(const Scenario& scenario, RobotId robot) { return *find_robot(scenario, robot); }
+const RobotSpec& spec_of(const FloorSpec& floor, RobotId robot) { return *find_robot(floor, robot); }
 
 }  // namespace
 
-Agent::Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
+Agent::Agent(const FloorSpec& floor, RobotId robot, Incarnation incarnation,
              std::shared_ptr<PlanningScratch> scratch)
-    : robot_(spec_of(scenario, robot)),
+    : robot_(spec_of(floor, robot)),
       scratch_(std::move(scratch)),
-      cycle_(scenario.cycle),
-      negotiation_(robot, incarnation, scenario.cycle),
-      observations_(scenario, robot_, scratch_->rules),
-      orders_(scenario, robot_),
-      planner_(scenario, robot_, *scratch_),
+      cycle_(floor.cycle),
+      negotiation_(robot, incarnation, floor.cycle),
+      observations_(floor, robot_, scratch_->rules),
+      orders_(floor, robot_),
+      planner_(floor, robot_, *scratch_),
       search_(*scratch_),
       rng_(incarnation ^ (std::uint64_t{robot} << 40)) {}
 

@@ -30,8 +30,8 @@ class Agent {
     std::optional<Duration> round_trip;  ///< time from the proposal to its verdict
   };
 
-  /// Precondition: `scenario` contains the robot, and `scratch` was made for this scenario.
-  Agent(const Scenario& scenario, RobotId robot, Incarnation incarnation,
+  /// Precondition: `floor` contains the robot, and `scratch` was made for this scenario.
+  Agent(const FloorSpec& floor, RobotId robot, Incarnation incarnation,
         std::shared_ptr<PlanningScratch> scratch);
 
   /// Processes a report of the robot. Returns whether the agent should propose again immediately, because the

@@ -23,9 +23,9 @@ constexpr Duration kBetweenMeasurements{500'000'000};
 constexpr int kCyclesBetweenRequests = 6;
 
 /// Offset of the robot's cycles from multiples of the cycle time.
-Duration cycle_offset(const Scenario& scenario, RobotId robot) {
-  const auto index = std::ranges::count_if(scenario.robots, [&](const RobotSpec& r) { return r.id < robot; });
-  return scenario.cycle * index / static_cast<std::int64_t>(scenario.robots.size());
+Duration cycle_offset(const FloorSpec& floor, RobotId robot) {
+  const auto index = std::ranges::count_if(floor.robots, [&](const RobotSpec& r) { return r.id < robot; });
+  return floor.cycle * index / static_cast<std::int64_t>(floor.robots.size());
 }
 
 /// Adds the duration of `work` to a histogram. It is measured by the wall clock even if the bus's time is
@@ -40,14 +40,14 @@ auto timed(DurationHistogram& histogram, Work work) {
 
 }  // namespace
 
-AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
+AgentNode::AgentNode(Bus& bus, const FloorSpec& floor, RobotId robot, Incarnation incarnation,
                      std::shared_ptr<PlanningScratch> scratch)
     : bus_(bus),
       robot_(robot),
-      cycle_(scenario.cycle),
-      max_speed_mps_(scenario.limits.speed_mps),
-      agent_(scenario, robot, incarnation, std::move(scratch)),
-      clocks_(budget_of(scenario), scenario.margin_m),
+      cycle_(floor.cycle),
+      max_speed_mps_(floor.limits.speed_mps),
+      agent_(floor, robot, incarnation, std::move(scratch)),
+      clocks_(budget_of(floor), floor.margin_m),
       world_(robot),
       event_logger_(events_, robot),
       command_writer_(bus.advertise(topics::kCommand, robot)),
@@ -56,10 +56,10 @@ AgentNode::AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnat
       status_writer_(bus.advertise(topics::kStatus)),
       orders_(bus, robot),
       counters_(bus, robot, incarnation, [this](DropCounters& drops) { count_drops(drops); }) {
-  if (scenario.laser) scans_.emplace(robot, scenario.laser->settings);
+  if (floor.laser) scans_.emplace(robot, floor.laser->settings);
   subscribe();
   const Time now = robot_now();
-  next_cycle_ = now - now.time_since_epoch() % cycle_ + cycle_offset(scenario, robot) + cycle_;
+  next_cycle_ = now - now.time_since_epoch() % cycle_ + cycle_offset(floor, robot) + cycle_;
   schedule_next_cycle();
   publish_status();
 }

@@ -21,7 +21,7 @@ namespace sidestep {
 /// bus's time plus the measured offset.
 class AgentNode {
  public:
-  AgentNode(Bus& bus, const Scenario& scenario, RobotId robot, Incarnation incarnation,
+  AgentNode(Bus& bus, const FloorSpec& floor, RobotId robot, Incarnation incarnation,
             std::shared_ptr<PlanningScratch> scratch);
   AgentNode(const AgentNode&) = delete;
   AgentNode& operator=(const AgentNode&) = delete;

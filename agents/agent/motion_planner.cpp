@@ -17,13 +17,13 @@ constexpr Duration kMinHold{16'000'000};
 constexpr Duration kBlockedAfter{300'000'000};
 constexpr double kStandstill_mps = 0.01;  ///< intended speeds below this count as being at rest
 
-std::span<const double> extra_clearances_m(const Scenario& scenario) {
-  if (scenario.laser) return kClearancesInSight_m;
+std::span<const double> extra_clearances_m(const FloorSpec& floor) {
+  if (floor.laser) return kClearancesInSight_m;
   return {&kExtraClearance_m, 1};
 }
 
-NamedPlanner planner_of(const Scenario& scenario, const RobotSpec& robot) {
-  return make_driving_planner(robot.planner.empty() ? scenario.planner : robot.planner);
+NamedPlanner planner_of(const FloorSpec& floor, const RobotSpec& robot) {
+  return make_driving_planner(robot.planner.empty() ? floor.planner : robot.planner);
 }
 
 /// Whether a robot that executes the version stays at the place.
@@ -33,11 +33,11 @@ bool ends_at(const Version& base, const Vec2& place_m) {
 
 }  // namespace
 
-MotionPlanner::MotionPlanner(const Scenario& scenario, const RobotSpec& robot, PlanningScratch& scratch)
+MotionPlanner::MotionPlanner(const FloorSpec& floor, const RobotSpec& robot, PlanningScratch& scratch)
     : rules_(scratch.rules),
-      cycle_(scenario.cycle),
+      cycle_(floor.cycle),
       surroundings_(rules_),
-      route_(planner_of(scenario, robot), rules_, extra_clearances_m(scenario)),
+      route_(planner_of(floor, robot), rules_, extra_clearances_m(floor)),
       blockage_(kBlockedAfter),
       passage_(rules_),
       corners_(rules_.radius_m),

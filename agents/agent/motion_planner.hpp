@@ -43,7 +43,7 @@ class MotionPlanner {
   };
 
   /// `scratch` must outlive this object.
-  MotionPlanner(const Scenario& scenario, const RobotSpec& robot, PlanningScratch& scratch);
+  MotionPlanner(const FloorSpec& floor, const RobotSpec& robot, PlanningScratch& scratch);
 
   /// Plans the motion from `start` on. Returns nullopt if the base already ends where the robot wants to be,
   /// if the search for a route takes longer than this cycle, or if the robot must come to rest first.

@@ -20,17 +20,16 @@ bool is_recent(Time t, Time now, Duration max_age) { return std::chrono::abs(now
 
 }  // namespace
 
-Observations::Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules)
-    : max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
+Observations::Observations(const FloorSpec& floor, const RobotSpec& robot, const FloorRules& rules)
+    : max_clock_difference_(max_clock_difference(floor.clock_bound_s)),
       page_horizon_m_(page_horizon_m(rules)),
-      own_({robot.start_m, Vec2::Zero()}, drift_bound_m(scenario.tracking_bound_m)),
+      own_({robot.start_m, Vec2::Zero()}, drift_bound_m(floor.tracking_bound_m)),
       neighbours_(robot.id),
-      obstacles_(scenario.max_opponent_speed_mps, max_clock_difference_),
-      displaced_(robot.id, scenario.radius_m, scenario.margin_m,
-                 std::max(scenario.max_opponent_speed_mps, scenario.limits.speed_mps),
-                 max_clock_difference_) {
+      obstacles_(floor.max_opponent_speed_mps, max_clock_difference_),
+      displaced_(robot.id, floor.radius_m, floor.margin_m,
+                 std::max(floor.max_opponent_speed_mps, floor.limits.speed_mps), max_clock_difference_) {
   neighbours_.set_horizon(robot.start_m, page_horizon_m_);
-  if (scenario.laser) laser_.emplace(scenario, rules);
+  if (floor.laser) laser_.emplace(floor, rules);
 }
 
 void Observations::on_robot_report(const RobotReport& robot_report) {

@@ -22,7 +22,7 @@ namespace sidestep {
 class Observations {
  public:
   /// `rules` must outlive this object.
-  Observations(const Scenario& scenario, const RobotSpec& robot, const FloorRules& rules);
+  Observations(const FloorSpec& floor, const RobotSpec& robot, const FloorRules& rules);
 
   void on_robot_report(const RobotReport& robot_report);
   /// Processes a world state. If the robot's clock has not been measured yet, the observation is only

@@ -5,10 +5,10 @@
 
 namespace sidestep {
 
-OrderExecution::OrderExecution(const Scenario& scenario, const RobotSpec& robot)
-    : goal_tolerance_m_(scenario.goal_tolerance_m),
+OrderExecution::OrderExecution(const FloorSpec& floor, const RobotSpec& robot)
+    : goal_tolerance_m_(floor.goal_tolerance_m),
       start_heading_rad_(robot.start_heading_rad),
-      assignment_(robot.id, robot.goals, roster_of(scenario)),
+      assignment_(robot.id, robot.goals, roster_of(floor)),
       desired_heading_rad_(robot.start_heading_rad) {}
 
 OrderExecution::Changes OrderExecution::on_page(std::shared_ptr<const OrderPage> page) {

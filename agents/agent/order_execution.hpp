@@ -21,7 +21,7 @@ class OrderExecution {
     bool zones = false;
   };
 
-  OrderExecution(const Scenario& scenario, const RobotSpec& robot);
+  OrderExecution(const FloorSpec& floor, const RobotSpec& robot);
 
   /// Processes orders that a coordinator remembers.
   Changes on_page(std::shared_ptr<const OrderPage> page);

@@ -12,8 +12,8 @@ namespace sidestep {
 /// Working memory of planning, with no state that outlives a cycle. The agents of a simulation run in one
 /// thread and share one instance, which therefore stays in the processor's caches.
 struct PlanningScratch {
-  explicit PlanningScratch(const Scenario& scenario)
-      : rules(floor_rules(scenario)),
+  explicit PlanningScratch(const FloorSpec& floor)
+      : rules(floor_rules(floor)),
         steering(rules.field, rules.radius_m, rules.limits),
         safety_search(rules) {}
 

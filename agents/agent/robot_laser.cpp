@@ -19,13 +19,13 @@ Vec2 position_at(const Trajectory& trajectory, Time t) {
 
 }  // namespace
 
-RobotLaser::RobotLaser(const Scenario& scenario, const FloorRules& rules)
+RobotLaser::RobotLaser(const FloorSpec& floor, const FloorRules& rules)
     : rules_(rules),
-      max_clock_difference_(max_clock_difference(scenario.clock_bound_s)),
-      max_person_speed_mps_(scenario.max_opponent_speed_mps),
-      scan_period_(from_seconds(1 / scenario.laser->rate_hz)),
-      sight_(*scenario.laser, rules,
-             LaserSightSettings{.position_error_m = scenario.tracking_bound_m,
+      max_clock_difference_(max_clock_difference(floor.clock_bound_s)),
+      max_person_speed_mps_(floor.max_opponent_speed_mps),
+      scan_period_(from_seconds(1 / floor.laser->rate_hz)),
+      sight_(*floor.laser, rules,
+             LaserSightSettings{.position_error_m = floor.tracking_bound_m,
                                 .heading_error_rad = kMaxHeadingError_rad}) {}
 
 void RobotLaser::on_scan(const LaserScan& scan, Neighbours& neighbours, Time now) {

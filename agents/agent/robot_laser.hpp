@@ -18,7 +18,7 @@ namespace sidestep {
 class RobotLaser {
  public:
   /// `rules` must outlive this object. Precondition: the robots of the scenario have lasers.
-  RobotLaser(const Scenario& scenario, const FloorRules& rules);
+  RobotLaser(const FloorSpec& floor, const FloorRules& rules);
 
   /// Processes a scan. Drops and counts it if its time is in the future. `now` is an upper bound of the time
   /// by the robot's clock.

@@ -32,6 +32,6 @@ inline std::vector<std::string> driving_planners() {
 }
 
 /// Makes all robots use this planner. Empty: keep the scenario's planners.
-void use_planner(Scenario& scenario, const std::string& planner);
+void use_planner(FloorSpec& floor, const std::string& planner);
 
 }  // namespace sidestep

@@ -101,17 +101,14 @@ struct RestartSpec {
   bool robots = false;  ///< sidestep-robot, with `run --driver`
 };
 
-/// One run of the system, as described by a scenario file (deploy/scenarios/README.md). The loader rejects
-/// invalid scenarios.
-struct Scenario {
-  std::string name;
+/// The floor, its robots, and the rules that they keep: the part of a scenario that every process uses.
+struct FloorSpec {
+  std::string name;  ///< of the scenario
   Field field;
   std::vector<RobotSpec> robots;  ///< ascending by id
   std::vector<Shape> obstacles;
   std::shared_ptr<const FloorMap> map;  ///< additional obstacles; null: none
-  std::vector<OpponentSpec> opponents;
   double max_opponent_speed_mps = 1.5;  ///< upper bound of opponents' speed that agents assume
-  std::optional<BallSpec> ball;
   MotionLimits limits;
   double radius_m = 0.09;
   double margin_m = 0.014;  ///< at least budget_of().required_margin_m()
@@ -120,33 +117,47 @@ struct Scenario {
   Duration cycle{16'666'667};
   std::string planner = "lazy-visibility";  ///< planner for the routes of all robots
   double goal_tolerance_m = 0.02;
-  double time_limit_s = 60;  ///< limit for all robots to arrive, counted from the coordinator's first grants
+  std::optional<LaserSpec> laser;  ///< nullopt: vision sees opponents and people
+  int coordinators = 1;            ///< number of coordinators: one is active, the others are standbys
+};
+
+/// The world that is simulated around the robots, with its cameras and its network.
+struct SimulationSpec {
+  std::vector<OpponentSpec> opponents;
+  std::optional<BallSpec> ball;
   VisionSpec vision;
   OdometrySpec odometry;
-  std::optional<LaserSpec> laser;  ///< nullopt: vision sees opponents and people
   double command_loss = 0;  ///< probability that the radio link between agent and robot drops a command
   NetworkSpec network;
+};
+
+/// How a run is started and ended.
+struct LaunchSpec {
+  double time_limit_s = 60;  ///< limit for all robots to arrive, counted from the coordinator's first grants
   RestartSpec restart;
-  int coordinators = 1;        ///< number of coordinators: one is active, the others are standbys
   bool has_test_keys = false;  ///< the file has `faults` or `expect`, which only `sidestep test` applies
 };
 
-FloorRules floor_rules(const Scenario& scenario);
-SafetyBudget budget_of(const Scenario& scenario);
+/// One run of the system, as described by a scenario file (deploy/scenarios/README.md). The loader rejects
+/// invalid scenarios.
+struct Scenario : FloorSpec, SimulationSpec, LaunchSpec {};
 
-/// The ids of all robots of the scenario, ascending.
-std::vector<RobotId> roster_of(const Scenario& scenario);
+FloorRules floor_rules(const FloorSpec& floor);
+SafetyBudget budget_of(const FloorSpec& floor);
+
+/// The ids of all robots on the floor, ascending.
+std::vector<RobotId> roster_of(const FloorSpec& floor);
 
 /// The robot with an id, or nullptr.
-const RobotSpec* find_robot(const Scenario& scenario, RobotId id);
+const RobotSpec* find_robot(const FloorSpec& floor, RobotId id);
 
 /// A robot's number within its team, 0 .. 15: the id of its marker pattern and its id in the league's
 /// packets.
 constexpr std::uint32_t number_in_team(RobotId id) { return id % 16; }
 /// The first robot of a team with this number, or nullptr.
-const RobotSpec* find_robot(const Scenario& scenario, Team team, std::uint32_t number);
+const RobotSpec* find_robot(const FloorSpec& floor, Team team, std::uint32_t number);
 /// Throws std::invalid_argument if two robots of a team have the same number, because neither marker patterns
 /// nor league packets could distinguish them.
-void require_unique_numbers(const Scenario& scenario);
+void require_unique_numbers(const FloorSpec& floor);
 
 }  // namespace sidestep

@@ -24,9 +24,9 @@ std::uint64_t hash(std::string_view text) {
 }
 
 /// The robot numbers, with consecutive ones as a range, for example "0-3, 8".
-std::string numbers_of(const Scenario& scenario, Team team) {
+std::string numbers_of(const FloorSpec& floor, Team team) {
   std::string text;
-  const auto& robots = scenario.robots;
+  const auto& robots = floor.robots;
   const auto is_in_run = [&](std::size_t i, RobotId id) {
     return i < robots.size() && robots[i].team == team && robots[i].id == id;
   };
@@ -44,14 +44,14 @@ std::string numbers_of(const Scenario& scenario, Team team) {
   return text.empty() ? "none" : text;
 }
 
-std::string obstacles_of(const Scenario& scenario) {
+std::string obstacles_of(const FloorSpec& floor) {
   std::string text;
-  for (const Shape& obstacle : scenario.obstacles) {
+  for (const Shape& obstacle : floor.obstacles) {
     if (!text.empty()) text += "; ";
     text += obstacle_text(obstacle);
   }
-  if (scenario.obstacles.size() > kMaxListedObstacles)
-    return fmt::format("{} with fingerprint {:016x}", scenario.obstacles.size(), hash(text));
+  if (floor.obstacles.size() > kMaxListedObstacles)
+    return fmt::format("{} with fingerprint {:016x}", floor.obstacles.size(), hash(text));
   return text.empty() ? "none" : text;
 }
 
@@ -70,26 +70,25 @@ std::string shown(const std::string& value) {
 
 }  // namespace
 
-SharedRules::SharedRules(const Scenario& scenario) {
+SharedRules::SharedRules(const FloorSpec& floor) {
   const auto add = [this](const char* key, double value) {
     rules_.push_back({key, fmt::format("{}", value)});
   };
-  rules_.push_back({"robots.blue", numbers_of(scenario, Team::kBlue)});
-  rules_.push_back({"robots.yellow", numbers_of(scenario, Team::kYellow)});
-  add("field.length_m", scenario.field.length_m);
-  add("field.width_m", scenario.field.width_m);
-  rules_.push_back({"obstacles", obstacles_of(scenario)});
-  if (scenario.map)
-    rules_.push_back({"map", fmt::format("fingerprint {:016x}", scenario.map->fingerprint())});
-  add("limits.acceleration_mps2", scenario.limits.acceleration_mps2);
-  add("limits.deceleration_mps2", scenario.limits.deceleration_mps2);
-  add("limits.speed_mps", scenario.limits.speed_mps);
-  add("radius_m", scenario.radius_m);
-  add("margin_m", scenario.margin_m);
-  add("tracking_bound_m", scenario.tracking_bound_m);
-  add("clock_bound_s", scenario.clock_bound_s);
-  add("max_opponent_speed_mps", scenario.max_opponent_speed_mps);
-  if (scenario.laser) rules_.push_back({"laser", laser_text(*scenario.laser)});
+  rules_.push_back({"robots.blue", numbers_of(floor, Team::kBlue)});
+  rules_.push_back({"robots.yellow", numbers_of(floor, Team::kYellow)});
+  add("field.length_m", floor.field.length_m);
+  add("field.width_m", floor.field.width_m);
+  rules_.push_back({"obstacles", obstacles_of(floor)});
+  if (floor.map) rules_.push_back({"map", fmt::format("fingerprint {:016x}", floor.map->fingerprint())});
+  add("limits.acceleration_mps2", floor.limits.acceleration_mps2);
+  add("limits.deceleration_mps2", floor.limits.deceleration_mps2);
+  add("limits.speed_mps", floor.limits.speed_mps);
+  add("radius_m", floor.radius_m);
+  add("margin_m", floor.margin_m);
+  add("tracking_bound_m", floor.tracking_bound_m);
+  add("clock_bound_s", floor.clock_bound_s);
+  add("max_opponent_speed_mps", floor.max_opponent_speed_mps);
+  if (floor.laser) rules_.push_back({"laser", laser_text(*floor.laser)});
   finish();
 }
 

@@ -25,7 +25,7 @@ class SharedRules {
   /// Identifies a set of rules in message headers. Never 0.
   using Fingerprint = std::uint64_t;
 
-  explicit SharedRules(const Scenario& scenario);
+  explicit SharedRules(const FloorSpec& floor);
   /// Decodes another process's text(). The text may be hostile; nullopt if it is malformed.
   [[nodiscard]] static std::optional<SharedRules> parse(std::string_view text);
 
