@@ -41,7 +41,7 @@ void print_violations(Auditor& auditor, bool is_json) {
 
 std::string audit_summary(const AuditTotals& totals) {
   std::string text = fmt::format(
-      "{} violations; {} messages received, {} missed, {} invalid, {} refused because of other rules\n"
+      "{} violations; {} messages received, {} missed, {} invalid, {} refused because rules differ\n"
       "{} pairs of versions compared, {} undecided because of missed messages; positions and contacts from: "
       "{}\n",
       totals.violations, totals.received, totals.missed, totals.invalid, totals.refused,
@@ -63,7 +63,7 @@ int finish(const AuditTotals& totals) {
 
 int audit_recording(const AuditOptions& options) {
   PlaybackBus bus(options.recording_file);
-  bus.trust_first_senders();  // as the run's own audit did
+  bus.trust_first_senders();  // the run's own audit trusted them
   const Scenario scenario =
       options.scenario_file.empty() ? bus.scenario() : load_scenario(options.scenario_file);
   AuditInput input;
@@ -77,7 +77,7 @@ int audit_recording(const AuditOptions& options) {
              bus.header().scenario_name,
              result.unreadable > 0 ? fmt::format(", {} of them unreadable", result.unreadable) : "");
   if (!result.damage.empty())
-    fmt::print(stderr, "{}: {}; the messages before that were used\n", options.recording_file, result.damage);
+    fmt::print(stderr, "{}: {}; earlier messages were used\n", options.recording_file, result.damage);
   auditor.advance(bus.now());
   AuditTotals totals = auditor.totals();
   totals.is_cut_off = !result.damage.empty();

@@ -15,7 +15,7 @@ namespace sidestep {
 /// each.
 struct AuditFindings {
   AuditTotals totals;
-  Time now{};  ///< by the auditor's clock
+  Time now{};  ///< current time by the auditor's clock
   std::function<void(const Violation&)> on_violation;
 
   void report(Violation violation) {
@@ -25,7 +25,7 @@ struct AuditFindings {
     if (totals.first.size() < AuditTotals::kMaxKept) totals.first.push_back(violation);
     if (on_violation) on_violation(violation);
   }
-  /// `known` is the version involved; nullptr: none. Arguments are formatted into the detail.
+  /// Reports a violation. `known`: the version involved, or nullptr. Arguments are formatted into the detail.
   void report(AuditRule rule, RobotId robot, const KnownVersion* known, Epoch epoch, std::string detail) {
     report({rule, {}, robot, {}, known ? known->number : 0, 0, epoch, std::move(detail)});
   }

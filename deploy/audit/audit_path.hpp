@@ -15,7 +15,7 @@ inline constexpr double kLengthTolerance_m = 2e-6;  ///< allows for rounding in 
 [[nodiscard]] bool is_sane(const msg::Version& version);
 
 /// The reference path of a version, for the auditor only. The arithmetic is deliberately independent of
-/// common/motion, so that an error there cannot hide itself.
+/// common/motion, so that the auditor does not repeat errors of that code.
 class AuditPath {
  public:
   struct Node {
@@ -29,8 +29,8 @@ class AuditPath {
 
   std::int64_t start_ns() const { return start_ns_; }
   double duration_s() const { return nodes_[static_cast<std::size_t>(count_)].elapsed_s; }
-  /// Position, velocity and acceleration `elapsed_s` after the start. Earlier times give the start, later
-  /// times the end at rest.
+  /// Position, velocity and acceleration `elapsed_s` after the start. Before the start, the state at the
+  /// start; after the end, the end at rest.
   Node at_s(double elapsed_s) const;
   Node at_ns(std::int64_t t_ns) const { return at_s(static_cast<double>(t_ns - start_ns_) * 1e-9); }
   const Node& first() const { return nodes_[0]; }

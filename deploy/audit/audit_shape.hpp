@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// A static obstacle, for the auditor only: corners, counter-clockwise, and a radius around them. The
+/// A static obstacle, for the auditor only: its corners, counter-clockwise, and a radius around them. The
 /// arithmetic is deliberately independent of common/collision and common/motion.
 class AuditShape {
  public:

@@ -52,7 +52,7 @@ AuditVerdict AuditTotals::verdict() const {
 
 std::string shortfall(const AuditTotals& totals) {
   if (totals.received == 0 && totals.refused > 0)
-    return fmt::format("all {} messages come from processes with other rules", totals.refused);
+    return fmt::format("all {} messages come from processes with different rules", totals.refused);
   if (totals.received == 0) return "no messages were received";
   if (totals.run_s <= 0) return "no received message shows that robots could move";
   std::string text;

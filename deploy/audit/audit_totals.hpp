@@ -28,7 +28,7 @@ enum class AuditReference : std::uint8_t { kNone, kVision, kGroundTruth, kVision
 /// For example "ground truth".
 [[nodiscard]] const char* name_of(AuditReference reference);
 
-/// The contacts of one pair that one cause excuses. The pair is two robots, or a robot and an obstacle.
+/// The excused contacts of one pair (two robots, or a robot and an obstacle) that have one cause.
 struct ExcusedContacts {
   std::string cause;
   RobotId first = 0;
@@ -57,7 +57,7 @@ struct AuditTotals {
   /// RunCoverage::begin_run().
   double run_s = 0;
   AuditReference reference = AuditReference::kNone;
-  /// Largest distance of a robot from its reference, while it was not off reference.
+  /// Largest distance of a robot from its reference while the robot was not off reference.
   double max_position_error_m = 0;
   std::uint64_t excused_crashes = 0;     ///< number of crashes of moving robots that a disturbance excuses
   std::uint64_t excused_contacts = 0;    ///< number of contacts that a disturbance of a robot excuses
@@ -67,9 +67,9 @@ struct AuditTotals {
   std::uint64_t undecided_contacts = 0;  ///< number of contacts that a missed message may excuse
   /// Number of crashes of moving robots that a missed message may excuse.
   std::uint64_t undecided_crashes = 0;
-  std::uint64_t excused_displacements = 0;  ///< number of position errors of disturbed robots
+  std::uint64_t excused_displacements = 0;  ///< number of position errors that a disturbance excuses
   double pair_s = 0;                        ///< observed time, summed over all pairs of robots on the floor
-  double excused_pair_s = 0;  ///< the part of this time in which a contact would have been excused
+  double excused_pair_s = 0;                ///< the part of pair_s in which a contact would have been excused
 
   double excused_time_share() const { return pair_s > 0 ? excused_pair_s / pair_s : 0; }
   AuditVerdict verdict() const;

@@ -8,7 +8,7 @@
 namespace sidestep {
 namespace {
 
-/// The robot's latest known proposal for which `matches` is true; nullptr: there is none.
+/// The robot's latest known proposal for which `matches` is true; nullptr if there is none.
 template <typename Robot, typename Matches>
 auto last_proposal(Robot& robot, Matches matches) -> decltype(&robot.proposals[0]) {
   constexpr std::size_t kMax = AuditedRobot::kMaxProposals;
@@ -56,7 +56,7 @@ const KnownVersion* AuditedRobot::find(VersionNumber number) const {
 }
 
 const KnownVersion* AuditedRobot::find_near(std::size_t index, VersionNumber number) const {
-  // Since the version was at this index, older ones may have been removed and newer ones appended.
+  // Older versions may have been removed and newer ones appended since the version was at this index.
   if (index < versions.size()) {
     while (index > 0 && versions[index].number > number) --index;
     if (versions[index].number == number) return &versions[index];
@@ -181,8 +181,8 @@ void AuditedRobot::forget_times() {
   observation = {};
   for (KnownVersion& version : versions) {
     version.executed_until_ns = kAlways;
-    // Undoes exclusions that relied on the clock that was ahead. Other messages may need the version before
-    // the first report by the corrected clock arrives.
+    // Undoes exclusions that relied on the robot's clock while it was ahead, because messages about the
+    // version may arrive before the first report by the corrected clock.
     if (version.exclusion != Exclusion::kLate) continue;
     version.exclusion = Exclusion::kNone;
     version.excluded_ns = kNever;
@@ -193,7 +193,7 @@ void AuditedRobot::forget_times() {
 Exclusion exclusion_by(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& version) {
   if (robot_report.is_lifted && robot_report.executing == 0) {
     // A lifted robot can only execute a granted rest version that it has not yet executed, and versions that
-    // continue that one after the robot has been put down.
+    // continue this rest version after the robot has been put down.
     const bool is_later =
         version.has_content && !version.was_executed && version.path.start_ns() > robot_report.at_ns;
     const bool is_rest_version =

@@ -40,7 +40,7 @@ class EpochMemory {
   Epoch max_evicted_ = 0;
 };
 
-/// What is known about one version. Sending times are by the auditor's clock. Times of grants are by the
+/// The auditor's record of one version. Sending times are by the auditor's clock. Times of grants are by the
 /// coordinator's clock if the auditor may miss messages.
 struct KnownVersion {
   // The members that are read for most versions come first, so that they are adjacent in memory.
@@ -49,15 +49,15 @@ struct KnownVersion {
   bool is_own_stop = false;  ///< made by the firmware when the robot was off its reference
   bool was_executed = false;
   Exclusion exclusion = Exclusion::kNone;
-  Epoch granted_in = 0;                 ///< for an own stop: the epoch whose ledger page contained it
-  std::int64_t granted_by_ns = kNever;  ///< upper bound of the sending time of the verdict, or of that page
+  Epoch granted_in = 0;                      ///< for an own stop: the epoch whose ledger page contained it
+  std::int64_t granted_by_ns = kNever;       ///< upper bound of the sending time of the verdict or page
   std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
   /// The ledger contained it at least until this time, which is by the clock of
   /// MessageTimes::granter_time_ns().
   std::int64_t in_ledger_until_ns = kAlways;
   std::int64_t excluded_ns = kNever;
-  // What ledger pages show, with times by the coordinator's clock. Unused if the auditor receives every
-  // message.
+  // Information from ledger pages, with times by the coordinator's clock. Unused if the auditor receives
+  // every message.
   Epoch listed_in = 0;                      ///< the latest epoch whose ledger pages listed it
   std::int64_t listed_from_ns = kNever;     ///< time of the first page that listed it
   std::int64_t entered_after_ns = kAlways;  ///< time of the last earlier page, which did not list it
@@ -85,7 +85,7 @@ struct KnownVersion {
   bool may_be_in(Epoch epoch) const;
 };
 
-/// A received proposal and what is known about its verdict.
+/// A received proposal and its verdict, if that is known.
 struct ProposalRecord {
   std::uint64_t number = 0;
   std::int64_t stamp_ns = 0;  ///< by the agent's clock; the verdict repeats it
@@ -106,7 +106,7 @@ struct EarlyVerdict {
   VersionNumber granted = 0;
 };
 
-/// What the auditor knows about one robot on the roster. Bounded in size.
+/// The auditor's record of one robot on the roster. Bounded in size.
 class AuditedRobot {
  public:
   static constexpr std::size_t kMaxVersions = 64;
@@ -142,8 +142,8 @@ class AuditedRobot {
   };
   std::optional<ReceivedReport> last_report;
   Time heard_at{};  ///< when the latest report arrived
-  /// Since when all reports have stated a tracking error beyond the drift bound, or beyond the tracking
-  /// bound.
+  /// Times since which all reports have stated a tracking error beyond the drift bound and beyond the
+  /// tracking bound.
   std::int64_t drifted_since_ns = kNever, beyond_bound_since_ns = kNever;
 
   /// The latest registration.
@@ -171,15 +171,15 @@ class AuditedRobot {
     std::int64_t at_ns = kAlways;
   };
   Listing listed;
-  /// Offset of the robot's clock according to its last report; exact only if every message is received at
-  /// once.
+  /// Offset of the robot's clock according to its last report; exact only if every message is received
+  /// immediately.
   std::int64_t clock_ahead_ns = 0;
-  /// An operator has attested the robot's absence: epochs up to this one may have begun without its
-  /// registration.
+  /// Epochs up to this one may have begun without the robot's registration, because an operator attested its
+  /// absence.
   Epoch attested_until = 0;
   Epoch attested_in = 0;  ///< the newest epoch at the time of the latest attestation
 
-  /// Number of executed versions, and number of these that are traced. Counts only versions that an agent
+  /// Number of executed versions, and number of traced ones among them. Counts only versions that an agent
   /// made and that were granted during the audit.
   struct ExecutedVersions {
     std::uint64_t all = 0, traced = 0;
@@ -201,7 +201,7 @@ class AuditedRobot {
   const KnownVersion* executed_at(VersionNumber latest, std::int64_t at_ns) const;
   /// Distance of a position from the version that the robot executes; infinite if that version is unknown.
   double distance_from_version_m(const Vec2& position_m, std::int64_t at_ns) const;
-  /// The counts over the robot's whole life.
+  /// The counts since the audit began.
   ExecutedVersions executed_versions() const;
   /// The version's record, inserted if it is new. If there is no room, evicts the least relevant record.
   KnownVersion& find_or_insert(VersionNumber number);
@@ -214,9 +214,9 @@ class AuditedRobot {
   const ProposalRecord* find_proposal_of(const msg::Version& candidate) const;
   /// Removes versions that were excluded before `before_ns`.
   void forget(std::int64_t before_ns);
-  /// Advances first_recent past versions excluded before `since_ns`, which are not compared any more.
+  /// Advances first_recent past versions excluded before `since_ns`, which are no longer compared.
   void advance_recent(std::int64_t since_ns);
-  /// Moves first_recent back to this version, so that it is compared again using what is now known about it.
+  /// Moves first_recent back to this version, so that it is compared again with its new evidence.
   void make_recent(VersionNumber number);
   /// A slot for one more proposal. Evicts the oldest proposal if there is no room.
   ProposalRecord& add_proposal();
@@ -233,7 +233,7 @@ class AuditedRobot {
 [[nodiscard]] Exclusion exclusion_by(const AuditedRobot::ReceivedReport& robot_report,
                                      const KnownVersion& version);
 
-/// The part of a version that decides whether it is compared with another one; compact in memory.
+/// The data of a version that decide whether it is compared with another version; compact in memory.
 struct LiveVersion {
   double x = 0, y = 0, reach_m = 0;
   std::int64_t start_ns = 0, executed_until_ns = kAlways,

@@ -6,17 +6,17 @@
 
 namespace sidestep {
 
-/// Which messages the auditor receives, and how quickly.
+/// Describes which messages the auditor receives, and how quickly.
 struct AuditInput {
-  /// Whether it receives every message from the start on, at the moment it is sent. Only then is a missing
-  /// message evidence.
+  /// Whether the auditor receives every message from the start on, at the moment it is sent. Only then does a
+  /// missing message prove anything.
   bool is_complete = false;
-  /// Upper bound of the minimum latency from any sender to the auditor. Unused if is_complete. A receiver
-  /// that is overloaded exceeds it, so no violation relies on it.
+  /// Upper bound of the minimum latency from any sender to the auditor. Unused if is_complete. An overloaded
+  /// receiver exceeds this bound, so no violation relies on it.
   Duration min_latency_bound{5'000'000};
 };
 
-/// The run that is audited, and what the auditor receives of it.
+/// The audited run, and a description of the messages that the auditor receives.
 struct AuditedRun {
   Scenario scenario;
   AuditInput input;
@@ -24,7 +24,7 @@ struct AuditedRun {
   bool is_complete() const { return input.is_complete; }
   Duration latency_bound() const { return is_complete() ? Duration{0} : input.min_latency_bound; }
   std::int64_t clock_bound_ns() const { return from_seconds(scenario.clock_bound_s).count(); }
-  /// How far a robot may appear to be from its version because of errors of vision and clocks.
+  /// Maximum apparent distance of a robot from its version due to errors of vision and clocks.
   double sight_allowance_m() const {
     return position_error_m(scenario.vision) + 2 * scenario.clock_bound_s * scenario.limits.speed_mps;
   }

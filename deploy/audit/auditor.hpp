@@ -16,10 +16,10 @@ namespace sidestep {
 /// robots and versions involved. It checks the form and the sender of each message, and passes the message on
 /// to the audits that it concerns. Shares no code with the components under audit. The auditor may join late,
 /// miss messages and receive them late and out of order. It then relies only on contradictions between
-/// received messages that no missing message could resolve. So it finds less, but never raises a false alarm,
-/// and its totals state how much it covered. If messages may be missed, it knows the order of two messages
-/// only if they have the same sender or if one refers to the other. Operators' messages must not be lost.
-/// Memory is bounded by the roster.
+/// received messages that no missing message could resolve. It may then overlook violations, but never raises
+/// a false alarm, and its totals state how much it covered. If messages may be missed, it knows the order of
+/// two messages only if they have the same sender or if one refers to the other. Operators' messages must not
+/// be lost. Memory is bounded by the roster.
 class Auditor {
  public:
   Auditor(const Scenario& scenario, const AuditInput& input);
@@ -37,16 +37,16 @@ class Auditor {
   void on_truth(const msg::GroundTruth& truth, Time now);
   /// The world state is the reference if no ground truth is received.
   void on_world_state(const msg::WorldState& world, Time now);
-  /// Names the cause of a disturbance. Without ground truth it is also the evidence that there was one.
+  /// Names the cause of a disturbance. Without ground truth, it also proves the disturbance.
   void on_disturbance(const msg::Disturbance& disturbance, Time now);
-  /// The operator attests that a silent robot is not on the floor.
+  /// Processes an operator's attestation that a silent robot is not on the floor.
   void on_attestation(const msg::AbsenceAttestation& attestation, Time now);
   void on_order(const msg::Order& order, Time now);
   void on_order_answer(const msg::OrderAnswer& answer, Time now);
-  /// The memory of a coordinator or an agent.
+  /// Processes the order memory of a coordinator or an agent.
   void on_order_memory(const msg::OrderMemory& memory, Time now);
   void on_order_status(const msg::OrderStatus& status, Time now);
-  /// A message from a process with different rules was refused.
+  /// Counts a message that was refused because its sender has different rules.
   void on_refused() { ++findings_.totals.refused; }
   /// Advances the time, also when there are no messages.
   void advance(Time now) { findings_.now = std::max(findings_.now, now); }
@@ -60,9 +60,9 @@ class Auditor {
  private:
   using Kind = MessageTimes::Kind;
 
-  /// The robot on the roster; if there is none, the message is counted as invalid.
+  /// The robot; if it is not on the roster, counts the message as invalid and returns nullptr.
   AuditedRobot* known_robot(RobotId robot);
-  /// The robot that sent the message; if another process sent it, the message is counted as invalid.
+  /// The robot; if it did not send the message, counts the message as invalid and returns nullptr.
   AuditedRobot* sender_of(RobotId robot, const msg::Header& header);
   Reception trace(Kind kind, std::uint32_t key, const msg::Header& header);
 

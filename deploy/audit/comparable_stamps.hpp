@@ -12,12 +12,12 @@
 
 namespace sidestep {
 
-/// Decides whether the time stamps of a process's messages show their order. They do not if its clock was set
-/// back: a later message then has an earlier stamp, and between different topics, message numbers show no
-/// order either.
+/// Decides whether the time stamps of a process's messages show their order. The stamps do not show it if the
+/// process's clock was set back: a later message then has an earlier stamp, and between different topics,
+/// message numbers show no order either.
 class ComparableStamps {
  public:
-  /// `channel` distinguishes the streams that one sender numbers separately.
+  /// Records a stamp. `channel` distinguishes the streams that one sender numbers separately.
   void record(std::uint64_t channel, const msg::Header& header);
   /// Whether the messages of this run of a process have been stamped in the order of their numbers so far.
   /// False if no message of the run was recorded, or only long ago.

@@ -33,7 +33,7 @@ bool ContactExcuses::are_known(std::optional<std::size_t> robot, std::int64_t ap
   // A robot that is not seen now may have been disturbed since it was last seen.
   if (!robot || !observed_[*robot] || are_contacts_unknown_ || disturbances_.is_uncertain(*robot))
     return false;
-  // With vision as the reference, robots that touch may have touched ever since one of them was out of place.
+  // With vision as the reference, two robots may have touched since one of them left its place.
   return !coverage_.is_vision() || positions_.in_place_since_ns(*robot) <= apart_ns;
 }
 

@@ -17,19 +17,19 @@ class ContactExcuses {
   ContactExcuses(const AuditedRun& run, const RobotRecords& robots, const RunCoverage& coverage,
                  const PositionAudit& positions, Disturbances& disturbances, AuditFindings& findings);
 
-  /// From now on no robot is on the floor until it is observed.
+  /// From now on, each robot counts as off the floor until it is observed.
   void begin_observation() { observed_.assign(observed_.size(), std::nullopt); }
-  /// The robot is on the floor. `error_m` is the distance from the place that its version prescribes; up to
-  /// `allowance_m` of it may be an observation error.
+  /// Records a robot on the floor. `error_m` is the distance from the place that its version prescribes; up
+  /// to `allowance_m` of it may be an observation error.
   void observe(const AuditedRobot& robot, const Vec2& position_m, double speed_mps, double error_m,
                double allowance_m);
-  /// All robots on the floor at this time have been observed.
+  /// Call after observe() for all robots that are on the floor at this time.
   void end_observation(Time at) { disturbances_.update(at, observed_); }
-  /// From now on it is unknown which robots pushed which others.
+  /// Records contacts of unknown robots: from now on, it is unknown which robots pushed which others.
   void on_unknown_contacts() { are_contacts_unknown_ = true; }
 
-  /// Whether a contact is excused or left undecided, which is then counted. nullopt stands for an obstacle.
-  /// `apart_ns` is the last time at which vision saw the two apart.
+  /// Returns whether a contact is excused or undecided, and counts it in that case. `second`: nullopt means
+  /// an obstacle. `apart_ns` is the last time at which vision saw the pair apart.
   bool excuses(RobotId first, std::optional<RobotId> second, Time at, std::int64_t apart_ns = kAlways);
   /// Whether everything that may excuse a contact of this robot was received.
   bool are_known(std::optional<std::size_t> robot, std::int64_t apart_ns = kAlways) const;

@@ -23,7 +23,7 @@ double effort(const AuditPath::Node& n, const MotionLimits& limits) {
   return std::sqrt(along * along / (d * d) + across * across / (f * f));
 }
 
-/// The largest effort in a phase, which is at one of its ends: the velocity turns towards the acceleration.
+/// The largest effort in a phase. It occurs at an end, because the velocity turns towards the acceleration.
 double largest_effort(const AuditPath::Node& begin, const AuditPath::Node& end, const MotionLimits& limits) {
   AuditPath::Node last = end;
   last.ax = begin.ax;
@@ -120,7 +120,7 @@ void ContentAudit::check_obstacles(const AuditedRobot& robot, const KnownVersion
   });
 }
 
-/// The base's distance from an obstacle; if the obstacle is part of the map, from the whole map, because the
+/// The base's distance from an obstacle, or from the whole map if the obstacle is part of it, because the
 /// map's cells are split into boxes differently for each path.
 double ContentAudit::distance_of_base_m(const KnownVersion& base, const AuditShape& obstacle, bool is_map,
                                         double required_m) const {
@@ -155,7 +155,7 @@ void ContentAudit::check_base(const AuditedRobot& robot, const KnownVersion& kno
   const KnownVersion* base = robot.find(known.version.base());
   if (known.number <= known.version.base()) {
     findings_.report(AuditRule::kVersionOrder, robot.id, &known, known.granted_in,
-                     "its base, version {}, has no lower number", known.version.base());
+                     "its base, version {}, is not numbered below it", known.version.base());
   }
   const bool is_rest_version = known.version.base() == 0 && known.path.reach_m() == 0;
   const bool is_absent = (robot.last_report && robot.last_report->is_lifted) ||

@@ -8,13 +8,13 @@
 
 namespace sidestep {
 
-/// Checks the content of granted versions by itself, and against the field, the obstacles and the version's
-/// base.
+/// Checks the content of granted versions: the motion itself, and its relation to the field, the obstacles
+/// and the version's base.
 class ContentAudit {
  public:
   ContentAudit(const AuditedRun& run, const RobotRecords& robots, AuditFindings& findings);
 
-  /// Precondition, here and below: the version has content.
+  /// Runs all checks of a version. Precondition, here and below: the version has content.
   void check(const AuditedRobot& robot, KnownVersion& known);
   /// Runs the checks that need the version's base, if the base is known.
   void check_against_base(const AuditedRobot& robot, KnownVersion& known);

@@ -8,7 +8,7 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kMaxDuration{60'000'000'000};
-// For this long after the disturbance, a displaced robot may pass through its place by chance.
+// Time after a disturbance during which a displaced robot may pass through its prescribed place by chance.
 constexpr Duration kSettlingTime{1'000'000'000};
 // A robot that is not back in place after this time is not expected to return.
 constexpr Duration kMaxDisplacement{20'000'000'000};
@@ -155,13 +155,13 @@ void Disturbances::update_pushes() {
 void Disturbances::update_displacement(std::size_t robot) {
   auto& displacement = states_[robot].displacement;
   if (!displacement) return;
-  // The clock that these times were read from may have been set back.
+  // The clock of ground truth or vision may have been set back.
   displacement->end = std::min(displacement->end, *now_ + kMaxDuration);
   if (displacement->back_at) displacement->back_at = std::min(*displacement->back_at, *now_);
   const Duration elapsed = *now_ - displacement->end;
   if (elapsed < Duration{0}) return;
   if (!displacement->back_at) {
-    // A robot whose clock has jumped is in place by its own clock, but not where other robots expect it.
+    // By its own clock, a robot whose clock has jumped is in place; other robots expect it elsewhere.
     const bool may_be_clock = displacement->cause == kClockCause ||
                               (displacement->cause == kUnknownCause && !settings_.knows_causes);
     const bool may_drive = !may_be_clock && elapsed >= kSettlingTime;

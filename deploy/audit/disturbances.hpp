@@ -28,11 +28,11 @@ struct DisturbanceSettings {
   bool knows_causes = true;  ///< whether every announcement of a cause is received
 };
 
-/// Decides which contacts disturbances of robots excuse. A contact of two robots is excused only if one of
-/// them was disturbed, or was pushed by a disturbed robot. The excuse of a pair begins with the disturbance.
-/// It ends when the disturbed robot is back in place (at rest or moving), the other robot has rested since
-/// then, and the two are not in conflict. Robots are identified by their index in the roster. Times are those
-/// of ground truth or vision.
+/// Decides which contacts are excused by disturbances of robots. A contact of two robots is excused only if
+/// one of them was disturbed, or was pushed by a disturbed robot. The excuse of a pair begins with the
+/// disturbance. It ends when the disturbed robot is back in place (at rest or moving), the other robot has
+/// rested since then, and the two are not in conflict. Robots are identified by their index in the roster.
+/// Times are those of ground truth or vision.
 class Disturbances {
  public:
   static constexpr std::string_view kUnknownCause = "unknown";
@@ -42,10 +42,11 @@ class Disturbances {
 
   /// An operator's message names the cause of a disturbance. This alone excuses nothing.
   void announce(std::size_t robot, std::string_view cause);
-  /// The robot is disturbed until `end`; Time::max() if the end is unknown. Repetitions count once.
+  /// Records a disturbance until `end`, or Time::max() if unknown. Repetitions count once.
   void disturb(std::size_t robot, Time end, Time now);
-  /// A contact began; nullopt means anything other than a robot. Returns the cause if the contact is excused.
-  /// A robot pushed by a disturbed one counts as disturbed by the same cause for as long as they touch.
+  /// Records the beginning of a contact; nullopt means anything other than a robot. Returns the cause if the
+  /// contact is excused. A robot pushed by a disturbed one counts as disturbed by the same cause while they
+  /// touch.
   [[nodiscard]] std::optional<std::string_view> on_contact(std::optional<std::size_t> first,
                                                            std::optional<std::size_t> second, Time now);
   /// Updates with the robots on the floor at this time.
@@ -53,15 +54,14 @@ class Disturbances {
 
   /// Messages were missed. From now on it is unknown when a currently disturbed robot will be back in place.
   void on_missed();
-  /// Messages that show positions were missed. Calls on_missed(), and forgets since when robots have been at
-  /// rest.
+  /// Messages that show positions were missed. Calls on_missed(), and forgets when robots came to rest.
   void on_reference_missed();
   /// Whether the robot may be disturbed although no received message says so.
   bool is_uncertain(std::size_t robot) const { return states_[robot].is_uncertain; }
   /// Whether the robot was disturbed and is not back in place.
   bool is_displaced(std::size_t robot) const;
-  /// Whether the robot rests, out of place, where a disturbance has left it. A robot that gets no usable
-  /// observations never learns this, however long ago it was.
+  /// Whether the robot has rested out of place since a disturbance. A robot that gets no usable observations
+  /// never learns of its displacement.
   bool rests_displaced(std::size_t robot) const { return states_[robot].rests_displaced; }
   /// Whether the robot was ever disturbed.
   bool was_disturbed(std::size_t robot) const { return states_[robot].reported_end.has_value(); }
@@ -75,7 +75,7 @@ class Disturbances {
     std::string_view cause;
     Time end{};  ///< end of the disturbance
     std::optional<Time> back_at;
-    std::vector<bool> is_over;  ///< indexed by robot: contacts with it are no longer excused
+    std::vector<bool> is_over;  ///< whether contacts are no longer excused, by other robot
   };
   struct State {
     std::optional<Time> reported_end;  ///< end of the disturbance, as last reported

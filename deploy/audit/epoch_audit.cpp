@@ -60,8 +60,7 @@ void EpochAudit::on_coordinator(const msg::CoordinatorState& state, const Recept
     return;
   known->second.is_reported = true;
   findings_.report(AuditRule::kAllRegistered, missing.front(), nullptr, state.epoch(),
-                   "the coordinator has granted, although the registrations of {} robots are missing",
-                   missing.size());
+                   "the coordinator has granted, although {} robots have not registered", missing.size());
 }
 
 void EpochAudit::on_command(const AuditedRobot& robot, const msg::Command& command,
@@ -161,7 +160,7 @@ void EpochAudit::check_registration(AuditedRobot& robot, const KnownVersion& exe
   if (!is_known_older || is_registered || executing.is_own_stop || feedback.is_lifted()) return;
   registered.is_reported = true;
   findings_.report(AuditRule::kRegistration, robot.id, &executing, registered.epoch,
-                   "is executed after the registration, which does not contain it; granted in epoch {}",
+                   "is being executed after the registration, which does not contain it; granted in epoch {}",
                    executing.granted_in);
 }
 

@@ -28,11 +28,11 @@ class EpochAudit {
   /// Whether the coordinator that grants in the page's epoch sent the page; true if that coordinator is
   /// unknown.
   bool is_from_granter(const msg::LedgerPage& page) const;
-  /// Whether, in addition, the same coordinator sent the first page of the epoch.
+  /// Like is_from_granter(), but the page must also come from the sender of the epoch's first page.
   bool is_from_first_sender(const msg::LedgerPage& page);
 
  private:
-  /// What is known about one epoch.
+  /// The auditor's record of one epoch.
   struct EpochRecord {
     std::uint32_t granter = 0;
     Incarnation granter_incarnation = 0;

@@ -24,9 +24,9 @@ class GrantAudit {
         findings_(findings) {}
 
   void on_proposal(AuditedRobot& robot, const msg::Proposal& proposal);
-  /// Precondition: the verdict answers a proposal.
+  /// Checks a verdict. Precondition: it answers a proposal.
   void on_verdict(AuditedRobot& robot, const msg::Verdict& verdict, const Reception& reception);
-  /// Precondition: the command contains a version.
+  /// Checks a command. Precondition: it contains a version.
   void on_command(AuditedRobot& robot, const msg::Command& command, const Reception& reception);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace sidestep {
 
-/// Tells from message headers when messages were sent, in which order, and how many were missed.
+/// Infers from message headers when and in which order messages were sent, and how many were missed.
 class MessageTimes {
  public:
   /// Topics whose messages each sender numbers separately.
@@ -54,7 +54,7 @@ class MessageTimes {
   }
 
   const ComparableStamps& stamps() const { return stamps_; }  ///< stamps of agents and coordinators
-  const MessageTrace& trace() const { return trace_; }        ///< of all senders except agents
+  const MessageTrace& trace() const { return trace_; }        ///< trace of all senders except agents
   const MessageTrace& agent_trace() const { return agent_trace_; }
 
  private:

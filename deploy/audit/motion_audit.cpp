@@ -9,7 +9,7 @@
 namespace sidestep {
 namespace {
 
-// A robot checks its tracking error once per millisecond, but reports the position in between.
+// A robot checks its tracking error once per millisecond, but may report a position from between two checks.
 constexpr double kReportingTolerance_m = 0.0005;
 // Robots whose motors take longer than this to respond cannot be driven.
 constexpr std::int64_t kMaxMotorLead_ns = 300'000'000;

@@ -41,7 +41,7 @@ class OrderAudit {
 
  private:
   enum class SubjectKind : std::uint8_t { kDrive, kHold, kResume, kZone };
-  /// What an order is about. Of two orders with the same subject, only the later one counts.
+  /// The subject of an order. Of two orders with the same subject, only the later one counts.
   using Subject = std::tuple<SubjectKind, std::uint32_t, std::uint32_t, std::uint32_t>;
   struct Terms {
     Subject subject;
@@ -89,7 +89,7 @@ class OrderAudit {
     Incarnation incarnation = 0;
     std::uint64_t message = 0;
     bool is_set = false;
-    std::optional<Key> cause;  // the only hold sent while it was not set
+    std::optional<Key> cause;  // the only hold that was sent while is_set was false
     bool has_several_causes = false;
   };
   /// A coordinator's complete memory, indexed by subject.
@@ -102,7 +102,7 @@ class OrderAudit {
   void judge_grants(const Memory& memory, Coordinator& coordinator);
   void judge_confirmed(const Memory& memory, std::uint32_t sender, const Coordinator& coordinator,
                        bool claims_completeness);
-  /// Whether an agent that is known to remember the order has registered in the epoch since then.
+  /// Whether an agent that is known to remember the order has since registered in the epoch.
   bool has_witness(const Terms& terms, Epoch epoch) const;
   void add_witness(const Key& key, RobotId robot, const Witness& witness);
 

@@ -29,14 +29,14 @@ double PairAudit::min_separation_m(const KnownVersion& a, const KnownVersion& b)
 
 std::optional<Epoch> PairAudit::common_epoch(const KnownVersion& a, const Evidence& a_state,
                                              const KnownVersion& b, const Evidence& b_state) const {
-  // Proof by a ledger: when the later one of the two was granted, no report had excluded the other.
+  // Proof by a ledger: no report had excluded one version when the other one was granted.
   for (const KnownVersion* granted : {&a, &b}) {
     const Epoch epoch = granted->granted_in;
     if (epoch == 0 || granted->is_own_stop || !was_checked_against(*granted, granted == &a ? b : a)) continue;
     const std::int64_t both_ns = std::max(entry_ns(a, epoch), entry_ns(b, epoch));
     if (std::min(a_state.in_ledger_until_ns, b_state.in_ledger_until_ns) >= both_ns) return epoch;
   }
-  // Proof by reports: both versions were executed at the same time, whatever the ledgers contained.
+  // Proof by reports: both versions were executed at the same time, regardless of the ledgers' contents.
   if (a.is_own_stop || b.is_own_stop || !a_state.was_executed || !b_state.was_executed) return std::nullopt;
   const std::int64_t from_ns = std::max(a.path.start_ns(), b.path.start_ns());
   const std::int64_t to_ns = std::min(a_state.executed_until_ns, b_state.executed_until_ns);
@@ -47,8 +47,8 @@ std::optional<Epoch> PairAudit::common_epoch(const KnownVersion& a, const Eviden
 bool PairAudit::was_checked_against(const KnownVersion& granted, const KnownVersion& other) const {
   const Epoch epoch = granted.granted_in;
   if (!run_.is_complete()) {
-    // Pages show that the ledger held both. Two granted versions were checked, in whichever order. Others
-    // enter the ledger unchecked: own stops, and versions of robots that register late.
+    // Pages show that the ledger held both versions. Two granted versions were checked in either order. Own
+    // stops and versions of robots that register late enter the ledger unchecked.
     const bool are_listed = granted.listed_in == epoch && other.listed_in == epoch;
     const bool was_granted = other.granted_in == epoch && !other.is_own_stop;
     return are_listed && (was_granted || other.listed_from_ns <= granted.entered_after_ns);

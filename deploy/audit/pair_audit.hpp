@@ -14,7 +14,7 @@ class PairAudit {
  public:
   PairAudit(const AuditedRun& run, const RobotRecords& robots, AuditFindings& findings);
 
-  /// Remembers what has been proven about the robot's recent versions so far.
+  /// Remembers the present evidence about the robot's recent versions.
   void remember_evidence(const AuditedRobot& robot);
   /// Checks the pairs for which evidence newer than remember_evidence() proves that they were held or
   /// executed at the same time. Precondition: the last call of remember_evidence() was for this robot.
@@ -23,7 +23,7 @@ class PairAudit {
   void check_new(const AuditedRobot& robot, KnownVersion& known);
 
  private:
-  /// What had been proven about a version before the current message.
+  /// The evidence about a version before the current message.
   struct Evidence {
     explicit Evidence(const KnownVersion& known)
         : in_ledger_until_ns(known.in_ledger_until_ns),
@@ -48,11 +48,11 @@ class PairAudit {
   bool are_clocks_comparable(const AuditedRobot& a, const AuditedRobot& b) const;
   void check_pair(const AuditedRobot& ra, const KnownVersion& a, const AuditedRobot& rb,
                   const KnownVersion& b, Epoch epoch);
-  /// nullopt if the version's base was not received.
+  /// Whether `later` is excused because its base was already too close; nullopt if its base was not received.
   std::optional<bool> is_excused(const AuditedRobot& robot, const KnownVersion& later,
                                  const KnownVersion& other, double distance_m) const;
   /// A cheap necessary condition for a conflict: the new evidence for `mine` can complete the proof that both
-  /// were held at the same time, and the two are close enough to conflict.
+  /// were held at the same time, and the two versions are close enough to conflict.
   bool may_conflict(const LiveVersion& mine, const Evidence& before, const LiveVersion& theirs) const;
   double min_separation_m(const KnownVersion& a, const KnownVersion& b) const;
 

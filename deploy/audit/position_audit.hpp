@@ -14,22 +14,22 @@ class PositionAudit {
   PositionAudit(const AuditedRun& run, const RobotRecords& robots, const RunCoverage& coverage,
                 const Disturbances& disturbances, AuditFindings& findings);
 
-  /// The coordinator that grants names robots as displaced.
+  /// Stores the robots that the granting coordinator names as displaced.
   void on_displaced(std::vector<RobotId> robots) { named_displaced_ = std::move(robots); }
   /// Compares the robot's pending observation with a new report. Precondition: robot.last_report is the
   /// report before it.
   void check(AuditedRobot& robot, const AuditedRobot::ReceivedReport& robot_report,
              const Reception& reception);
-  /// Since this time, vision has always seen the robot in place; kNever: unknown.
+  /// Time since which vision has always seen the robot in place; kNever: unknown.
   std::int64_t in_place_since_ns(std::size_t robot) const { return displacements_[robot].in_place_since_ns; }
 
  private:
   /// A displacement that vision shows.
   struct SeenDisplacement {
-    /// Since this time, the robot has always been seen out of place.
+    /// Time since which the robot has always been seen out of place.
     std::int64_t since_ns = kNever;
     bool is_reported = false;  ///< ensures that it is reported only once
-    /// Since this time, the robot has always been seen in place; kNever: unknown.
+    /// Time since which the robot has always been seen in place; kNever: unknown.
     std::int64_t in_place_since_ns = kNever;
   };
 

@@ -19,10 +19,10 @@ class ReceptionCoverage {
 
   /// Starts the period. Anything heard earlier does not count.
   void begin(Time now);
-  /// The source is heard. If it was silent for longer than kMaxSilence, the last `unheard` of that silence
-  /// counts as unheard. Precondition: times never decrease.
+  /// Records that the source is heard. If it was silent for longer than kMaxSilence, the last `unheard` of
+  /// that silence counts as unheard. Precondition: times never decrease.
   void hear(std::size_t source, Time now, Duration unheard);
-  /// The next silence of this source does not count.
+  /// Excuses the next silence of this source.
   void expect_silence(std::size_t source) { sources_[source].is_silence_expected = true; }
 
   /// Fraction of the period from its start until now; 0 before its start. If `counts_last_silence`, a source

@@ -14,12 +14,12 @@ class ReferenceAudit {
   void on_truth(const msg::GroundTruth& truth, const Reception& reception) {
     truth_.on_truth(truth, reception);
   }
-  /// Precondition: there is no ground truth.
+  /// Audits vision's observations. Precondition: there is no ground truth.
   void on_world_state(const msg::WorldState& world, const Reception& reception) {
     vision_.on_world_state(world, reception);
   }
   void on_disturbance(const msg::Disturbance& disturbance);
-  /// Messages that may have announced disturbances were missed.
+  /// Call if messages that may have announced disturbances were missed.
   void on_missed() { disturbances_.on_missed(); }
   PositionAudit& positions() { return positions_; }
   void add_to(AuditTotals& totals) const { excuses_.add_to(totals); }

@@ -19,8 +19,8 @@ KnownVersion* RobotRecords::store(AuditedRobot& robot, const msg::Version& versi
     return nullptr;
   }
   KnownVersion& known = robot.find_or_insert(version.version_number());
-  // A later agent or another floor reuses the number. An auditor that received every message would have
-  // forgotten the old version by now.
+  // A later agent, or a simulator of another floor, reuses the number. An auditor that received every message
+  // would have forgotten the old version by now.
   const bool is_another = known.has_content && (known.version.incarnation() != version.incarnation() ||
                                                 (known.number == 0 && !(known.version == version)));
   if (!run_.is_complete() && is_another) {

@@ -10,18 +10,18 @@
 
 namespace sidestep {
 
-/// What is known about the robots on the roster and their versions. Reports a violation if two messages give
-/// one version different contents.
+/// The auditor's records of the robots on the roster and their versions. Reports a violation if two messages
+/// give one version different contents.
 class RobotRecords {
  public:
   RobotRecords(const AuditedRun& run, AuditFindings& findings);
 
-  /// nullptr if the robot is not on the roster.
+  /// The robot's record; nullptr if the robot is not on the roster.
   AuditedRobot* find(RobotId id) {
     const auto index = index_of(id);
     return index ? &robots_[*index] : nullptr;
   }
-  /// nullopt if the robot is not on the roster.
+  /// The robot's index; nullopt if the robot is not on the roster.
   std::optional<std::size_t> index_of(RobotId id) const {
     if (id >= index_.size() || index_[id] == robots_.size()) return std::nullopt;
     return index_[id];

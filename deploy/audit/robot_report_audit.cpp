@@ -169,7 +169,7 @@ void RobotReportAudit::check_switch(const AuditedRobot& robot, const KnownVersio
     const AuditRule rule = to.exclusion == Exclusion::kLate     ? AuditRule::kLateSwitch
                            : to.exclusion == Exclusion::kFenced ? AuditRule::kStaleIncarnation
                                                                 : AuditRule::kFacts;
-    findings_.report(rule, robot.id, &to, 0, "is executed, although {}", reason_of(to.exclusion));
+    findings_.report(rule, robot.id, &to, 0, "is being executed, although {}", reason_of(to.exclusion));
     return;
   }
   // The robot may have executed several versions between two reports.
@@ -190,7 +190,8 @@ void RobotReportAudit::check_sent(AuditedRobot& robot, KnownVersion& executing) 
       executing.number > robot.max_evicted_version && executing.sent_ns == kNever &&
       !executing.is_reported_unsent) {
     executing.is_reported_unsent = true;
-    findings_.report(AuditRule::kSent, robot.id, &executing, 0, "is executed, but no command contained it");
+    findings_.report(AuditRule::kSent, robot.id, &executing, 0,
+                     "is being executed, but no command contained it");
   }
 }
 

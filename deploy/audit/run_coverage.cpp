@@ -6,7 +6,7 @@
 namespace sidestep {
 namespace {
 
-// Prevents an overflow: as many reports as a robot sends in four hours.
+// Limit that prevents an overflow: the number of reports that a robot sends in four hours.
 constexpr std::uint64_t kMaxMissed = 1'000'000;
 // An auditor that joins a run discovers all senders within this time.
 constexpr Duration kMaxJoinTime = std::chrono::seconds(1);
@@ -58,7 +58,7 @@ void RunCoverage::add_to(AuditTotals& totals, const MessageTimes& times) const {
   }
   Coverage& coverage = totals.coverage;
   // Agents' messages count only by their effect, in coverage.versions, because messages from a host that is
-  // cut off have none.
+  // cut off have no effect.
   const std::uint64_t distinct = times.trace().distinct();
   coverage.messages = distinct > 0 ? share_of(distinct, distinct + times.trace().missed()) : 0;
   coverage.versions = share_of(versions.traced, versions.all);

@@ -15,18 +15,18 @@ class RunCoverage {
   RunCoverage(const AuditedRun& run, RobotRecords& robots, AuditFindings& findings)
       : run_(run), robots_(robots), findings_(findings), report_coverage_(robots.all().size()) {}
 
-  /// A message shows that robots may move. Once every robot has been heard, or after a second at the latest,
-  /// silence lowers the coverage.
+  /// Called when a message shows that robots may move. Once every robot has been heard, or after a second at
+  /// the latest, silence lowers the coverage.
   void begin_run();
-  /// Precondition: robot.last_report is the report before this one.
+  /// Records a report. Precondition: robot.last_report is the report before it.
   void hear_robot_report(const AuditedRobot& robot, VersionNumber executing, const Reception& reception);
-  /// The robot's next silence does not count.
+  /// Excuses the robot's next silence.
   void expect_silence(const AuditedRobot& robot) { report_coverage_.expect_silence(robots_.index_of(robot)); }
 
   void use_reference(AuditReference reference);
   bool has_ground_truth() const;
   bool is_vision() const { return findings_.totals.reference == AuditReference::kVision; }
-  /// `source` is the index of the robot that vision shows, or 0 for ground truth; see ReceptionCoverage.
+  /// Records an observation of a robot that vision shows (`source`: its index) or of ground truth (0).
   void hear_reference(std::size_t source, Duration unheard) {
     reference_coverage_->hear(source, findings_.now, unheard);
   }

@@ -12,7 +12,7 @@ constexpr double kErrorPerDeviation = 4;
 // Standard deviation of positions found in images, per axis.
 constexpr double kImageNoise_m = 0.001;
 constexpr double kMaxTimeDifference_s = 0.02;
-// A contact ends when the two are farther apart than this.
+// A contact ends when the distance exceeds that of touching bodies by more than this.
 constexpr double kEndOfContact_m = 0.001;
 constexpr int kMinObservations = 2;
 

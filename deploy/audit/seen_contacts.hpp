@@ -28,7 +28,7 @@ struct SeenContact {
   std::size_t first = 0;              ///< index in the roster
   std::optional<std::size_t> second;  ///< nullopt: the contact is with an obstacle
   double distance_m = 0;              ///< between the centres, or from the centre to the obstacle's edge
-  /// When the two were last seen apart; the lowest number if never.
+  /// Time at which the pair was last seen apart; the lowest number if it never was.
   std::int64_t apart_ns = std::numeric_limits<std::int64_t>::min();
 };
 
@@ -43,14 +43,14 @@ class SeenContacts {
   /// Processes the robots in a new world state. Returns the contacts that began; each is returned once it has
   /// been observed twice.
   [[nodiscard]] std::vector<SeenContact> update(const std::vector<VisionSighting>& sights);
-  /// World states were missed, so an earlier observation does not confirm a later one.
+  /// Call if world states were missed: earlier observations then do not confirm later ones.
   void on_missed();
 
  private:
   using Pair = std::pair<std::size_t, std::size_t>;  ///< second: index of a robot, or number of robots +
                                                      ///< index of an obstacle; the map is the last obstacle
 
-  /// Returns whether a contact begins.
+  /// Processes one observation of a pair. Returns whether a contact begins.
   bool observe(const Pair& pair, double distance_m, double contact_distance_m, double allowance_m,
                std::int64_t at_ns);
   std::int64_t& apart_ns(const Pair& pair) { return apart_ns_[pair.first * seen_ + pair.second]; }
@@ -67,7 +67,7 @@ class SeenContacts {
   double guaranteed_m_, guaranteed_to_obstacle_m_;
   std::map<Pair, int> observations_;  ///< number of observations of each pair in contact
   std::size_t seen_ = 0;  ///< number of objects that can be touched: robots, obstacles and the map
-  std::vector<std::int64_t> apart_ns_;  ///< indexed by robot, then by what may touch it
+  std::vector<std::int64_t> apart_ns_;  ///< indexed by robot, then by the object that may touch it
 };
 
 /// Upper bound of the error of an observed position on each axis.

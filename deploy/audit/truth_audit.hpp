@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Takes positions, disturbances, contacts, crashes and the findings of the simulator's firmware monitor from
+/// Reads positions, disturbances, contacts, crashes and the findings of the simulator's firmware monitor from
 /// ground truth.
 class TruthAudit {
  public:
@@ -25,10 +25,10 @@ class TruthAudit {
 
  private:
   void record_positions(const msg::GroundTruth& truth);
-  /// `reported` is the number of contacts in the previous ground truth. If `is_joining`, the auditor joins
-  /// the run with this ground truth.
+  /// Reports new contacts. `reported` is the number of contacts in the previous ground truth. If
+  /// `is_joining`, the auditor joins the run with this ground truth.
   void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining);
-  /// `reported` is the number of crashes of moving robots in the previous ground truth.
+  /// Reports new crashes. `reported` is the number of crashes of moving robots in the previous ground truth.
   void check_crashes(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining);
   /// A robot to name in a violation if the robot is unknown; `none` if the roster is empty.
   RobotId any_robot(RobotId none) const { return robots_.all().empty() ? none : robots_.all().front().id; }

@@ -10,7 +10,7 @@
 namespace sidestep {
 namespace {
 
-// Ground truth would have arrived within this time.
+// Ground truth arrives within this time if there is any.
 constexpr Duration kGroundTruthWait = std::chrono::seconds(1);
 
 bool is_sane(const msg::TrackedRobot& robot) {

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Takes positions and contacts from what vision sees, for systems without ground truth.
+/// Reads positions and contacts from vision's observations, for systems without ground truth.
 class VisionAudit {
  public:
   VisionAudit(const AuditedRun& run, RobotRecords& robots, RunCoverage& coverage, Disturbances& disturbances,

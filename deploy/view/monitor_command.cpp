@@ -104,7 +104,7 @@ class MonitorServer {
   }
 
   WebServer& server() { return server_; }
-  /// Sends the data to be shown at present. `clock`: the real time.
+  /// Sends the viewers the data to be shown now. `clock`: the real time.
   void update(Time clock) {
     monitor_.update_viewers(clock);
     foxglove_.publish_scene(monitor_.floor(), monitor_.radius_m(), monitor_.now());
@@ -127,7 +127,7 @@ class MonitorServer {
     foxglove_.add(socket);
   }
 
-  /// Returns false if the message is invalid.
+  /// Applies a message to the viewer's planning scene. Returns false if the message is invalid.
   bool plan(WebSocket& socket, const std::string& message) {
     if (!planning_[&socket].apply(parse_viewer_json(message))) return false;
     send_plan(socket);
@@ -299,7 +299,7 @@ int monitor_recording(const MonitorOptions& options) {
       next_snapshot = bus.now() + Monitor::kFramePeriod;
       monitor.set_progress(is_over ? 1 : bus.progress());
       if (is_over && !result.damage.empty())
-        fmt::print(stderr, "{}: {}; the messages before that are shown\n", options.file, result.damage);
+        fmt::print(stderr, "{}: {}; earlier messages are shown\n", options.file, result.damage);
     }
     if (const Time clock = DdsBus::clock(); clock >= next_update) {
       server.update(clock);
@@ -320,13 +320,13 @@ void add_monitor_command(const CliCommand& root, std::function<int()>& action) {
       root.add_subcommand("monitor", "Shows a running system or a recording in the browser");
   command.add_option("FILE", options->file,
                      "scenario of the running system, or a recording (.mcap); without it, nothing is judged");
-  command.add_option("--port", options->port, "TCP port; 0: any free one")
+  command.add_option("--port", options->port, "TCP port; 0: any free port")
       .check(in_range(0, 65535))
       .show_default();
   command.add_option("--address", options->access.address, "address to listen on").show_default();
   command
       .add_option("--allow-origin", options->access.allowed_origins,
-                  "pages of these servers may use this one, e.g. https://example.org")
+                  "servers whose pages may use this server, e.g. https://example.org")
       .comma_separated();
   command.add_flag("--control", options->has_control,
                    "viewers with the printed token may give orders and cause faults");

@@ -19,9 +19,9 @@ class MonitorRecorder {
       : scenario_(scenario), scenario_file_(scenario_file) {}
 
   bool is_recording() const { return writer_.has_value(); }
-  /// Precondition: it is not recording. Throws std::runtime_error if the file cannot be written.
+  /// Precondition: no recording is in progress. Throws std::runtime_error if the file cannot be written.
   void start(const std::string& path);
-  /// Throws std::runtime_error if a write has failed.
+  /// Finishes the recording. Throws std::runtime_error if a write has failed.
   void stop();
   void add(const AnyMessage& message, Time now);
   void add_scene(const FloorState& floor, Time now);

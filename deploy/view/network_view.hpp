@@ -10,7 +10,7 @@ namespace sidestep {
 
 class DdsListener;
 
-/// What DDS reports about a domain's processes: their hosts, and writers and readers that do not match. It
+/// DDS's information about a domain's processes: their hosts, and mismatched writers and readers. The view
 /// joins the domain only at the first call, because an additional participant costs all processes some work.
 class NetworkView {
  public:

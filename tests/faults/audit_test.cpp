@@ -32,5 +32,5 @@ TEST_CASE(
   const auto other = std::filesystem::path(run.scenario_file()).replace_filename("other.yaml");
   std::ofstream(other) << shuttles(20, "margin_m: 0.02\n");
   CHECK(audit(run, other.string()) == "exit code 3");
-  CHECK(run.printed("messages come from processes with other rules"));
+  CHECK(run.printed("messages come from processes with different rules"));
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kShown = 5;  // violations, and pairs with excused contacts
+constexpr std::size_t kShown = 5;  // maximum length of a list in a summary
 
 /// Rounds to micrometres or microseconds, for readable reports.
 Json rounded(double value) {
@@ -93,7 +93,7 @@ std::string reason_of(const Report& report) {
   return report.failure_reason();
 }
 
-/// What the audit found, in a few lines.
+/// The audit's findings in a few lines.
 std::string audit_text(const AuditTotals& audit) {
   std::string text = fmt::format(
       "audit: {}\n"
@@ -133,7 +133,7 @@ std::string unusual_text(const Report& report) {
   return text.empty() ? text : "refused: " + text + "\n";
 }
 
-/// The epochs after the first one.
+/// One line for each epoch after the first one.
 std::string epochs_text(const std::vector<EpochRecord>& epochs) {
   std::string text;
   for (std::size_t i = 1; i < epochs.size() && i <= kShown; ++i)

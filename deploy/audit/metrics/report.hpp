@@ -17,7 +17,7 @@
 
 namespace sidestep {
 
-/// A process that ended without having been asked to.
+/// The unexpected end of a process.
 struct Death {
   std::string process;
   std::string reason;
@@ -30,7 +30,7 @@ struct EpochRecord {
   std::string coordinator;  ///< for example "coordinator 1"
   Epoch epoch = 0;
   Time begun_at{};  ///< by the coordinator's clock
-  /// In seconds since the first grant, may be negative; nullopt: nothing was granted.
+  /// Seconds since the first grant; may be negative; nullopt: nothing was granted.
   std::optional<double> at_s;
   std::string reason;
 };
@@ -51,21 +51,21 @@ struct Report {
   std::optional<double> min_clearance_m;
   std::uint64_t crashes = 0;               ///< number of contacts between a robot and an opponent
   std::uint64_t crashes_while_moving = 0;  ///< number of crashes in which the robot was not at rest
-  double max_crash_speed_mps = 0;          ///< closing speed along the line of centres
+  double max_crash_speed_mps = 0;          ///< maximum closing speed along the line of centres
   double max_robot_crash_speed_mps = 0;    ///< the robot's share of the closing speed
   /// Arrival time of the last robot; nullopt: not all have arrived.
   std::optional<double> makespan_s;
   std::optional<double> mean_arrival_s;            ///< mean over the robots that arrived
   std::optional<double> straight_line_time_ratio;  ///< mean of arrival time / straight_line_time_s()
   std::map<RobotId, std::optional<double>> arrival_s;
-  std::map<RobotId, std::string> not_arrived;  ///< why, for each robot that has not arrived
+  std::map<RobotId, std::string> not_arrived;  ///< reason for each robot that has not arrived
   std::uint64_t proposals = 0;
   std::uint64_t grants = 0;
   std::uint64_t denials = 0;
   std::uint64_t cycles = 0;
   std::uint64_t missed_cycles = 0;
   std::uint64_t route_changes = 0;            ///< number of times that an agent changed its route
-  std::optional<double> route_changes_per_s;  ///< number per agent and second of planning
+  std::optional<double> route_changes_per_s;  ///< number of route changes per agent and second of planning
   std::uint64_t firmware_violations = 0;
   std::set<std::pair<RobotId, RobotId>>
       conflicts;                  ///< pairs that were brought into conflict by a cause outside the protocol
@@ -76,7 +76,7 @@ struct Report {
   /// measured.
   std::optional<double> max_clock_offset_s;
   std::optional<double> clock_uncertainty_s;
-  double robot_time_s = 0;  ///< from the first grant until robots were last seen
+  double robot_time_s = 0;  ///< time from the first grant until the robots were last seen
   DurationHistogram negotiation;
   DurationHistogram plan;
   DurationHistogram search;
@@ -86,7 +86,7 @@ struct Report {
   std::vector<EpochRecord> epochs;  ///< in the order of their first heartbeats
   /// Processes with different rules, and the differences; empty if these are unknown.
   std::map<std::string, std::vector<RuleDifference>> mismatches;
-  /// What processes have dropped, by process and reason; only non-zero counts.
+  /// Numbers of dropped messages, by process and reason; only non-zero ones.
   std::map<std::string, std::map<DropReason, std::uint64_t>> counters;
   std::optional<AuditTotals> audit;  ///< nullopt: the run was not audited
   double duration_s = 0;             ///< wall-clock time
@@ -100,8 +100,8 @@ struct Report {
   /// Number of crashes of moving robots, except those excused by a disturbance.
   std::uint64_t unexcused_crashes() const;
   /// Why the run failed, in one line. Empty if it did not fail: it was not aborted, its recording was
-  /// written, no robot touched anything without excuse, none moved in a crash, no rule was broken, and all
-  /// robots arrived if they had to.
+  /// written, it had no unexcused contacts or crashes of moving robots, no rule was broken, and all robots
+  /// that had to arrive did.
   [[nodiscard]] std::string failure_reason() const;
   /// The verdict. A run that did not fail has passed only if its audit covered enough (or there was no audit)
   /// and no process that observed it has died.

@@ -27,7 +27,7 @@ struct RobotProgress {
   Team team = Team::kBlue;
   std::optional<msg::AgentState> agent_state;  ///< nullopt: no status received yet
   bool arrived = false;
-  double distance_to_go_m = 0;  ///< to the last goal, according to ground truth or vision
+  double distance_to_go_m = 0;  ///< distance to the last goal, according to ground truth or vision
   double speed_mps = 0;
   std::uint64_t grants = 0;
   std::uint64_t denials = 0;
@@ -48,14 +48,14 @@ class RunMetrics {
   explicit RunMetrics(const Scenario& scenario);
 
   void on_truth(const msg::GroundTruth& truth);
-  /// Ignored once ground truth has been received.
+  /// Has no effect once ground truth has been received.
   void on_world_state(const msg::WorldState& world);
   void on_status(const msg::AgentStatus& status);
   void on_order_status(const msg::OrderStatus& status);
   void on_coordinator(const msg::CoordinatorState& state);
   void on_counters(const msg::Counters& counters);
   void on_death(const std::string& process, const std::string& reason, Time at, bool restarted);
-  /// A process has different rules, so its messages are refused.
+  /// Records a process whose messages are refused because its rules differ.
   void on_mismatch(const RulesMismatch& mismatch);
 
   /// Includes the auditor's findings in reports; the auditor must outlive the last report.
@@ -64,7 +64,7 @@ class RunMetrics {
   /// Includes the drops of the monitor's own bus in reports; the bus must outlive the last report.
   void set_bus(const Bus& bus) { bus_ = &bus; }
 
-  /// Whether the scenario gives no robot a goal, so that clients give the orders.
+  /// Whether the scenario gives no robot a goal, which means that clients give the orders.
   bool awaits_orders() const;
   /// Whether any robot has received a drive order from a client since the start.
   bool has_received_orders() const { return has_received_orders_; }
@@ -107,11 +107,11 @@ class RunMetrics {
     Vec2 position_m{0, 0};
     double speed_mps = 0;
     bool is_at_rest = true;
-    std::optional<Time> settled_since;  ///< since when it has been at the last goal and nearly at rest
+    std::optional<Time> settled_since;  ///< time since which it has been nearly at rest at the last goal
     std::vector<msg::AgentStatus> incarnations;  ///< the last status of each incarnation of its agent, sorted
     Incarnation authoritative = 0;               ///< the incarnation whose status is used
     int fencing_statuses =
-        0;  ///< statuses from fencing incarnations since the authoritative one's last status
+        0;  ///< number of statuses from fencing incarnations since the authoritative one's last status
     std::optional<Blockage> blockage;  ///< according to the latest status of its order
 
     /// The status to use; nullptr if there is none yet. It is the most recently received one, except that an
@@ -147,7 +147,7 @@ class RunMetrics {
   const Bus* bus_ = nullptr;
   bool has_received_orders_ = false;
   std::vector<RobotRecord> robots_;           ///< sorted by id
-  std::vector<msg::GroundTruth> simulators_;  ///< the last counters of each incarnation, without robots
+  std::vector<msg::GroundTruth> simulators_;  ///< last ground truth of each incarnation, without robots
   std::map<std::pair<std::uint32_t, Incarnation>, std::uint64_t>
       coordinators_;  ///< the last message number, by coordinator number and incarnation
   /// The last counters of one incarnation of a process.

@@ -30,7 +30,7 @@ struct Job {
   std::optional<RobotId> robot{};  ///< the robot that is on its way to the job
   OrderId order = 0;
   std::optional<Clock::time_point> blocked_since{};
-  std::set<RobotId> failed{};  ///< robots that did not get there
+  std::set<RobotId> failed{};  ///< robots that failed to reach the job
   bool is_over = false;
 };
 

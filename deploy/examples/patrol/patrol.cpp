@@ -18,7 +18,7 @@ int usage() {
   return 2;
 }
 
-/// The whole text as a non-negative number; -1: it is not one.
+/// Parses the whole text as a non-negative number; -1 if it is anything else.
 long number_from(const char* text) {
   char* end = nullptr;
   const long number = std::strtol(text, &end, 10);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxCameras = 64;
 constexpr std::uint32_t kMaxLedgerPages = 256;
 
-/// The candidate with this version number; nullptr: there is none.
+/// The candidate with this version number; nullptr if there is none.
 const msg::Version* find_candidate(const msg::Proposal& proposal, VersionNumber number) {
   const std::size_t count = std::min<std::size_t>(proposal.candidate_count(), msg::MAX_CANDIDATES);
   for (std::size_t i = 0; i < count; ++i)

@@ -37,7 +37,7 @@ struct RobotPose {
   double x_m, y_m, heading_rad;
 };
 
-/// The robot's pose by ground truth, else by vision, else by its own estimate.
+/// The robot's pose from ground truth, otherwise from vision, otherwise its own estimate.
 std::optional<RobotPose> pose_of(const RobotView& robot, Time now) {
   std::optional<RobotPose> found;
   if (const msg::TrueRobotState* truth = fresh(robot.truth, now))

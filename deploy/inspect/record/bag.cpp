@@ -71,7 +71,7 @@ class Copier {
   std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;
 };
 
-/// A cut or merged recording does not contain every message of a run.
+/// Marks a recording as incomplete, because a cut or merged recording lacks messages of the run.
 void mark_incomplete(McapMetadata& metadata) {
   if (metadata.name == kRecordingMetadata) metadata.texts["complete"] = "false";
 }

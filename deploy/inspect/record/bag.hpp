@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// The content of an MCAP file, whichever program wrote it.
+/// A summary of an MCAP file that any program has written.
 struct BagInfo {
   struct Channel {
     std::string type;
@@ -26,13 +26,13 @@ struct BagInfo {
   std::string damage;                       ///< why the file ended prematurely; empty if it did not
 };
 
-/// These functions throw std::runtime_error if a file cannot be read or written.
+/// Reads a file. This and the functions below throw std::runtime_error if a file cannot be accessed.
 [[nodiscard]] BagInfo bag_info(const std::string& path);
 /// Formats the information as a table.
 [[nodiscard]] std::string to_text(const BagInfo& info);
 
 struct BagCut {
-  double from_s = 0;  ///< relative to the first message
+  double from_s = 0;  ///< begin, relative to the first message
   double to_s = std::numeric_limits<double>::infinity();
   std::set<std::string>
       topics;  ///< for example truth, feedback/3, or feedback for the channels of all robots; empty: all

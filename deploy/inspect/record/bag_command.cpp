@@ -23,7 +23,7 @@ struct BagOptions {
 /// Reports damage, and returns the exit code.
 int exit_code_for(const std::string& damage) {
   if (damage.empty()) return 0;
-  fmt::print(stderr, "damaged: {}; the messages before that were used\n", damage);
+  fmt::print(stderr, "damaged: {}; earlier messages were used\n", damage);
   return kExitFailure;
 }
 
@@ -53,10 +53,10 @@ void add_bag_command(const CliCommand& root, std::function<int()>& action) {
   cut.add_option("--to", options->cut.to_s,
                  "end, in seconds after the first message [the end of the recording]")
       .check(in_range(0, 1e9));
-  cut.add_option("--topics", options->topics, "only these, e.g. truth,feedback/3 [all]").comma_separated();
+  cut.add_option("--topics", options->topics, "topics, e.g. truth,feedback/3 [all]").comma_separated();
   cut.on_parsed([options, &action] {
     require_separate_outputs({{"FILE", options->file}}, {{"--out", options->out}});
-    if (options->cut.to_s < options->cut.from_s) throw UsageError("--to: expected at least --from");
+    if (options->cut.to_s < options->cut.from_s) throw UsageError("--to: expected a time not before --from");
     options->cut.topics = {options->topics.begin(), options->topics.end()};
     action = [options] { return exit_code_for(cut_bag(options->file, options->cut, options->out)); };
   });

@@ -70,7 +70,7 @@ class PlaybackBus : public Bus {
   /// Reads the file up to its first message.
   void read_header(const std::string& path);
   void deliver_event(const McapMetadata& metadata);
-  /// False if the message is damaged.
+  /// Passes a message to its subscribers. False if the message is damaged.
   bool deliver(const McapMessage& message, PlaybackResult& result);
   /// The row of the topic table to which a channel belongs; nullptr if none.
   const TopicInfo* topic_of(const McapMessage& message);

@@ -22,7 +22,7 @@ inline constexpr const char* kEventMetadata = "sidestep event";
 inline constexpr const char *kScenarioFile = "scenario.yaml", *kMapFile = "map.yaml",
                             *kMapImageFile = "map.pgm";
 
-/// What a recording states about its run.
+/// A recording's description of its run.
 struct RecordingHeader {
   std::string scenario_name;
   std::string scenario_text;                ///< content of the scenario file

@@ -41,7 +41,7 @@ std::vector<DiscoveredEndpoint> endpoints_of_others(const DdsListener& listener)
   return endpoints;
 }
 
-/// Writes each message of a recording at its time.
+/// Writes the messages of a recording at their recorded intervals, divided by the speed.
 class Replay {
  public:
   explicit Replay(const ReplayOptions& options)
@@ -70,7 +70,7 @@ class Replay {
     bus_.run_until(bus_.now() + kWriterLinger);
     fmt::print("{} messages written\n", written_);
     if (!result.damage.empty())
-      fmt::print(stderr, "{}: {}; the messages before that were written\n", options_.file, result.damage);
+      fmt::print(stderr, "{}: {}; earlier messages were written\n", options_.file, result.damage);
     return is_refused_ || !result.damage.empty() ? kExitFailure : 0;
   }
 
@@ -86,7 +86,7 @@ class Replay {
     if (!reason) return true;
     fmt::print(
         stderr,
-        "refused: {}; commands must not be replayed where agents, coordinators or robots are. Use another "
+        "refused: {}; replayed commands must not reach running agents, coordinators or robots. Use another "
         "--domain, or --topics without commands\n",
         *reason);
     is_refused_ = true;
@@ -139,8 +139,8 @@ void add_replay_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand command =
       root.add_subcommand("replay", "Writes the messages of a recording to a DDS domain");
   command.add_option("FILE", options->file, "recording").required();
-  command.add_option("--topics", options->topics, "only these, e.g. world,truth [all]").comma_separated();
-  command.add_option("--speed", options->speed, "times real time").check(positive()).show_default();
+  command.add_option("--topics", options->topics, "topics, e.g. world,truth [all]").comma_separated();
+  command.add_option("--speed", options->speed, "multiple of real time").check(positive()).show_default();
   add_dds_options(command, options->dds);
   command.on_parsed([options, &action] {
     for (const std::string& name : options->topics) {

@@ -27,7 +27,7 @@ class MessageTrace {
   /// means that every message is received at the moment it is sent.
   explicit MessageTrace(Duration min_latency_bound) : min_latency_bound_ns_(min_latency_bound.count()) {}
 
-  /// `channel` distinguishes the streams that one sender numbers separately.
+  /// Records a message. `channel` distinguishes the streams that one sender numbers separately.
   [[nodiscard]] Reception record(std::uint64_t channel, const msg::Header& header, Time now);
 
   /// Number of receptions, including repetitions of a message.

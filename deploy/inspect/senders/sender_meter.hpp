@@ -28,7 +28,7 @@ class SenderMeter {
   struct Stream {
     MessageTrace trace{Duration{0}};
     Time last_received{};
-    std::uint64_t not_newest = 0;  // repeated or out of order
+    std::uint64_t not_newest = 0;  // number of repeated or out-of-order messages
     Duration min_delay = Duration::max(), max_delay = Duration::min();
     DurationHistogram delays;
   };

@@ -27,7 +27,7 @@ Json drop_reason(const Json& number) {
   return row < kDropReasonCount ? kDropReasons[row].name : "unknown " + std::to_string(row);
 }
 
-/// JSON has no numbers for beams without a hit.
+/// Replaces the ranges of beams without a hit, which JSON cannot represent as numbers, by words.
 Json ranges(const Json& beams) {
   Json result = beams;
   for (Json& beam : result) {

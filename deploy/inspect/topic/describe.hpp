@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// A topic's message in readable form. Its IDL members are changed as ReadableForm and OctetSequences::kText
-/// describe; fingerprints are in hexadecimal, drop reasons by name, laser beams without a range in words, and
+/// A topic's message in readable form. Members are converted by ReadableForm and OctetSequences::kText;
+/// fingerprints are in hexadecimal, drop reasons by name, laser beams without a range in words, and
 /// histograms as quantiles.
 [[nodiscard]] nlohmann::ordered_json describe(const TopicInfo& topic, const void* message);
 

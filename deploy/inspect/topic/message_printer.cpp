@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Text without quotes, anything else as JSON. Invalid UTF-8 must not throw.
+/// A string without quotes, or any other value as JSON. Does not throw for invalid UTF-8.
 std::string text_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : json_text(value);
 }
@@ -43,7 +43,7 @@ struct CsvLine {
   }
 };
 
-/// Returns nullptr if a list is too short for the index. Throws std::invalid_argument if a name is unknown.
+/// Finds a member; nullptr if a list is too short. Throws std::invalid_argument if a name is unknown.
 const Json* find_member(const Json& message, const std::vector<std::string>& path) {
   const Json* value = &message;
   for (const std::string& name : path) {

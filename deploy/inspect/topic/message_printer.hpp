@@ -16,7 +16,7 @@ struct MessageFilter {
   std::string value;
 };
 
-/// Throws std::invalid_argument if the text is not MEMBER=VALUE.
+/// Parses MEMBER=VALUE. Throws std::invalid_argument for any other text.
 [[nodiscard]] MessageFilter parse_message_filter(const std::string& text);
 
 struct MessagePrinterSettings {
@@ -33,7 +33,7 @@ class MessagePrinter {
   MessagePrinter(MessagePrinterSettings settings, std::function<void(const std::string&)> print)
       : settings_(std::move(settings)), print_(std::move(print)) {}
 
-  /// Throws std::invalid_argument if a filter names a member that messages do not have.
+  /// Prints the message if it is wanted. Throws std::invalid_argument if a filter names an unknown member.
   void add(const nlohmann::ordered_json& message);
   bool is_done() const { return settings_.count > 0 && printed_ == settings_.count; }
   std::uint64_t printed() const { return printed_; }

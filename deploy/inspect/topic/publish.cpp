@@ -27,7 +27,7 @@ struct EncodedMessage {
   CdrKey key;
 };
 
-/// Throws std::invalid_argument if there is no such type, or the message does not fit it.
+/// Encodes a message. Throws std::invalid_argument if the type is unknown or the message does not fit it.
 EncodedMessage encode_message(const TopicOptions& options, const IdlTypes& types, const std::string& name,
                               const nlohmann::ordered_json& json) {
   const auto type = types.find(name);
@@ -38,7 +38,7 @@ EncodedMessage encode_message(const TopicOptions& options, const IdlTypes& types
   return {type->second, encode_by_idl(*type->second, json), key_by_idl(*type->second, json)};
 }
 
-/// The name of a topic's type, if the user gives it or the topic is Sidestep's; nullopt: unknown here.
+/// The name of a topic's type, if the user gives it or the topic is Sidestep's; nullopt otherwise.
 std::optional<std::string> known_type_name(const TopicOptions& options) {
   if (!options.type.empty()) return options.type;
   for (const TopicInfo& topic : all_topics())

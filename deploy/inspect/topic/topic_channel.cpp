@@ -13,8 +13,7 @@ void print_unknown_topic(const std::string& channel) {
 }
 
 void print_damage(const std::string& recording_file, const std::string& damage) {
-  if (!damage.empty())
-    fmt::print(stderr, "{}: {}; the messages before that were used\n", recording_file, damage);
+  if (!damage.empty()) fmt::print(stderr, "{}: {}; earlier messages were used\n", recording_file, damage);
 }
 
 }  // namespace sidestep

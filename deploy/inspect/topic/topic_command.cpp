@@ -45,7 +45,7 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
 
   const CliCommand delay = topic.add_subcommand(
       "delay",
-      "Measures for each sender of a topic how late messages arrive, and what is lost or out of order");
+      "Measures the delay of messages from each sender of a topic, and counts lost and out-of-order ones");
   delay.add_option("TOPIC", options->topic, "topic name, e.g. feedback/3").required();
   delay.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   delay.add_option("--recording", options->recording_file,
@@ -58,16 +58,16 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   echo.add_option("--count", options->printer.count, "number of messages [until Ctrl-C]").check(positive());
   const auto is_once = std::make_shared<bool>(false);
   const auto filters = std::make_shared<std::vector<std::string>>();
-  echo.add_flag("--once", *is_once, "one message, the same as --count 1");
+  echo.add_flag("--once", *is_once, "print one message, like --count 1");
   echo.add_option("--filter", *filters,
-                  "only messages with these values, e.g. robot=3 or robot=3,header.sender=10000")
+                  "print only messages with these values, e.g. robot=3 or robot=3,header.sender=10000")
       .comma_separated();
   echo.add_flag("--csv", options->printer.is_csv, "print CSV, with a column for each member");
   echo.add_option("--recording", options->recording_file,
                   "print the messages of this recording instead of a running system's");
   const Option idl =
       echo.add_option("--idl", options->idl_file, "IDL file with the type of another program's topic");
-  echo.add_option("--type", options->type, "name of that type [as the topic's writer announces it]")
+  echo.add_option("--type", options->type, "name of the topic's type [as its writer announces it]")
       .needs(idl);
   echo.on_parsed([options, is_once, filters, &action] {
     if (*is_once) options->printer.count = 1;
@@ -85,12 +85,12 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand pub =
       topic.add_subcommand("pub", "Publishes a message, given as JSON, to a topic of any type");
   pub.add_option("TOPIC", options->topic, "topic name, e.g. order").required();
-  pub.add_option("MESSAGE", options->message, "JSON with the members of the type's IDL; those left out are 0")
+  pub.add_option("MESSAGE", options->message, "JSON with the members of the type's IDL; omitted ones are 0")
       .required();
   pub.add_option("--count", options->printer.count, "number of messages [1]").check(positive());
   pub.add_option("--rate", options->rate_hz, "messages per second").check(positive()).show_default();
   pub.add_option("--idl", options->idl_file, "IDL file with the type of another program's topic");
-  pub.add_option("--type", options->type, "name of that type [as the topic's endpoints announce it]");
+  pub.add_option("--type", options->type, "name of the topic's type [as its endpoints announce it]");
   pub.on_parsed([options, &action] {
     options->dds.identity = {Role::kOperator};
     action = [options] { return publish_topic(*options); };

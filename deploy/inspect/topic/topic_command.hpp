@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// Adds `sidestep topic list|hz|echo`. Parsing one of them sets `action`, which returns the exit code and may
-/// throw std::runtime_error.
+/// Adds `sidestep topic` and its subcommands. Parsing one of them sets `action`, which returns the exit code
+/// and may throw std::runtime_error.
 void add_topic_command(const CliCommand& root, std::function<int()>& action);
 
 }  // namespace sidestep

@@ -128,7 +128,7 @@ std::string topic_details(const std::vector<DiscoveredEndpoint>& endpoints, cons
   try {
     result += '\n' + message_schema(group.front()->type);
   } catch (const std::invalid_argument&) {
-    // Another program's type; DDS reports only its name.
+    // DDS reports only the name of another program's type.
   }
   return result;
 }

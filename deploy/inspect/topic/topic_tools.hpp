@@ -22,7 +22,7 @@ struct TopicOptions {
 };
 
 /// The actions of `sidestep topic`. Each prints on stdout, stops on SIGINT and SIGTERM, returns the exit
-/// code, throws whatever DdsBus and PlaybackBus throw, and throws std::invalid_argument for a filter that
+/// code, passes on exceptions of DdsBus and PlaybackBus, and throws std::invalid_argument for a filter that
 /// fits no message.
 int list_topics(const TopicOptions& options);
 int show_topic(const TopicOptions& options);

@@ -116,9 +116,9 @@ void add_clock_command(const CliCommand& root, std::function<int()>& action) {
       [options](const std::string& name) {
         options->reference = process_id(name);
         options->reference_name = name;
-        if (!options->reference) throw UsageError("no process has the name '" + name + "'");
+        if (!options->reference) throw UsageError("there is no process named '" + name + "'");
       },
-      "process from whose clock offsets are shown, e.g. coordinator; default: this machine");
+      "process whose clock is the reference for offsets, e.g. coordinator; default: this machine");
   command.add_flag("--once", options->once, "print the table once, and exit");
   command.on_parsed([options, &action] { action = [options] { return show_clocks(*options); }; });
 }

@@ -18,7 +18,7 @@ void ClockSurvey::on_answer(const ClockAnswer& answer, Time received) {
       answer.probe_sent != Time{} && std::ranges::find(probes_, answer.probe_sent) != probes_.end();
   if (answer.client != client_ || !is_asked) return;
   Process& process = processes_[answer.process];
-  // Of two runs of a process, the later one counts as long as it answers.
+  // An answer from an earlier run of a process counts only if the later run has fallen silent.
   const bool is_silent = received - process.heard > kMaxMeasurementAge;
   if (process.measured && answer.incarnation < process.measured->incarnation && !is_silent) return;
   if (!process.measured || answer.incarnation != process.measured->incarnation) {

@@ -20,7 +20,7 @@ enum class ClockVerdict : std::uint8_t {
   kNotMeasured
 };
 
-/// What is known about one process's clock.
+/// The state of one process's clock, as far as it is known.
 struct ClockRow {
   std::uint32_t process = 0;
   std::string host;                      ///< empty until the process has answered
@@ -47,7 +47,7 @@ class ClockSurvey {
   void on_answer(const ClockAnswer& answer, Time received);
   /// Records that a process was heard, which gives it a row even if it has not answered any probe.
   void on_heard(std::uint32_t process, Time now);
-  /// Records the offset of its robot's clock that an agent has measured; nullopt: not measured.
+  /// Records the offset of a robot's clock as measured by its agent; nullopt: not measured.
   void on_robot_clock(RobotId robot, const std::optional<OffsetInterval>& offset, Time now);
 
   /// One row per process, sorted by id. The offsets are relative to the clock of `reference`, or else to the
@@ -77,7 +77,7 @@ class ClockSurvey {
   std::map<std::uint32_t, Process> processes_;
 };
 
-/// Whether every process has been measured and none is beyond the bound. False without processes.
+/// Whether every process has been measured and none is beyond the bound. False if there are no processes.
 [[nodiscard]] bool all_agree(const std::vector<ClockRow>& rows);
 
 }  // namespace sidestep

@@ -112,7 +112,7 @@ Authority::Authority(const std::string& name, Time from, Time until)
 Authority::Authority(const std::string& certificate_file, const std::string& key_file)
     : key_(load_private_key(key_file)), certificate_(Certificate::load(certificate_file)) {
   if (X509_check_private_key(certificate_.x509(), key_.get()) != 1)
-    throw std::invalid_argument(key_file + ": this private key is not that of " + certificate_file);
+    throw std::invalid_argument(key_file + ": this private key does not belong to " + certificate_file);
 }
 
 Certificate Authority::issue(const Identity& identity, const PrivateKey& key, Time from, Time until) const {

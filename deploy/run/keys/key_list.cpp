@@ -15,7 +15,7 @@ bool takes_argument(const std::string& word) {
 /// The identities in a range such as "agent 0-21", or a single identity.
 std::vector<Identity> split(const std::string& text) {
   if (const auto identity = parse_identity(text)) return {*identity};
-  // parse_identity() knows ranges only of robots, so ranges of other identities are parsed as robots'.
+  // parse_identity() accepts only ranges of robots, so other ranges are parsed as ranges of robots.
   const auto space = text.find(' ');
   const std::string word = text.substr(0, space);
   const bool has_range = space != std::string::npos && (word == "agent" || word == "coordinator");

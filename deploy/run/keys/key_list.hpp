@@ -15,7 +15,7 @@ namespace sidestep {
 [[nodiscard]] std::vector<Identity> parse_key_list(const std::vector<std::string>& words);
 
 /// All identities that a run of the scenario needs: its processes, the program that drives its robots, and
-/// those that judge, watch and operate the run.
+/// the programs that judge, watch and operate the run.
 [[nodiscard]] std::vector<Identity> identities_of(const Scenario& scenario);
 
 }  // namespace sidestep

@@ -32,7 +32,7 @@ constexpr std::chrono::hours kTimeZones(24);
 /// announcement.
 constexpr std::size_t kMaxPermissions = 58'000;
 
-/// Writes a file that only this user can read, at any moment.
+/// Writes a file that no other user can read at any moment.
 void write_private_file(const std::string& path, const std::string& text) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   const bool is_written = file >= 0 &&
@@ -132,7 +132,7 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
   if (signed_permissions.size() > kMaxPermissions)
     throw std::invalid_argument(fmt::format(
         "{}: too many robots for one key: its permissions take {} bytes, and a handshake has room for "
-        "{}; issue several keys of fewer robots",
+        "{}; issue several keys for fewer robots each",
         to_text(identity), signed_permissions.size(), kMaxPermissions));
   const std::string folder = folder_ + "/enclaves/" + folder_name(identity);
   fs::create_directories(folder);
@@ -164,7 +164,7 @@ std::vector<Revocation> KeyStore::revoke(std::span<const Identity> identities, T
              authority.revocation_list(serials, now, authority.certificate().not_after()));
   if (revoked_serials(folder_) != serials)
     throw std::runtime_error("the list of revoked keys in " + public_file(key_files::kRevoked) +
-                             " is not what was written; these keys may still be valid");
+                             " differs from what was written; these keys may still be valid");
   for (const Identity& identity : identities) fs::remove_all(folder_ + "/enclaves/" + folder_name(identity));
   return result;
 }

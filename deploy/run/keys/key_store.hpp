@@ -23,8 +23,8 @@ struct IssuedKey {
 /// The result of revoking an identity's keys.
 struct Revocation {
   Identity identity;
-  std::size_t revoked = 0;  ///< number revoked by this call
-  std::size_t before = 0;   ///< number that had already been revoked
+  std::size_t revoked = 0;  ///< number of keys revoked by this call
+  std::size_t before = 0;   ///< number of keys that were already revoked
 };
 
 /// A folder with two certificate authorities and the keys of all identities. Its layout is that of ROS 2's

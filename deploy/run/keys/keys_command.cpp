@@ -37,7 +37,7 @@ int init(const KeysOptions& options) {
   KeyStore::create(options.folder, now - kClockSlack, now + days(options.days));
   fmt::print(
       "made {}: two certificate authorities, valid until {}\n"
-      "{}/private holds their private keys: whoever can read them can command all robots; no robot needs "
+      "{}/private holds their private keys: anyone who can read them can command all robots; no robot needs "
       "them\n",
       options.folder, date_text(now + days(options.days)), options.folder);
   return 0;
@@ -56,7 +56,7 @@ int issue(const KeysOptions& options) {
   for (const Identity& identity : identities) {
     if (store.has(identity) && !options.again) {
       if (options.scenario_file.empty())
-        throw std::invalid_argument(to_text(identity) + " has a key already; --again makes a new one");
+        throw std::invalid_argument(to_text(identity) + " already has a key; --again makes a new one");
       continue;
     }
     const std::string folder = store.issue(identity, now - kClockSlack, now + days(options.days));
@@ -65,7 +65,7 @@ int issue(const KeysOptions& options) {
   }
   fmt::print(
       "issued {} key{}{}\n", issued, issued == 1 ? "" : "s",
-      issued < identities.size() ? fmt::format("; {} had one already", identities.size() - issued) : "");
+      issued < identities.size() ? fmt::format("; {} already had one", identities.size() - issued) : "");
   return 0;
 }
 
@@ -79,7 +79,7 @@ int revoke(const KeysOptions& options) {
     if (done.revoked > 0)
       fmt::print("revoked {} key{} of {}\n", done.revoked, done.revoked == 1 ? "" : "s", name);
     else if (done.before > 0)
-      fmt::print("{}: revoked already\n", name);
+      fmt::print("{}: already revoked\n", name);
     else
       unknown.push_back(name);
   }
@@ -144,7 +144,7 @@ void add_keys_command(const CliCommand& root, std::function<int()>& action) {
   issue_command.add_option("IDENTITY", options->words,
                            identity_forms() + "; 'agent 0-21' makes one key for each");
   issue_command.add_option("--scenario", options->scenario_file,
-                           "all identities that `sidestep run` of it needs");
+                           "scenario file: issue keys for all identities that `sidestep run` needs for it");
   issue_command.add_flag("--again", options->again, "make new keys for identities that already have some");
   add_days(issue_command);
   add_folder(issue_command);

@@ -14,7 +14,7 @@ namespace sidestep {
 [[nodiscard]] std::string governance_text();
 
 /// The permissions document: what an identity may write and read, derived from the topic table (DDS Security
-/// 1.1, 9.4.1.3). `subject` is that of its certificate, in RFC 2253 order.
+/// 1.1, 9.4.1.3). `subject` is the subject of the identity's certificate, in RFC 2253 order.
 [[nodiscard]] std::string permissions_text(const Identity& identity, const std::string& subject, Time from,
                                            Time until);
 

@@ -10,7 +10,7 @@ namespace sidestep {
 /// Selects what moves the robots: a driver of sidestep-robot, or Sidestep's simulator.
 struct FloorOptions {
   std::string driver;  ///< driver of sidestep-robot; empty: the simulator runs with its own robots
-  /// Extra options for these programs, separated by spaces.
+  /// Extra options for sidestep-simulator, sidestep-vision and sidestep-robot, separated by spaces.
   std::string simulator, vision, robots;
   std::uint64_t seed = 1;     ///< seed of the simulator's noise
   std::string memory_folder;  ///< memory of the robots that sidestep-robot drives

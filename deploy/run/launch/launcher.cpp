@@ -295,7 +295,7 @@ bool Launcher::check_end() {
 
 bool Launcher::check_end_of_startup() {
   const bool all_started = agents_started_ == scenario_.robots.size();
-  // The coordinator grants only after every agent has registered, so their status need not be awaited.
+  // The coordinator grants only after every agent has registered, so the agents' status need not be awaited.
   // Without the simulator there is no ground truth.
   const bool has_robots = options_.floor.driver.empty() ? metrics_.has_truth() : metrics_.has_seen_robots();
   is_ready_ = all_started && has_robots && metrics_.granting_since();

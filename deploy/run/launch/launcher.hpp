@@ -38,7 +38,7 @@ struct RunDirector {
 
 /// Earlier launchers of a run; see keep_processes().
 struct Predecessors {
-  std::vector<std::string> deaths;  ///< why they died
+  std::vector<std::string> deaths;  ///< reasons for their deaths
   Duration age{0};                  ///< time since the first one began
 };
 
@@ -93,9 +93,9 @@ class Launcher {
   bool check_end_of_startup();
   bool check_end_of_drive();
   std::string startup_failure() const;
-  /// When the coordinator first granted; if other launchers preceded this one, when the first of them began.
+  /// Time of the first grant; if other launchers preceded this one, the time when the first of them began.
   Time drive_started_at() const;
-  /// Whether nothing moves any more, and dead processes keep the remaining robots from arriving.
+  /// Whether all robots have stopped, and dead processes keep the remaining robots from arriving.
   bool is_stuck(Time now) const;
   bool are_all_coordinators_dead() const;
 

@@ -32,7 +32,7 @@ class OtherRun {
     });
   }
 
-  /// Whether a coordinator is heard.
+  /// Listens for kListeningTime. Returns whether a coordinator was heard.
   bool listen() {
     bus_.run_until(bus_.now() + kListeningTime);
     return coordinator_.has_value();

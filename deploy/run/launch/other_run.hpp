@@ -7,7 +7,7 @@ namespace sidestep {
 
 /// Listens for half a second. Throws std::invalid_argument if a coordinator is running in the domain. The
 /// message names the coordinator and the start of its run, and its host and scenario if it reports them
-/// within two more seconds. Also throws whatever the constructor of DdsBus throws.
+/// within two more seconds. Passes on exceptions of DdsBus's constructor.
 void require_free_domain(const DdsSettings& dds);
 
 }  // namespace sidestep

@@ -34,7 +34,7 @@ struct ProcessSpec {
 /// and keys.
 [[nodiscard]] std::string file_input(const std::string& name, const std::string& content);
 
-/// Throws std::runtime_error if the file cannot be read.
+/// Reads a file of a key folder. Throws std::runtime_error if the file cannot be read.
 [[nodiscard]] std::string read_key_file(const std::string& folder, const char* name);
 
 }  // namespace sidestep

@@ -74,14 +74,14 @@ struct Pipe {
 
 Pipe new_pipe() {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail("cannot make a pipe");
+  if (pipe2(ends, O_CLOEXEC) != 0) fail("cannot create a pipe");
   return {ends[0], ends[1]};
 }
 
 /// Sockets are used because writing to a pipe whose reader has ended would end this process by a signal.
 Pipe new_input() {
   int ends[2];
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail("cannot make a socket");
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail("cannot create a socket");
   return {ends[0], ends[1]};
 }
 

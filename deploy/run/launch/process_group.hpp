@@ -49,7 +49,7 @@ class ProcessGroup : public Processes {
   /// The latest child of this name, or nullptr.
   Child* find(const std::string& name);
   void spawn(Child& child);
-  /// Whether one of the descriptors is readable.
+  /// Waits for children, descriptors, a due restart or the timeout. Returns whether a descriptor is readable.
   bool wait_for_activity(Milliseconds timeout, std::span<const int> descriptors);
   void drain(Child& child);
   void send_input(Child& child);

@@ -39,7 +39,7 @@ constexpr auto kTerminationTimeout = 3000ms;
 constexpr auto kRepeatedStop =
     1000ms;                          // a starting director does not handle signals yet, so they are repeated
 constexpr auto kMaxIdle = 15'000ms;  // a director is killed this long after its processes have ended
-constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // pause before the next director; doubles with each
+constexpr auto kPause = 500ms, kMaxPause = 60'000ms;  // pause before the next director; doubles each time
 constexpr std::uint32_t kMaxMessage = 64'000'000;
 
 [[noreturn]] void fail(const char* what) {
@@ -77,7 +77,7 @@ bool send_message(int socket, const Json& message) {
   return send_all(socket, &size, sizeof size) && send_all(socket, bytes.data(), bytes.size());
 }
 
-/// Returns nullopt if the other side has ended.
+/// Receives a message; nullopt if the other side has ended.
 std::optional<Json> receive_message(int socket) {
   std::uint32_t size = 0;
   if (!receive_all(socket, &size, sizeof size) || size > kMaxMessage) return std::nullopt;
@@ -164,7 +164,7 @@ class Keeper {
  public:
   explicit Keeper(ProcessGroup& group) : group_(group) {}
 
-  /// A new director is informed again about processes that have died permanently.
+  /// Begins to serve a new director, which is informed again of processes that have died permanently.
   void begin() {
     events_ = ended_;
     is_ending_ = false;
@@ -180,7 +180,7 @@ class Keeper {
       add(group_.poll(std::chrono::ceil<ProcessGroup::Milliseconds>(end - steady_clock::now())));
   }
 
-  /// Returns false if the director has ended.
+  /// Serves one request. Returns false if the director has ended.
   bool serve(int socket) {
     const auto request = receive_message(socket);
     if (!request) return false;
@@ -259,7 +259,7 @@ struct Director {
   signal(SIGTERM, SIG_DFL);
   if (getppid() != parent) std::_Exit(kExitFailure);  // the parent died before the lines above
   dup2(socket, kDirectorSocket);
-  close_range(kDirectorSocket + 1, ~0U, 0);  // above all, descriptors for the stdin of processes
+  close_range(kDirectorSocket + 1, ~0U, 0);  // above all, the other ends of the processes' stdin
   int code = kExitFailure;
   {
     KeptProcesses processes(kDirectorSocket);
@@ -271,7 +271,7 @@ struct Director {
 
 Director start_director(const DirectorWork& work, const std::vector<std::string>& deaths) {
   std::array<int, 2> ends{};
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail("cannot make a socket");
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail("cannot create a socket");
   const pid_t parent = getpid(), pid = fork();
   if (pid == 0) direct(ends[1], parent, work, deaths);
   close(ends[1]);
@@ -301,7 +301,7 @@ bool is_readable(int descriptor) {
 
 int keep_processes(ProcessGroup& group, const DirectorWork& work) {
   const int stop = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  if (stop < 0) fail("cannot make an event");
+  if (stop < 0) fail("cannot create an event");
   const StopSignals signals([stop] {
     const int saved_errno = errno;
     const std::uint64_t one = 1;
@@ -334,7 +334,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
       const bool is_stuck = (first_asked_at && now - *first_asked_at > work.shutdown_timeout) ||
                             (idle_since && now - *idle_since > kMaxIdle);
       if (is_stuck) {
-        group.log("the director of the run does not end and is killed");
+        group.log("the director of the run has not ended in time and is killed");
         kill(director.pid, SIGKILL);
         break;
       }

@@ -27,7 +27,7 @@ struct DirectorWork {
 /// Runs the work in a separate process, the director, which uses the network. This process does not use the
 /// network, and keeps the processes in the group. So they continue if a signal kills the director. Another
 /// director then takes its place, after a pause that doubles each time, up to a minute. When a director ends,
-/// the remaining processes are ended too. SIGINT and SIGTERM are passed on to the director. A director that
+/// the remaining processes are also ended. SIGINT and SIGTERM are passed on to the director. A director that
 /// does not end in time, or within 15 s of the end of its processes, is killed. If this process dies, the
 /// director is asked to end, and finds that all processes have ended.
 ///

@@ -18,7 +18,7 @@ struct ChildSpec {
   bool restart = false;           ///< restart it when it ends
   /// Content of its stdin, which then stays open; closing it asks the child to end. Empty: no stdin.
   std::string input = {};
-  int niceness = 0;  ///< nice value, 0 .. 19: how far it yields to other processes; see nice(2)
+  int niceness = 0;  ///< nice value, 0 .. 19: higher values yield more to other processes; see nice(2)
   /// For a process that drives robots: the maximum time for robots to come to rest when it is asked to end.
   /// Such a process ends before all processes that do not drive robots, whose rest_time is 0.
   std::chrono::milliseconds rest_time{0};
@@ -40,7 +40,7 @@ class Processes {
 
   virtual ~Processes() = default;
 
-  /// Throws std::runtime_error if the program does not exist or the process cannot be created.
+  /// Starts a child. Throws std::runtime_error if the program is missing or the process cannot be created.
   virtual pid_t start(const ChildSpec& spec) = 0;
   /// Sends a signal to the running child with this name. False if none is running.
   [[nodiscard]] virtual bool send_signal(const std::string& name, int signal) = 0;
@@ -54,7 +54,8 @@ class Processes {
   /// Waits for events of children, up to the timeout, and returns them. Restarts children that are due.
   virtual std::vector<ChildEvent> poll(Milliseconds timeout) = 0;
   /// Asks all children to end, those that drive robots before the others. Kills those that have not ended
-  /// after the timeout plus their rest time, and waits for all. Returns the names of the killed children.
+  /// after the timeout plus their rest time, and waits for all to end. Returns the names of the killed
+  /// children.
   virtual std::vector<std::string> terminate(Milliseconds timeout) = 0;
 
   /// Resource use of all children that have ended, by name. For a child on another host, the resource use of

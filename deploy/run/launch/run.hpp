@@ -19,7 +19,7 @@ struct RunOptions {
   std::string hosts_file;      ///< empty: all processes run on this machine, on the interface of `dds`
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
-  std::optional<std::string> monitor_port;  ///< address of a page that shows the run; nullopt: none
+  std::optional<std::string> monitor_port;  ///< port of a page that shows the run; nullopt: no page
   std::string domain = "0";                 ///< for run(): replaces dds.domain; "auto": a free domain
   /// dds.keys, if set, is a folder with the keys of all identities; each process gets its own keys.
   DdsSettings dds;

@@ -78,12 +78,12 @@ int give_orders(const OrderOptions& options,
   handles = send(client);
   bus.run_until(bus.now() + kAnswerTimeout);
   if (!all(is_answered)) {
-    fmt::print(
-        stderr, "sidestep: {}\n",
-        is_coordinator_heard
-            ? "the order may take effect, but the coordinator has not confirmed it: that needs an agent that "
-              "remembers the order (for a hold: the agent of a held robot), and no such agent may be running"
-            : "no active coordinator answers on this domain and interface");
+    fmt::print(stderr, "sidestep: {}\n",
+               is_coordinator_heard
+                   ? "the order may take effect, but is not confirmed: the coordinator waits for an agent "
+                     "that remembers "
+                     "the order (for a hold: the agent of a held robot). Check that such an agent is running"
+                   : "no active coordinator answers on this domain and interface");
     return kExitFailure;
   }
   if (options.waits && !all(is_over)) bus.run();
@@ -156,11 +156,11 @@ Options add_command(const CliCommand& command) {
 
 void add_client_option(const CliCommand& command, const Options& options) {
   command.add_option("--client", options->client,
-                     "send as this client instead of the operator, whose orders come first");
+                     "send as this client instead of the operator, whose orders take precedence");
 }
 
 void add_go(const CliCommand& root, std::function<int()>& action) {
-  const CliCommand command = root.add_subcommand("go", "Sends robots to goals, one after another");
+  const CliCommand command = root.add_subcommand("go", "Sends robots to sequences of goals");
   const Options options = add_command(command);
   add_client_option(command, options);
   const auto robot = command.add_option(
@@ -172,7 +172,7 @@ void add_go(const CliCommand& root, std::function<int()>& action) {
       .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));
   command.add_option("--tolerance", options->tolerance_m, "distance from a goal that counts as arrival, m")
       .check(in_range(kMinTolerance_m, kMaxTolerance_m));
-  command.add_flag("--wait", options->waits, "wait until all have arrived");
+  command.add_flag("--wait", options->waits, "wait until all robots have arrived");
   command.on_parsed([=, &action] {
     if (file.is_given() == robot.is_given()) throw UsageError("expected either ROBOT and GOAL, or --file");
     if (robot.is_given() && !goals.is_given()) throw UsageError("GOAL is missing: expected X,Y[,HEADING]");
@@ -221,7 +221,7 @@ void add_zone(const CliCommand& root, std::function<int()>& action) {
       .required();
   const auto corners = command.add_option(
       "CORNER", options->corners, "X,Y in metres; the zone is the convex hull of all corners, plus --radius");
-  const auto radius = command.add_option("--radius", options->radius_m, "distance that the zone extends, m")
+  const auto radius = command.add_option("--radius", options->radius_m, "radius added to the hull, m")
                           .check(in_range(0, kMaxCoordinate_m));
   const auto speed = command.add_option("--speed", options->speed_limit_mps, "speed limit in the zone, m/s")
                          .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));

@@ -26,7 +26,7 @@ struct PlayedReferee {
   league::RefereePacket packet;
 };
 
-/// Throws UsageError if the text is not a command of the referee.
+/// Parses the name of a command. Throws UsageError if the referee has no such command.
 league::RefereeCommand parse_command(const std::string& text) {
   std::string names;
   for (std::size_t i = 0; i < league::kRefereeCommands; ++i) {
@@ -37,7 +37,7 @@ league::RefereeCommand parse_command(const std::string& text) {
   throw UsageError(fmt::format("\"{}\" is not a command of the referee: expected one of {}", text, names));
 }
 
-/// Throws UsageError.
+/// Parses a place within the league's coordinates. Throws UsageError.
 Vec2 parse_ball_place(const std::string& text) {
   const Vec2 place_m = parse_place(text, "place for the ball");
   if (place_m.cwiseAbs().maxCoeff() <= league::kMaxPosition_m) return place_m;

@@ -46,7 +46,7 @@ const RobotSpec& only_robot(const Scenario& scenario) {
   return scenario.robots.front();
 }
 
-/// Starts the processes that move the robot, and vision, unless they run already.
+/// Starts the processes that move the robot, and vision, unless they are already running.
 class Floor {
  public:
   explicit Floor(const ConformanceOptions& options) : group_(folder_.file("log")) {
@@ -71,7 +71,7 @@ class Floor {
   Floor(const Floor&) = delete;
   Floor& operator=(const Floor&) = delete;
 
-  /// Throws std::runtime_error if a process has ended, with its last lines.
+  /// Throws std::runtime_error with a process's last lines if that process has ended.
   void check() {
     for (const ChildEvent& event : group_.poll(0ms)) {
       std::string text = fmt::format("{} ended: {}", event.name, event.reason);
@@ -138,7 +138,7 @@ void add_conformance_command(const CliCommand& root, std::function<int()>& actio
   command
       .add_option(
           "--driver", options->driver,
-          "running: the robot and sidestep-vision run already, and no agent; simulator: start Sidestep's "
+          "running: use a running robot and sidestep-vision, without an agent; simulator: start Sidestep's "
           "simulator; others: start sidestep-robot with this driver")
       .check(one_of(drivers))
       .show_default();

@@ -30,7 +30,7 @@ std::string to_line(const ConformanceRow& row) {
 
 std::string scenario_lines(const RobotFigures& figures) {
   if (!figures.tracking_bound_m || !figures.clock_bound_s || !figures.is_within_limits)
-    return "no figures for the scenario: the robot did not do what they depend on\n";
+    return "no figures for the scenario: the robot failed a step on which they depend\n";
   SafetyBudget budget;
   budget.tracking_bound_m = *figures.tracking_bound_m;
   budget.clock_bound_s = *figures.clock_bound_s;

@@ -24,7 +24,7 @@ constexpr int kSpeedLevels = 4;
 constexpr Duration kLevelTime = 5s;
 // Errors up to this many standard deviations may be due to vision's noise.
 constexpr double kNoiseDeviations = 4;
-// The tracking bound exceeds the largest measured error by this factor.
+// Ratio of the tracking bound to the largest measured error.
 constexpr double kReserve = 1.25;
 // Number of starts from which the latency is measured, and the part of each start that is evaluated: later,
 // the robot's control corrects for the latency.
@@ -34,8 +34,8 @@ constexpr Duration kMaxLate = 150ms;
 
 Conformity passed_if(bool is_passed) { return is_passed ? Conformity::kPassed : Conformity::kFailed; }
 
-/// A robot whose motors respond later or earlier than it assumes cannot follow; only the latency row reports
-/// that.
+/// A robot whose motors respond later or earlier than it assumes cannot follow its reference; only the
+/// latency row then fails.
 Conformity judged(bool is_passed, const ConformanceContext& context, std::string& figures) {
   if (is_passed || !context.is_late) return passed_if(is_passed);
   figures += "; its latency prevents it from following";
@@ -50,7 +50,7 @@ void keep_error(ConformanceContext& context, const MotionSample& sample) {
   bound_m = std::max(bound_m.value_or(0), std::ceil(kReserve * error_m * 1e3) * 1e-3);
 }
 
-/// The tracking bound within which the robot can stop at full speed if it is not seen any more
+/// The tracking bound within which the robot can stop from full speed without further observations
 /// (coordinator/PROTOCOL.md, "Dead reckoning"): three standard deviations of its estimate, and four of the
 /// error that grows with the distance driven, are within the drift bound.
 double bound_for_dead_reckoning_m(const LocalisationUncertainty& uncertainty, const Scenario& scenario,
@@ -329,7 +329,8 @@ class TrackingStep final : public ConformanceStep {
     samples_.push_back({error_m, velocity_mps});
   }
 
-  /// The filter has learned the odometry's error by the time of the highest speed.
+  /// At the highest speed, when the filter has learned the odometry's error, raises the bound for dead
+  /// reckoning.
   void keep_uncertainty(ConformanceContext& context) {
     if (level_ + 1 != levels_.size()) return;
     const RobotReport& robot_report = *context.probe.robot_report();
@@ -518,7 +519,7 @@ class OwnStopStep final : public ConformanceStep {
                             "inflation {:.0f} mm",
                             to_seconds(took_) * 1e3, own_->executing.number - highest,
                             own_->executing.inflation_m * 1e3)
-              : "none, although pose fixes show it 0.3 m off its reference"});
+              : "no own stop, although pose fixes showed the robot 0.3 m off its reference"});
     return true;
   }
 

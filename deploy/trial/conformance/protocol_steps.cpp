@@ -73,7 +73,7 @@ class ReportsStep final : public ConformanceStep {
   static std::string silence(const RobotProbe& probe) {
     if (!probe.seen()) return fmt::format("vision does not see robot {}", probe.robot());
     if (probe.malformed_reports() > 0)
-      return fmt::format("{} malformed reports, no others", probe.malformed_reports());
+      return fmt::format("only malformed reports, {} so far", probe.malformed_reports());
     if (!probe.robot_report()) return fmt::format("no report from robot {}", probe.robot());
     return "the robot does not acknowledge a new agent and epoch; does another agent drive it?";
   }
@@ -112,7 +112,7 @@ class ClockStep final : public ConformanceStep {
   std::optional<Time> since_;
 };
 
-/// Sends commands that the robot must refuse, one after another, and waits until it would have obeyed.
+/// Sends commands that the robot must refuse, one at a time, and waits for reports that would show obedience.
 class RefusalStep : public ConformanceStep {
  public:
   struct Attempt {
@@ -289,7 +289,7 @@ class TakeoverStep final : public ConformanceStep {
     context.stream.forget();
     sent_.reset();
     acknowledged_.reset();
-    // A robot whose motors respond at once has no lead.
+    // A robot whose motors respond immediately has no lead.
     if (!starts_within_lead_ && robot_report.lead > 2 * probe.cycle()) {
       starts_within_lead_ = true;
       return false;

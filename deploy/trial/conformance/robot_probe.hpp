@@ -16,8 +16,8 @@ namespace sidestep {
 /// The position at which vision saw the robot, and the position prescribed by the version that it was
 /// executing.
 struct MotionSample {
-  Time at{};        ///< by this process's clock
-  Time robot_at{};  ///< by the robot's clock
+  Time at{};        ///< time of the observation by this process's clock
+  Time robot_at{};  ///< time of the observation by the robot's clock
   Vec2 seen_m{0, 0};
   Motion reference;
   bool is_off_reference = false;
@@ -42,7 +42,7 @@ class RobotProbe {
 
   /// Sends the command of this cycle.
   void send_command();
-  /// Sends a message unchanged, whatever it contains.
+  /// Sends a message unchanged and unchecked.
   void send(msg::Command message);
 
   const std::optional<RobotReport>& robot_report() const { return robot_report_; }

@@ -20,7 +20,7 @@ bool AttestationExchange::update(bool is_missing, Time now) {
 }
 
 std::string AttestationExchange::reason() const {
-  return was_missing_ ? "the coordinator still waits for the robot: it receives reports from it"
+  return was_missing_ ? "the coordinator still waits for the robot, because it receives the robot's reports"
                       : "the coordinator does not wait for the robot";
 }
 

@@ -64,7 +64,7 @@ int apply(const NetworkOptions& options) {
   return 0;
 }
 
-/// The reason why the combination of options is invalid; empty: it is valid.
+/// The reason why the combination of options is invalid; empty if it is valid.
 std::string usage_error(const NetworkOptions& options) {
   if (!parse_fault_target(options.target))
     return "--target: expected all, 'agent N', coordinator, 'coordinator N', vision or simulator, got '" +

@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Duration kDiscoveryTimeout = 5s;  ///< longer than the period of participant announcements
-/// If no new subscribers appear for this time, all are known.
+/// Discovery counts as complete if no new subscribers appear for this time.
 constexpr Duration kDiscoverySettling = 1500ms;
 constexpr Duration kSilenceSlack = 2s;  ///< a dead participant is forgotten this much later than the limit
 constexpr auto kPollPeriod = 10ms;

@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-// Faults of processes that both tests (deploy/trial/test) and campaigns (deploy/trial/simulate/campaign)
-// have. Processes have the same names as in reports: "agent 3", "agent 3 (twin)", "coordinator 1", "vision",
+// Faults of processes that tests (deploy/trial/test) and campaigns (deploy/trial/simulate/campaign) share.
+// Processes have the same names as in reports: "agent 3", "agent 3 (twin)", "coordinator 1", "vision",
 // "simulator". The plan states the time and the duration of each fault.
 
 using ProcessNames = std::vector<std::string>;

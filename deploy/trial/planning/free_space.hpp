@@ -21,7 +21,7 @@ class FreeSpace {
   /// Copies the data that it needs from the world.
   explicit FreeSpace(const PlanWorld& world);
 
-  /// Precondition: both positions are free.
+  /// Whether a free path joins the positions. Precondition: both are free.
   [[nodiscard]] bool connects(const Vec2& a_m, const Vec2& b_m) const;
 
  private:

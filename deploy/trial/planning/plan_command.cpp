@@ -39,7 +39,7 @@ PlanWorld world_of(const PlanOptions& options) {
                  : load_plan_world(options.world);
 }
 
-/// All planners, including those that can only drive.
+/// All planners, including local methods that drive without a plan.
 std::vector<std::string> names() {
   std::vector<std::string> names = planner_names();
   for (const std::string& name : driving_planners())
@@ -52,7 +52,7 @@ NamedPlanner planner_of(const std::string& name) {
   return only_drives ? make_driving_planner(name) : make_planner(name);
 }
 
-/// The bubbles of a local method's band along a path, once the forces hardly move the band any more.
+/// The bubbles of a local method's band along a path, after enough updates for the band to settle.
 std::vector<Circle> band_along(const std::vector<Vec2>& path_m, const NamedPlanner& planner,
                                const PlanWorld& world, const ObstacleWorld& obstacles) {
   constexpr int kUpdates = 100;
@@ -114,7 +114,7 @@ void add_plan_command(const CliCommand& root, std::function<int()>& action) {
   command.add_option(
       "--svg", options->picture_file,
       "draw the world, the tree, the cache, the path and a local method's band into this file");
-  command.add_option("--query", options->query, "which of the world's queries to plan, from 0")
+  command.add_option("--query", options->query, "index of the world's query to plan, from 0")
       .check(in_range(0, 99'999))
       .show_default();
   command.add_option("--seed", options->seed, "random seed").check(non_negative()).show_default();

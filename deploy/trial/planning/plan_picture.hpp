@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// The world, the explored part of it, and the path before and after smoothing, as SVG.
+/// Draws the world, its explored part, and the path before and after smoothing, as SVG.
 [[nodiscard]] std::string plan_picture(const PlanWorld& world, const PlanQuery& query,
                                        const PlanDrawing& drawing, const std::vector<Vec2>& path_m,
                                        const std::vector<Vec2>& smoothed_m);

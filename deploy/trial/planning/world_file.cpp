@@ -17,7 +17,7 @@ constexpr const char* kExpected = "a world";
 constexpr Range kCoordinate_m{-1000, 1000};
 constexpr std::size_t kMaxObstacles = 100'000, kMaxQueries = 100'000;
 
-/// A position of the robot at which its whole disc is on the field.
+/// Reads a position at which the robot's whole disc is on the field.
 Vec2 place_m(YamlMap& map, const std::string& key, const PlanWorld& world) {
   constexpr double kRounding_m = 1e-9;
   Vec2 value(0, 0);

@@ -36,7 +36,7 @@ Vec2 sample_free_position(const PlanWorld& world, const Box& within, Rng& rng) {
   }
 }
 
-/// Adds solvable queries from one part of the field to another until there are `queries`.
+/// Adds solvable queries from one part of the field to another until the world has `queries` queries.
 void add_queries_between(PlanWorld& world, const Box& from, const Box& to, std::size_t queries, Rng& rng) {
   const FreeSpace free_space(world);
   while (world.queries.size() < queries) {

@@ -36,8 +36,8 @@ PlanWorld make_world(const std::string& name, std::size_t queries, std::uint64_t
 /// with the number.
 PlanWorld make_circles(std::size_t circles, std::size_t queries, std::uint64_t seed);
 
-/// Adds solvable queries until there are `queries`. Start and goal are free positions at least half the
-/// field's length apart.
+/// Adds solvable queries until the world has `queries` queries. Start and goal are free positions at least
+/// half the field's length apart.
 void add_queries_across(PlanWorld& world, std::size_t queries, Rng& rng);
 
 /// Whether a robot at this position lies within the field and touches no obstacle. Compares exactly with each

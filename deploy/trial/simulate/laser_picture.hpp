@@ -13,7 +13,7 @@
 namespace sidestep {
 
 /// Draws as SVG how a robot interprets its laser scans: the last scan, its local grid, where people may step
-/// out, and which people move.
+/// out of hidden space, and which people move.
 class LaserPicture {
  public:
   /// The scenario must outlive the picture. Throws std::invalid_argument if it has no laser or no such robot.

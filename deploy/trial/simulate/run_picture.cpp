@@ -14,7 +14,7 @@ namespace sidestep {
 namespace {
 
 constexpr double kOutlinePeriod_s = 0.25;
-constexpr double kFrame_s = 0.05, kPause_s = 1.5;  ///< times of the animation; the pause is at its end
+constexpr double kFrame_s = 0.05, kPause_s = 1.5;  ///< step of the animation, and pause at its end
 constexpr double kMaxFrames = 400;
 
 /// SVG's y axis points down.

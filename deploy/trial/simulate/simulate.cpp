@@ -98,7 +98,7 @@ class SimRecorder {
     bus_->become_observer();
     record(*bus_, scenario, *writer_);
   }
-  /// Must be called while the network exists.
+  /// Stops recording. Must be called while the network exists.
   void stop() {
     if (bus_) stopped_at_ = bus_->now();
     bus_.reset();
@@ -137,7 +137,7 @@ class SightRecorder {
     bus_.observe<msg::LaserScan>(topics::kScan, *options.laser_robot,
                                  [this](const msg::LaserScan& scan) { picture_->add(scan); });
   }
-  /// nullptr: no picture was requested.
+  /// The picture; nullptr if none was requested.
   LaserPicture* picture() { return picture_ ? &*picture_ : nullptr; }
 
  private:

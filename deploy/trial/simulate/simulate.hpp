@@ -13,7 +13,7 @@ struct SimulateOptions {
   std::string scenario_file;                 ///< may be empty in simulate_trial()
   std::string report_file;                   ///< empty: reports/<scenario>-<seed>.json
   std::string picture_file;                  ///< SVG of the robots' paths; empty: no picture
-  std::optional<std::uint32_t> laser_robot;  ///< the picture shows what this robot's laser sees instead
+  std::optional<std::uint32_t> laser_robot;  ///< robot whose laser scan the picture shows; nullopt: none
   std::string recording_file;                ///< records all messages except images; empty: none
   std::uint64_t seed = 1;
   LogLevel log_level = LogLevel::kWarning;  ///< log level of the simulated processes, which log to stderr
@@ -26,7 +26,7 @@ struct SimulateOptions {
 int simulate(const SimulateOptions& options);
 
 /// Runs the trial of one seed of a campaign (deploy/trial/simulate/campaign) with or without its faults,
-/// prints its scene and faults, and writes the report. Without a scenario file, the scene is random too.
+/// prints its scene and faults, and writes the report. Without a scenario file, the scene is also random.
 /// Returns and throws what simulate() does.
 int simulate_trial(const SimulateOptions& options, bool has_faults);
 

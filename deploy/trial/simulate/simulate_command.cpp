@@ -22,7 +22,7 @@ struct Options {
   CampaignOptions campaign;
 };
 
-/// Throws UsageError if the text is invalid.
+/// Parses the range of seeds. Throws UsageError if the text is invalid.
 void read_seeds(const std::string& text, CampaignOptions& campaign) {
   const SeedRange seeds = parse_seed_range(text);
   campaign.first_seed = seeds.first;
@@ -54,7 +54,7 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
   command.add_option("--report", run.report_file,
                      "report file [reports/<scenario>-<seed>.json; with --seeds: none]");
   const Option svg = command.add_option("--svg", run.picture_file, "draw the robots' paths to this SVG file");
-  command.add_option("--sight", run.laser_robot, "draw instead what the laser of this robot shows at the end")
+  command.add_option("--sight", run.laser_robot, "draw what this robot's laser shows at the end instead")
       .check(non_negative())
       .needs(scenario)
       .needs(svg);

@@ -26,7 +26,7 @@ struct TestOptions {
   std::optional<LogLevel> log_level;  ///< nullopt: info over DDS, off on SimBus
 };
 
-/// Runs all tests one after another. Prints each result, with what failed and when. Returns 0 if all passed
+/// Runs all tests in sequence. Prints each result with the failures and their times. Returns 0 if all passed
 /// and kExitFailure if not. Throws ConfigError before the first run if a file is invalid.
 int run_tests(const TestOptions& options);
 

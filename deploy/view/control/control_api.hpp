@@ -39,7 +39,7 @@ class ControlApi {
  public:
   ControlApi(Bus& bus, ControlHooks hooks);
 
-  /// nullopt: there is no such path. Requests that may not give commands are refused with status 401.
+  /// nullopt if there is no such path. Requests that may not give commands are refused with status 401.
   std::optional<WebResponse> respond(const WebRequest& request);
 
  private:

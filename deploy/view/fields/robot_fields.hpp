@@ -12,8 +12,8 @@
 
 namespace sidestep {
 
-/// Fields by which a robot could plan, computed from publicly received messages: agents do not publish their
-/// own fields, and may plan differently. Computed for one robot at a time, because they are large.
+/// Fields with which a robot could plan, computed from publicly received messages: agents do not publish
+/// their own fields, and may plan differently. Computed for one robot at a time, because they are large.
 class RobotFields {
  public:
   /// The scenario must outlive this object.
@@ -25,8 +25,8 @@ class RobotFields {
   /// {"navigation": {"min": [x, y], "cell_m":…, "columns":…, "rows":…, "values": […]}, "path": [[x, y], …],
   /// "band": [[x, y, radius], …], "local": {…, "values": […]}}. `navigation`: E* from the goal that the robot
   /// intends, 0: not reachable, 1 to 255: low to high cost. `path`: the descent in that field. `band`: a
-  /// bubble band along it. `local`: the robot's laser, 0: unknown, 1: free, 2: occupied. What cannot be
-  /// computed is missing.
+  /// bubble band along it. `local`: the robot's laser, 0: unknown, 1: free, 2: occupied. Members that cannot
+  /// be computed are missing.
   [[nodiscard]] nlohmann::ordered_json json(RobotId robot, const FloorState& floor, Time now);
 
  private:

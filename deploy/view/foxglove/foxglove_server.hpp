@@ -19,7 +19,7 @@ namespace sidestep {
 /// the IDL of their type; topics with one DDS channel per robot are one channel here. For 3-D panels there
 /// are also foxglove.SceneUpdate and foxglove.FrameTransforms, in JSON. Clients cannot write.
 ///
-/// A client that reads slowly gets the newest message of each sender, not all.
+/// A client that reads slowly gets only the newest message of each sender.
 class FoxgloveServer {
  public:
   /// The protocol's names; a client must understand at least one.
@@ -29,7 +29,7 @@ class FoxgloveServer {
 
   void add(WebSocket& socket);
   void remove(WebSocket& socket) { clients_.erase(&socket); }
-  /// False: the message is invalid.
+  /// Processes a message from a client. False: the message is invalid.
   [[nodiscard]] bool on_message(WebSocket& socket, const std::string& message);
 
   /// Sends a message of a topic to its subscribers.
@@ -45,7 +45,7 @@ class FoxgloveServer {
 
   [[nodiscard]] bool subscribe(Client& client, const nlohmann::json& subscriptions);
   bool is_subscribed(ChannelId channel) const;
-  /// `key`: if several messages of a channel have the same key, slow clients get only the newest.
+  /// Sends a message. Slow clients get only the newest one of several with the same channel and `key`.
   void send(ChannelId channel, std::uint32_t key, Time now, const std::string& payload);
 
   std::map<std::string, ChannelId> channels_;  // indexed by topic; 0 is not used

@@ -36,7 +36,7 @@ class EventLog {
   /// Adds the event and numbers it.
   void add(MonitorEvent event);
   void on_event(std::function<void(const MonitorEvent&)> callback) { callback_ = std::move(callback); }
-  /// The events with higher numbers than `number`, as far as they are remembered.
+  /// The events with higher numbers than `number` that are still remembered.
   std::vector<MonitorEvent> since(std::uint64_t number) const;
   std::uint64_t count() const { return count_; }
 

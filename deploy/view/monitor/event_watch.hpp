@@ -33,7 +33,7 @@ class EventWatch {
   void on(const msg::NetworkFault& fault, Time now);
   void on(const msg::AbsenceAttestation& attestation, Time now);
   void on_violation(const Violation& violation);
-  /// A process has different rules, so its messages are refused.
+  /// Records a process whose messages are refused because its rules differ.
   void on_refused(std::uint32_t sender, Time now);
   /// Detects robots and coordinators that have fallen silent.
   void tick(const FloorState& floor, Time now);

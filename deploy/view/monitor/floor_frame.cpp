@@ -25,7 +25,7 @@ constexpr std::array kVersionColumns{
     "start",     "x",   "y",   "vx",        "vy",  "inflation", "phases",    "duration0", "ax0", "ay0",
     "duration1", "ax1", "ay1", "duration2", "ax2", "ay2",       "duration3", "ax3",       "ay3"};
 constexpr std::array kVersions{"executing", "granted", "proposed"};
-constexpr std::array kLedgerColumns{"id"};  // and those of a version
+constexpr std::array kLedgerColumns{"id"};  // followed by the columns of a version
 constexpr std::array kObstacleColumns{"id", "x", "y", "vx", "vy", "radius", "age"};
 constexpr std::array kBallColumns{"x", "y", "vx", "vy"};
 constexpr std::array kDetectionColumns{"camera", "kind", "x", "y", "heading", "radius"};

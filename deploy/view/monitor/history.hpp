@@ -10,14 +10,14 @@
 
 namespace sidestep {
 
-/// What viewers get for one time: a frame, and the panels at that time.
+/// The data that viewers get for one time: a frame and the panels.
 struct Snapshot {
   Time at{};
   std::shared_ptr<const std::string> frame, panels;
 };
 
-/// Snapshots sorted by time, of bounded size. When full, it either forgets the oldest or, to keep the whole
-/// duration, every other one.
+/// Snapshots sorted by time, of bounded size. When full, it forgets either the oldest snapshots or, to keep
+/// the whole duration, every other snapshot.
 class History {
  public:
   enum class WhenFull : std::uint8_t { kForgetOldest, kThinOut };
@@ -30,7 +30,7 @@ class History {
   bool empty() const { return snapshots_.empty(); }
   std::size_t size() const { return snapshots_.size(); }
   std::size_t bytes() const { return bytes_; }
-  /// Precondition of all functions below: it is not empty.
+  /// The first snapshot. Precondition of all functions below: the history is not empty.
   const Snapshot& first() const { return snapshots_.front(); }
   const Snapshot& last() const { return snapshots_.back(); }
   /// The last snapshot at or before a time; the first one if there is none.

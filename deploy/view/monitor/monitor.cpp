@@ -50,7 +50,7 @@ std::optional<double> number_in(const Json& json, const char* key) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// nullopt: the value is beyond the range of times.
+/// The member `at_s` as a time; nullopt if it is missing or out of range.
 std::optional<Time> time_in(const Json& json) {
   const std::optional<double> at_s = number_in(json, "at_s");
   if (!at_s || std::abs(*at_s) > 9e9) return std::nullopt;

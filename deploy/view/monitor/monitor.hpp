@@ -34,7 +34,7 @@ struct MonitorSettings {
 };
 
 /// Shows a run to viewers: collects its messages, remembers the states of the floor, and sends each viewer
-/// the moment that it is looking at. For the messages of viewers see README.md in this folder.
+/// the state at its chosen moment. For the messages of viewers see README.md in this folder.
 class Monitor {
  public:
   /// Subscribes to all topics except images. The bus must be used for nothing else. The bus and the scenario
@@ -49,7 +49,7 @@ class Monitor {
 
   /// Takes a snapshot of the floor. Call it every kFramePeriod of the run.
   void take_snapshot();
-  /// Sends all viewers the moments that they are looking at. Call it often. `clock` is the real time.
+  /// Sends each viewer the state at its chosen moment. Call it often. `clock` is the real time.
   void update_viewers(Time clock);
   /// For a recording: how much of it has been read, 0 to 1.
   void set_progress(double progress) { progress_ = progress; }
@@ -58,7 +58,7 @@ class Monitor {
   std::optional<WebResponse> respond(const WebRequest& request);
   void add_viewer(WebSocket& socket);
   void remove_viewer(WebSocket& socket);
-  /// False: the message is invalid.
+  /// Processes a message from a viewer. False: the message is invalid.
   [[nodiscard]] bool on_message(WebSocket& socket, const std::string& message, Time clock);
 
   /// Calls back with every message that is received.
@@ -91,7 +91,7 @@ class Monitor {
   void subscribe(const Topic<Message>& topic, RobotId robot);
   template <typename Message>
   void receive(const Channel& channel, const Message& message);
-  /// Subscribes to the channels of a robot, once.
+  /// Subscribes to the channels of a robot, unless already subscribed.
   void follow_robot(RobotId robot);
   void follow(const msg::WorldState& world);
   void follow(const msg::AgentStatus& status) { follow_robot(status.robot()); }

@@ -15,7 +15,7 @@ namespace sidestep {
 /// Rate, losses and delay of each topic, by sender.
 class TopicTraffic {
  public:
-  /// `channel` distinguishes the channels of a topic, which senders number separately.
+  /// Adds a message. `channel` distinguishes a topic's channels, which senders number separately.
   void add(const TopicInfo& topic, std::uint64_t channel, const msg::Header& header, std::size_t bytes,
            Time now);
 
@@ -26,7 +26,7 @@ class TopicTraffic {
  private:
   struct Stream {
     MessageTrace trace{Duration{0}};
-    std::uint64_t not_newest = 0;  // repeated or out of order
+    std::uint64_t not_newest = 0;  // number of repeated or out-of-order messages
     DurationHistogram delays;
   };
   struct Traffic {

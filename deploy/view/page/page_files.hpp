@@ -13,7 +13,7 @@ struct PageFile {
   std::string_view content;
 };
 
-/// nullptr if there is no such file. "/" is the page itself.
+/// The file with this path; nullptr if there is none. "/" is the page itself.
 [[nodiscard]] const PageFile* find_page_file(const std::string& path);
 
 }  // namespace sidestep

@@ -24,8 +24,8 @@ class PlanningScene {
 
   explicit PlanningScene(std::uint64_t seed = 1);
 
-  /// Changes the scene by a message, and plans: {"op": "move", "what": "start", "goal" or the number of an
-  /// obstacle, "x": …, "y": …}, {"op": "scene", "seed": …, "obstacles": …}, {"op": "planner", "name":
+  /// Changes the scene as a message requests, and plans: {"op": "move", "what": "start", "goal" or the number
+  /// of an obstacle, "x": …, "y": …}, {"op": "scene", "seed": …, "obstacles": …}, {"op": "planner", "name":
   /// "dynamic-prm" or "errt"}. False: the message is invalid, and nothing has changed.
   [[nodiscard]] bool apply(const nlohmann::json& message);
 

@@ -17,7 +17,7 @@ bool is_same_secret(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-/// The names by which a browser may call the server.
+/// Whether a browser may address this server by the name `host`.
 bool is_own_host(const AccessSettings& settings, std::string_view host) {
   const std::string port = fmt::format(":{}", settings.port);
   const auto is = [&](std::string_view name) { return host == std::string(name) + port; };
@@ -38,7 +38,7 @@ std::string refusal(const AccessSettings& settings, const RequestSource& source)
 }
 
 std::string command_refusal(const AccessSettings& settings, const RequestSource& source) {
-  if (settings.token.empty()) return "this monitor only watches; start it with --control to command";
+  if (settings.token.empty()) return "this monitor refuses commands; start it with --control";
   if (!is_same_secret(source.authorization, "Bearer " + settings.token))
     return "the header 'Authorization: Bearer TOKEN' is missing or has another token";
   return {};

@@ -23,8 +23,7 @@ struct RequestSource {
 };
 
 /// Why a request is refused, for example because another server's page sent it through the user's browser;
-/// empty if it is not refused. Requests must name this server as their host, so that no other name can be
-/// made to lead here (DNS rebinding).
+/// empty if it is not refused. Requests must name this server as their host, which prevents DNS rebinding.
 [[nodiscard]] std::string refusal(const AccessSettings& settings, const RequestSource& source);
 
 /// Why a request may not give commands; empty if it may.

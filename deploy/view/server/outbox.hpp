@@ -24,7 +24,7 @@ class Outbox {
 
   /// `slot` identifies the state, for example the floor.
   void put_state(unsigned slot, WebMessage message) { states_[slot] = std::move(message); }
-  /// False if the viewer reads too slowly to keep all events; it must then be disconnected.
+  /// Adds an event. False if the viewer reads too slowly to keep all events; it must then be disconnected.
   [[nodiscard]] bool add_event(WebMessage message);
   /// Removes and returns the next message to send: events first, then the states in turn. nullopt if there is
   /// none.

@@ -98,7 +98,7 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
   }
 
  private:
-  /// The first protocol that both know; the server's first one if they share none.
+  /// The server's first protocol that the viewer supports; its first one if there is none.
   std::string agreed_protocol(const std::string& wanted) const {
     for (const std::string& known : server_.protocols)
       for (const auto& token : http::token_list(wanted))

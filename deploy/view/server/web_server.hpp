@@ -32,7 +32,7 @@ class WebSocket {
   virtual ~WebSocket() = default;
   /// Sends the newest value of a state. An earlier value that was not sent yet is discarded.
   virtual void send_state(unsigned slot, WebMessage message) = 0;
-  /// Sends an event, which is never discarded; if that is not possible, the viewer is disconnected.
+  /// Sends an event. Events are never discarded: a viewer that reads too slowly is disconnected.
   virtual void send_event(WebMessage message) = 0;
 };
 
@@ -63,9 +63,9 @@ class WebServer {
 
   /// The access settings, with the actual port.
   const AccessSettings& access() const;
-  /// Processes what has arrived, without waiting.
+  /// Processes all pending network events without waiting.
   void poll();
-  /// Processes what arrives until the time is over.
+  /// Processes network events for this duration.
   void run_for(Duration duration);
 
  private:

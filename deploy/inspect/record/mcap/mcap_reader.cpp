@@ -47,7 +47,7 @@ void McapReader::fail(const std::string& damage) {
 }
 
 Bytes McapReader::read(std::size_t size) {
-  // Grows with the bytes that the file has, not with the size that it claims.
+  // Memory grows with the bytes that the file contains, not with the size that a record claims.
   constexpr std::size_t kStep = 1 << 20;
   bytes_.clear();
   while (bytes_.size() < size) {
@@ -235,7 +235,7 @@ McapRecord McapReader::record_of(const Frame& frame) {
       return {};
     }
     default:
-      return {};  // indices, and kinds that this reader does not know
+      return {};  // indices, and record kinds that this reader does not know
   }
 }
 

@@ -24,8 +24,8 @@ class McapReader {
   /// Throws std::runtime_error if the file cannot be read or is not an MCAP file.
   explicit McapReader(const std::string& path);
 
-  /// The next record; messages come in the order of the file. After the end of the data, everything that
-  /// follows is checked too.
+  /// The next record; messages come in the order of the file. After the end of the data, also checks the rest
+  /// of the file.
   [[nodiscard]] McapRecord next();
   /// Ends reading soon: next() returns the end. May be called from signal handlers and other threads while
   /// next() skips gigabytes without messages.
@@ -42,7 +42,7 @@ class McapReader {
 
   /// The channel of a returned message.
   const McapChannel& channel(const McapMessage& message) const { return channels_.at(message.channel); }
-  /// nullptr if the channel has no schema.
+  /// The channel's schema; nullptr if it has none.
   const McapSchema* schema(const McapChannel& channel) const;
 
  private:
@@ -56,7 +56,7 @@ class McapReader {
 
   /// Reads bytes of the file; the result is shorter at the end of the file.
   std::span<const std::uint8_t> read(std::size_t size);
-  /// False at the end of the file, or if it is damaged.
+  /// Reads a record's kind and size. False at the end of the file, or if it is damaged.
   bool read_frame(Frame& frame);
   /// Why a chunk cannot be opened, given its header; empty if it can. `decoder` has already read the header.
   std::string chunk_problem(const McapDecoder& decoder, std::uint64_t size, std::uint64_t stored_size,
@@ -85,7 +85,7 @@ class McapReader {
   McapDecoder records_{{}};  // records of the open chunk
   bool is_cut_ = false;      // the file ends within the open chunk
   bool is_at_end_ = false;
-  bool was_seek_called_ = false;  // seek() was called
+  bool was_seek_called_ = false;
   std::unique_ptr<std::atomic<bool>> is_stopped_ = std::make_unique<std::atomic<bool>>(false);
   std::uint64_t chunk_offset_ = 0;
   std::string damage_;

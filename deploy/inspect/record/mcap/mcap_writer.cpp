@@ -288,7 +288,7 @@ void McapWriter::close() {
   add_group(Kind::kMetadataIndex, [&] { encoder.raw(metadata_indices_); });
   const std::uint64_t offsets_at = summary_at + bytes.size();
   encoder.raw(offsets);
-  // The checksum covers the footer's size, too.
+  // The checksum also covers the footer's size.
   encoder.number(static_cast<std::uint8_t>(Kind::kFooter));
   encoder.number(std::uint64_t{8 + 8 + 4});
   encoder.number(summary_at);

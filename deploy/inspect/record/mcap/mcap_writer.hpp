@@ -20,7 +20,7 @@ struct McapWriterSettings {
 };
 
 /// Writes an MCAP file: messages in chunks, each with an index, and a summary at the end. A chunk's messages
-/// are in the file once the chunk has ended, whatever happens to the process afterwards. After a write has
+/// are in the file once the chunk has ended, even if the process is killed afterwards. After a write has
 /// failed, the rest is discarded until close().
 class McapWriter {
  public:
@@ -49,8 +49,8 @@ class McapWriter {
   /// Writes the messages that have been added so far to the file.
   void end_chunk();
 
-  /// Calls back with the path and the reason when a write fails for the first time; at once if a write has
-  /// already failed.
+  /// Calls back with the path and the reason when a write fails for the first time; immediately if a write
+  /// has already failed.
   void on_failure(std::function<void(const std::string& failure)> callback);
   std::uint64_t messages() const { return messages_; }
   /// Writes the summary. Anything added afterwards is discarded. Throws std::runtime_error if any write has

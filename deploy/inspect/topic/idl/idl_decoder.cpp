@@ -13,7 +13,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = IdlType::Kind;
 
-/// Arrays of arrays may claim far more elements than the bytes of a message.
+/// Limit, because nested arrays may claim far more elements than the message has bytes.
 constexpr std::size_t kMaxElements = 10'000'000;
 constexpr std::uint32_t kMaxTextBound = 1 << 16;
 
@@ -136,7 +136,7 @@ class Decoder {
     return is_text ? std::string(first, size) : fmt::format("{} bytes", size);
   }
 
-  /// The element of an array of several dimensions.
+  /// The element type of an array with any number of dimensions.
   static const IdlType& innermost(const IdlType& array) {
     const IdlType* type = &array;
     while (type->kind == Kind::kArray) type = type->element.get();

@@ -65,7 +65,7 @@ class Lexer {
     if (word != std::string_view::npos && line.substr(word).starts_with("include") &&
         quote != std::string_view::npos) {
       const std::size_t close = line.find('"', quote + 1);
-      if (close == std::string_view::npos) fail("an #include without a closing quote");
+      if (close == std::string_view::npos) fail("an #include has no closing quote");
       result_.includes.emplace_back(line.substr(quote + 1, close - quote - 1));
     }
     skip_to(end);
@@ -91,7 +91,7 @@ class Lexer {
         else
           break;
       }
-      if (end == at_) fail("'::' without a name");
+      if (end == at_) fail("expected a name after '::'");
     } else if (is_digit(first)) {
       while (end < text_.size() && (is_letter(text_[end]) || is_digit(text_[end]) || text_[end] == '.'))
         ++end;

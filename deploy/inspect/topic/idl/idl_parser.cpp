@@ -21,10 +21,10 @@ using Extensibility = IdlType::Extensibility;
 
 constexpr int kMaxNesting = 100;
 constexpr std::size_t kMaxFiles = 1000;
-// If each type contains another one several times, the number of values grows exponentially.
+// Limit, because the number of values grows exponentially if each type contains another type several times.
 constexpr std::uint64_t kMaxValues = 10'000'000;
 
-/// What annotations say about the definition or member that follows.
+/// The annotations of a definition or member.
 struct Annotations {
   bool is_key = false, is_optional = false;
   std::optional<Extensibility> extensibility{};
@@ -263,7 +263,7 @@ class Parser {
       fail(fmt::format("a message of this type has {} values, more than {}", type.values, kMaxValues));
   }
 
-  /// Otherwise a message of no bytes could have any number of empty elements.
+  /// Refuses elements without values: an empty message could contain any number of them.
   void check_element(const IdlType& element) const {
     if (element.values == 0) fail("the elements of a list contain no values");
   }

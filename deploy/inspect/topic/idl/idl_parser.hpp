@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// What is wrong with IDL, and where: "order.idl:7: expected ';', got 'long'".
+/// An error in IDL text, with its location: "order.idl:7: expected ';', got 'long'".
 class IdlError : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };

@@ -19,7 +19,7 @@ struct IdlMember {
   bool is_optional = false;
 };
 
-/// A type of OMG IDL 4.2, restricted to what messages over DDS use.
+/// A type of OMG IDL 4.2, restricted to the constructs that DDS messages use.
 struct IdlType {
   enum class Kind : std::uint8_t {
     kBoolean,

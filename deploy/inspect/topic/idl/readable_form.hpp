@@ -26,7 +26,7 @@ class ReadableForm {
  public:
   ReadableForm(const IdlType& type, const Rewrites& rewrites);
 
-  /// Precondition: decode_by_idl() returned the message for the type, with OctetSequences::kText.
+  /// Converts a message. Precondition: decode_by_idl() returned it for this type, with OctetSequences::kText.
   void apply(nlohmann::ordered_json& message) const;
 
   /// Whether apply() changes nothing.

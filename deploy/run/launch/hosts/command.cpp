@@ -59,7 +59,7 @@ std::string run_command(std::vector<std::string> argv, const std::string& input)
   posix_spawn_file_actions_adddup2(&actions, fileno(in.get()), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(out.get()), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, fileno(out.get()), STDERR_FILENO);
-  // A run ignores SIGPIPE; programs do not expect to inherit that.
+  // A run ignores SIGPIPE; programs do not expect to inherit an ignored signal.
   sigset_t pipe;
   sigemptyset(&pipe);
   sigaddset(&pipe, SIGPIPE);

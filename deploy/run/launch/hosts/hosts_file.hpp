@@ -9,7 +9,7 @@ namespace sidestep {
 
 enum class HostTransport { kLocal, kNamespace, kSsh };
 
-/// Which of the numbered processes of one kind run on a host.
+/// The numbered processes of one kind that run on a host.
 struct NumberedShare {
   struct Range {
     std::uint32_t first, last;
@@ -35,7 +35,7 @@ struct HostSpec {
 struct Hosts {
   std::string file;
   bool create = false;     ///< the launcher creates and removes the namespaces and their network
-  std::string interface;   ///< the launcher's address in that network
+  std::string interface;   ///< the launcher's address in the hosts' network
   int prefix_length = 24;  ///< prefix length of all addresses, if the launcher creates the network
   /// Addresses at which processes look for each other; empty: they find each other by multicast.
   std::vector<std::string> peers;

@@ -23,7 +23,7 @@ class Placement {
  private:
   void place(const std::string& process, const HostSpec& host, int line);
   void place_single(const std::string& process, bool HostSpec::*flag);
-  /// `names` contains the scenario's processes of this kind, by number.
+  /// Places the numbered processes of one kind. `names`: the scenario's processes of this kind, by number.
   void place_numbered(const std::map<std::uint32_t, std::string>& names, NumberedShare HostSpec::*share,
                       const std::string& key);
 

@@ -15,7 +15,7 @@ namespace sidestep {
 /// creates it. In that case this thread is in the network's bridge namespace for the lifetime of the object.
 class RunHosts {
  public:
-  /// Throws whatever Placement and NamespaceNetwork throw.
+  /// Passes on exceptions of Placement and NamespaceNetwork.
   RunHosts(const Hosts& hosts, const Scenario& scenario, bool has_driver = false);
   RunHosts(const RunHosts&) = delete;
   RunHosts& operator=(const RunHosts&) = delete;

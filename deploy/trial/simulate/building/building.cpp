@@ -52,7 +52,7 @@ std::string text_of(const Vec2& p) { return fmt::format("[{:.3f}, {:.3f}]", p.x(
 std::string scenario_text(const BuildingOptions& options, const Scenario& scenario) {
   Rng rng(options.seed);
   PositionSampler positions(scenario, rng);
-  // One round of positions for the starts and one for each goal, in each of which robots are apart.
+  // One set of positions for the starts and one for each goal. Robots at a set's positions are apart.
   std::vector<std::vector<Vec2>> places;
   for (int i = 0; i <= options.goals; ++i) {
     std::vector<Vec2> taken;

@@ -14,10 +14,10 @@ struct BuildingOptions {
   std::string folder;
   std::string kind = kBuildingKinds.front();
   std::uint64_t seed = 1;
-  int cells = 2000;            ///< number along each side
+  int cells = 2000;            ///< number of cells along each side
   double resolution_m = 0.05;  ///< side of a cell
   int robots = 6;
-  int goals = 3;  ///< number per robot
+  int goals = 3;  ///< number of goals per robot
 };
 
 /// Writes a random building into a folder, which it creates: its map as `map.yaml` and `map.pgm`, and

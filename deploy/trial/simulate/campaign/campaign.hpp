@@ -9,7 +9,7 @@
 namespace sidestep {
 
 struct CampaignOptions {
-  std::string scenario_file;  ///< empty: the scene is random too
+  std::string scenario_file;  ///< empty: the scene is also random
   std::string report_file;    ///< JSON file; empty: none
   std::string results_file;   ///< an interrupted campaign resumes from this file; empty: none
   std::uint64_t first_seed = 1, last_seed = 1;

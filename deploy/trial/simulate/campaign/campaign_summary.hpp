@@ -23,9 +23,9 @@ class CampaignSummary {
   /// Number of trials with each kind of fault.
   std::map<std::string, std::uint64_t> trials_by_fault() const;
   struct Audited {
-    std::uint64_t violations = 0;          ///< number in trials that the audit judges
+    std::uint64_t violations = 0;          ///< number of violations in trials that the audit judges
     std::uint64_t skipped_trials = 0;      ///< number of trials that the audit does not judge
-    std::uint64_t skipped_violations = 0;  ///< number of violations in those trials
+    std::uint64_t skipped_violations = 0;  ///< number of violations in the skipped trials
   };
   Audited audited() const;
   /// Fraction of the time of all pairs of robots in which a contact would have been excused.

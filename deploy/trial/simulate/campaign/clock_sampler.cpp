@@ -32,7 +32,7 @@ class ClockSampler {
         plan_(plan),
         duration_(duration),
         have_robots_clocks_(robots_have_clocks),
-        // The robot and the coordinator each get half of the bound.
+        // The robot and the coordinator each get half of the clock bound.
         half_bound_s_(0.499 * scenario.clock_bound_s),
         rng_(rng) {}
 
@@ -55,14 +55,14 @@ class ClockSampler {
   }
 
  private:
-  /// Within half of the bound, at the start and at the end.
+  /// Samples an error within half of the bound, both at the start and at the end of the run.
   ClockError sample_within_bound() {
     const Duration first = sample_within(half_bound_s_, rng_);
     if (!has_drift_) return {first};
     const Duration last = sample_within(half_bound_s_, rng_);
     return {first, 1e6 * to_seconds(last - first) / to_seconds(duration_)};
   }
-  /// An agent's own clock may have any offset. Vision's clock needs to be only roughly right.
+  /// Samples a clock error. Agents' clocks may have any offset; vision's must be roughly right.
   ClockError sample_process(const std::string& process) {
     if (process.starts_with("coordinator")) return sample_within_bound();
     if (process == "simulator") return {sample_within(half_bound_s_, rng_)};
@@ -98,7 +98,7 @@ class ClockSampler {
       plan_.ends[robot.id] = RobotEnd::kClockOutOfBound;
     });
   }
-  /// The robot's clock leaves the bound during the run.
+  /// Makes the robot's clock leave the bound during the run.
   void drift_away(RobotSpec& robot) {
     const double drift_ppm = rng_.uniform(0.5, 1) * kMaxDrift_ppm;
     robot.clock_drift_ppm = rng_.chance(0.5) ? drift_ppm : -drift_ppm;

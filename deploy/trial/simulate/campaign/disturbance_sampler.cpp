@@ -60,7 +60,7 @@ class DisturbanceSampler {
     plan_.add(at, disturbance);
   }
 
-  /// The operator places a robot at any free place, where other robots may be driving.
+  /// The operator lifts a robot and usually puts it down at any free place, among driving robots.
   void sample_lift() {
     const RobotId robot = random_robot();
     if (plan_.ends.contains(robot) || !handled_.insert(robot).second) return;

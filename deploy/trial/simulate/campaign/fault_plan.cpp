@@ -41,7 +41,7 @@ std::string to_text(const RobotDisturbance& disturbance) {
       return fmt::format("robots {} and {} confused by vision for {:.3f} s", disturbance.robot,
                          disturbance.other_robot, duration_s);
     case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
-      return fmt::format("robot {} seen where it was for {:.3f} s", disturbance.robot, duration_s);
+      return fmt::format("robot {} seen frozen at its place for {:.3f} s", disturbance.robot, duration_s);
     default:
       return fmt::format("robot {}: {}", disturbance.robot, cause_of(disturbance.kind).value_or(""));
   }

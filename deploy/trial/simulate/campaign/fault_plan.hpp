@@ -38,9 +38,9 @@ struct Carry {
   Vec2 place_m{0, 0};
   double speed_mps = 1;
 };
-/// The operator puts a lifted robot down. Each place is requested for a while, one after another and again
-/// from the first, until one is granted. The requests are repeated because an agent that is dead at the time
-/// would otherwise never learn of them.
+/// The operator puts a lifted robot down. The places are requested in rotation, each for a while, until one
+/// is granted. Requests are repeated because an agent that is dead when a request is sent would otherwise
+/// never receive it.
 struct Place {
   RobotId robot = 0;
   std::vector<Vec2> places_m;
@@ -81,7 +81,7 @@ struct TimedFault {
   Fault fault;
   /// Duration of a partition or pause. A partition without a duration is permanent: messages between one
   /// coordinator and these processes are lost in at least one direction, and the other coordinators must work
-  /// without that one.
+  /// without it.
   std::optional<Duration> duration = std::nullopt;
 
   FaultSpan span() const { return {at, duration ? std::optional(at + *duration) : std::nullopt}; }
@@ -101,7 +101,7 @@ enum class RobotEnd {
 struct FaultPlan {
   std::vector<ProcessNames> hosts;           ///< messages within a host are fast and never lost
   std::map<std::string, ClockError> clocks;  ///< indexed by process
-  /// States of robots that need not drive at the end; all others must.
+  /// States of robots that need not drive at the end; all other robots must drive.
   std::map<RobotId, RobotEnd> ends;
   std::vector<TimedFault> faults;  ///< sorted by time
   Duration healed_at{0};

@@ -51,7 +51,7 @@ class FaultPlayer {
   void apply(const StartWithOwnRules& start, const TimedFault&) { start_with(scenario_, start.process); }
   void apply(const SendForgery& send, const TimedFault&);
   void apply(const GiveOrder& give, const TimedFault&) { clients_->give(give.order); }
-  /// Sets the quality of links between hosts; within a host it stays the same.
+  /// Sets the quality of links between hosts; links within a host keep their quality.
   void set_qualities(const ProcessNames& from, const ProcessNames& to, const LinkQuality& between);
   void start_with(const Scenario& scenario, const std::string& process);
   void heal();

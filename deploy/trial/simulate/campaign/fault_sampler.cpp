@@ -54,7 +54,7 @@ class FaultSampler {
     const double u = rng_.uniform();
     return u < 0.3 ? random_process("coordinator") : u < 0.4 ? "vision" : random_agent();
   }
-  /// A process whose name starts with the prefix.
+  /// A random process whose name starts with the prefix.
   std::string random_process(const std::string& prefix) {
     ProcessNames found;
     std::ranges::copy_if(processes_, std::back_inserter(found),
@@ -203,8 +203,8 @@ class FaultSampler {
     });
   }
 
-  /// Starts a second process of a kind that must run alone, on a host of its own. For a while, it may not
-  /// hear the first one or some of the others.
+  /// Starts a second process of a kind that must run alone, on a host of its own. For a while, the second
+  /// process may not hear the first one or some other processes.
   void sample_second() {
     const std::string first = rng_.chance(0.6) ? "simulator" : "vision", second = second_process(first);
     const Duration at = time();

@@ -18,9 +18,9 @@ class FaultTimes {
   Duration healed_at() const { return healed_at_; }
   /// A time at least a millisecond before the end of all faults, often near the time of another fault.
   Duration sample(Rng& rng) const;
-  /// The duration, limited to the time from `at` to the end of all faults.
+  /// `desired_s`, limited to the time from `at` to the end of all faults.
   Duration until_healed(Duration at, double desired_s) const;
-  /// The time this long after `at`, but at the latest just before the end of all faults.
+  /// The time `desired_s` after `at`, but at the latest just before the end of all faults.
   Duration after(Duration at, double desired_s) const;
 
  private:

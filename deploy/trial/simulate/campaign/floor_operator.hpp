@@ -22,8 +22,8 @@ class FloorOperator {
   void place(const Place& place);
   void take_away(RobotId robot);
   /// From now on, resumes all robots whenever any is held, because coordinators that have all been restarted
-  /// hold all robots until an operator resumes them. Their orders are then lost, so the operator sends robots
-  /// without an order to the scenario's goals again.
+  /// hold all robots until an operator resumes them. The robots' orders are then lost, so the operator sends
+  /// robots without an order to the scenario's goals again.
   void resume_held_robots() { resumes_ = true; }
 
   /// When the operator acts next; nullopt if there is nothing to do.

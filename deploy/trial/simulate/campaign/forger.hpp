@@ -12,9 +12,9 @@
 
 namespace sidestep {
 
-/// A hostile process that knows the scenario's rules. It repeats messages that it has received about one
-/// robot, its victim, with changes. Observers do not hear it, because they judge the other processes'
-/// messages.
+/// A hostile process that knows the scenario's rules. It resends altered copies of the messages that it has
+/// received about one robot, its victim. Observers do not receive its messages: they judge only the other
+/// processes.
 class Forger {
  private:
   SimBus bus_;

@@ -54,10 +54,10 @@ class OrderClients {
   };
   struct Disturbance {
     Time end{};
-    bool has_rested = true;  // the robot has come to rest since
+    bool has_rested = true;  // the robot has come to rest since the disturbance
   };
   struct Memory {
-    std::uint32_t pages = 0;  // number of pages so far
+    std::uint32_t pages = 0;  // number of pages received so far
     std::map<std::pair<RobotId, Rank>, std::pair<OrderNumber, ClientId>> drives;
   };
   Client& client_of(ClientId id);
@@ -75,7 +75,7 @@ class OrderClients {
   const double touching_distance_m_;
   const Duration time_to_coast_;  // time in which a robot without power comes to rest
   SimSystem& system_;
-  SimBus bus_;  // a bus that observes
+  SimBus bus_;  // the observer's bus
   std::map<ClientId, std::unique_ptr<Client>> clients_;
   std::vector<Hold> holds_;  // holds that no client with permission has tried to lift
   std::map<RobotId, Disturbance> disturbances_;

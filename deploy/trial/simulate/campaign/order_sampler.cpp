@@ -39,7 +39,7 @@ class OrderSampler {
   }
 
   /// Usually the client that gave the hold lifts it, sometimes an operator. Sometimes a client without
-  /// permission tries to.
+  /// permission tries to lift it.
   void sample_hold() {
     const ClientId client = random_client();
     const RobotId robot = rng_.chance(0.3) ? kAllRobots : random_robot();

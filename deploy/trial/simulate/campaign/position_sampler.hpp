@@ -21,7 +21,7 @@ class PositionSampler {
   /// A position within the central `share` of the field if a free one is found there, otherwise anywhere.
   Vec2 sample(double share = 1);
   Vec2 sample_apart(const std::vector<Vec2>& others);
-  /// A free position near the desired one and clear of the others.
+  /// A free position near the desired one and clear of `others`.
   Vec2 sample_near(const Vec2& desired, const std::vector<Vec2>& others);
 
  private:

@@ -21,7 +21,7 @@ class ResultsFile {
 
   /// The results in the file when it was opened.
   const std::vector<TrialResult>& found() const { return found_; }
-  /// Throws std::runtime_error if the result cannot be written.
+  /// Writes a result. Throws std::runtime_error if that fails.
   void add(const TrialResult& result);
 
  private:

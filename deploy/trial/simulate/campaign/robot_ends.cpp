@@ -21,7 +21,7 @@ const TimedFault* last_disturbance(const FaultPlan& plan, RobotId robot, msg::Di
   return last;
 }
 
-/// By how much the offset of the robot's clock has changed by the end of the run.
+/// Change of the robot's clock offset from the start to the end of the run.
 Duration clock_error(const FaultPlan& plan, const RobotSpec& robot, Duration simulator_started,
                      Duration duration) {
   const TimedFault* const step =

@@ -121,8 +121,7 @@ void sample_people(Scenario& scenario, double min_radius_m, double max_radius_m,
   }
 }
 
-/// Bases follow their versions less exactly than firmware does. The figures are those of
-/// league/crossing.yaml.
+/// Bases follow their versions less exactly than firmware does. The values are from league/crossing.yaml.
 void use_bases(Scenario& scenario) {
   scenario.tracking_bound_m = 0.014;
   scenario.margin_m = 0.032;

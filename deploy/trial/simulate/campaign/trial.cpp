@@ -21,7 +21,7 @@ namespace sidestep {
 namespace {
 
 constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
-// This long after the last fault, all processes must work again.
+// Time after the last fault within which all processes must work again.
 constexpr Duration kRecoveryTime = std::chrono::seconds(2);
 /// Longest time that a robot waits, for example after its own stop, unless it is stuck.
 constexpr Duration kLongestWait = std::chrono::seconds(3);
@@ -128,14 +128,14 @@ void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress
                      list(unexpected.undetected_clock)));
   }
   if (!unexpected.not_absent.empty()) {
-    fail(fmt::format("the agents of robots {} do not report that these are off the floor",
+    fail(fmt::format("the agents of robots {} do not report that their robots are off the floor",
                      list(unexpected.not_absent)));
   }
   if (!unexpected.driven.empty() && is_detection_certain(trial)) {
     fail(
         fmt::format("robots {} were driven although their clocks are out of bound", list(unexpected.driven)));
   }
-  // Robots that must not move may be at the goals of others.
+  // Robots that must not move may occupy the goals of other robots.
   const bool may_block = std::ranges::any_of(trial.plan.ends, [](const auto& entry) {
     return entry.second != RobotEnd::kLifted && entry.second != RobotEnd::kTakenAway;
   });

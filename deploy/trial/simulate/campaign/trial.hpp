@@ -29,8 +29,8 @@ struct Trial {
   std::string summary() const;
 };
 
-/// Samples everything that the seed determines. If no scenario is given, samples the scene too; without
-/// faults, samples nothing else.
+/// Samples everything that the seed determines. If no scenario is given, samples the scene. If `has_faults`
+/// is false, samples no faults.
 [[nodiscard]] Trial sample_trial(std::uint64_t seed, Duration duration,
                                  const std::optional<Scenario>& scenario, bool has_faults = true);
 

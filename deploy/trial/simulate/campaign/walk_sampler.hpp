@@ -23,11 +23,11 @@ class WalkSampler {
   [[nodiscard]] bool is_seen(const Vec2& from_m, const Vec2& to_m) const {
     return !world_.touches(from_m, to_m, 0);
   }
-  /// A place that touches nothing; nullopt if none was found.
+  /// Samples a place where the disc touches nothing; nullopt if none was found.
   std::optional<Vec2> sample_free();
   /// The shortest path, without its start; nullopt if there is none.
   std::optional<std::vector<Vec2>> path(const Vec2& from_m, const Vec2& to_m);
-  /// The shortest paths from a place to random places, one after another. Unreachable places are left out.
+  /// A walk from a place through random places along shortest paths. Unreachable places are left out.
   std::vector<Vec2> sample_walk(const Vec2& from_m, int places);
 
  private:

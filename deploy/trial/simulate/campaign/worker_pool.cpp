@@ -71,7 +71,7 @@ WorkerPool::~WorkerPool() {
 
 void WorkerPool::start(Worker& worker) {
   int jobs[2], lines[2];
-  if (pipe(jobs) != 0 || pipe(lines) != 0) fail("cannot make a pipe to a worker");
+  if (pipe(jobs) != 0 || pipe(lines) != 0) fail("cannot create a pipe to a worker");
   std::fflush(nullptr);
   const pid_t pid = fork();
   if (pid < 0) fail("cannot start a worker");

@@ -185,7 +185,7 @@ void SimSystem::watch_second_simulators(SimBus& bus) {
 void SimSystem::on_other(const std::string& name, std::uint32_t id, Incarnation own, Incarnation other) {
   processes_.at(name)->report(LogLevel::kError, describe_other(id, own, other));
   if (keeps_duplicates_running_ || !must_be_alone(id) || own < other) return;
-  // The process is not destroyed at once, because this is a callback of its own bus.
+  // The process is not destroyed immediately, because this is a callback of its own bus.
   observer_bus_.at(now(), [this, name] { processes_.erase(name); });
 }
 

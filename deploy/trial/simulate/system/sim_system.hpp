@@ -40,8 +40,8 @@ class SimSystem {
 
   void run_until(Time limit) { network_.run_until(limit); }
   void run_for(Duration duration) { network_.run_until(network_.now() + duration); }
-  /// Runs until all robots have arrived and stayed for half a second, or until the limit; returns whether
-  /// they have.
+  /// Runs until all robots have arrived and stayed for half a second, or until the limit; returns whether all
+  /// have arrived and stayed.
   bool run_until_arrived(Time limit);
 
   /// Kills a process as if by SIGKILL: "simulator", "vision", "coordinator", "coordinator 1" or "agent 3".

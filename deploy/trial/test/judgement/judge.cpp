@@ -23,7 +23,7 @@ Judgement judge_name(RobotId robot, const ExpectNamed& check, const RunHistory& 
   if (const auto ended = ended_before(check.span.to_s, history)) return *ended;
   if (!is_heard) return Judgement::not_judged(check.span.from_s, "no active coordinator was heard");
   return Judgement::failed(check.span.to_s,
-                           is_named ? fmt::format("robot {} was named only at {:.3f} s", robot, named->at_s)
+                           is_named ? fmt::format("robot {} was named late, at {:.3f} s", robot, named->at_s)
                                     : fmt::format("robot {} was not named", robot));
 }
 
@@ -33,7 +33,7 @@ Judgement judge_arrival(RobotId robot, const ExpectArrived& check, const RunHist
   if (found != end.arrival_s.end() && found->second) {
     const double arrival_s = *found->second;
     if (!check.by_s || arrival_s <= *check.by_s) return {};
-    return Judgement::failed(arrival_s, fmt::format("robot {} arrived only at {:.3f} s", robot, arrival_s));
+    return Judgement::failed(arrival_s, fmt::format("robot {} arrived late, at {:.3f} s", robot, arrival_s));
   }
   if (!end.abort_reason.empty()) return gap_at_end(history).value_or(Judgement{});
   if (const auto ended = check.by_s ? ended_before(*check.by_s, history) : std::nullopt) return *ended;
@@ -61,10 +61,10 @@ Judgement judge(const ExpectTakeover& check, const RunHistory& history) {
     if (!before || sample.number == before->number || sample.epoch <= before->epoch) continue;
     if (sample.at_s <= check.span.to_s) return {};
     return Judgement::failed(
-        sample.at_s, fmt::format("{} granted only after {:.0f} ms", coordinator_process(sample.number),
+        sample.at_s, fmt::format("{} granted late, after {:.0f} ms", coordinator_process(sample.number),
                                  1e3 * (sample.at_s - check.span.from_s)));
   }
-  if (!before) return Judgement::not_judged(check.span.from_s, "no coordinator had granted before");
+  if (!before) return Judgement::not_judged(check.span.from_s, "no coordinator had granted before this time");
   if (const auto ended = ended_before(check.span.to_s, history)) return *ended;
   return Judgement::failed(check.span.to_s, "no other coordinator granted");
 }
@@ -99,7 +99,7 @@ Judgement judge(const ExpectMismatch& check, const RunHistory& history) {
   std::string others;
   for (const auto& [process, differences] : end.mismatches) others += (others.empty() ? "" : ", ") + process;
   return Judgement::failed(end.at_s, others.empty() ? "no process is reported to have different rules"
-                                                    : "only these are reported: " + others);
+                                                    : "only other processes are reported: " + others);
 }
 
 Judgement judge(const Expectation& expectation, const RunHistory& history) {

@@ -22,8 +22,8 @@ struct TrueSpeed {
 struct TruthSample {
   double at_s = 0;
   std::vector<TrueSpeed> robots;           ///< sorted by id
-  double min_clearance_m = 0;              ///< smallest value since the start of the run
-  std::uint64_t crashes_while_moving = 0;  ///< number since the start of the run
+  double min_clearance_m = 0;              ///< smallest clearance since the start of the run
+  std::uint64_t crashes_while_moving = 0;  ///< number of crashes since the start of the run
 
   std::optional<double> speed_of(RobotId robot) const;
 };
@@ -49,14 +49,14 @@ struct NoticeSample {
   NoticeKind kind = NoticeKind::kMissing;
 };
 
-/// What is known at the end of a run.
+/// The facts known at the end of a run.
 struct RunEnd {
   double at_s = 0;
   std::string abort_reason;  ///< empty: the run was not aborted
   std::map<RobotId, std::optional<double>> arrival_s;
   std::uint64_t violations = 0;
   double first_violation_at_s = 0;
-  std::string first_violation;  ///< as one line
+  std::string first_violation;  ///< the first violation as one line
   std::string shortfall;        ///< why the audit covered too little; empty: it covered enough
   std::map<std::string, std::string> mismatches;  ///< processes with different rules, and the differences
 };

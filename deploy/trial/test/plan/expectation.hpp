@@ -85,7 +85,7 @@ using ExpectationCheck = std::variant<ExpectNoContact, ExpectNoViolations, Expec
                                       ExpectAtRest, ExpectMoving, ExpectMinClearance, ExpectMaxSpeed,
                                       ExpectTakeover, ExpectNamed, ExpectMismatch>;
 
-/// What a run of a test must show.
+/// A condition that a run of a test must meet.
 struct Expectation {
   ExpectationCheck check;
   int line = 0;  ///< line in the test's file

@@ -89,7 +89,7 @@ class FaultReader {
     const ProcessNames others = system_process_names(load_scenario(fault.scenario_file));
     const bool is_agent = fault.process.starts_with("agent ");
     if (is_agent && std::ranges::find(others, fault.process) == others.end())
-      location.fail(fmt::format("that scenario has no {}", fault.process));
+      location.fail(fmt::format("the other scenario has no {}", fault.process));
     return fault;
   }
 

@@ -18,7 +18,7 @@ inline constexpr const char* kActiveCoordinator = "active coordinator";
 /// Starts a process, killing it first if it is running.
 struct RestartFault {
   std::string process;
-  std::string scenario_file;  ///< scenario that it uses from then on; empty: the test's own
+  std::string scenario_file;  ///< scenario of the restarted process; empty: the test's own
 };
 /// Messages that arrive at a process are lost, delayed and duplicated.
 struct ImpairmentFault {

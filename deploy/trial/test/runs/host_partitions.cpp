@@ -90,8 +90,7 @@ void HostPartitions::check(const Partition& partition, const std::string& text) 
     const HostSet hosts = hosts_of(*side);
     for (const HostSpec* host : hosts) {
       if (host->transport != HostTransport::kNamespace)
-        throw std::runtime_error(
-            fmt::format("{} needs namespace hosts, and {} is not one", text, host->name));
+        throw std::runtime_error(fmt::format("{} needs a namespace host instead of {}", text, host->name));
     }
     for (const std::string& process : system_process_names(test_.scenario)) {
       const HostSpec& host = hosts_.placement().host_of(process);

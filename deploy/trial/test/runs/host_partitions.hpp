@@ -27,7 +27,7 @@ class HostPartitions {
   HostPartitions(const HostPartitions&) = delete;
   HostPartitions& operator=(const HostPartitions&) = delete;
 
-  /// Throws std::runtime_error if the packet filter cannot be set.
+  /// Begins a partition. Throws std::runtime_error if the packet filter cannot be set.
   void begin(const Partition& partition) { change(partition, 1); }
   void end(const Partition& partition) { change(partition, -1); }
 

@@ -11,7 +11,7 @@
 namespace sidestep {
 namespace {
 
-// About as long as the launcher takes to restart a process.
+// Approximate time that the launcher takes to restart a process.
 constexpr Duration kRestartDelay = std::chrono::milliseconds(200);
 
 /// The probability that at least one of two independent events happens.

@@ -51,7 +51,7 @@ class SimFaults {
   SimSystem& system_;
   const RunObserver& observer_;
   SimLinkFaults links_;
-  std::set<std::string> impaired_;  // processes
+  std::set<std::string> impaired_;  // names of impaired processes
   Writer<msg::AbsenceAttestation> attestation_writer_;
   AbsenceAttestations attestations_;
   std::map<std::string, Time> restarts_;    // when to restart killed processes

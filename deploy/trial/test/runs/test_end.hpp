@@ -11,7 +11,7 @@ namespace sidestep {
 
 /// Decides when a run of a test is over: at the scenario's time limit, or as soon as all faults and deadlines
 /// are past and all robots that are expected to arrive have arrived. Without an expectation about arrivals,
-/// all robots are expected to arrive, except those that are expected not to.
+/// all robots are expected to arrive, except those that are expected not to arrive.
 class TestEnd {
  public:
   explicit TestEnd(const FaultTest& test);

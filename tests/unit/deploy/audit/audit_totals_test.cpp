@@ -26,7 +26,7 @@ TEST_CASE("an audit that heard nothing does not judge") {
 TEST_CASE("an audit that refused all messages reports that") {
   AuditTotals totals;
   totals.refused = 7;
-  CHECK(verdict_line(totals) == "not judged: all 7 messages come from processes with other rules");
+  CHECK(verdict_line(totals) == "not judged: all 7 messages come from processes with different rules");
 }
 
 TEST_CASE("an audit with enough coverage and no findings passes") {

@@ -180,7 +180,7 @@ TEST_CASE("audit violations fail a run and are included in its report") {
   violation.rule = AuditRule::kLateSwitch;
   violation.robot = 3;
   violation.version = 17;
-  violation.detail = "is executed, although";
+  violation.detail = "is being executed, although";
   report.audit->violations = 1;
   report.audit->by_rule[static_cast<std::size_t>(AuditRule::kLateSwitch)] = 1;
   report.audit->first.push_back(violation);
@@ -189,9 +189,9 @@ TEST_CASE("audit violations fail a run and are included in its report") {
   CHECK(audit["violations"] == 1);
   CHECK(audit["by_rule"]["late-switch"] == 1);
   CHECK(audit["first"][0]["robot"] == 3);
-  CHECK(audit["first"][0]["detail"] == "is executed, although");
+  CHECK(audit["first"][0]["detail"] == "is being executed, although");
   CHECK_THAT(summary(report),
-             ContainsSubstring("late-switch (firmware, S-05): robot 3 version 17: is executed"));
+             ContainsSubstring("late-switch (firmware, S-05): robot 3 version 17: is being executed"));
 }
 
 /// The audit of a run in which every message was heard.

@@ -35,7 +35,7 @@ TEST_CASE("keys are made, replaced, revoked and shown") {
   CHECK(run({"keys", "issue", "agent", "3", "vision", "--keys", keys}).empty());
   CHECK(fs::exists(agent + "/cert.pem"));
   CHECK_THAT(run({"keys", "issue", "agent", "3", "--keys", keys}),
-             ContainsSubstring("agent 3 has a key already; --again"));
+             ContainsSubstring("agent 3 already has a key; --again"));
   const std::string first = Certificate::load(agent + "/cert.pem").serial();
   CHECK(run({"keys", "issue", "agent", "3", "--again", "--days", "2", "--keys", keys}).empty());
   CHECK(Certificate::load(agent + "/cert.pem").serial() != first);

@@ -184,7 +184,7 @@ TEST_CASE("a director that hangs after it has ended its processes is killed", "[
   });
   CHECK(code == 1);
   CHECK(f.lost == "signal 9 (SIGKILL)");
-  CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
+  CHECK_THAT(f.text("log"), ContainsSubstring("has not ended in time and is killed"));
 }
 
 TEST_CASE("a stopped director that is asked to end is killed and reported, and its processes end") {
@@ -202,7 +202,7 @@ TEST_CASE("a stopped director that is asked to end is killed and reported, and i
   CHECK(f.lost == "signal 9 (SIGKILL)");
   CHECK(f.group.running() == 0);
   CHECK_FALSE(is_alive(std::stoi(f.text("pid"))));
-  CHECK_THAT(f.text("log"), ContainsSubstring("does not end and is killed"));
+  CHECK_THAT(f.text("log"), ContainsSubstring("has not ended in time and is killed"));
   CHECK(DirectorWork{}.shutdown_timeout <= 30s);
 }
 

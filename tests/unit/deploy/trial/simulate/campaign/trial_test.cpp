@@ -107,7 +107,7 @@ TEST_CASE("a trial fails for each kind of failure and states the reason") {
   }
   SECTION("a robot off the floor was not reported absent") {
     judged.end(0, RobotEnd::kLifted, msg::AgentState::AGENT_DRIVING);
-    judged.check_fails("do not report that these are off the floor");
+    judged.check_fails("do not report that their robots are off the floor");
   }
   SECTION("no robot moves") {
     judged.result.stationary = 3;

@@ -155,11 +155,11 @@ TEST_CASE("takeover: fails unless another coordinator grants in a higher epoch i
   history.coordinators.push_back({3.1, 1, 201, false});
   history.coordinators.push_back({3.2, 1, 201, true});
   check_passes(ExpectTakeover{{3, 3.3}}, history);
-  check_fails(ExpectTakeover{{3, 3.15}}, history, 3.2, "coordinator 1 granted only after 200 ms");
+  check_fails(ExpectTakeover{{3, 3.15}}, history, 3.2, "coordinator 1 granted late, after 200 ms");
   check_fails(ExpectTakeover{{1, 2}}, run(), 2, "no other coordinator granted");
   check_not_judged(ExpectTakeover{{3, 3.3}}, run_until(3), "the run ended at 3.000 s");
   history.coordinators.clear();
-  check_not_judged(ExpectTakeover{{3, 3.3}}, history, "no coordinator had granted before");
+  check_not_judged(ExpectTakeover{{3, 3.3}}, history, "no coordinator had granted before this time");
   // The same coordinator in a new epoch is not a takeover.
   history = run_until(3);
   history.end.at_s = 10;
@@ -174,7 +174,7 @@ TEST_CASE("named: fails unless each robot is named for the right reason within t
     return ExpectNamed{kOne, as, {from_s, to_s}};
   };
   check_passes(named(NoticeKind::kDisplaced, 5, 6), history);
-  check_fails(named(NoticeKind::kDisplaced, 4, 5), history, 5, "robot 1 was named only at 5.200 s");
+  check_fails(named(NoticeKind::kDisplaced, 4, 5), history, 5, "robot 1 was named late, at 5.200 s");
   check_fails(named(NoticeKind::kQuarantined, 4, 6), history, 6, "robot 1 was not named");
   check_fails(named(NoticeKind::kMissing, 3, 6), history, 6, "robot 1 was not named");
   check_fails(ExpectNamed{kBoth, NoticeKind::kDisplaced, {5, 6}}, history, 6, "robot 2 was not named");
@@ -199,7 +199,7 @@ TEST_CASE("arrivals: fails with the robot that has not arrived or arrives too la
   const RunHistory history = run();
   check_passes(ExpectArrived{kOne, std::nullopt}, history);
   check_passes(ExpectArrived{kOne, 4.6}, history);
-  check_fails(ExpectArrived{kOne, 4.4}, history, 4.5, "robot 1 arrived only at 4.500 s");
+  check_fails(ExpectArrived{kOne, 4.4}, history, 4.5, "robot 1 arrived late, at 4.500 s");
   check_fails(ExpectArrived{kBoth, std::nullopt}, history, 10, "robot 2 had not arrived");
   check_fails(ExpectArrived{kBoth, 8}, history, 8, "robot 2 had not arrived");
   check_not_judged(ExpectArrived{kBoth, 8}, run_until(5), "the run ended at 5.000 s");
@@ -213,7 +213,7 @@ TEST_CASE("different rules: fails unless the expected process is reported") {
   RunHistory history = run();
   check_fails(ExpectMismatch{"agent 1"}, history, 10, "no process is reported");
   history.end.mismatches["agent 2"] = "margin_m is 0.02 instead of 0.01";
-  check_fails(ExpectMismatch{"agent 1"}, history, 10, "only these are reported: agent 2");
+  check_fails(ExpectMismatch{"agent 1"}, history, 10, "only other processes are reported: agent 2");
   check_passes(ExpectMismatch{"agent 2"}, history);
   check_not_judged(ExpectMismatch{"agent 1"}, run_until(5, "interrupted"), "aborted");
 }

@@ -92,7 +92,7 @@ TEST_CASE("a process restarts with another scenario, whose path is relative to t
   CHECK_THROWS_WITH(
       parse_fault_test(other + "faults: [{at_s: 1, restart: agent 9, scenario: ../crossing.yaml}]\n" + expect,
                        file),
-      ContainsSubstring("that scenario has no agent 9"));
+      ContainsSubstring("the other scenario has no agent 9"));
 }
 
 TEST_CASE("a partition separates processes from all other processes or from named processes") {

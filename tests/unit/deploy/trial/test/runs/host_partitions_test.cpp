@@ -52,7 +52,7 @@ TEST_CASE("partitions that do not separate whole namespace hosts are rejected wi
   const FaultTest test = test_with("{at_s: 1, partition: coordinator, seconds: 1}");
   const RunHosts local(local_hosts("127.0.0.1"), test.scenario);
   CHECK_THROWS_WITH(HostPartitions(test, local),
-                    ContainsSubstring("partition coordinator needs namespace hosts, and local is not one"));
+                    ContainsSubstring("partition coordinator needs a namespace host instead of local"));
   const Hosts shared = parse_hosts(
       "launcher: {interface: 10.77.0.254}\nhosts:\n"
       "  - {name: a, transport: {namespace: a}, interface: 10.77.0.1, processes: [coordinator, vision]}\n"

@@ -143,7 +143,7 @@ TEST_CASE("the command runs each file with each seed, writes JUnit XML and retur
   options.files = {stem + "-good.yaml", stem + "-bad.yaml"};
   CHECK(run_tests(options) == 1);
   CHECK_THAT(text_of(options.junit_file),
-             ContainsSubstring("tests=\"4\" failures=\"2\"") && ContainsSubstring("arrived only at "));
+             ContainsSubstring("tests=\"4\" failures=\"2\"") && ContainsSubstring("arrived late, at "));
   options.files = {stem + "-good.yaml", stem + "-invalid.yaml"};
   CHECK_THROWS_AS(run_tests(options), ConfigError);
   for (const char* end : {"-good.yaml", "-bad.yaml", "-invalid.yaml", ".xml"})
