@@ -97,7 +97,7 @@ msg::Reason Coordinator::register_agent(const Registration& registration) {
 // Once a robot obeys a new agent, the only versions of earlier agents that it may still execute are listed in
 // the registration. But the agent may have sent the registration before its robot contradicted the ledger.
 bool Coordinator::ends_quarantine(const Registration& registration, const Record& record) const {
-  return registration.incarnation > record.contradicted_under ||
+  return registration.incarnation > record.contradicted_incarnation ||
          ledger_.lists_reported(registration.robot, registration.versions->versions());
 }
 
@@ -130,8 +130,8 @@ bool Coordinator::on_robot_report(const RobotReport& robot_report, Time now) {
   if (outcome == ReportOutcome::kStale) drops_.count(DropReason::kLateFact, robot_report.robot);
   if (outcome != ReportOutcome::kContradiction) return true;
   drops_.count(DropReason::kContradictoryFact, robot_report.robot);
-  record.contradicted_under =
-      std::max(was_quarantined ? record.contradicted_under : Incarnation{0}, robot_report.obeyed_incarnation);
+  record.contradicted_incarnation = std::max(
+      was_quarantined ? record.contradicted_incarnation : Incarnation{0}, robot_report.obeyed_incarnation);
   return false;
 }
 

@@ -82,8 +82,9 @@ class Coordinator {
     std::optional<Time> heard_at;  // when the last fact arrived
     Duration longest_gap{0};       // longest recent gap between facts
     Incarnation incarnation = 0;
-    Incarnation contradicted_under = 0;  // latest agent that the robot obeyed when it contradicted the ledger
-    VersionNumber newest_number = 0;     // highest version number proposed so far
+    Incarnation contradicted_incarnation =
+        0;                            // latest agent that the robot obeyed when it contradicted the ledger
+    VersionNumber newest_number = 0;  // highest version number proposed so far
     std::array<Verdict, kVerdictHistory> verdicts;
     std::uint64_t verdict_count = 0;  // number of verdicts in this incarnation
   };

@@ -29,7 +29,7 @@ constexpr Duration kRestTime{1'000'000'000};
 constexpr Duration kServiceGap{60'000'000};
 // The robots are also served by another coordinator if they still begin granted versions this long after the
 // last heartbeat. In that case they may pause for up to kMaxPauseOfService.
-constexpr Duration kUnheardService{500'000'000};
+constexpr Duration kServiceAfterHeartbeat{500'000'000};
 constexpr Duration kMaxPauseOfService{1'000'000'000};
 // A superseded coordinator has failed if an agent has asked it for this long; an agent that only measures the
 // clock asks for a shorter time.
@@ -46,7 +46,7 @@ Failover::Failover(const CoordinatorIdentity& self, bool is_standby, Time now, c
     : self_(self),
       roster_(fleet.roster),
       reception_(fleet.report_period),
-      last_deaf_at_(now),
+      last_without_robots_at_(now),
       last_heartbeat_(now),
       last_update_(now),
       is_starting_(is_standby) {
@@ -165,7 +165,7 @@ Duration Failover::takeover_timeout() const {
 void Failover::update(Time now, bool is_granting) {
   const bool was_set_back = now < last_update_;
   if (was_set_back || now - last_update_ > kPauseThreshold) {
-    last_heartbeat_ = last_deaf_at_ = now;
+    last_heartbeat_ = last_without_robots_at_ = now;
     active_since_ = std::min(active_since_, now);
     serving_since_.reset();
     has_heartbeat_ = false;
@@ -173,7 +173,7 @@ void Failover::update(Time now, bool is_granting) {
   }
   if (was_set_back) reception_.clear();
   last_update_ = now;
-  if (!reception_.hears_robots(now)) last_deaf_at_ = now;
+  if (!reception_.hears_robots(now)) last_without_robots_at_ = now;
   if (is_active()) return observe_own_service(now, is_granting);
   if (is_takeover_due(now)) return begin_epoch(now, takeover_cause(now));
   if (const auto robot = unserved_robot(now))
@@ -193,18 +193,18 @@ void Failover::observe_own_service(Time now, bool is_granting) {
 // A coordinator that hears no robots cannot serve them. The stagger keeps several coordinators that hear
 // robots again from taking over simultaneously.
 bool Failover::is_takeover_due(Time now) const {
-  return now - last_heartbeat_ > takeover_timeout() && now - last_deaf_at_ > kTimeoutStagger * self_.number &&
-         !is_served_by_other(now);
+  return now - last_heartbeat_ > takeover_timeout() &&
+         now - last_without_robots_at_ > kTimeoutStagger * self_.number && !is_served_by_other(now);
 }
 
 bool Failover::is_served_by_other(Time now) const {
   const bool has_unheard_coordinator =
-      reception_.served_at() && *reception_.served_at() - last_heartbeat_ >= kUnheardService;
+      reception_.served_at() && *reception_.served_at() - last_heartbeat_ >= kServiceAfterHeartbeat;
   return reception_.is_fleet_served(has_unheard_coordinator ? kMaxPauseOfService : kServiceGap, now);
 }
 
 std::optional<RobotId> Failover::unserved_robot(Time now) const {
-  if (highest_ == 0 || now - last_deaf_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
+  if (highest_ == 0 || now - last_without_robots_at_ <= kTimeoutStagger * self_.number) return std::nullopt;
   for (const RobotId robot : missing_)
     if (is_request_overdue(robot, kRegistrationTime, now)) return robot;
   // Another coordinator may be serving the other agents, so this coordinator must hear all of them.

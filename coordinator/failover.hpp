@@ -104,7 +104,7 @@ class Failover {
   FleetReception reception_;
   std::set<RobotId> missing_;  // robots missing according to the active coordinator's last heartbeat
   Time active_since_{};
-  Time last_deaf_at_;                    // last time at which this coordinator did not hear the robots
+  Time last_without_robots_at_;          // last time at which this coordinator did not hear the robots
   std::optional<Time> serving_since_;    // start of the time in which it grants and serves all agents
   bool has_served_ = false;              // whether serving_since_ was ever set since it became active
   bool has_begun_above_obeyed_ = false;  // whether it has begun an epoch above an obeyed epoch while active

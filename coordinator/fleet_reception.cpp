@@ -58,7 +58,7 @@ void FleetReception::clear() {
   vision_at_.reset();
 }
 
-const FleetReception::Robot* FleetReception::find_asking(RobotId robot, Time now) const {
+const FleetReception::Robot* FleetReception::find_requesting(RobotId robot, Time now) const {
   const auto found = robots_.find(robot);
   const bool asks = found != robots_.end() && found->second.requested_at &&
                     now - *found->second.requested_at <= kMaxRequestGap;
@@ -66,12 +66,12 @@ const FleetReception::Robot* FleetReception::find_asking(RobotId robot, Time now
 }
 
 Duration FleetReception::request_duration(RobotId robot, Time now) const {
-  const Robot* const asking = find_asking(robot, now);
+  const Robot* const asking = find_requesting(robot, now);
   return asking ? *asking->requested_at - *asking->requested_since : Duration{0};
 }
 
 Duration FleetReception::time_since_first_request(RobotId robot, Time now) const {
-  const Robot* const asking = find_asking(robot, now);
+  const Robot* const asking = find_requesting(robot, now);
   return asking ? now - *asking->requested_since : Duration{0};
 }
 

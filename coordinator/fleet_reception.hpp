@@ -59,7 +59,7 @@ class FleetReception {
     VersionNumber executing = 0;
   };
   /// The robot, if its agent is asking for a coordinator; otherwise nullptr.
-  const Robot* find_asking(RobotId robot, Time now) const;
+  const Robot* find_requesting(RobotId robot, Time now) const;
 
   Duration max_silence_;
   std::map<RobotId, Robot> robots_;

@@ -89,7 +89,7 @@ void Ledger::Entry::quarantine(const Version& reported) {
   agreeing = 0;
 }
 
-bool Ledger::Entry::count_agreement() {
+bool Ledger::Entry::record_agreement() {
   if (quarantined.empty()) return true;
   if (++agreeing < kReportsUntilReleased) return false;
   release();
@@ -159,7 +159,7 @@ ReportOutcome Ledger::on_executing(const Version& executing, Time at, bool is_of
     return outcome;
   }
   const bool is_own_stop = !entry.set.find(executing.number);
-  if (!entry.count_agreement()) {
+  if (!entry.record_agreement()) {
     if (is_own_stop) {
       entry.quarantined.back() = executing;
       update_bounds(index_of(executing.robot));

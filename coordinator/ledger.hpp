@@ -114,7 +114,7 @@ class Ledger {
     void quarantine(const Version& reported);
     void release() { quarantined.clear(); }
     /// Counts a fact that agrees with the set. Returns whether the robot is not in quarantine afterwards.
-    bool count_agreement();
+    bool record_agreement();
   };
   std::size_t index_of(RobotId robot) const;
   Entry& entry_of(RobotId robot) { return entries_[index_of(robot)]; }

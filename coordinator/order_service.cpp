@@ -44,7 +44,7 @@ void OrderService::on_order(const msg::Order& message) {
   const bool is_to_remember = result == msg::OrderResult::RESULT_REMEMBERED && orders_.book().stands(*order);
   if (!is_to_remember) return answer(message.header().sender(), message.terms().order_number(), result);
   confirmations_.add(*order);
-  if (!is_announced) unheard_.merge(*orders_.book().occupant_of(*order));
+  if (!is_announced) to_announce_again_.merge(*orders_.book().occupant_of(*order));
 }
 
 void OrderService::on_page(const OrderPage& page) {
@@ -114,7 +114,7 @@ void OrderService::update() {
 void OrderService::begin_epoch() {
   has_history_ = false;
   confirmations_.clear();
-  unheard_ = {};
+  to_announce_again_ = {};
 }
 
 void OrderService::announce_all() { announce(orders_.book().all(), false); }
@@ -170,9 +170,9 @@ void OrderService::announce(std::span<const RememberedOrder> orders, bool have_c
 }
 
 void OrderService::announce_again() {
-  if (unheard_.empty()) return;
-  announce(unheard_.all(), true);
-  unheard_ = {};
+  if (to_announce_again_.empty()) return;
+  announce(to_announce_again_.all(), true);
+  to_announce_again_ = {};
 }
 
 void OrderService::announce_to_registering_agents() {

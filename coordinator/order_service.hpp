@@ -62,7 +62,8 @@ class OrderService {
   /// announced any.
   bool apply();
   void announce(std::span<const RememberedOrder> orders, bool have_changed);
-  /// Announces again the orders in unheard_, which clients have repeated but no process has confirmed.
+  /// Announces again the orders in to_announce_again_, which clients have repeated but no process has
+  /// confirmed.
   void announce_again();
   /// Announces the orders repeatedly while agents have yet to register, because each registers only once it
   /// has received all orders that it remembers.
@@ -75,7 +76,7 @@ class OrderService {
   std::function<void()> changed_;
   OrderKeeper orders_;
   OrderConfirmations confirmations_;
-  OrderBook unheard_;                 // orders to be announced again
+  OrderBook to_announce_again_;       // orders to be announced again
   bool has_history_ = false;          // a robot registered in this epoch may have received orders before
   std::optional<Time> announced_at_;  // when all orders were last announced
   bool has_learned_ = false;          // has learned an order from another process since announced_at_

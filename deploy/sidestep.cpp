@@ -80,5 +80,5 @@ int main(int argc, char** argv) {
   add_pattern_command(app, action);
   app.add_footer("Also `sidestep study` and `sidestep bench`, after `deploy/build --development`.");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_guarded("sidestep", action);
+  return run_and_report_errors("sidestep", action);
 }

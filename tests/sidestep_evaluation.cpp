@@ -15,5 +15,5 @@ int main(int argc, char** argv) {
   add_bench_command(app, action);
   add_study_command(app, action);
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_guarded("sidestep", action);
+  return run_and_report_errors("sidestep", action);
 }

@@ -56,7 +56,7 @@ EstimatorSettings estimator_settings(const DriveSettings& settings) {
 }
 
 /// Maximum error of an odometry timestamp: at the speed limit it displaces the estimate by the drift bound.
-Duration max_date_error(const DriveSettings& settings) {
+Duration max_timestamp_error(const DriveSettings& settings) {
   return from_seconds(drift_bound_m(settings.tracking_bound_m) / settings.limits.speed_mps);
 }
 
@@ -91,7 +91,7 @@ DrivenRobot::DrivenRobot(RobotId robot, const DriveSettings& settings, const rob
       settings_(settings),
       side_(side_settings(settings), remembered),
       commands_(settings.latency),
-      odometry_dates_(max_date_error(settings)),
+      timestamp_check_(max_timestamp_error(settings)),
       estimator_({0, 0}, 0, now, estimator_settings(settings)),
       moved_at_(now + kStoppingTime) {}
 
@@ -113,7 +113,7 @@ void DrivenRobot::use_fix(const PoseFix& fix) {
 }
 
 void DrivenRobot::on_odometry(const OdometryReport& report, Time now) {
-  if (odometry_dates_.admit(report.measured_at, now))
+  if (timestamp_check_.admit(report.measured_at, now))
     measured_.add(report);
   else
     ++misdated_;

@@ -89,7 +89,7 @@ class DrivenRobot {
   robot::RobotSide<float> side_;
   CommandedMotion commands_;
   MeasuredMotion measured_;
-  OdometryTimestampCheck odometry_dates_;
+  OdometryTimestampCheck timestamp_check_;
   std::uint64_t misdated_ = 0;
   PoseEstimator estimator_;
   /// Oldest fix that is waiting for the odometry of its capture time, which arrives later.

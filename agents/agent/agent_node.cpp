@@ -111,7 +111,8 @@ void AgentNode::on_world_state(const msg::WorldState& message) {
   // If the robot's clock is beyond the bound, the robot would treat this position as its position at a wrong
   // time.
   if (clocks_.is_beyond_bound(bus_.now())) world.self.reset();
-  agent_.on_world_state(world, bus_.now() + clocks_.max_robot_offset(bus_.now()), clocks_.knows_robot());
+  agent_.on_world_state(world, bus_.now() + clocks_.max_robot_offset(bus_.now()),
+                        clocks_.has_measured_robot());
 }
 
 void AgentNode::on_obstacles(const msg::ObstacleList& message) {

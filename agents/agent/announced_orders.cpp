@@ -29,13 +29,14 @@ bool AnnouncedOrders::is_on_roster(const Order& order) const {
 
 void AnnouncedOrders::add_changes(std::shared_ptr<const OrderPage> page, const OrderBook& own) {
   if (page->orders.empty()) return;
-  std::erase_if(told_by_, [&](const auto& coordinator) { return coordinator.first != page->process; });
+  std::erase_if(fully_announced_by_,
+                [&](const auto& coordinator) { return coordinator.first != page->process; });
   changes_.push_back(std::move(page));
   if (changes_.size() <= kMaxPages) return;
   OrderPage together;
   together.orders = with(own).all();
   changes_.assign(1, std::make_shared<const OrderPage>(std::move(together)));
-  told_.clear();
+  latest_memory_.clear();
 }
 
 void AnnouncedOrders::add(std::shared_ptr<const OrderPage> page, const OrderBook& own) {
@@ -52,11 +53,12 @@ void AnnouncedOrders::add(std::shared_ptr<const OrderPage> page, const OrderBook
 
 void AnnouncedOrders::compare(const Round& round, const OrderBook& own) {
   const OrderPage& last = *round.back();
-  const bool is_same =
-      changes_.empty() && !has_progressed_ &&
-      std::ranges::equal(round, told_, [](const auto& a, const auto& b) { return have_same_orders(*a, *b); });
+  const bool is_same = changes_.empty() && !has_progressed_ &&
+                       std::ranges::equal(round, latest_memory_, [](const auto& a, const auto& b) {
+                         return have_same_orders(*a, *b);
+                       });
   if (is_same) {
-    told_by_[last.process] = last.incarnation;
+    fully_announced_by_[last.process] = last.incarnation;
     missing_.clear();
     return;
   }
@@ -72,13 +74,13 @@ void AnnouncedOrders::compare(const Round& round, const OrderBook& own) {
   }
   missing_ = both.missing_in(told);
   const auto lacks = [&](const RememberedOrder& order) { return !told.knows(order.order); };
-  if (is_new) told_by_.clear();
+  if (is_new) fully_announced_by_.clear();
   if (std::ranges::any_of(missing_, lacks))
-    told_by_.erase(last.process);
+    fully_announced_by_.erase(last.process);
   else
-    told_by_[last.process] = last.incarnation;
+    fully_announced_by_[last.process] = last.incarnation;
   // Orders that this coordinator lacks are kept.
-  told_ = round;
+  latest_memory_ = round;
   changes_.clear();
   has_progressed_ = false;
   if (missing_.empty()) return;
@@ -88,13 +90,13 @@ void AnnouncedOrders::compare(const Round& round, const OrderBook& own) {
 }
 
 bool AnnouncedOrders::has_announced_all_orders(std::uint32_t coordinator, Incarnation incarnation) const {
-  const auto found = told_by_.find(coordinator);
-  return found != told_by_.end() && found->second == incarnation;
+  const auto found = fully_announced_by_.find(coordinator);
+  return found != fully_announced_by_.end() && found->second == incarnation;
 }
 
 template <typename Use>
 void AnnouncedOrders::for_each(Use use) const {
-  for (const auto& pages : {std::cref(told_), std::cref(changes_)}) {
+  for (const auto& pages : {std::cref(latest_memory_), std::cref(changes_)}) {
     for (const auto& page : pages.get()) {
       for (const RememberedOrder& order : page->orders) use(order);
     }

@@ -28,7 +28,7 @@ class AnnouncedOrders {
 
   /// Whether a coordinator that remembers all orders has been heard.
   bool is_known() const { return is_known_; }
-  bool is_empty() const { return told_.empty() && changes_.empty(); }
+  bool is_empty() const { return latest_memory_.empty() && changes_.empty(); }
   /// All orders, including `own`.
   OrderBook with(const OrderBook& own) const;
   /// The announced orders to one robot, including orders to all robots.
@@ -53,11 +53,11 @@ class AnnouncedOrders {
 
   std::vector<RobotId> roster_;  // robot numbers, ascending
   bool is_known_ = false;
-  Round told_;                                    // the latest complete memory of a coordinator
-  Round changes_;                                 // orders that told_ lacks, and later changes
-  bool has_progressed_ = false;                   // whether the robot has progressed since told_ arrived
-  std::map<std::uint32_t, Round> rounds_;         // by coordinator: memories whose pages are still arriving
-  std::map<std::uint32_t, Incarnation> told_by_;  // see has_announced_all_orders()
+  Round latest_memory_;                    // the latest complete memory of a coordinator
+  Round changes_;                          // orders that latest_memory_ lacks, and later changes
+  bool has_progressed_ = false;            // whether the robot has progressed since latest_memory_ arrived
+  std::map<std::uint32_t, Round> rounds_;  // by coordinator: memories whose pages are still arriving
+  std::map<std::uint32_t, Incarnation> fully_announced_by_;  // see has_announced_all_orders()
   std::vector<RememberedOrder> missing_;
 };
 

@@ -11,10 +11,10 @@ constexpr Duration kMinSetback{10'000'000};
 
 }  // namespace
 
-bool ClockMonitor::is_before_arrivals(Time now) const { return now < latest_ - kMinSetback; }
+bool ClockMonitor::was_clock_set_back(Time now) const { return now < latest_ - kMinSetback; }
 
 void ClockMonitor::arrived(Time received) {
-  if (is_before_arrivals(received)) {
+  if (was_clock_set_back(received)) {
     robot_.reset();
     for (CoordinatorClock& coordinator : coordinators_) coordinator.offset.reset();
     requests_ = {};
@@ -32,7 +32,7 @@ void ClockMonitor::on_robot_report(const RobotReport& robot_report, Incarnation 
   }
   invalid_ += !robot_.add({command->sent_at, command->received_at, robot_report.valid_at, received});
   const auto known = robot_.at(received);
-  knows_robot_ |= known.has_value();
+  has_measured_robot_ |= known.has_value();
   if (known) robot_offset_ = known->nearest_to_zero();
 }
 
@@ -62,7 +62,7 @@ std::optional<OffsetInterval> ClockMonitor::coordinator_offset(Time now, Duratio
 }
 
 std::optional<OffsetInterval> ClockMonitor::robot_coordinator_offset(Time now) const {
-  if (is_before_arrivals(now)) return std::nullopt;
+  if (was_clock_set_back(now)) return std::nullopt;
   const auto robot = robot_.at(now, kMaxMeasurementAge),
              coordinator = coordinator_offset(now, kMaxMeasurementAge);
   if (!robot || !coordinator) return std::nullopt;
@@ -92,7 +92,7 @@ bool ClockMonitor::is_beyond_bound(Time now) const {
 }
 
 bool ClockMonitor::is_measurement_due(Time now) const {
-  return is_before_arrivals(now) || !coordinator_offset(now, kMaxMeasurementAge / 2);
+  return was_clock_set_back(now) || !coordinator_offset(now, kMaxMeasurementAge / 2);
 }
 
 Duration ClockMonitor::max_robot_offset(Time now) const {

@@ -54,7 +54,7 @@ class ClockMonitor {
   /// offset closest to zero that is consistent with the measurements. It is zero for clocks that agree.
   Duration robot_offset() const { return robot_offset_; }
   /// Whether the robot's clock has ever been measured.
-  bool knows_robot() const { return knows_robot_; }
+  bool has_measured_robot() const { return has_measured_robot_; }
   /// Upper bound of the offset between the robot's clock and the agent's; robot_offset() if there is no
   /// recent measurement.
   Duration max_robot_offset(Time now) const;
@@ -76,7 +76,7 @@ class ClockMonitor {
   /// Records when a message arrived. If this process's clock was set back, discards earlier exchanges.
   void arrived(Time received);
   /// Whether this process's clock has been set back since the last arrival.
-  bool is_before_arrivals(Time now) const;
+  bool was_clock_set_back(Time now) const;
   /// The offset of the current epoch's coordinator; nullopt without a recent measurement.
   std::optional<OffsetInterval> coordinator_offset(Time now, Duration freshness) const;
 
@@ -87,7 +87,7 @@ class ClockMonitor {
   std::array<CoordinatorClock, kMaxCoordinators> coordinators_;
   std::optional<std::size_t> coordinator_;  // the coordinator of epoch_; nullopt: it has not answered yet
   Epoch epoch_ = 0;
-  bool knows_robot_ = false;
+  bool has_measured_robot_ = false;
   Duration robot_offset_{0};
   // Send times of the latest requests; echoes of other time stamps are ignored.
   std::array<Time, 64> requests_{};

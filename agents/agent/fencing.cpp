@@ -6,11 +6,11 @@ namespace {
 
 // After this many consecutive reports of the robot's earlier incarnation, the report of a later incarnation
 // must have been false: delayed reports are never this many.
-constexpr int kReportsOfOneIncarnation = 60;
+constexpr int kMaxDelayedReports = 60;
 // If two agents choose new incarnations above the same incarnation, they add different increments below this
 // bound.
 constexpr Incarnation kIncarnationSpread = 1'000'003;
-constexpr Duration kMaxUnheard{500'000'000};
+constexpr Duration kQueryAfterSilence{500'000'000};
 
 }  // namespace
 
@@ -18,7 +18,7 @@ constexpr Duration kMaxUnheard{500'000'000};
 // permanently.
 void Fencing::update_incarnation(const RobotReport& robot_report, ReportUse& use) {
   const bool is_earlier = robot_report.robot_incarnation < robot_incarnation_;
-  if (is_earlier && ++reports_of_earlier_incarnation_ < kReportsOfOneIncarnation) return;
+  if (is_earlier && ++reports_of_earlier_incarnation_ < kMaxDelayedReports) return;
   reports_of_earlier_incarnation_ = 0;
   use.is_current = true;
   if (robot_report.robot_incarnation == robot_incarnation_) return;
@@ -61,7 +61,7 @@ Fencing::ReportUse Fencing::on_robot_report(const RobotReport& robot_report) {
 }
 
 bool Fencing::must_query_robot(Duration cycle) const {
-  return is_superseded() && cycles_since_report_ * cycle > kMaxUnheard;
+  return is_superseded() && cycles_since_report_ * cycle > kQueryAfterSilence;
 }
 
 void Fencing::close_cycle() {

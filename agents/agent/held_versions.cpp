@@ -11,12 +11,12 @@ void HeldVersions::begin(const RobotReport& robot_report) {
   executing_ = robot_report.executing.number;
   latest_report_ = robot_report.valid_at;
   next_number_ = std::max(next_number_, robot_report.obeyed_incarnation);
-  number_above(robot_report.executing);
+  continue_numbers_after(robot_report.executing);
 }
 
 // A robot off the floor reports its last version as the base, because the stop that it made before it was
 // lifted may never have been reported.
-void HeldVersions::number_above(const Version& executing) {
+void HeldVersions::continue_numbers_after(const Version& executing) {
   next_number_ = std::max({next_number_, executing.number + 1, executing.base + 1});
 }
 
@@ -31,7 +31,7 @@ HeldVersions::ReportEffect HeldVersions::apply(const RobotReport& robot_report, 
     if (effect.is_late) return effect;
     versions_.forget_started(at);
     executing_ = 0;
-    number_above(executing);
+    continue_numbers_after(executing);
   } else if (versions_.forget(executing.number, at)) {
     executing_ = executing.number;
     effect.has_switched = has_advanced;
@@ -46,7 +46,7 @@ HeldVersions::ReportEffect HeldVersions::apply(const RobotReport& robot_report, 
     versions_.clear();
     versions_.add(executing);
     executing_ = executing.number;
-    number_above(executing);
+    continue_numbers_after(executing);
   }
   if (is_current) latest_report_ = std::max(latest_report_, at);
   // If the robot has advanced, one removed version is the one that it executed before. All other removed

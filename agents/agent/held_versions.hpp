@@ -52,7 +52,7 @@ class HeldVersions {
   VersionNumber next_number() const { return next_number_; }
 
  private:
-  void number_above(const Version& executing);
+  void continue_numbers_after(const Version& executing);
 
   VersionSet versions_;
   VersionNumber executing_ = 0;

@@ -27,7 +27,7 @@ NamedPlanner planner_of(const FloorSpec& floor, const RobotSpec& robot) {
 }
 
 /// Whether a robot that executes the version stays at the place.
-bool ends_at(const Version& base, const Vec2& place_m) {
+bool will_rest_at(const Version& base, const Vec2& place_m) {
   return (base.trajectory.rest_position_m() - place_m).norm() < kAtGoal_m && base.inflation_m == 0;
 }
 
@@ -77,7 +77,7 @@ Vec2 MotionPlanner::target_m(const Query& query) const {
 
 std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& target) {
   const bool gives_way = passage_.place_m().has_value();
-  if (ends_at(query.base, target) && !is_kept_out(target)) {
+  if (will_rest_at(query.base, target) && !is_kept_out(target)) {
     if (!gives_way) blockage_.clear();
     route_.on_arrival();
     return std::nullopt;
@@ -91,7 +91,7 @@ std::optional<Route> MotionPlanner::find_route(const Query& query, const Vec2& t
   if (!route) return std::nullopt;
   if (!gives_way) update_blockage(*route, query.now);
   passage_.on_route(*route);
-  const bool is_as_near_as_possible = !route->reaches_goal && ends_at(query.base, route->end_m);
+  const bool is_as_near_as_possible = !route->reaches_goal && will_rest_at(query.base, route->end_m);
   return is_as_near_as_possible ? std::nullopt : route;
 }
 

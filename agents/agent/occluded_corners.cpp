@@ -56,10 +56,10 @@ bool OccludedCorners::is_body(const Vec2& corner, const RobotLaser& laser) const
   const auto is_of = [&](const Circle& disc) {
     return (disc.centre_m - corner).norm() < disc.radius_m + kCornerSlack_m;
   };
-  const auto is_of_person = [&](const LaserTrack& track) {
+  const auto is_at_person = [&](const LaserTrack& track) {
     return is_of({track.position_m, track.radius_m});
   };
-  return std::ranges::any_of(laser.sight().tracks(), is_of_person) ||
+  return std::ranges::any_of(laser.sight().tracks(), is_at_person) ||
          std::ranges::any_of(laser.robots(), is_of);
 }
 

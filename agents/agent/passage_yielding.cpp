@@ -11,7 +11,7 @@ namespace {
 
 // Where robots cannot pass each other, a robot has the right of way for the time that it needs to drive this
 // far, plus a fixed time.
-constexpr double kPassage_m = 40, kPassage_s = 10;
+constexpr double kPassageDistance_m = 40, kPassageExtra_s = 10;
 /// Longer trips of other robots are considered only up to the next waypoint.
 constexpr double kLongestTrip_m = 20;
 
@@ -19,7 +19,7 @@ constexpr double kLongestTrip_m = 20;
 
 PassageYielding::PassageYielding(const FloorRules& rules)
     : rules_(rules),
-      passage_period_(from_seconds(kPassage_s + kPassage_m / rules.limits.speed_mps)),
+      passage_period_(from_seconds(kPassageExtra_s + kPassageDistance_m / rules.limits.speed_mps)),
       give_way_({rules.field, rules.radius_m, required_separation_m(rules), rules.min_separation_m()},
                 {.give_up_after = passage_period_ * 2 / 3}) {}
 

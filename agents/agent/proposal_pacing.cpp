@@ -11,7 +11,7 @@ constexpr int kMaxLead = 30;
 constexpr int kMaxSpare = 6;
 // A spare cycle is added only after this many late versions in a row.
 constexpr int kLateBeforeSpare = 2;
-constexpr int kTakenBeforeRelease = 10;
+constexpr int kInTimeBeforeRelease = 10;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void ProposalPacing::on_round_trip(Duration duration) {
 
 void ProposalPacing::on_version_taken() {
   late_in_a_row_ = 0;
-  if (++taken_in_a_row_ < kTakenBeforeRelease) return;
+  if (++taken_in_a_row_ < kInTimeBeforeRelease) return;
   taken_in_a_row_ = 0;
   spare_cycles_ = std::max(0, spare_cycles_ - 1);
   update();

@@ -56,13 +56,13 @@ void SentProposals::close() {
 }
 
 bool SentProposals::close_unreachable(const HeldVersions& held) {
-  bool were_any = false;
+  bool has_closed_any = false;
   for (SentProposal& sent : proposals_) {
     if (!sent.is_open || held.has_base(sent.candidates.front().base)) continue;
     sent.is_open = false;
-    were_any = true;
+    has_closed_any = true;
   }
-  return were_any;
+  return has_closed_any;
 }
 
 int SentProposals::close_started(Time now) {

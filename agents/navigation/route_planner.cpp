@@ -14,7 +14,7 @@ constexpr double kReplanIncrease_m = 0.05;
 // A waypoint that the robot must pass is reached at this distance.
 constexpr double kReached_m = 0.1;
 // Maximum deviation when a path that keeps clear of obstacles is straightened.
-constexpr double kAside_m = 0.02;
+constexpr double kMaxStraightening_m = 0.02;
 // Random samples cost more than expanded states, and a planner uses all its samples if there is no path.
 constexpr std::size_t kMaxRandomSamples = 1500;
 // Maximum number of nodes of roadmaps, which would otherwise grow with each query that they do not solve.
@@ -125,7 +125,9 @@ void RoutePlanner::store_straightened(std::span<const Vec2> path) {
     std::size_t to = from + 1;
     const auto is_straight = [&](std::size_t end) {
       const Segment line{path[from], path[end]};
-      const auto is_near = [&](const Vec2& p) { return squared_distance(p, line) < kAside_m * kAside_m; };
+      const auto is_near = [&](const Vec2& p) {
+        return squared_distance(p, line) < kMaxStraightening_m * kMaxStraightening_m;
+      };
       return std::ranges::all_of(path.subspan(from + 1, end - from - 1), is_near) &&
              is_line_free(path[from], path[end]);
     };
@@ -221,12 +223,12 @@ bool RoutePlanner::replan_until(const NamedPlanner& planner, const Vec2& start, 
 }
 
 bool RoutePlanner::find_route(const NamedPlanner& planner, const Vec2& start, Rng& rng) {
-  const double goal_room_m =
+  const double goal_clearance_m =
       obstacle_on_goal() ? std::numeric_limits<double>::infinity() : world_->nearest(goal_m_).distance_m;
   for (const double clearance : preferred_m_) {
     const bool is_last = clearance == preferred_m_.back();
     if (is_cut_short_) return false;
-    if (goal_room_m > clearance) {
+    if (goal_clearance_m > clearance) {
       if (replan(planner, start, clearance, rng)) return true;
     } else if (!is_last && replan_to_tight_goal(planner, start, clearance, rng)) {
       return true;

@@ -46,7 +46,7 @@ bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const P
   now_ = beams.captured_at();
   std::erase_if(entries_, [&](const Entry& entry) { return now_ - entry.seen_at > kDropAfter; });
   classify(beams, grid, floor);
-  clusters_.find(beams, is_loose_);
+  clusters_.find(beams, is_unexplained_);
   associate(grid);
   for (std::size_t i = 0; i < clusters_.all().size(); ++i)
     if (is_used_[i] == 0 && is_trackable(clusters_.all()[i])) start(clusters_.all()[i]);
@@ -56,13 +56,13 @@ bool LaserTracks::update(const LaserBeams& beams, const LocalGrid& grid, const P
 
 void LaserTracks::classify(const LaserBeams& beams, const LocalGrid& grid, const PriorMap& floor) {
   kinds_.assign(beams.all().size(), kOther);
-  is_loose_.assign(beams.all().size(), 0);
+  is_unexplained_.assign(beams.all().size(), 0);
   for (std::size_t i = 0; i < kinds_.size(); ++i) {
     const Beam& beam = beams.all()[i];
     if (beam.end != BeamEnd::kHit) continue;
     const Vec2 hit = beams.end_m(beam);
-    kinds_[i] = floor.is_near(hit, kExplainedWithin_m) || is_explained(hit, grid) ? kStanding : kLoose;
-    is_loose_[i] = kinds_[i] == kLoose;
+    kinds_[i] = floor.is_near(hit, kExplainedWithin_m) || is_explained(hit, grid) ? kStanding : kUnexplained;
+    is_unexplained_[i] = kinds_[i] == kUnexplained;
   }
 }
 

@@ -45,7 +45,7 @@ class LaserTracks {
   bool is_standing(int beam) const { return kinds_[static_cast<std::size_t>(beam)] == kStanding; }
 
  private:
-  static constexpr std::uint8_t kOther = 0, kStanding = 1, kLoose = 2;
+  static constexpr std::uint8_t kOther = 0, kStanding = 1, kUnexplained = 2;
 
   struct Entry {
     std::uint32_t number = 0;
@@ -83,8 +83,8 @@ class LaserTracks {
   std::vector<Entry> entries_;
   std::vector<LaserTrack> listed_;
   // Working memory.
-  std::vector<std::uint8_t> kinds_, is_loose_;      // indexed by beam
-  std::vector<std::uint8_t> is_used_, is_updated_;  // indexed by cluster, indexed by entry
+  std::vector<std::uint8_t> kinds_, is_unexplained_;  // indexed by beam
+  std::vector<std::uint8_t> is_used_, is_updated_;    // indexed by cluster, indexed by entry
   std::vector<Pair> pairs_;
 };
 

@@ -80,7 +80,7 @@ PlanDrawing drawing_of(QuadTree& planner) { return {{}, {}, planner.cells().cell
 PlanDrawing drawing_of(TrapezoidalDecomposition& planner) { return {{}, {}, planner.cells().cells, {}}; }
 
 /// The settings used by the agents.
-DiscDomainSettings shipped_domain(const Field&, double) { return {}; }
+DiscDomainSettings agent_domain(const Field&, double) { return {}; }
 /// Settings that match OMPL: its range, and uniform samples only.
 DiscDomainSettings ompl_domain(const Field& field, double radius) {
   return {.step_m = ompl_range_m(field, radius), .contact_probability = 0};
@@ -115,7 +115,7 @@ Factory factory(DomainSettings domain_settings, Arguments... arguments) {
 
 template <typename Planner, typename... Arguments>
 Factory shipped(Arguments... arguments) {
-  return factory<Planner>(shipped_domain, arguments...);
+  return factory<Planner>(agent_domain, arguments...);
 }
 
 /// RRT as in OMPL.

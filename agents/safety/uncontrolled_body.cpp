@@ -12,7 +12,7 @@ constexpr double kSpread = 0.1;
 // Covers errors of the expected motion.
 constexpr double kAllowance_m = 0.03;
 // A robot that cannot avoid the body completely deviates from its stop only if it gains this much distance.
-constexpr double kGain_m = 0.01;
+constexpr double kMinGain_m = 0.01;
 // Required distance from a body whose direction of motion is unknown.
 constexpr double kUnknownDirection_m = 0.4;
 // Two bodies with a relative speed of 4 m/s approach by 2 cm in this time.
@@ -82,7 +82,7 @@ UncontrolledBodies::UncontrolledBodies(std::span<const UncontrolledBody> bodies,
                                        Time start)
     : bodies_(bodies), stop_(stop) {
   for (std::size_t i = 0; i < bodies_.size(); ++i)
-    stop_spare_m_[i] = excess_distance_m(*stop_, start, bodies_[i]);
+    stop_excess_m_[i] = excess_distance_m(*stop_, start, bodies_[i]);
 }
 
 bool UncontrolledBodies::allow(const Trajectory& candidate, double min_separation_m,
@@ -91,8 +91,8 @@ bool UncontrolledBodies::allow(const Trajectory& candidate, double min_separatio
     const UncontrolledBody& body = bodies_[i];
     if (!rests_safely(candidate.rest_position_m(), stop_->rest_position_m(), body)) return false;
     if (is_passively_safe(candidate, body.reach, min_separation_m)) continue;
-    if (stop_spare_m_[i] >= 0) return false;
-    const double min_spare_m = std::min(stop_spare_m_[i] + kGain_m, 0.0);
+    if (stop_excess_m_[i] >= 0) return false;
+    const double min_spare_m = std::min(stop_excess_m_[i] + kMinGain_m, 0.0);
     if (!avoids_by_driving_on(candidate, body, min_spare_m, deceleration_mps2)) return false;
   }
   return true;

@@ -48,7 +48,7 @@ class UncontrolledBodies {
  private:
   std::span<const UncontrolledBody> bodies_;
   const Trajectory* stop_;
-  std::array<double, kMaxRobots> stop_spare_m_;  ///< indexed by body: spare distance of the stop
+  std::array<double, kMaxRobots> stop_excess_m_;  ///< indexed by body: spare distance of the stop
 };
 
 }  // namespace sidestep

@@ -83,7 +83,7 @@ struct OrderState {
 };
 
 /// A robot's progress with its current order.
-enum class Task {
+enum class TaskState {
   kNone,     ///< no order
   kWaiting,  ///< the robot has not started yet
   kDriving,
@@ -100,14 +100,14 @@ struct Robot {
   bool is_heard = false;                ///< the robot's agent has reported within the last three seconds
   bool is_held = false;                 ///< held by any client
   bool has_own_order = false;           ///< the robot's order comes from this client
-  Task task = Task::kNone;              ///< as last reported by the robot's agent
+  TaskState task = TaskState::kNone;    ///< as last reported by the robot's agent
   std::size_t goal_index = 0;           ///< index of the goal that the robot is driving to
   std::optional<double> remaining_s{};  ///< estimated time to the last goal; nullopt: unknown
   std::optional<Pose> pose{};           ///< pose last seen by vision; nullopt: not within the last second
 
   /// Whether the robot can start an order immediately.
   bool is_free() const {
-    return is_heard && !is_held && pose && (task == Task::kNone || task == Task::kArrived);
+    return is_heard && !is_held && pose && (task == TaskState::kNone || task == TaskState::kArrived);
   }
 };
 

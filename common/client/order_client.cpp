@@ -224,7 +224,7 @@ void OrderClient::on_memory(const msg::OrderMemory& memory) {
   if (++round.next_page == page->count) compare(page->process, round.book);
 }
 
-bool OrderClient::count_missing(const SentOrder& sent, std::uint32_t coordinator) {
+bool OrderClient::count_lacking_memory(const SentOrder& sent, std::uint32_t coordinator) {
   return ++missing_[sent.handle][coordinator] % kRoundsUntilForgotten == 0;
 }
 
@@ -240,7 +240,7 @@ void OrderClient::compare(std::uint32_t coordinator, const OrderBook& remembered
     if (!is_closed(sent) || !has_ended_others) continue;
     if (!remembered.contradicts(sent.order))
       missing_[handle][coordinator] = 0;
-    else if (count_missing(sent, coordinator))
+    else if (count_lacking_memory(sent, coordinator))
       publish(sent.order);
   }
   std::vector<OrderHandle> open;
@@ -268,7 +268,7 @@ void OrderClient::compare(SentOrder& sent, std::uint32_t coordinator, const Orde
     update(sent, OrderPhase::kReplaced, sent.goal_index);
   } else if (stops(sent.order) && remembered.is_lifted(sent.order)) {
     update(sent, OrderPhase::kReplaced, sent.goal_index);
-  } else if (sent.phase != OrderPhase::kSent && count_missing(sent, coordinator)) {
+  } else if (sent.phase != OrderPhase::kSent && count_lacking_memory(sent, coordinator)) {
     if (is_listed(sent))
       publish(sent.order);
     else

@@ -99,7 +99,7 @@ class OrderClient {
   void on_memory(const msg::OrderMemory& memory);
   /// Counts another consecutive complete order memory of this coordinator that lacks the order. Returns true
   /// at every kRoundsUntilForgotten-th one.
-  bool count_missing(const SentOrder& sent, std::uint32_t coordinator);
+  bool count_lacking_memory(const SentOrder& sent, std::uint32_t coordinator);
   /// Whether the latest complete order memory of any coordinator lists the order.
   bool is_listed(const SentOrder& sent) const;
   void compare(std::uint32_t coordinator, const OrderBook& remembered);

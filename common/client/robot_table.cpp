@@ -10,20 +10,20 @@
 namespace sidestep::client {
 namespace {
 
-Task task_of(const OrderReport& report) {
-  if (report.number == 0) return Task::kNone;
-  if (report.blockage && !report.progress.is_finished()) return Task::kBlocked;
+TaskState task_of(const OrderReport& report) {
+  if (report.number == 0) return TaskState::kNone;
+  if (report.blockage && !report.progress.is_finished()) return TaskState::kBlocked;
   switch (report.progress.state) {
     case msg::OrderState::ORDER_ACCEPTED:
-      return Task::kWaiting;
+      return TaskState::kWaiting;
     case msg::OrderState::ORDER_DRIVING:
     case msg::OrderState::ORDER_BLOCKED:
-      return Task::kDriving;
+      return TaskState::kDriving;
     case msg::OrderState::ORDER_ARRIVED:
     case msg::OrderState::ORDER_LEFT:
       break;
   }
-  return Task::kArrived;
+  return TaskState::kArrived;
 }
 
 bool is_recent(const std::optional<Time>& at, Time now, Duration timeout) {

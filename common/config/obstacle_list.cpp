@@ -115,7 +115,7 @@ std::string text_of(const ConvexPolygon& polygon) {
 }
 
 /// A notice for the user about unknown cells and a rotation of the map; empty if there are none.
-std::string notice_of(const LoadedMap& map, const std::string& name, const std::string& unknown) {
+std::string map_notice(const LoadedMap& map, const std::string& name, const std::string& unknown) {
   std::string text;
   if (map.unknown > 0)
     text = fmt::format("map {}: {} of {} cells are unknown; they count as {}{}", name, map.unknown,
@@ -165,7 +165,7 @@ std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map, const OccupancyMap*
   try {
     if (cells != nullptr) return std::make_shared<const FloorMap>(*cells, name);
     LoadedMap loaded = load_map(path, unknown == kUnknown[1] ? UnknownCells::kFree : UnknownCells::kBlocked);
-    const std::string notice = notice_of(loaded, name, unknown);
+    const std::string notice = map_notice(loaded, name, unknown);
     return std::make_shared<const FloorMap>(std::move(loaded.cells), name, notice);
   } catch (const std::exception& error) {
     location.fail(error.what());

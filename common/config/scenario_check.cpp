@@ -75,7 +75,7 @@ struct PlacementCheck {
 };
 
 /// The robot's last goal or, without goals, its start. nullopt for an absent robot without goals.
-std::optional<Vec2> last_place_m(const RobotSpec& robot) {
+std::optional<Vec2> final_position_m(const RobotSpec& robot) {
   if (!robot.goals.empty()) return robot.goals.back().position_m;
   return robot.is_absent ? std::nullopt : std::optional(robot.start_m);
 }
@@ -108,7 +108,7 @@ void check_placement(const Scenario& scenario, const std::vector<RobotLines>& li
           return fmt::format("starts of robots {} and {} overlap", robots[j].id, robots[i].id);
         });
       }
-      const auto last_i = last_place_m(robots[i]), last_j = last_place_m(robots[j]);
+      const auto last_i = final_position_m(robots[i]), last_j = final_position_m(robots[j]);
       if (!last_i || !last_j) continue;
       const int line = robots[i].goals.empty() ? lines[i].start : lines[i].goals.back();
       check.check_distance(*last_i, *last_j, line, [&] {

@@ -39,7 +39,7 @@ int BitGrid::find(int begin, int end, int row, std::uint64_t flip) const {
   return std::min(end, 64 * at + std::countr_zero(bits));
 }
 
-int BitGrid::find_set_down(int begin, int last, int row) const {
+int BitGrid::find_last_set(int begin, int last, int row) const {
   if (begin < last) return last - 1;
   int at = begin >> 6;
   std::uint64_t bits = word(at, row) & (kAllBits >> (63 - (begin & 63)));

@@ -26,7 +26,7 @@ class BitGrid {
   /// The first column in [begin, end) whose bit is 0; `end` if there is none. `begin` may equal `end`.
   int find_clear(int begin, int end, int row) const { return find(begin, end, row, ~std::uint64_t{0}); }
   /// The last column in [last, begin] whose bit is 1; `last` - 1 if there is none.
-  int find_set_down(int begin, int last, int row) const;
+  int find_last_set(int begin, int last, int row) const;
 
   /// The bits of the columns 64 * index, …, 64 * index + 63. Those beyond the last column are 0.
   std::uint64_t word(int index, int row) const { return words_[this->index(index, row)]; }

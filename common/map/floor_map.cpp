@@ -42,8 +42,8 @@ FloorMap::FloorMap(OccupancyMap map, std::string name, std::string notice)
 
 std::vector<Box> FloorMap::boxes_on(const Field& field) const {
   std::vector<Box> boxes = rectangles_;
-  constexpr double kBeyond_m = 10;  // more than the radius plus margin of any robot
-  const Vec2 half_m(field.length_m / 2 + kBeyond_m, field.width_m / 2 + kBeyond_m);
+  constexpr double kOutsideDepth_m = 10;  // more than the radius plus margin of any robot
+  const Vec2 half_m(field.length_m / 2 + kOutsideDepth_m, field.width_m / 2 + kOutsideDepth_m);
   const Box inside = cells_.extent();
   const auto add = [&](const Vec2& min_m, const Vec2& max_m) {
     if ((min_m.array() < max_m.array()).all()) boxes.push_back({min_m, max_m});

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kExpectedMap = "a map";
 /// A probability that is within this distance of its threshold counts as unknown, because the brightness is
 /// rounded.
-constexpr double kTie = 1e-9;
+constexpr double kThresholdTolerance = 1e-9;
 /// Map savers write unknown cells as 205 of 255, which some values of free_thresh would make free.
 constexpr double kUnknownGrey = 50.0 / 255;
 /// Maximum yaw that is ignored: it moves no corner of a map by more than a millimetre.
@@ -34,11 +34,12 @@ struct Interpretation {
   /// The modes trinary and scale differ only for the grey of unknown cells.
   CellState state(double brightness) const {
     double occupied = is_negated ? brightness : 1 - brightness;
-    if (mode == Mode::kTrinary && std::abs(occupied - kUnknownGrey) < kTie) return CellState::kUnknown;
+    if (mode == Mode::kTrinary && std::abs(occupied - kUnknownGrey) < kThresholdTolerance)
+      return CellState::kUnknown;
     if (mode == Mode::kRaw) occupied = std::round(255 * brightness) / 100;
     if (mode == Mode::kRaw && occupied > 1) return CellState::kUnknown;
     if (occupied > occupied_above) return CellState::kOccupied;
-    return occupied < free_below - kTie ? CellState::kFree : CellState::kUnknown;
+    return occupied < free_below - kThresholdTolerance ? CellState::kFree : CellState::kUnknown;
   }
 };
 

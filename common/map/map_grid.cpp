@@ -26,7 +26,7 @@ Cell MapGrid::cell_at(const Vec2& p) const {
           last_border(p.y(), origin_m.y(), resolution_m, rows, [&](int i) { return y_m(i); })};
 }
 
-CellRange MapGrid::cells_that_meet(const Box& box) const {
+CellRange MapGrid::cells_intersecting(const Box& box) const {
   CellRange range{cell_at(box.min_m), cell_at(box.max_m)};
   // Squares are closed: a square whose upper border is the box's lower border meets the box.
   if (range.first.column > 0 && x_m(range.first.column) >= box.min_m.x()) --range.first.column;

@@ -45,7 +45,7 @@ struct MapGrid {
   /// `rows`.
   Cell cell_at(const Vec2& p) const;
   /// The cells of the map whose closed squares intersect a closed box.
-  CellRange cells_that_meet(const Box& box) const;
+  CellRange cells_intersecting(const Box& box) const;
 };
 
 /// Throws std::invalid_argument, with the reason, if a number is out of range.

@@ -53,7 +53,7 @@ double OccupancyMap::distance_m(const Vec2& p, double max_m) const {
     const int end = std::min(grid_.columns, at.column + reach + 1), last = std::max(0, at.column - reach);
     if (const int right = blocked_.find_set(at.column, end, row); right < end)
       best_m = std::min(best_m, std::hypot(std::max(0.0, grid_.x_m(right) - p.x()), row_distance_m));
-    if (const int left = blocked_.find_set_down(at.column, last, row); left >= last)
+    if (const int left = blocked_.find_last_set(at.column, last, row); left >= last)
       best_m = std::min(best_m, std::hypot(std::max(0.0, p.x() - grid_.x_m(left + 1)), row_distance_m));
   };
   search(at.row, 0);
@@ -75,7 +75,7 @@ bool OccupancyMap::touches(const Vec2& from, const Vec2& to, double radius) cons
       (bounds.min_m.array() > map.min_m.array()).all() && (bounds.max_m.array() < map.max_m.array()).all();
   if (!is_inside) return true;
   const Segment path = sweep.segment();
-  const CellRange rows = grid_.cells_that_meet(bounds);
+  const CellRange rows = grid_.cells_intersecting(bounds);
   for (int row = rows.first.row; row <= rows.last.row; ++row) {
     const Box part = part_near_row(path, grid_.y_m(row), grid_.y_m(row + 1), radius);
     const int end_column = std::min(grid_.cell_at(part.max_m).column + 1, grid_.columns);

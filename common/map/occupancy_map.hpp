@@ -70,7 +70,7 @@ template <typename Call>
 bool OccupancyMap::for_each_box(const Box& region, const Call& call) const {
   check_region(region);
   if (!for_each_outside_box(region, call)) return false;
-  const CellRange range = grid_.cells_that_meet(region);
+  const CellRange range = grid_.cells_intersecting(region);
   const int end_column = range.last.column + 1;
   for (int row = range.first.row; row <= range.last.row; ++row) {
     int end = range.first.column;

@@ -99,7 +99,7 @@ class Bus {
 
   /// From now on, if two processes write a single-writer channel, only the messages of the process that was
   /// heard first are used. For observers of a simulation, in which the first process is the genuine one.
-  void trust_first_senders() { follows_first_ = true; }
+  void trust_first_senders() { trusts_first_sender_ = true; }
 
   /// From now on, new subscriptions to single-writer channels listen for a moment before they trust a writer.
   /// For a process that starts while other processes are running.
@@ -178,7 +178,7 @@ class Bus {
              const msg::Header& header) {
     const SingleWriterGuard::Outcome outcome = sender.receive(header.incarnation(), now());
     if (outcome == SingleWriterGuard::Outcome::kCounts) return true;
-    if (follows_first_ && sender.is_first(header.incarnation())) return true;
+    if (trusts_first_sender_ && sender.is_first(header.incarnation())) return true;
     count_drop(DropReason::kContestedSender);
     if (outcome == SingleWriterGuard::Outcome::kNewConflict && conflict_watcher_)
       conflict_watcher_(topic, robot, header);
@@ -186,7 +186,7 @@ class Bus {
   }
 
   std::uint64_t rules_ = 0;
-  bool follows_first_ = false;
+  bool trusts_first_sender_ = false;
   Duration listening_{0};
   std::function<void(const TopicInfo&, const msg::Header&)> on_refused_, header_watcher_;
   std::function<void(const TopicInfo&, std::uint32_t, const msg::Header&)> conflict_watcher_;

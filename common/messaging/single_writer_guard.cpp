@@ -32,7 +32,7 @@ SingleWriterGuard::Outcome SingleWriterGuard::receive(std::uint64_t incarnation,
   // restart.
   if (std::min(others_, interleaved_) < kEvidence)
     return incarnation == sender_ ? Outcome::kCounts : Outcome::kRefused;
-  gone_after_ = kGoneAfterConflict;
+  gone_after_ = kConflictSilenceTimeout;
   return std::exchange(is_reported_, true) ? Outcome::kRefused : Outcome::kNewConflict;
 }
 
@@ -46,7 +46,7 @@ SingleWriterGuard::Outcome SingleWriterGuard::listen(std::uint64_t incarnation, 
   (incarnation == sender_ ? heard_at_ : other_heard_at_) = now;
   if (incarnation == sender_) return Outcome::kRefused;
   others_ = interleaved_ = kEvidence;
-  gone_after_ = kGoneAfterConflict;
+  gone_after_ = kConflictSilenceTimeout;
   return std::exchange(is_reported_, true) ? Outcome::kRefused : Outcome::kNewConflict;
 }
 

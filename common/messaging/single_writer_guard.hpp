@@ -17,7 +17,7 @@ class SingleWriterGuard {
   /// Silence after which a process counts as gone and another process may take its place. The longer time
   /// applies if the two processes have been heard alternately.
   static constexpr Duration kGoneAfter{1'000'000'000};
-  static constexpr Duration kGoneAfterConflict{6'000'000'000};
+  static constexpr Duration kConflictSilenceTimeout{6'000'000'000};
   /// A process that starts while others are running listens for this long before it trusts a sender.
   /// Otherwise it would assume that the first sender heard is the only one.
   static constexpr Duration kListening{300'000'000};

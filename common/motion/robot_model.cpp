@@ -27,7 +27,7 @@ double effort2(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
 
 // The same norm at the end of a phase with this velocity. A phase that ends at rest has braked until then.
 // The batch kernels compute the same.
-double effort2_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
+double squared_effort_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) {
   const double speed2 = v.x() * v.x() + v.y() * v.y();
   const double ahead = a.x() * v.x() + a.y() * v.y(), across = v.x() * a.y() - v.y() * a.x();
   if (speed2 < squared(kPlannedRest_mps)) return 0;
@@ -42,7 +42,7 @@ double effort2_at_end(const Vec2& a, const Vec2& v, const MotionLimits& limits) 
 Vec2 scaled_to_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
                           double seconds) {
   const double at_start2 = effort2(acceleration, velocity, limits);
-  const double at_end2 = effort2_at_end(acceleration, velocity + seconds * acceleration, limits);
+  const double at_end2 = squared_effort_at_end(acceleration, velocity + seconds * acceleration, limits);
   const double e2 = at_end2 > at_start2 ? at_end2 : at_start2;
   return e2 > 1 ? Vec2(acceleration * (1 / std::sqrt(e2))) : acceleration;
 }
@@ -55,11 +55,11 @@ bool is_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionL
 
 // While the velocity changes, the angle between it and the acceleration only decreases. The permitted
 // acceleration decreases too if D is at least F; otherwise it increases until the velocity has turned.
-bool may_be_held(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
-                 Duration duration) {
+bool stays_admissible(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,
+                      Duration duration) {
   const Vec2 end = velocity + to_seconds(duration) * acceleration;
   return is_admissible(acceleration, velocity, limits) &&
-         effort2_at_end(acceleration, end, limits) <= squared(1 + 1e-6);
+         squared_effort_at_end(acceleration, end, limits) <= squared(1 + 1e-6);
 }
 
 Vec2 limit_acceleration(const Vec2& acceleration, const Vec2& velocity, const MotionLimits& limits,

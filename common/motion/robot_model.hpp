@@ -18,8 +18,8 @@ namespace sidestep {
 
 /// Whether the acceleration stays in A(v) while it is held for `duration` and v changes accordingly. A robot
 /// that brakes at D beyond the point where its velocity reverses would accelerate at D.
-[[nodiscard]] bool may_be_held(const Vec2& acceleration_mps2, const Vec2& velocity_mps,
-                               const MotionLimits& limits, Duration duration);
+[[nodiscard]] bool stays_admissible(const Vec2& acceleration_mps2, const Vec2& velocity_mps,
+                                    const MotionLimits& limits, Duration duration);
 
 /// An acceleration that may be held for `duration`: the requested one, reduced to the speed limit and scaled
 /// into A(v). Precondition: the initial speed is within the limit.

@@ -37,7 +37,8 @@ Validity check_limits(const Trajectory& trajectory, const MotionLimits& limits) 
     const Vec2& a = phase.acceleration_mps2;
     const double max_mps2 = std::max(limits.acceleration_mps2, limits.deceleration_mps2);
     if (!(a.norm() <= max_mps2 + kAccelerationTolerance_mps2)) return Validity::kBeyondLimits;
-    if (phase.duration > Duration::zero() && !may_be_held(a, state.velocity_mps, limits, phase.duration)) {
+    if (phase.duration > Duration::zero() &&
+        !stays_admissible(a, state.velocity_mps, limits, phase.duration)) {
       return Validity::kBeyondLimits;
     }
     state = state_after(state, a, to_seconds(phase.duration));

@@ -60,7 +60,7 @@ void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings) {
                "run without keys, although other machines can reach the interface and command the robots");
 }
 
-int run_guarded(const std::string& name, const std::function<int()>& work) {
+int run_and_report_errors(const std::string& name, const std::function<int()>& work) {
   return run_reporting(work,
                        [&](const std::string& problem) { print_to(stderr, "{}: {}\n", name, problem); });
 }

@@ -60,6 +60,6 @@ void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings);
 
 /// Calls `work` and returns its exit code. Prints exceptions on stderr and returns kExitUsage for
 /// ConfigError and std::invalid_argument, kExitFailure for all others.
-int run_guarded(const std::string& name, const std::function<int()>& work);
+int run_and_report_errors(const std::string& name, const std::function<int()>& work);
 
 }  // namespace sidestep

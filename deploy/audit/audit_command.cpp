@@ -47,7 +47,7 @@ std::string audit_summary(const AuditTotals& totals) {
       totals.violations, totals.received, totals.missed, totals.invalid, totals.refused,
       totals.compared_pairs, totals.undecided_pairs, name_of(totals.reference));
   for (std::size_t i = 0; i < kAuditRules; ++i) {
-    const AuditRuleInfo& rule = audit_rule(static_cast<AuditRule>(i));
+    const AuditRuleInfo& rule = rule_info_of(static_cast<AuditRule>(i));
     if (totals.by_rule[i] > 0)
       text +=
           fmt::format("  {} x {} ({}): {}\n", totals.by_rule[i], rule.name, rule.reference, rule.requirement);

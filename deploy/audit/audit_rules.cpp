@@ -56,10 +56,10 @@ constexpr std::array<AuditRuleInfo, kAuditRules> kRules{{
 
 }  // namespace
 
-const AuditRuleInfo& audit_rule(AuditRule rule) { return kRules.at(static_cast<std::size_t>(rule)); }
+const AuditRuleInfo& rule_info_of(AuditRule rule) { return kRules.at(static_cast<std::size_t>(rule)); }
 
 std::string to_line(const Violation& v) {
-  const AuditRuleInfo& rule = audit_rule(v.rule);
+  const AuditRuleInfo& rule = rule_info_of(v.rule);
   std::string text = fmt::format("{:.6f} {} ({}): robot {}", to_seconds(v.detected.time_since_epoch()),
                                  rule.name, rule.reference, v.robot);
   if (v.version != 0) text += fmt::format(" version {}", v.version);
@@ -70,8 +70,8 @@ std::string to_line(const Violation& v) {
 
 std::string to_json_line(const Violation& v) {
   nlohmann::ordered_json json;
-  json["rule"] = audit_rule(v.rule).name;
-  json["reference"] = audit_rule(v.rule).reference;
+  json["rule"] = rule_info_of(v.rule).name;
+  json["reference"] = rule_info_of(v.rule).reference;
   json["detected_ns"] = to_ns(v.detected);
   json["robot"] = v.robot;
   json["version"] = v.version;

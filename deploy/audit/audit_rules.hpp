@@ -53,7 +53,7 @@ struct AuditRuleInfo {
   const char* requirement;  ///< one sentence
 };
 
-const AuditRuleInfo& audit_rule(AuditRule rule);
+const AuditRuleInfo& rule_info_of(AuditRule rule);
 
 /// A violation of one rule.
 struct Violation {

@@ -25,7 +25,7 @@ struct AuditedRun {
   Duration latency_bound() const { return is_complete() ? Duration{0} : input.min_latency_bound; }
   std::int64_t clock_bound_ns() const { return from_seconds(scenario.clock_bound_s).count(); }
   /// Maximum apparent distance of a robot from its version due to errors of vision and clocks.
-  double sight_allowance_m() const {
+  double observation_allowance_m() const {
     return position_error_m(scenario.vision) + 2 * scenario.clock_bound_s * scenario.limits.speed_mps;
   }
 };

@@ -43,10 +43,11 @@ void GrantAudit::on_proposal(AuditedRobot& robot, const msg::Proposal& proposal)
     const auto is_grant = [&](const EarlyVerdict& v) {
       return v.granted == candidate && v.request_stamp_ns == record.stamp_ns;
     };
-    const bool is_this = run_.is_complete() ||
-                         (known && known->has_content ? known->version.incarnation() == incarnation
-                                                      : std::ranges::any_of(robot.early_verdicts, is_grant));
-    if (!known || !is_this) continue;
+    const bool is_same_agents_version =
+        run_.is_complete() ||
+        (known && known->has_content ? known->version.incarnation() == incarnation
+                                     : std::ranges::any_of(robot.early_verdicts, is_grant));
+    if (!known || !is_same_agents_version) continue;
     known->is_proposed = true;
     if (known->has_content || known->granted_in == 0) continue;
     if (KnownVersion* stored = robots_.store(robot, record.candidates[i])) {
@@ -109,13 +110,13 @@ void GrantAudit::on_verdict(AuditedRobot& robot, const msg::Verdict& verdict, co
   known->is_granted_by_page = false;
   if (candidate || verdict.proposal_number() <= robot.max_evicted_proposal) known->is_proposed = true;
   check_grant(robot, *known, verdict);
-  judge_order(*known, verdict);
+  check_hold(*known, verdict);
 }
 
 // A held robot may be granted a rest version at the place where it will be put down. Verdicts may be
 // repeated; so if messages may be missed, only a version that starts long after the hold was certainly
 // granted after it.
-void GrantAudit::judge_order(const KnownVersion& known, const msg::Verdict& verdict) {
+void GrantAudit::check_hold(const KnownVersion& known, const msg::Verdict& verdict) {
   const bool is_place = known.version.base() == 0 && known.path.duration_s() <= 0;
   if (!known.has_content || is_place) return;
   orders_.on_grant(verdict, run_.is_complete() ? kAlways : known.version.start_ns() - kMaxLead_ns);

@@ -33,7 +33,7 @@ class GrantAudit {
   void decide(AuditedRobot& robot, ProposalRecord& proposal, Epoch epoch, VersionNumber granted);
   void check_grant(AuditedRobot& robot, KnownVersion& known, const msg::Verdict& verdict);
   /// Passes a grant on to the audit of orders if it lets a robot move.
-  void judge_order(const KnownVersion& known, const msg::Verdict& verdict);
+  void check_hold(const KnownVersion& known, const msg::Verdict& verdict);
   void check_forwarded(AuditedRobot& robot, VersionNumber number);
   /// The proposal that a verdict answers; nullptr if it was not received.
   ProposalRecord* answered_proposal(AuditedRobot& robot, const msg::Verdict& verdict) const;

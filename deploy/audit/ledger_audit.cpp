@@ -35,9 +35,9 @@ void LedgerAudit::check_entry(AuditedRobot& robot, const msg::Version& version, 
   const KnownVersion* known = robot.find(version.version_number());
   // A coordinator that receives no reports keeps versions that the auditor evicted long ago.
   if (robot.was_evicted(version.version_number())) return;
-  const bool may_be_held = known && (known->may_be_in(page.epoch()) || known->is_own_stop);
+  const bool stays_admissible = known && (known->may_be_in(page.epoch()) || known->is_own_stop);
   const bool may_be_forgotten = page.epoch() <= robot.forgotten_until_epoch;
-  if (run_.is_complete() && epochs_.is_from_granter(page) && !may_be_held && !may_be_forgotten) {
+  if (run_.is_complete() && epochs_.is_from_granter(page) && !stays_admissible && !may_be_forgotten) {
     findings_.report(AuditRule::kLedgerPage, robot.id,
                      known ? known : &robot.find_or_insert(version.version_number()), page.epoch(),
                      "is in the ledger, but was neither registered nor granted");

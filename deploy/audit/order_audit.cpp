@@ -56,7 +56,7 @@ class OrderAudit::Memory {
     for (const Terms& order : orders) by_subject_[order.subject] = order;
     for (const Terms& order : orders) {
       const bool is_of_client = driver_of(order.client) == kAnyClient;
-      resumes_ += order.kind == msg::OrderKind::ORDER_RESUME && is_of_client && !excepts(order);
+      resumes_ += order.kind == msg::OrderKind::ORDER_RESUME && is_of_client && !is_exempting(order);
       removals_ += order.kind == msg::OrderKind::ORDER_REMOVE_ZONE;
     }
   }
@@ -90,10 +90,10 @@ class OrderAudit::Memory {
         break;
     }
     // Otherwise, the absence of the hold shows that it was lifted.
-    return !excepts(order) || resumed >= order.number;
+    return !is_exempting(order) || resumed >= order.number;
   }
   /// Whether the resume exempts a robot from a hold of all robots that is in force.
-  bool excepts(const Terms& resume) const {
+  bool is_exempting(const Terms& resume) const {
     const auto hold = by_subject_.find({SubjectKind::kHold, msg::ALL_ROBOTS, resume.client, 0});
     return resume.robot != msg::ALL_ROBOTS && hold != by_subject_.end() &&
            hold->second.number < resume.number;
@@ -265,7 +265,7 @@ void OrderAudit::on_memory(const msg::OrderMemory& memory) {
 void OrderAudit::judge(std::uint32_t sender, Coordinator& coordinator, bool claims_completeness) {
   const Memory memory(coordinator.memory);
   may_miss_resumes_ |= memory.has_many_resumes();
-  may_lack_removals_ |= memory.has_many_removals();
+  may_miss_removals_ |= memory.has_many_removals();
   judge_grants(memory, coordinator);
   judge_confirmed(memory, sender, coordinator, claims_completeness);
   std::erase_if(coordinator.announced_ns, [&](const auto& told) {
@@ -313,7 +313,7 @@ void OrderAudit::judge_confirmed(const Memory& memory, std::uint32_t sender, con
     if (!is_own && !(is_granting && has_witness(confirmed.terms, coordinator.epoch))) return false;
     const Terms& order = confirmed.terms;
     const SubjectKind matter = std::get<SubjectKind>(order.subject);
-    const bool may_be_forgotten = matter == SubjectKind::kZone ? may_lack_removals_
+    const bool may_be_forgotten = matter == SubjectKind::kZone ? may_miss_removals_
                                   : matter == SubjectKind::kHold || matter == SubjectKind::kResume
                                       ? may_miss_resumes_
                                       : false;

@@ -117,7 +117,7 @@ class OrderAudit {
   std::map<RobotId, AgentRegistration> registered_;    // latest registrations
   std::map<RobotId, HeldFlag> held_;
   /// Some coordinator may have forgotten why holds or zones are no longer in force.
-  bool may_miss_resumes_ = false, may_lack_removals_ = false;
+  bool may_miss_resumes_ = false, may_miss_removals_ = false;
 };
 
 }  // namespace sidestep

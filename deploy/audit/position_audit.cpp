@@ -35,9 +35,9 @@ void PositionAudit::check(AuditedRobot& robot, const AuditedRobot::ReceivedRepor
   // That clock is then assumed to be within bound of the clocks of cameras and of such a simulator.
   const bool is_by_bound = is_vision || (is_seen && !run_.is_complete());
   const std::int64_t ahead_ns = robot_report.at_ns - reception.latest_ns;
-  const std::int64_t gained_ns = ahead_ns - std::exchange(robot.clock_ahead_ns, ahead_ns);
+  const std::int64_t clock_change_ns = ahead_ns - std::exchange(robot.clock_ahead_ns, ahead_ns);
   if (pending.at_ns == kNever) return;
-  if (run_.is_complete() && !is_vision && std::abs(gained_ns) > run_.clock_bound_ns()) {
+  if (run_.is_complete() && !is_vision && std::abs(clock_change_ns) > run_.clock_bound_ns()) {
     // The clock has jumped since the observation, which therefore has no time by this clock.
     pending = {};
     return;
@@ -105,7 +105,7 @@ void PositionAudit::check_seen_position(const AuditedRobot& robot, const KnownVe
                                         double error_m, std::int64_t at_ns) {
   SeenDisplacement& displacement = displacements_[robots_.index_of(robot)];
   const double bound_m =
-      run_.scenario.tracking_bound_m + executed.version.inflation_m() + run_.sight_allowance_m();
+      run_.scenario.tracking_bound_m + executed.version.inflation_m() + run_.observation_allowance_m();
   if (error_m <= bound_m) {
     const bool was_in_place = displacement.in_place_since_ns != kNever && displacement.since_ns == kNever;
     displacement = {kNever, false, was_in_place ? displacement.in_place_since_ns : at_ns};

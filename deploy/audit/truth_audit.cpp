@@ -99,7 +99,7 @@ void TruthAudit::record_positions(const msg::GroundTruth& truth) {
     const double error_m =
         is_known ? state.reference_error_m() : robot.distance_from_version_m(position_m, truth.valid_at_ns());
     excuses_.observe(robot, position_m, std::hypot(state.vx_mps(), state.vy_mps()), error_m,
-                     is_known ? 0 : run_.sight_allowance_m());
+                     is_known ? 0 : run_.observation_allowance_m());
     if (state.disturbance_end_ns() >= 0)
       disturbances_.disturb(*index, time_from_ns(state.disturbance_end_ns()), at);
   }

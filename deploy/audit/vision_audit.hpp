@@ -21,16 +21,16 @@ class VisionAudit {
         disturbances_(disturbances),
         excuses_(excuses),
         findings_(findings),
-        sights_(robots.all().size()),
+        sightings_(robots.all().size()),
         seen_contacts_(run.scenario) {}
 
   void on_world_state(const msg::WorldState& world, const Reception& reception);
 
  private:
-  void record_sights(const msg::WorldState& world);
+  void record_sightings(const msg::WorldState& world);
   /// Makes vision the reference if it has shown robots for a while without any ground truth being received.
   /// Returns whether it is the reference.
-  bool become_reference();
+  bool try_become_reference();
   void check_contacts(Time at);
   void record_positions(const msg::WorldState& world);
 
@@ -40,9 +40,9 @@ class VisionAudit {
   Disturbances& disturbances_;
   ContactExcuses& excuses_;
   AuditFindings& findings_;
-  std::vector<VisionSighting> sights_;  ///< parallel to the robots
+  std::vector<VisionSighting> sightings_;  ///< parallel to the robots
   SeenContacts seen_contacts_;
-  std::optional<Time> first_sight_at_;
+  std::optional<Time> first_sighting_at_;
 };
 
 }  // namespace sidestep

@@ -33,12 +33,12 @@ void BaseControl::command(const BaseVelocity& velocity, Time now) {
 }
 
 Actuation BaseControl::actuation(const Body& body, Time now) {
-  while (!waiting_.empty() && waiting_.front().obeyed_at <= now) {
+  while (!waiting_.empty() && waiting_.front().effective_at <= now) {
     current_ = waiting_.front().velocity;
-    silent_from_ = waiting_.front().obeyed_at + settings_.silence_timeout;
+    braking_begins_at_ = waiting_.front().effective_at + settings_.silence_timeout;
     waiting_.pop_front();
   }
-  if (now >= silent_from_) current_ = {};
+  if (now >= braking_begins_at_) current_ = {};
   const Vec2& commanded = current_.linear_mps;
   const Vec2 target = current_.is_global ? commanded : rotated(commanded, body.heading_rad());
   Actuation actuation;

@@ -41,13 +41,13 @@ class BaseControl {
 
  private:
   struct Received {
-    Time obeyed_at{};
+    Time effective_at{};
     BaseVelocity velocity;
   };
   BaseSettings settings_;
   std::deque<Received> waiting_;
   BaseVelocity current_;
-  Time silent_from_{};  ///< time at which the base brakes unless another command takes effect
+  Time braking_begins_at_{};  ///< time at which the base brakes unless another command takes effect
 };
 
 }  // namespace sidestep

@@ -14,7 +14,7 @@ namespace {
 // Ids of opponents: these first ids plus the robot's number in its team.
 constexpr RobotId kFirstBlueOpponent = kMaxRobots - 32, kFirstYellowOpponent = kMaxRobots - 16;
 // Time after an opponent's push during which a robot's motion may be an effect of the push.
-constexpr Duration kPushedTime = std::chrono::seconds(1);
+constexpr Duration kMaxPushEffect = std::chrono::seconds(1);
 constexpr double kReach_m = 0.015, kFrontAngle_rad = 0.45;
 
 Scenario with_opponents(const Scenario& scenario, std::uint32_t team_size) {
@@ -139,7 +139,7 @@ void BaseWorld::count_contacts(const std::vector<double>& speeds_mps) {
     const std::size_t robot = is_ours(first) ? first : second;
     if (!is_robot || !is_ours(robot)) continue;  // not a crash of a robot with an opponent
     ++crashes_;
-    const bool was_pushed = time_ - kPushedTime < pushed_at_[robot];
+    const bool was_pushed = time_ - kMaxPushEffect < pushed_at_[robot];
     pushed_at_[robot] = time_;
     if (was_pushed || speeds_mps[robot] <= Opponents::kAtRest_mps) continue;
     max_crash_mps_ = std::max(max_crash_mps_, speeds_mps[robot]);

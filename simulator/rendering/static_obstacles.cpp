@@ -22,7 +22,7 @@ double half_thickness_m(const Shape& shape) {
 
 /// Whether all cells that intersect a box are blocked; the outside counts as blocked.
 bool is_covered(const OccupancyMap& map, const Box& box) {
-  const CellRange range = map.grid().cells_that_meet(box);
+  const CellRange range = map.grid().cells_intersecting(box);
   const int end = range.last.column + 1;
   for (int row = range.first.row; row <= range.last.row; ++row)
     if (map.blocked().find_clear(range.first.column, end, row) < end) return false;

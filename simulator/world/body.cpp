@@ -28,7 +28,7 @@ void Body::step(const Actuation& command) {
     roll(command);
   } else if (carried_mps_) {
     state_.position_m += *carried_mps_ * kPhysicsStepSeconds;
-    slid_m_ += *carried_mps_ * kPhysicsStepSeconds;
+    total_slip_m_ += *carried_mps_ * kPhysicsStepSeconds;
   } else if (is_on_floor_ && !is_powered_) {
     coast();
   } else if (is_on_floor_) {
@@ -99,7 +99,7 @@ void Body::slide(const Actuation& command) {
   slip_mps_ = state_.velocity_mps - wheels;
   const Vec2 moved = 0.5 * dt * (before.velocity_mps + state_.velocity_mps);
   state_.position_m = before.position_m + moved;
-  slid_m_ += moved - rolled;
+  total_slip_m_ += moved - rolled;
   update_rolling();
 }
 
@@ -136,7 +136,7 @@ void Body::set_grip(double share) {
   update_rolling();
 }
 
-void Body::set_blocked(std::optional<double> direction_rad) {
+void Body::set_blocked_wheel(std::optional<double> direction_rad) {
   blocked_rad_ = direction_rad;
   update_rolling();
 }

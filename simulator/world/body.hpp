@@ -52,7 +52,7 @@ class Body {
   void set_grip(double share);
   /// Blocks a wheel, so that the wheels do not roll in a direction, given as an angle from the heading.
   /// nullopt: no wheel is blocked.
-  void set_blocked(std::optional<double> direction_rad);
+  void set_blocked_wheel(std::optional<double> direction_rad);
   /// Switches the power. A body without power rolls on until friction stops it, and obeys no command.
   void set_powered(bool is_powered);
   /// Moves the body at a velocity just above the floor, so that its wheels do not roll. nullopt: puts it
@@ -64,7 +64,7 @@ class Body {
   void put_down(const Vec2& position_m, double heading_rad);
   bool is_on_floor() const { return is_on_floor_; }
   /// The position without slip, as ideal wheel odometry would measure it.
-  Vec2 rolled_position_m() const { return state_.position_m - slid_m_; }
+  Vec2 rolled_position_m() const { return state_.position_m - total_slip_m_; }
 
   const Vec2& position_m() const { return state_.position_m; }
   const Vec2& velocity_mps() const { return state_.velocity_mps; }
@@ -94,8 +94,8 @@ class Body {
   bool is_on_floor_ = true;
   double grip_ = 1;
   std::optional<double> blocked_rad_;
-  Vec2 slip_mps_{0, 0};  ///< velocity of the body relative to its rolling wheels
-  Vec2 slid_m_{0, 0};    ///< total slip since creation
+  Vec2 slip_mps_{0, 0};      ///< velocity of the body relative to its rolling wheels
+  Vec2 total_slip_m_{0, 0};  ///< total slip since creation
 };
 
 }  // namespace sidestep

@@ -27,7 +27,7 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       record_disturbance(index, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_BLOCK:
-      body.set_blocked(disturbance.heading_rad);
+      body.set_blocked_wheel(disturbance.heading_rad);
       start_disturbance({index, kind, now + disturbance.duration, Vec2(0, 0), 0});
       record_disturbance(index, now);
       return true;
@@ -221,7 +221,7 @@ void World::end(const ActiveDisturbance& disturbance) {
     case msg::DisturbanceKind::DISTURBANCE_SLIP:
       return body.set_grip(1);
     case msg::DisturbanceKind::DISTURBANCE_BLOCK:
-      return body.set_blocked(std::nullopt);
+      return body.set_blocked_wheel(std::nullopt);
     case msg::DisturbanceKind::DISTURBANCE_CARRY:
       return body.carry(std::nullopt);
     case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:

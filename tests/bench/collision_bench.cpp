@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Compares our structures for swept discs among obstacles with textbook
+// SPDX-License-Identifier: Apache-2.0
+// Compares our structures for swept discs among obstacles with textbook
 // structures and other libraries. Fails if answers differ.
 #include <algorithm>
 #include <fmt/core.h>

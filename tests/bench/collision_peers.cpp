@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The peers, compiled for the instruction set of the build machine.
+// SPDX-License-Identifier: Apache-2.0
+// The peers, compiled for the instruction set of the build machine.
 #include "tests/bench/collision_peers.hpp"
 
 #include <boost/geometry.hpp>

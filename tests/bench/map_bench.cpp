@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Benchmarks occupancy maps: compares the distance transform with
+// SPDX-License-Identifier: Apache-2.0
+// Benchmarks occupancy maps: compares the distance transform with
 // OpenCV's exact one, which must give the same distances, and measures scans and queries, whose results are
 // checked against slow references.
 #include <algorithm>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Times and errors of E*, compared with a plain wavefront and exact
+// SPDX-License-Identifier: Apache-2.0
+// Times and errors of E*, compared with a plain wavefront and exact
 // lengths. Fails if a field is wrong.
 #include <cstdio>
 #include <ctime>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The time that a robot takes to process one scan of its own laser, in a
+// SPDX-License-Identifier: Apache-2.0
+// The time that a robot takes to process one scan of its own laser, in a
 // floor plan with people. Fails if a wall is tracked as moving or a person is lost.
 #include <cstdlib>
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Compares methods that find the regions of five colours in a frame: all
+// SPDX-License-Identifier: Apache-2.0
+// Compares methods that find the regions of five colours in a frame: all
 // available kernels and two methods with OpenCV, and for reference copying the frame. OpenCV gets the frame
 // already converted to the values to which thresholds apply; the conversion is not timed. Fails if regions
 // differ.

@@ -114,7 +114,7 @@ bool Browser::wait_until(const std::string& expression, const std::function<void
   return false;
 }
 
-std::string Browser::complaints() {
+std::string Browser::logged_errors() {
   std::string all;
   for (const Json& entry : call("POST", "/se/log", {{"type", "browser"}}))
     all += entry.at("level").get<std::string>() + " " + entry.at("message").get<std::string>() + "\n";

@@ -33,7 +33,7 @@ class Browser {
   bool wait_until(
       const std::string& expression, const std::function<void()>& meanwhile = [] {});
   /// Script errors and loading errors that the page has logged.
-  std::string complaints();
+  std::string logged_errors();
   void save_screenshot(const std::string& path);
 
  private:

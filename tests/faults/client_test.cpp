@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The examples of the client library, with real processes.
+// SPDX-License-Identifier: Apache-2.0
+// The examples of the client library, with real processes.
 #include <signal.h>
 
 #include "tests/catch.hpp"

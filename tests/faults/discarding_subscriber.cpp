@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Subscribes to all topics that the monitor subscribes to, and discards
+// SPDX-License-Identifier: Apache-2.0
+// Subscribes to all topics that the monitor subscribes to, and discards
 // the messages until it is interrupted. Shows the minimum cost of listening.
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Robots in a separate simulator, driven over the Small Size League's
+// SPDX-License-Identifier: Apache-2.0
+// Robots in a separate simulator, driven over the Small Size League's
 // simulation protocol.
 #include "tests/faults/external_simulator_run.hpp"
 

@@ -12,8 +12,8 @@ namespace sidestep::host_clock_test {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kRestarts = ": restarting: the host's clock was set";
-constexpr const char* kIsSet = ": the host's clock was set";
+constexpr const char* kRestartMessage = ": restarting: the host's clock was set";
+constexpr const char* kClockSetMessage = ": the host's clock was set";
 
 /// Assigns the processes of scenario crossing to hosts, and says how far the late host's clock is ahead
 /// initially.
@@ -36,7 +36,7 @@ void check_recovery(const LateStart& start) {
   const auto children = run.children();
   host.set_clock(0s);
   for (const std::string& process : start.late_processes)
-    CHECK(run.wait_until([&] { return run.logged(process + kRestarts); }));
+    CHECK(run.wait_until([&] { return run.logged(process + kRestartMessage); }));
   const std::string ended = run.wait_for_end();
   INFO(run.output());
   CHECK(ended == "exit code 0");
@@ -93,9 +93,9 @@ TEST_CASE("setting a host's clock during a healthy run does not disturb the run"
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.8; }));
   host.set_clock(ahead);
   for (const char* process : {"sidestep-coordinator", "agent-4", "agent-5", "agent-6", "agent-7"})
-    CHECK(run.wait_until([&] { return run.logged(std::string(process) + kIsSet); }));
+    CHECK(run.wait_until([&] { return run.logged(std::string(process) + kClockSetMessage); }));
   CHECK(run.wait_for_end() == "exit code 0");
-  CHECK_FALSE(run.logged(kRestarts));
+  CHECK_FALSE(run.logged(kRestartMessage));
   const auto report = run.report();
   require_no_violations(report);
   CHECK(report["arrived"] == 8);

@@ -73,7 +73,7 @@ struct KeyedRun {
   int domain() const { return std::stoi(run.dds_arguments()[1]); }
 
   /// Checks that the operator's own orders still take effect, and that there was no contact.
-  void check_unharmed() {
+  void check_operator_orders() {
     CHECK(command({"go", "0", "0,-1", "--wait"}) == "exit code 0");
     check_safe();
   }

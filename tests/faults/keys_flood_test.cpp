@@ -22,9 +22,9 @@ constexpr Duration kFormerAge = std::chrono::minutes(10);
 constexpr double kMaxGrowth_mb = 6;
 
 /// Sends the flood. Some of its senders know a genuine announcement.
-class Strangers {
+class FloodSenders {
  public:
-  Strangers(const KeyedRun& keyed, std::uint64_t seed) : rng_(seed), domain_(keyed.domain()) {
+  FloodSenders(const KeyedRun& keyed, std::uint64_t seed) : rng_(seed), domain_(keyed.domain()) {
     const TestKeys others({"agent", "0"});
     foreign_ = keyed.with_keys(others.folder_of("agent 0")).announced({});
     for (const char* identity : {"agent 0", "coordinator 0", "vision", "simulator"}) {
@@ -89,18 +89,18 @@ class Strangers {
   std::vector<std::pair<ParticipantId, std::vector<std::uint8_t>>> genuine_;
 };
 
-void check_flood(Duration duration) {
+void run_flood(Duration duration) {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
   Shuttle shuttle(keyed);
   const std::uint64_t seed = 7;
   CAPTURE(seed);
-  Strangers strangers(keyed, seed);
+  FloodSenders strangers(keyed, seed);
   INFO(run.output());
   REQUIRE(run.wait_until([&] { return shuttle.drive() >= 3; }));
   const std::vector<std::uint16_t> ports = open_ports(keyed.domain());
   REQUIRE(ports.size() > 10);
-  double standing_s = 0, longest_s = 0, current_s = 0;
+  double total_rest_s = 0, longest_s = 0, current_s = 0;
   std::map<std::string, std::vector<MemorySample>> memory;
   int sent = 0;
   const auto flood = [&](Duration length) {
@@ -113,7 +113,7 @@ void check_flood(Duration duration) {
       const double step_s = to_seconds(now - last);
       last = now;
       const bool is_standing = run.max_speed_mps() < kStanding_mps;
-      standing_s += is_standing ? step_s : 0;
+      total_rest_s += is_standing ? step_s : 0;
       current_s = is_standing ? current_s + step_s : 0;
       longest_s = std::max(longest_s, current_s);
       // If this process was delayed, it does not catch up in one burst.
@@ -125,7 +125,7 @@ void check_flood(Duration duration) {
   flood(seconds(5));
   const Time begin = run.bus().now();
   const int arrived_before = shuttle.drive();
-  standing_s = longest_s = current_s = 0;
+  total_rest_s = longest_s = current_s = 0;
   sent = 0;
   const auto sample = [&] {
     for (const auto& [process, usage] : usage_of(run))
@@ -147,11 +147,11 @@ void check_flood(Duration duration) {
   WARN(fmt::format(
       "{:.0f} datagrams a second to {} ports for {:.0f} s; orders carried out meanwhile: {}; robots stood "
       "still for {:.1f} s, for at most {:.1f} s at a time",
-      sent / flooded_s, ports.size(), flooded_s, shuttle.drive() - arrived_before, standing_s, longest_s));
+      sent / flooded_s, ports.size(), flooded_s, shuttle.drive() - arrived_before, total_rest_s, longest_s));
   CHECK(sent / flooded_s > 0.8 * kPerSecond);
   const int arrived = shuttle.drive();
   CHECK(run.wait_until([&] { return shuttle.drive() > arrived + 3; }));
-  keyed.check_unharmed();
+  keyed.check_operator_orders();
   const nlohmann::json report = run.report();
   int refused = 0;
   for (const auto& [process, counts] : report["counters"].items())
@@ -163,12 +163,12 @@ void check_flood(Duration duration) {
 TEST_CASE(
     "a flood of unauthorised packets on every port delays robots but causes no contact and no memory growth",
     "[both-cores][slow]") {
-  check_flood(seconds(15));
+  run_flood(seconds(15));
 }
 
 TEST_CASE("a flood of unauthorised packets on every port for five minutes does not fill memory",
           "[.long][slow]") {
-  check_flood(std::chrono::minutes(5));
+  run_flood(std::chrono::minutes(5));
 }
 
 }  // namespace sidestep::keys_flood_test

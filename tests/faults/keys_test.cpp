@@ -82,9 +82,9 @@ void check_refused(LaunchedRun& run, const AttackerSettings& settings, const std
 /// Returns an attacker with genuine keys that the run hears. The attacker sends until the log says that its
 /// messages are refused. When processes of several tests start simultaneously, one in ten attackers is not
 /// heard for more than a minute, and is then replaced by a new one.
-std::unique_ptr<Attacker> heard_attacker(LaunchedRun& run, const AttackerSettings& settings,
-                                         const std::function<void(Attacker&)>& send,
-                                         const std::vector<std::string>& lines) {
+std::unique_ptr<Attacker> connect_attacker(LaunchedRun& run, const AttackerSettings& settings,
+                                           const std::function<void(Attacker&)>& send,
+                                           const std::vector<std::string>& lines) {
   constexpr int kMaxTries = 4;
   const auto is_heard = [&] {
     return std::ranges::all_of(lines, [&](const std::string& line) { return run.logged(line); });
@@ -104,10 +104,10 @@ std::unique_ptr<Attacker> heard_attacker(LaunchedRun& run, const AttackerSetting
 }
 
 /// A client that sends orders in the operator's name and is refused.
-std::unique_ptr<Attacker> heard_client(KeyedRun& keyed) {
+std::unique_ptr<Attacker> connect_client(KeyedRun& keyed) {
   LaunchedRun& run = keyed.run;
   const msg::Order order = order_as(static_cast<std::uint32_t>(Sender::kOperator), run);
-  return heard_attacker(
+  return connect_attacker(
       run, keyed.with_keys(keyed.keys.folder_of("client forklift")),
       [&](Attacker& client) { client.write(topics::kOrder, 0, order); },
       {"keys: refuses messages of client forklift on topic 'order' in the name of operator"});
@@ -163,7 +163,7 @@ TEST_CASE("with keys, a process without valid keys is refused and logged, and mo
   check_refused(run, viewer, "a process that announces itself as viewer");
   viewer.announced = genuine.announced;
   check_refused(run, viewer, "a process at 127.0.0.1 that announces the certificate of operator");
-  keyed.check_unharmed();
+  keyed.check_operator_orders();
 }
 
 TEST_CASE("with keys, no process can send messages in the name of another process") {
@@ -196,14 +196,14 @@ TEST_CASE("with keys, no process can send messages in the name of another proces
     status.header() = header;
     agent.write(topics::kOrderStatus, 0, status);
   };
-  const auto forger = heard_attacker(
+  const auto forger = connect_attacker(
       run, keyed.with_keys(keyed.keys.folder_of("agent 1")), forge,
       {fmt::format(fmt::runtime(refused), "registration"), fmt::format(fmt::runtime(refused), "proposal"),
        fmt::format(fmt::runtime(refused), "order_status")});
 
   // A client may give orders in its own name, but not in the operator's name.
-  const auto orderer = heard_client(keyed);
-  Attacker& client = *orderer;
+  const auto client_attacker = connect_client(keyed);
+  Attacker& client = *client_attacker;
   CHECK_FALSE(attack(run, client));
   CHECK(client.readers() > 0);
   CHECK(run.logged("keys: refuses messages of client forklift on topic 'order' in the name of operator"));
@@ -244,8 +244,8 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
     command.insert(command.end(), identity.begin(), identity.end());
     return run.command(command);
   };
-  const auto orderer = heard_client(keyed);
-  Attacker& client = *orderer;
+  const auto client_attacker = connect_client(keyed);
+  Attacker& client = *client_attacker;
   REQUIRE(attack(run, client, seconds(20), client_id("forklift")));
   REQUIRE(revoke({"client", "forklift"}) == "exit code 0");
   REQUIRE(run.wait_until(
@@ -253,7 +253,7 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
   CHECK_FALSE(attack(run, client, seconds(3), client_id("forklift")));
 
   // If no process hears an attacker before its key expires, another attacker takes its place; see
-  // heard_attacker().
+  // connect_attacker().
   std::unique_ptr<Attacker> brief;
   bool has_moved_robot = false;
   for (int i = 0; i < 4 && !has_moved_robot; ++i) {
@@ -271,7 +271,7 @@ TEST_CASE("keys that are revoked or expire during a run are refused within secon
   REQUIRE(revoke({"agent", "2"}) == "exit code 0");
   REQUIRE(
       run.wait_until([&] { return run.logged("keys: refuses agent 2 at 127.0.0.1, whose key is revoked"); }));
-  keyed.check_unharmed();
+  keyed.check_operator_orders();
 }
 
 /// Replaces ssh by a program that runs the remote command on this machine, as sshd would.
@@ -303,8 +303,8 @@ TEST_CASE("keys that are revoked during a run are also refused on other hosts") 
   KeyedRun keyed({"--hosts", hosts});
   LaunchedRun& run = keyed.run;
   INFO(run.output());
-  const auto orderer = heard_client(keyed);
-  Attacker& client = *orderer;
+  const auto client_attacker = connect_client(keyed);
+  Attacker& client = *client_attacker;
   REQUIRE(attack(run, client, seconds(20), client_id("forklift")));
   REQUIRE(run.command({"keys", "revoke", "--keys", keyed.keys.folder(), "client", "forklift"}) ==
           "exit code 0");
@@ -313,7 +313,7 @@ TEST_CASE("keys that are revoked during a run are also refused on other hosts") 
     return run.logged("coordinator: keys: refuses client forklift at 127.0.0.1, whose key is revoked");
   }));
   CHECK_FALSE(attack(run, client, seconds(3), client_id("forklift")));
-  keyed.check_unharmed();
+  keyed.check_operator_orders();
 }
 
 /// Checks that no thread is in an endless loop, which would use as much of a core as it can get. All robots
@@ -371,7 +371,7 @@ void repeat_and_alter(Duration duration, std::uint64_t seed) {
   CHECK(run.children() == processes);
   check_no_thread_spins(run);
   const int carried_out = shuttle.drive();
-  keyed.check_unharmed();
+  keyed.check_operator_orders();
   const nlohmann::json report = run.report();
   CHECK(report["deaths"].empty());
   std::uint64_t dropped = 0;

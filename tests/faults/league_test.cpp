@@ -84,7 +84,7 @@ class LeagueSystem {
     return true;
   }
   /// Whether the world state has all robots at their true positions.
-  bool sees_all() const {
+  bool tracks_all_robots() const {
     if (world_.robots().size() != scenario_.robots.size()) return false;
     return std::all_of(world_.robots().begin(), world_.robots().end(),
                        [this](const msg::TrackedRobot& robot) { return distance_m(robot) < 0.05; });
@@ -202,7 +202,7 @@ TEST_CASE("robots observed through league packets cross the field and arrive wit
   system.start_simulator();
   system.start_vision({"--tracked", system.endpoints().text(1)});
   system.start("coordinator", "sidestep-coordinator");
-  REQUIRE(system.wait_until([&] { return system.sees_all(); }));
+  REQUIRE(system.wait_until([&] { return system.tracks_all_robots(); }));
   for (const RobotSpec& robot : system.scenario().robots) {
     system.start("agent " + std::to_string(robot.id), "sidestep-agent",
                  {"--robot", std::to_string(robot.id)});
@@ -235,7 +235,7 @@ TEST_CASE("vision tracks the same robots from a replayed log of league packets")
   REQUIRE(system.wait_until([&] { return system.logged("stop with SIGINT"); }));
   const pid_t simulator = system.start_simulator();
   system.start_vision();
-  REQUIRE(system.wait_until([&] { return system.sees_all(); }));
+  REQUIRE(system.wait_until([&] { return system.tracks_all_robots(); }));
   const Time recorded = system.bus().now() + std::chrono::seconds(3);
   REQUIRE(system.wait_until([&] { return system.bus().now() >= recorded; }));
   REQUIRE(kill(recorder, SIGINT) == 0);
@@ -258,7 +258,7 @@ TEST_CASE("vision tracks the same robots from a replayed log of league packets")
   REQUIRE(kill(simulator, SIGKILL) == 0);
   REQUIRE(system.wait_until([&] { return system.world().robots().empty(); }));
   system.run("replay", "sidestep-vision", replaying);
-  CHECK(system.wait_until([&] { return system.sees_all(); }));
+  CHECK(system.wait_until([&] { return system.tracks_all_robots(); }));
   REQUIRE(system.wait_until([&] { return system.exit_reason("replay").has_value(); }));
   INFO(system.log());
   CHECK(system.exit_reason("replay") == "exit code 0");
@@ -269,7 +269,7 @@ TEST_CASE("vision keeps tracking all robots while it is flooded with random pack
   LeagueSystem system;
   system.start_simulator();
   system.start_vision();
-  REQUIRE(system.wait_until([&] { return system.sees_all(); }));
+  REQUIRE(system.wait_until([&] { return system.tracks_all_robots(); }));
   league::MulticastSender sender(system.endpoints().endpoint(0), league::kLeagueInterface);
   Rng rng(5);
   std::vector<std::byte> garbage;
@@ -283,7 +283,7 @@ TEST_CASE("vision keeps tracking all robots while it is flooded with random pack
   }));
   REQUIRE(system.wait_until([&] { return system.world().header().message_number() > number + 60; }));
   INFO(system.log());
-  CHECK(system.sees_all());
+  CHECK(system.tracks_all_robots());
   CHECK_FALSE(system.exit_reason("vision"));
   CHECK(system.logged("packet(s) rejected so far"));
 }

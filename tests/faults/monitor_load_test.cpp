@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Measures the load that the monitor and its viewers put on a run of real
+// SPDX-License-Identifier: Apache-2.0
+// Measures the load that the monitor and its viewers put on a run of real
 // processes.
 #include <arpa/inet.h>
 #include <atomic>
@@ -139,7 +140,7 @@ TEST_CASE("a run serves its page to the browser, and continues without the monit
 }
 
 /// Measures the load of a monitor while three viewers watch 22 robots.
-void watch_three_times(Duration duration) {
+void measure_three_viewers(Duration duration) {
   LaunchedRun run(two_teams_for(20));
   const MonitorProcess monitor(run);
   const std::vector<std::string> dds = run.dds_arguments();
@@ -175,11 +176,11 @@ void watch_three_times(Duration duration) {
 }
 
 TEST_CASE("a monitor with three viewers does not disturb 22 robots", "[both-cores]") {
-  watch_three_times(5s);
+  measure_three_viewers(5s);
 }
 
 TEST_CASE("a monitor with three viewers costs little more than a plain subscriber", "[.figures][slow]") {
-  watch_three_times(30s);
+  measure_three_viewers(30s);
 }
 
 /// A viewer that reads only 10 kB per second from its connection.

@@ -103,7 +103,7 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
   // refused.
   CHECK(page.wait_until("monitor.events.some((e) => e.text === 'operator sends robot 0 to a goal')"));
   for (const char* key : {"1", "2", "m", "t", "f", "[", "]", ",", ".", "l"}) page.press(key);
-  CHECK(page.complaints() == "");
+  CHECK(page.logged_errors() == "");
 }
 
 TEST_CASE("the page shows a takeover between coordinators, and reconnects to a restarted monitor",
@@ -214,7 +214,7 @@ TEST_CASE("the page shows a recording, and a link to a time opens the recording 
       page.wait_until(fmt::format("Math.abs({}.header?.stamp_ns * 1e-9 - monitor.frame.time) < 0.1 && "
                                   "monitor.frame.time < {:.3f}",
                                   message, at_s.get<double>())));
-  CHECK(page.complaints() == "");
+  CHECK(page.logged_errors() == "");
 
   // The floor is drawn even if nothing moves, and again after it has been resized and zoomed.
   const std::string drawn =
@@ -280,7 +280,7 @@ TEST_CASE("a roadmap adapts while obstacles are dragged on the page") {
   }
   page.click("next");
   CHECK(page.wait_until("Math.abs(planning.plan.obstacles[0][0] - 3) > 0.05"));
-  CHECK(page.complaints() == "");
+  CHECK(page.logged_errors() == "");
   recording.end();
 }
 
@@ -310,7 +310,7 @@ TEST_CASE("the page draws all layers for 22 robots and for 1,000 robots", "[both
         "{}: {} robots, all layers: script per frame median {:.1f} ms, p99 {:.1f} ms of {} frames", scenario,
         figures[3].get<int>(), figures[1].get<double>(), figures[2].get<double>(), figures[0].get<int>()));
     CHECK(figures[3] == page.run("return monitor.scene.robots.length"));
-    CHECK(page.complaints() == "");
+    CHECK(page.logged_errors() == "");
   }
 }
 

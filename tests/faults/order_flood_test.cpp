@@ -48,7 +48,7 @@ msg::Order hostile_order(Rng& rng, Time now) {
   return order;
 }
 
-void check_flood(Duration duration) {
+void run_flood(Duration duration) {
   LaunchedRun run(waiting_robots(),
                   {"--seconds", std::to_string(static_cast<int>(to_seconds(duration)) + 60)});
   Rng rng(1);
@@ -102,11 +102,11 @@ void check_flood(Duration duration) {
 }
 
 TEST_CASE("ten thousand orders a second over DDS are answered without filling memory", "[both-cores]") {
-  check_flood(seconds(8));
+  run_flood(seconds(8));
 }
 
 TEST_CASE("ten thousand orders a second over DDS for two minutes do not fill memory", "[.long][slow]") {
-  check_flood(std::chrono::minutes(2));
+  run_flood(std::chrono::minutes(2));
 }
 
 }  // namespace sidestep::order_flood_test

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Orders while hosts are cut off and processes are killed, over DDS,
+// SPDX-License-Identifier: Apache-2.0
+// Orders while hosts are cut off and processes are killed, over DDS,
 // where even reliable messages are then lost.
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 What dead processes leave behind in the others.
+// SPDX-License-Identifier: Apache-2.0
+// What dead processes leave behind in the others.
 #include <algorithm>
 #include <fmt/format.h>
 #include <map>
@@ -36,14 +37,14 @@ std::map<std::string, Load> measure(LaunchedRun& run, const std::string& except,
   return result;
 }
 
-struct Aftermath {
-  Duration max_matching{};  ///< longest time from the start of an agent's bus until the agent was heard
+struct RestartEffects {
+  Duration max_reconnection{};  ///< longest time from the start of an agent's bus until the agent was heard
   double max_cpu_growth_percent = 0;  ///< largest growth of another process's load, in percent of a core
 };
 
 /// Kills an agent with kill -9 this many times. The memory of other processes must not grow, and each new
 /// agent must be heard.
-Aftermath kill_agent(int times, Duration window) {
+RestartEffects kill_agent(int times, Duration window) {
   const std::string victim = "agent 6";
   // Sanitizers delay the release of freed memory.
   constexpr double kMaxMemoryGrowth_mb = kIsSanitized ? 40 : 10;
@@ -81,8 +82,8 @@ Aftermath kill_agent(int times, Duration window) {
   std::ranges::sort(matching);
   fmt::print("matching after a restart: median {:.0f} ms, maximum {:.0f} ms, {} restarts\n",
              1e3 * to_seconds(matching[matching.size() / 2]), 1e3 * to_seconds(matching.back()), times);
-  Aftermath result;
-  result.max_matching = matching.back();
+  RestartEffects result;
+  result.max_reconnection = matching.back();
   for (const auto& [name, load] : after) {
     const Load& old = before.at(name);
     result.max_cpu_growth_percent =
@@ -106,7 +107,7 @@ TEST_CASE(
     "an agent that is killed two hundred times reconnects each time, and memory of other processes does not "
     "grow",
     "[.long][slow]") {
-  const Aftermath aftermath = kill_agent(200, 20s);
-  CHECK(aftermath.max_matching < 500ms);
+  const RestartEffects aftermath = kill_agent(200, 20s);
+  CHECK(aftermath.max_reconnection < 500ms);
   CHECK(aftermath.max_cpu_growth_percent <= 1);
 }

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Second processes of kinds that may run only once in a domain, over DDS.
+// SPDX-License-Identifier: Apache-2.0
+// Second processes of kinds that may run only once in a domain, over DDS.
 #include <csignal>
 
 #include "common/process/host_name.hpp"

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Bases with ROS 2's topics for velocities and odometry, also with
+// SPDX-License-Identifier: Apache-2.0
+// Bases with ROS 2's topics for velocities and odometry, also with
 // another vendor's DDS.
 #include <csignal>
 #include <cstdio>

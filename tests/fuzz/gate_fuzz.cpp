@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Fuzzes the filter of datagrams before Fast DDS: forwarded submessages,
+// SPDX-License-Identifier: Apache-2.0
+// Fuzzes the filter of datagrams before Fast DDS: forwarded submessages,
 // announcements, notices of presence, certificates.
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Fuzzes hosts files and the placement of a scenario's processes on
+// SPDX-License-Identifier: Apache-2.0
+// Fuzzes hosts files and the placement of a scenario's processes on
 // hosts.
 #include <algorithm>
 #include <arpa/inet.h>

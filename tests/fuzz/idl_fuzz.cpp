@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Fuzzes the reader of IDL and the decoder of messages whose types it
+// SPDX-License-Identifier: Apache-2.0
+// Fuzzes the reader of IDL and the decoder of messages whose types it
 // defines. An input is IDL, a zero byte, and a message.
 #include <algorithm>
 

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The entry points of libFuzzer. With SIDESTEP_SEEDS=FOLDER a fuzzer
+// SPDX-License-Identifier: Apache-2.0
+// The entry points of libFuzzer. With SIDESTEP_SEEDS=FOLDER a fuzzer
 // writes its seeds there and exits.
 #include <cstdlib>
 #include <fstream>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Fuzzes the reader of maps. An input is a byte that selects whether
+// SPDX-License-Identifier: Apache-2.0
+// Fuzzes the reader of maps. An input is a byte that selects whether
 // checksums are corrected, the YAML file, a zero byte, and the image, which the YAML file calls `image`.
 #include <algorithm>
 #include <array>

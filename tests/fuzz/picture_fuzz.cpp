@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Fuzzes the reader of pictures that users give to vision. OpenCV, which
+// SPDX-License-Identifier: Apache-2.0
+// Fuzzes the reader of pictures that users give to vision. OpenCV, which
 // decodes them, is not instrumented.
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>

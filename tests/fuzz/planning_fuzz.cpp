@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Fuzzes the messages that browsers send to the monitor's planning page.
+// SPDX-License-Identifier: Apache-2.0
+// Fuzzes the messages that browsers send to the monitor's planning page.
 // Messages are separated by zero bytes.
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Runs a fuzzer without libFuzzer, on its seeds and on random changes of
+// SPDX-License-Identifier: Apache-2.0
+// Runs a fuzzer without libFuzzer, on its seeds and on random changes of
 // them.
 #include <algorithm>
 

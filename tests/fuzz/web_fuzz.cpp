@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Fuzzes what browsers and viewers send to the monitor: paths and bodies
+// SPDX-License-Identifier: Apache-2.0
+// Fuzzes what browsers and viewers send to the monitor: paths and bodies
 // of HTTP requests, and messages of web sockets. The first byte of an input selects the reader; its parts are
 // separated by zero bytes.
 #include <algorithm>
@@ -135,31 +136,31 @@ bool try_foxglove(const std::vector<std::string>& messages) {
   static const FloorState floor;
   Viewer viewer;
   server.add(viewer);
-  bool all_made_sense = true;
+  bool all_were_valid = true;
   for (const std::string& message : messages) {
-    all_made_sense = all_made_sense && server.on_message(viewer, message);
-    if (!all_made_sense) break;  // the server disconnects
+    all_were_valid = all_were_valid && server.on_message(viewer, message);
+    if (!all_were_valid) break;  // the server disconnects
   }
   server.publish_scene(floor, 0.09, kBegin);
   server.remove(viewer);
   // If a viewer gets much more than at the beginning, it can fill the memory.
   SIDESTEP_REQUIRE(viewer.bytes() < 4 << 20);
-  return all_made_sense;
+  return all_were_valid;
 }
 
 bool try_page(const std::vector<std::string>& messages) {
   Run& run = shown_run();
   Viewer viewer;
   run.monitor.add_viewer(viewer);
-  bool all_made_sense = true;
+  bool all_were_valid = true;
   Time clock = kBegin + std::chrono::seconds(1);
   for (const std::string& message : messages) {
-    all_made_sense = all_made_sense && run.monitor.on_message(viewer, message, clock);
-    if (!all_made_sense) break;
+    all_were_valid = all_were_valid && run.monitor.on_message(viewer, message, clock);
+    if (!all_were_valid) break;
     run.monitor.update_viewers(clock += std::chrono::milliseconds(30));
   }
   run.monitor.remove_viewer(viewer);
-  return all_made_sense;
+  return all_were_valid;
 }
 
 Bytes input_of(Reader reader, std::initializer_list<std::string_view> parts) {

@@ -14,7 +14,7 @@
 #define CHOOSE_CONTRADICTION(o, e, t)                                                                      \
   ::d_step {                                                                                               \
     HAS(facts[F(0, o, 1)] | facts[F(0, o, 2)], FACT(UNGRANTED, t)) && CONTRADICTS(0, e, UNGRANTED, t) &&   \
-        (contradicted_at[(e) - 1] <= (t) || contradicted_under[(e) - 1] < (o)) -> v_ = 0; t_ = t           \
+        (contradicted_at[(e) - 1] <= (t) || contradicted_incarnation[(e) - 1] < (o)) -> v_ = 0; t_ = t           \
   }
 #define CONTRADICTIONS(e) COORDINATOR_RECEIVES_CONTRADICTION(1, e) COORDINATOR_RECEIVES_CONTRADICTION(2, e)
 #else
@@ -137,7 +137,7 @@ inline register_versions(i, k, e) {
 #ifdef QUARANTINE
   :: registered[C(i, e)] != 0 && IS_QUARANTINED(i, e) ->
      ledger[C(i, e)] = v_;
-     contradicted_at[e - 1] = 0; contradicted_under[e - 1] = 0
+     contradicted_at[e - 1] = 0; contradicted_incarnation[e - 1] = 0
 #endif
   :: else
   fi;

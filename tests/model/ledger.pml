@@ -126,10 +126,10 @@ inline update_ledger(i, e) {
   :: IS_QUARANTINED(i, e) && f_ != LIFTED && RELEASES(e, t_) ->
      printf("        the quarantine ends\n");
      ledger[C(i, e)] = ledger[C(i, e)] & ~BIT(UNGRANTED);
-     contradicted_at[e - 1] = 0; contradicted_under[e - 1] = 0
+     contradicted_at[e - 1] = 0; contradicted_incarnation[e - 1] = 0
   :: IS_QUARANTINED(i, e) && f_ == LIFTED && HAS_ENDED(t_) ->
      ledger[C(i, e)] = ledger[C(i, e)] & ~BIT(UNGRANTED);
-     contradicted_at[e - 1] = 0; contradicted_under[e - 1] = 0
+     contradicted_at[e - 1] = 0; contradicted_incarnation[e - 1] = 0
   :: else
   fi;
   if
@@ -148,7 +148,7 @@ inline quarantine(o, e) {
   :: else
   fi;
   if
-  :: contradicted_under[e - 1] < o -> contradicted_under[e - 1] = o
+  :: contradicted_incarnation[e - 1] < o -> contradicted_incarnation[e - 1] = o
   :: else
   fi;
 #ifdef QUARANTINE_REPLACES
@@ -171,7 +171,7 @@ inline quarantine(o, e) {
 #ifdef RELEASE_BY_ANY_REGISTRATION
 #define ENDS_QUARANTINE(i, k, e, set) true
 #else
-#define ENDS_QUARANTINE(i, k, e, set) (contradicted_under[(e) - 1] < (k) || HAS(set, UNGRANTED))
+#define ENDS_QUARANTINE(i, k, e, set) (contradicted_incarnation[(e) - 1] < (k) || HAS(set, UNGRANTED))
 #endif
 #else
 #define ENDS_QUARANTINE(i, k, e, set) true

@@ -62,7 +62,7 @@ bool is_attested, is_taken_as_absent;
 #ifdef QUARANTINE
 /* By coordinator: time of the latest fact that contradicts the ledger, plus 1, 0: not quarantined; and the latest agent
    that the robot obeyed then. */
-byte contradicted_at[2], contradicted_under[2];
+byte contradicted_at[2], contradicted_incarnation[2];
 #define IS_QUARANTINED(i, e) ((i) == 0 && contradicted_at[(e) - 1] != 0)
 #else
 #define IS_QUARANTINED(i, e) false

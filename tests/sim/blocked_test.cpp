@@ -13,10 +13,11 @@ namespace sidestep::blocked_test {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr double kRadius_m = 0.09, kNear_m = 0.08;  // kNear_m covers margin, extra clearance and noise
+constexpr double kRadius_m = 0.09,
+                 kMaxWaitingGap_m = 0.08;  // kMaxWaitingGap_m covers margin, extra clearance and noise
 
 /// Runs until the robot rests and reports that it is blocked for this reason; false after 15 s.
-bool rests_blocked(OrderedSystem& run, RobotId robot, msg::BlockReason reason) {
+bool comes_to_rest_blocked(OrderedSystem& run, RobotId robot, msg::BlockReason reason) {
   return run.run_until(seconds(15), [&] {
     const msg::OrderStatus& status = run.statuses[robot];
     return status.order_state() == msg::OrderState::ORDER_BLOCKED && status.block_reason() == reason &&
@@ -33,14 +34,14 @@ TEST_CASE("a robot waits beside another robot that rests on its goal, and contin
   const Vec2 place(2, -1.5);  // position of robot 1
   run.system.run_for(seconds(1));
   const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
-  REQUIRE(rests_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
+  REQUIRE(comes_to_rest_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
   CHECK(run.statuses[0].blocker() == 1);
-  CHECK(distance(run, 0, place) < 2 * kRadius_m + kNear_m);
+  CHECK(distance(run, 0, place) < 2 * kRadius_m + kMaxWaitingGap_m);
   run.system.run_for(seconds(3));
-  CHECK(rests_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
+  CHECK(comes_to_rest_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
   // Robot 2 waits next to robots 0 and 1.
   const auto third = run.send(msg::OrderKind::ORDER_GO, 2, kClient, {{place}});
-  REQUIRE(rests_blocked(run, 2, msg::BlockReason::BLOCK_ROBOT));
+  REQUIRE(comes_to_rest_blocked(run, 2, msg::BlockReason::BLOCK_ROBOT));
   run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{0, 0}}});
   CHECK(
       run.run_until(seconds(10), [&] { return run.arrived.contains(order) || run.arrived.contains(third); }));
@@ -57,8 +58,8 @@ TEST_CASE(
   REQUIRE(run.run_until(seconds(5), [&] { return run.bodies[1].velocity_mps.norm() < kAtRest_mps; }));
   const Vec2 place = run.bodies[1].position_m;
   const auto second = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
-  REQUIRE(rests_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
-  CHECK(distance(run, 0, place) < 2 * kRadius_m + kNear_m);
+  REQUIRE(comes_to_rest_blocked(run, 0, msg::BlockReason::BLOCK_ROBOT));
+  CHECK(distance(run, 0, place) < 2 * kRadius_m + kMaxWaitingGap_m);
   run.send(msg::OrderKind::ORDER_RESUME, 1, kClient);
   CHECK(run.run_until(seconds(10),
                       [&] { return run.arrived.contains(first) && run.arrived.contains(second); }));
@@ -93,9 +94,9 @@ TEST_CASE(
   const auto order = run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{place}});
   REQUIRE(run.run_until(seconds(5), [&] { return run.bodies[0].position_m.x() > -1.5; }));
   run.draw(4, {{{-0.2, -0.4}, {0.2, -0.4}, {0.2, 0.4}, {-0.2, 0.4}}, 0});
-  REQUIRE(rests_blocked(run, 0, msg::BlockReason::BLOCK_ZONE));
+  REQUIRE(comes_to_rest_blocked(run, 0, msg::BlockReason::BLOCK_ZONE));
   CHECK(run.statuses[0].blocker() == 4);
-  CHECK(distance(run, 0, place) < 0.2 + kRadius_m + kNear_m);
+  CHECK(distance(run, 0, place) < 0.2 + kRadius_m + kMaxWaitingGap_m);
   CHECK(std::abs(run.bodies[0].position_m.x()) > 0.2 + kRadius_m);
   run.erase(4);
   CHECK(run.run_until(seconds(5), [&] { return run.arrived.contains(order); }));
@@ -152,12 +153,12 @@ TEST_CASE(
   OrderedSystem run(waiting_robots(2, 1, obstacles), 1);
   run.system.run_for(seconds(1));
   run.send(msg::OrderKind::ORDER_GO, 0, kClient, {{{-0.1, -1}}});
-  REQUIRE(rests_blocked(run, 0, msg::BlockReason::BLOCK_OBSTACLE));
+  REQUIRE(comes_to_rest_blocked(run, 0, msg::BlockReason::BLOCK_OBSTACLE));
   CHECK(run.statuses[0].blocker_y_m() == -1);
-  CHECK(distance(run, 0, {-0.1, -1}) < 0.2 + kRadius_m + kNear_m);
+  CHECK(distance(run, 0, {-0.1, -1}) < 0.2 + kRadius_m + kMaxWaitingGap_m);
   run.send(msg::OrderKind::ORDER_GO, 1, kClient, {{{0, 1}}});
-  REQUIRE(rests_blocked(run, 1, msg::BlockReason::BLOCK_NO_PATH));
-  CHECK(distance(run, 1, {0, 1}) < 0.75 + kRadius_m + kNear_m);
+  REQUIRE(comes_to_rest_blocked(run, 1, msg::BlockReason::BLOCK_NO_PATH));
+  CHECK(distance(run, 1, {0, 1}) < 0.75 + kRadius_m + kMaxWaitingGap_m);
   run.send(msg::OrderKind::ORDER_CANCEL, 1, kClient);
   CHECK(run.run_until(seconds(2), [&] { return run.statuses[1].order_number() == 0; }));
   run.require_safe();

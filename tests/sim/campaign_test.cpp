@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Campaign trials that test the system, not the campaign.
+// SPDX-License-Identifier: Apache-2.0
+// Campaign trials that test the system, not the campaign.
 #include "deploy/trial/simulate/campaign/scene_sampler.hpp"
 #include "deploy/trial/simulate/campaign/trial.hpp"
 #include "tests/catch.hpp"

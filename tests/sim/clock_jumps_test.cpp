@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Clocks that jump and later agree again.
+// SPDX-License-Identifier: Apache-2.0
+// Clocks that jump and later agree again.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ struct Jump {
 struct History {
   Scenario scenario;
   std::vector<Jump> jumps;
-  Duration agree_at{0};  ///< time from which all clocks agree
+  Duration clocks_agree_at{0};  ///< time from which all clocks agree
 };
 
 /// Samples an offset of 1 ms to an hour, forward or back.
@@ -39,18 +40,18 @@ History sample(std::uint64_t seed) {
   std::vector<std::string> clocks = system_process_names(history.scenario);
   for (const RobotSpec& robot : history.scenario.robots)
     clocks.push_back("robot " + std::to_string(robot.id));
-  history.agree_at = from_seconds(rng.uniform(2.5, 9));
+  history.clocks_agree_at = from_seconds(rng.uniform(2.5, 9));
   const std::uint64_t count = rng.chance(0.4) ? 1 : 2 + rng.below(5);
   // Setting a host's clock moves the clocks of several processes.
   const bool is_common = rng.chance(0.3);
   const Duration common = sample_offset(rng);
   for (std::uint64_t i = 0; i < count; ++i) {
-    const Duration at = from_seconds(rng.uniform(0.3, to_seconds(history.agree_at)));
+    const Duration at = from_seconds(rng.uniform(0.3, to_seconds(history.clocks_agree_at)));
     history.jumps.push_back({at, clocks[rng.below(clocks.size())], is_common ? common : sample_offset(rng)});
   }
   std::ranges::stable_sort(history.jumps, {}, &Jump::at);
   std::vector<Jump> ends;
-  for (const Jump& jump : history.jumps) ends.push_back({history.agree_at, jump.clock, Duration{0}});
+  for (const Jump& jump : history.jumps) ends.push_back({history.clocks_agree_at, jump.clock, Duration{0}});
   history.jumps.insert(history.jumps.end(), ends.begin(), ends.end());
   return history;
 }
@@ -78,7 +79,7 @@ double run(std::uint64_t seed) {
   motion.begin();
   double last_s = 0;
   for (bool do_all_drive = false;
-       !do_all_drive && system.now() < system.begin() + history.agree_at + kMaxRecovery;) {
+       !do_all_drive && system.now() < system.begin() + history.clocks_agree_at + kMaxRecovery;) {
     system.run_for(std::chrono::milliseconds(50));
     do_all_drive = std::ranges::all_of(history.scenario.robots, [&](const RobotSpec& robot) {
       last_s = std::max(last_s, motion.first_motion_s(robot.id).value_or(last_s));

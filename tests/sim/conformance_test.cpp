@@ -79,11 +79,11 @@ TEST_CASE("a healthy robot with Sidestep's firmware conforms") {
 }
 
 // The latency that an earlier conformance test measured; see the test of the measured latency.
-constexpr Duration kObeysAfter = 118ms;
+constexpr Duration kMeasuredLatency = 118ms;
 
 TEST_CASE("a third-party base conforms when it is driven in single precision") {
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
-  const ConformanceReport report = examine_driven(lone_league_robot(), {}, kObeysAfter, seed);
+  const ConformanceReport report = examine_driven(lone_league_robot(), {}, kMeasuredLatency, seed);
   INFO("seed " << seed << "\n" << to_text(report));
   CHECK(report.is_conformant());
   CHECK(report.figures.is_within_limits);
@@ -108,7 +108,7 @@ TEST_CASE("a robot that brakes with 60 % of its stated deceleration fails the br
   const std::uint64_t seed = GENERATE(1u, 2u, 3u);
   BaseSettings bases;
   bases.braking_mps2 = 3;
-  const ConformanceReport report = examine_driven(lone_league_robot(), bases, kObeysAfter, seed);
+  const ConformanceReport report = examine_driven(lone_league_robot(), bases, kMeasuredLatency, seed);
   INFO("seed " << seed << "\n" << to_text(report));
   CHECK(failed(report) == std::vector<std::string>{"braking"});
   CHECK_FALSE(report.figures.is_within_limits);
@@ -148,7 +148,7 @@ TEST_CASE("a robot that still obeys fenced agents fails the fence check") {
     command.version().incarnation(latest.first);
     command.epoch(latest.second);
   };
-  DrivenFloor floor(network, scenario, {}, kObeysAfter, seed, ignore_fences);
+  DrivenFloor floor(network, scenario, {}, kMeasuredLatency, seed, ignore_fences);
   const ConformanceReport report = examine(network, scenario);
   INFO("seed " << seed << "\n" << to_text(report));
   CHECK(failed(report) == std::vector<std::string>{"fences"});
@@ -168,7 +168,7 @@ TEST_CASE("a robot that acknowledges a new agent too late fails the check of pen
     obeyed = agent;
     heard_at.reset();
   };
-  DrivenFloor floor(network, scenario, {}, kObeysAfter, seed, obey_late);
+  DrivenFloor floor(network, scenario, {}, kMeasuredLatency, seed, obey_late);
   const ConformanceReport report = examine(network, scenario);
   INFO("seed " << seed << "\n" << to_text(report));
   CHECK(failed(report) == std::vector<std::string>{"pending versions"});

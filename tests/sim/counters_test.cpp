@@ -23,9 +23,9 @@ Scenario crossing() {
 
 /// A process outside the system that sends faulty messages. It knows the latest messages about robot 0, and
 /// the scenario's rules if it is given them.
-class Stranger {
+class FaultySender {
  public:
-  Stranger(SimSystem& system, const std::optional<Scenario>& rules)
+  FaultySender(SimSystem& system, const std::optional<Scenario>& rules)
       : system_(system), bus_(system.network()) {
     if (rules) bus_.use_rules(SharedRules(*rules).fingerprint(), [](const auto&, const auto&) {});
     bus_.subscribe(topics::kCommand, kRobot, [this](const msg::Command& message) { command = message; });
@@ -69,7 +69,7 @@ Message from(Sender sender) {
   return from<Message>(static_cast<std::uint32_t>(sender));
 }
 
-msg::WorldState world_of(const Stranger& stranger, double x_m, Duration ahead = 0s) {
+msg::WorldState world_of(const FaultySender& stranger, double x_m, Duration ahead = 0s) {
   auto world = from<msg::WorldState>(Sender::kVision);
   world.valid_at_ns(to_ns(stranger.now()));
   auto& robot = world.robots().emplace_back();
@@ -79,7 +79,7 @@ msg::WorldState world_of(const Stranger& stranger, double x_m, Duration ahead = 
   return world;
 }
 
-msg::DetectionFrame frame_of(const Stranger& stranger) {
+msg::DetectionFrame frame_of(const FaultySender& stranger) {
   msg::DetectionFrame frame;
   frame.header() = stranger.feedback.header();  // the simulator's incarnation
   frame.captured_at_ns(to_ns(stranger.now()));
@@ -88,7 +88,7 @@ msg::DetectionFrame frame_of(const Stranger& stranger) {
 }
 
 /// A command in the name of the obeyed agent, with a version that the agent has not sent.
-msg::Command with_version(const Stranger& stranger, VersionNumber base, Duration until_start) {
+msg::Command with_version(const FaultySender& stranger, VersionNumber base, Duration until_start) {
   msg::Command command = stranger.command;
   command.epoch(stranger.feedback.obeyed_epoch());
   command.has_version(true);
@@ -100,7 +100,7 @@ msg::Command with_version(const Stranger& stranger, VersionNumber base, Duration
 }
 
 /// Answers the next proposals of robot 0 before the coordinator does.
-void answer_proposals(Stranger& stranger, bool is_grant, std::optional<Time> stamp = {}) {
+void answer_proposals(FaultySender& stranger, bool is_grant, std::optional<Time> stamp = {}) {
   stranger.on_proposal = [&stranger, is_grant, stamp] {
     auto verdict = from<msg::Verdict>(Sender::kCoordinator);
     verdict.robot(kRobot);
@@ -116,63 +116,63 @@ void answer_proposals(Stranger& stranger, bool is_grant, std::optional<Time> sta
 struct Cause {
   DropReason reason;
   const char* process;
-  std::function<void(Stranger&, SimSystem&)> act;
+  std::function<void(FaultySender&, SimSystem&)> act;
   std::function<void(Scenario&)> change = nullptr;
 };
 
 const std::vector<Cause> kCauses{
     {DropReason::kOtherRules, "coordinator",
-     [](Stranger&, SimSystem& system) {
-       Stranger other(system, std::nullopt);
+     [](FaultySender&, SimSystem& system) {
+       FaultySender other(system, std::nullopt);
        other.send(topics::kProposal, msg::Proposal());
      }},
     {DropReason::kInjectedLoss, "coordinator",
-     [](Stranger&, SimSystem& system) {
+     [](FaultySender&, SimSystem& system) {
        system.set_link("agent 0", "coordinator", {0.5, 1, 0, 100us, 100us, 200us, false});
      }},
     {DropReason::kQueueFull, "coordinator",
-     [](Stranger&, SimSystem& system) { system.pause("coordinator", 200ms, 1); }},
+     [](FaultySender&, SimSystem& system) { system.pause("coordinator", 200ms, 1); }},
     {DropReason::kContestedSender, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.feedback.header().incarnation(s.feedback.header().incarnation() + 1);
        s.send(topics::kFeedback, s.feedback);
      }},
     {DropReason::kMalformedFeedback, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.feedback.x_m(kNan);
        s.send(topics::kFeedback, s.feedback);
      }},
     {DropReason::kMalformedVerdict, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto verdict = from<msg::Verdict>(Sender::kCoordinator);
        verdict.robot(5);
        s.send(topics::kVerdict, verdict);
      }},
     {DropReason::kForgedSender, "agent 0",
-     [](Stranger& s, SimSystem&) { s.send(topics::kWorld, from<msg::WorldState>(Sender::kSimulator)); }},
+     [](FaultySender& s, SimSystem&) { s.send(topics::kWorld, from<msg::WorldState>(Sender::kSimulator)); }},
     {DropReason::kMalformedObservation, "agent 0",
-     [](Stranger& s, SimSystem&) { s.send(topics::kWorld, world_of(s, kNan)); }},
+     [](FaultySender& s, SimSystem&) { s.send(topics::kWorld, world_of(s, kNan)); }},
     {DropReason::kMalformedObstacles, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto list = from<msg::ObstacleList>(Sender::kVision);
        list.complete_within_m(kNan);
        s.send(topics::kObstacles, list);
      }},
     {DropReason::kMalformedScan, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto scan = from<msg::LaserScan>(0);
        scan.header().incarnation(s.feedback.header().incarnation());
        s.send(topics::kScan, scan);
      },
      [](Scenario& scenario) { scenario.laser.emplace(); }},
     {DropReason::kMalformedLedgerPage, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto page = from<msg::LedgerPage>(Sender::kCoordinator);
        page.page_index(kMaxRobots);
        s.send(topics::kLedger, page);
      }},
     {DropReason::kMalformedVersion, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto page = from<msg::LedgerPage>(Sender::kCoordinator);
        page.page_index(77);
        page.epoch(s.state.epoch());
@@ -185,46 +185,46 @@ const std::vector<Cause> kCauses{
        s.send(topics::kLedger, page);
      }},
     {DropReason::kMalformedCoordinatorState, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.state.coordinator_mode(static_cast<msg::CoordinatorMode>(99));
        s.send(topics::kCoordinator, s.state);
      }},
     {DropReason::kMalformedRegistration, "coordinator",
-     [](Stranger& s, SimSystem&) { s.send(topics::kRegistration, from<msg::Registration>(5)); }},
+     [](FaultySender& s, SimSystem&) { s.send(topics::kRegistration, from<msg::Registration>(5)); }},
     {DropReason::kMalformedProposal, "coordinator",
-     [](Stranger& s, SimSystem&) { s.send(topics::kProposal, from<msg::Proposal>(5)); }},
+     [](FaultySender& s, SimSystem&) { s.send(topics::kProposal, from<msg::Proposal>(5)); }},
     {DropReason::kMalformedCommand, "simulator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.command.desired_heading_rad(kNan);
        s.send(topics::kCommand, s.command);
      }},
     {DropReason::kMalformedPlacement, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto place = from<msg::Disturbance>(Sender::kOperator);
        place.disturbance_kind(msg::DisturbanceKind::DISTURBANCE_PLACE);
        place.x_m(kNan);
        s.send(topics::kDisturbance, place);
      }},
     {DropReason::kMalformedRules, "vision",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        msg::SharedRules rules;
        rules.text().assign({'?', '\n'});
        s.send(topics::kRules, rules);
      }},
     {DropReason::kMalformedFrame, "vision",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto frame = frame_of(s);
        frame.ball_count(msg::MAX_DETECTED_BALLS + 1);
        s.send(topics::kDetections, frame);
      }},
     {DropReason::kMalformedDetection, "vision",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto frame = frame_of(s);
        frame.robots().emplace_back().x_m(kNan);
        s.send(topics::kDetections, frame);
      }},
     {DropReason::kMalformedImage, "vision",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        msg::CameraImage image;
        image.header() = s.feedback.header();  // the simulator's incarnation
        s.send(topics::kImages, image);
@@ -234,23 +234,23 @@ const std::vector<Cause> kCauses{
        scenario.robots.resize(1);
      }},
     {DropReason::kFutureWorld, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto world = from<msg::WorldState>(Sender::kVision);
        world.valid_at_ns(to_ns(s.now() + 1s));
        s.send(topics::kWorld, world);
      }},
     {DropReason::kFutureObservation, "agent 0",
-     [](Stranger& s, SimSystem&) { s.send(topics::kWorld, world_of(s, 0, 1s)); }},
+     [](FaultySender& s, SimSystem&) { s.send(topics::kWorld, world_of(s, 0, 1s)); }},
     {DropReason::kFutureObstacles, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto list = from<msg::ObstacleList>(Sender::kVision);
        list.valid_at_ns(to_ns(s.now() + 10s));
        s.send(topics::kObstacles, list);
      }},
     {DropReason::kImplausibleClock, "agent 0",
-     [](Stranger& s, SimSystem&) { answer_proposals(s, false, Time{}); }},
+     [](FaultySender& s, SimSystem&) { answer_proposals(s, false, Time{}); }},
     {DropReason::kFrequentEpoch, "coordinator",
-     [](Stranger& s, SimSystem& system) {
+     [](FaultySender& s, SimSystem& system) {
        for (int i = 1; i <= 5; ++i) {
          s.proposal.epoch(static_cast<Epoch>(to_ns(s.now() + i * 10s)));
          s.send(topics::kProposal, s.proposal);
@@ -258,30 +258,30 @@ const std::vector<Cause> kCauses{
        }
      }},
     {DropReason::kUnknownRobot, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.proposal.robot(900);
        s.proposal.header().sender(900);
        s.send(topics::kProposal, s.proposal);
      }},
-    {DropReason::kUnproposedGrant, "agent 0", [](Stranger& s, SimSystem&) { answer_proposals(s, true); }},
-    {DropReason::kUnexpectedVerdict, "agent 0", [](Stranger&, SimSystem&) {},
+    {DropReason::kUnproposedGrant, "agent 0", [](FaultySender& s, SimSystem&) { answer_proposals(s, true); }},
+    {DropReason::kUnexpectedVerdict, "agent 0", [](FaultySender&, SimSystem&) {},
      [](Scenario& scenario) { scenario.network.duplicate = 0.5; }},
-    {DropReason::kLateFact, "coordinator", [](Stranger&, SimSystem&) {},
+    {DropReason::kLateFact, "coordinator", [](FaultySender&, SimSystem&) {},
      [](Scenario& scenario) { scenario.network.delay_max = 60ms; }},
-    {DropReason::kLatePage, "agent 0", [](Stranger&, SimSystem&) {},
+    {DropReason::kLatePage, "agent 0", [](FaultySender&, SimSystem&) {},
      [](Scenario& scenario) { scenario.network.delay_max = 60ms; }},
     {DropReason::kOldEpoch, "agent 0",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.state.epoch(8);
        s.send(topics::kCoordinator, s.state);
      }},
     {DropReason::kContradictoryFact, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.feedback.executing().version_number(s.feedback.executing().version_number() + 5000);
        s.send(topics::kFeedback, s.feedback);
      }},
     {DropReason::kFactOfHigherEpoch, "coordinator",
-     [](Stranger& s, SimSystem& system) {
+     [](FaultySender& s, SimSystem& system) {
        // The coordinator no longer acts on reports of higher epochs.
        for (int i = 1; i <= 4; ++i) {
          s.proposal.epoch(static_cast<Epoch>(to_ns(s.now() + i * 10s)));
@@ -294,40 +294,40 @@ const std::vector<Cause> kCauses{
        s.send(topics::kFeedback, s.feedback);
      }},
     {DropReason::kRefusedProposal, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.proposal.epoch(1);
        s.send(topics::kProposal, s.proposal);
      }},
     {DropReason::kRefusedRegistration, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto registration = from<msg::Registration>(kRobot);
        registration.epoch(1);
        registration.is_absent(true);
        s.send(topics::kRegistration, registration);
      }},
     {DropReason::kRefusedAttestation, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.send(topics::kAttestation, from<msg::AbsenceAttestation>(Sender::kOperator));
      }},
     {DropReason::kMalformedOrder, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto order = from<msg::Order>(Sender::kOperator);
        order.terms().order_kind(static_cast<msg::OrderKind>(99));
        s.send(topics::kOrder, order);
      }},
     {DropReason::kRefusedOrder, "coordinator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.send(topics::kOrder,
               encode(Order{msg::OrderKind::ORDER_CANCEL, 900, static_cast<ClientId>(Sender::kOperator), 1}));
      }},
     {DropReason::kUntimelyFrame, "vision",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto frame = frame_of(s);
        frame.captured_at_ns(to_ns(s.now() - 1s));
        s.send(topics::kDetections, frame);
      }},
     {DropReason::kFalseDetection, "vision",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto frame = frame_of(s);
        auto& robot = frame.robots().emplace_back();
        robot.x_m(-s.feedback.x_m() + 1);
@@ -335,7 +335,7 @@ const std::vector<Cause> kCauses{
        s.send(topics::kDetections, frame);
      }},
     {DropReason::kTooManyObstacles, "vision",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        for (std::uint32_t row = 0; row < 8; ++row) {
          auto frame = frame_of(s);
          frame.obstacle_count(msg::MAX_OBSTACLES);
@@ -347,26 +347,26 @@ const std::vector<Cause> kCauses{
          s.send(topics::kDetections, frame);
        }
      }},
-    {DropReason::kCommandLost, "simulator", [](Stranger&, SimSystem&) {},
+    {DropReason::kCommandLost, "simulator", [](FaultySender&, SimSystem&) {},
      [](Scenario& scenario) { scenario.command_loss = 0.2; }},
     {DropReason::kFencedCommand, "simulator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        s.command.header().incarnation(1);
        s.command.has_version(false);
        s.send(topics::kCommand, s.command);
      }},
     {DropReason::kLateVersion, "simulator",
-     [](Stranger& s, SimSystem&) { s.send(topics::kCommand, with_version(s, 0, -100ms)); }},
+     [](FaultySender& s, SimSystem&) { s.send(topics::kCommand, with_version(s, 0, -100ms)); }},
     {DropReason::kWrongBase, "simulator",
-     [](Stranger& s, SimSystem&) { s.send(topics::kCommand, with_version(s, 1, 50ms)); }},
+     [](FaultySender& s, SimSystem&) { s.send(topics::kCommand, with_version(s, 1, 50ms)); }},
     {DropReason::kRefusedDisturbance, "simulator",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        auto push = from<msg::Disturbance>(Sender::kOperator);
        push.robot(99);
        s.send(topics::kDisturbance, push);
      }},
     {DropReason::kUnusedByMonitor, "monitor",
-     [](Stranger& s, SimSystem&) {
+     [](FaultySender& s, SimSystem&) {
        msg::GroundTruth truth;
        truth.header() = s.feedback.header();
        truth.penetration_m_s(kNan);
@@ -375,7 +375,7 @@ const std::vector<Cause> kCauses{
 };
 
 /// Reasons that no message on SimBus can cause, and the tests that cause them.
-const std::set<DropReason> kElsewhere{
+const std::set<DropReason> kCoveredByOtherTests{
     DropReason::kUnreadable,          // dds/robustness_test
     DropReason::kMalformedDatagram,   // dds/robustness_test
     DropReason::kForgottenPeer,       // dds/presence_test
@@ -394,7 +394,7 @@ const std::set<DropReason> kElsewhere{
 };
 
 TEST_CASE("the process that drops a message counts it under the reason for the drop") {
-  std::set<DropReason> covered = kElsewhere;
+  std::set<DropReason> covered = kCoveredByOtherTests;
   for (const Cause& cause : kCauses) {
     covered.insert(cause.reason);
     CAPTURE(cause.process, info_of(cause.reason).name);
@@ -402,7 +402,7 @@ TEST_CASE("the process that drops a message counts it under the reason for the d
       Scenario scenario = crossing();
       if (cause.change && is_caused) cause.change(scenario);
       SimSystem system(scenario, 1);
-      Stranger stranger(system, scenario);
+      FaultySender stranger(system, scenario);
       if (is_caused) cause.act(stranger, system);
       system.run_for(1500ms);
       const Report report = system.metrics().report();

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Robots that lose power while they drive, and robots without power that
+// SPDX-License-Identifier: Apache-2.0
+// Robots that lose power while they drive, and robots without power that
 // a person carries among the others.
 #include <algorithm>
 #include <cmath>
@@ -85,8 +86,8 @@ struct BodyPath {
 
 /// Whether a robot stays clear of the body if it moves as in `undisturbed` for the detection time and then
 /// brakes. Half the margin covers its tracking error.
-bool can_stop_clear(RobotId robot, const std::vector<Moment>& undisturbed, const BodyPath& body, Time fault,
-                    const Scenario& scenario) {
+bool can_stop_without_contact(RobotId robot, const std::vector<Moment>& undisturbed, const BodyPath& body,
+                              Time fault, const Scenario& scenario) {
   const auto is_clear = [&](const Vec2& position, double t_s) {
     return (position - body.position_m(t_s)).norm() > 2 * scenario.radius_m + scenario.margin_m / 2;
   };
@@ -262,7 +263,8 @@ void run_case(std::uint64_t seed, bool is_carried, Totals& totals) {
     totals.slowest_detection = std::max(totals.slowest_detection, named->second - fault.moved);
   std::set<RobotId> judged;
   for (const RobotSpec& robot : scenario.robots) {
-    if (robot.id != fault.robot && can_stop_clear(robot.id, undisturbed.truths, path, fault.moved, scenario))
+    if (robot.id != fault.robot &&
+        can_stop_without_contact(robot.id, undisturbed.truths, path, fault.moved, scenario))
       judged.insert(robot.id);
   }
   totals.judged += static_cast<int>(judged.size());

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The protocol under external events: pushed, lifted and placed robots,
+// SPDX-License-Identifier: Apache-2.0
+// The protocol under external events: pushed, lifted and placed robots,
 // firmware restarts, forged reports.
 #include <algorithm>
 

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Sequences of single messages between real agents (their negotiation),
+// SPDX-License-Identifier: Apache-2.0
+// Sequences of single messages between real agents (their negotiation),
 // coordinators and firmware, with a one-way partition or an agent that receives nothing. If robots did not
 // fence epochs, each sequence would bring two robots too close together.
 #include "agents/agent/negotiation.hpp"

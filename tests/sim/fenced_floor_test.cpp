@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Bases with latency, driven as by sidestep-robot, while agents restart
+// SPDX-License-Identifier: Apache-2.0
+// Bases with latency, driven as by sidestep-robot, while agents restart
 // or run twice.
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Robots that see opponents and people only with their own lasers.
+// SPDX-License-Identifier: Apache-2.0
+// Robots that see opponents and people only with their own lasers.
 #include <algorithm>
 #include <chrono>
 

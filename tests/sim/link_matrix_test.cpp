@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Links between single processes that are permanently cut, lossy or slow,
+// SPDX-License-Identifier: Apache-2.0
+// Links between single processes that are permanently cut, lossy or slow,
 // each in one direction.
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Robots driven by local methods, in whole systems.
+// SPDX-License-Identifier: Apache-2.0
+// Robots driven by local methods, in whole systems.
 #include <fmt/format.h>
 
 #include "common/config/scenario_loader.hpp"

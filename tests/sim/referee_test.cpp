@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Whole systems that obey the league's referee.
+// SPDX-License-Identifier: Apache-2.0
+// Whole systems that obey the league's referee.
 #include "agents/tactics/referee_node.hpp"
 #include "common/motion/rolling_ball.hpp"
 #include "tests/sim/ordered_system.hpp"

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Holds survive partitions and crashes while a process that remembers
+// SPDX-License-Identifier: Apache-2.0
+// Holds survive partitions and crashes while a process that remembers
 // them runs (S-47, S-48), and no robot drives after all processes have restarted.
 #include <set>
 

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Two processes of kinds that may run only once in a domain.
+// SPDX-License-Identifier: Apache-2.0
+// Two processes of kinds that may run only once in a domain.
 #include <algorithm>
 #include <map>
 #include <set>

@@ -84,7 +84,7 @@ int calibrate_command(int argc, char** argv) {
       .excludes(geometry);
   app.add_option("--out", options.out_file, "file for the thresholds or cameras [standard output]");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_guarded(
+  return run_and_report_errors(
       kName, [&] { return options.points_file.empty() ? run_colours(options) : run_geometry(options); });
 }
 

@@ -89,8 +89,8 @@ double cost_of(const CameraParameters& parameters, std::span<const CalibrationPo
 }
 
 /// Sets up the normal equations; their solution has a step of 0 for fixed parameters.
-void set_up(const CameraModel& camera, std::span<const CalibrationPoint> points,
-            const FreeParameters& is_free, NormalMatrix& normal, Step& right) {
+void set_up_normal_equations(const CameraModel& camera, std::span<const CalibrationPoint> points,
+                             const FreeParameters& is_free, NormalMatrix& normal, Step& right) {
   normal.setZero();
   right.setZero();
   for (const CalibrationPoint& point : points) {
@@ -114,7 +114,7 @@ double minimise(CameraParameters& camera, std::span<const CalibrationPoint> poin
   NormalMatrix normal;
   Step right;
   for (int i = 0; i < kMaxIterations && damping < 1e12; ++i) {
-    set_up(CameraModel(camera), points, is_free, normal, right);
+    set_up_normal_equations(CameraModel(camera), points, is_free, normal, right);
     NormalMatrix damped = normal;
     damped.diagonal() *= 1 + damping;
     const Step step = damped.ldlt().solve(right);
@@ -165,7 +165,7 @@ double robot_top_sd_px(const CameraModel& camera, std::span<const CalibrationPoi
                        const FreeParameters& is_free, double noise_px) {
   NormalMatrix normal;
   Step right;
-  set_up(camera, points, is_free, normal, right);
+  set_up_normal_equations(camera, points, is_free, normal, right);
   // Scaled to a unit diagonal, so that the parameters' units do not matter.
   const Step scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<NormalMatrix> solver(scale.asDiagonal() * normal * scale.asDiagonal());

@@ -131,7 +131,7 @@ int replay_command(int argc, char** argv) {
       .show_default();
   app.add_option("--speed", options.speed, "speed factor").check(in_range(0.001, 1000.0)).show_default();
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_guarded("sidestep-vision replay", [&] { return replay(options); });
+  return run_and_report_errors("sidestep-vision replay", [&] { return replay(options); });
 }
 
 int record_command(int argc, char** argv) {
@@ -140,7 +140,7 @@ int record_command(int argc, char** argv) {
   LogOptions options;
   add_log_options(app, options);
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_guarded("sidestep-vision record", [&] { return record(options); });
+  return run_and_report_errors("sidestep-vision record", [&] { return record(options); });
 }
 
 }  // namespace sidestep

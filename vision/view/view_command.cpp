@@ -122,7 +122,7 @@ int view_command(int argc, char** argv) {
   add_image_options(app, options.images);
   add_dds_options(app, options.dds);
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_guarded("sidestep-vision view", [&] { return view(options); });
+  return run_and_report_errors("sidestep-vision view", [&] { return view(options); });
 }
 
 }  // namespace sidestep

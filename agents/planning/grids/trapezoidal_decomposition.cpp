@@ -18,7 +18,7 @@ using Index = TrapezoidalMap::Index;
 
 constexpr std::int32_t kMargin = 16;      // margin of the box around the field, in grid units
 constexpr double kStandoff_m = 1e-6;      // clearance beyond the robot's radius, unless kStandoff is longer
-constexpr double kStandoff = 4;           // in grid units; rounding moves boundaries by about one unit
+constexpr double kStandoff_units = 4;     // in grid units; rounding moves boundaries by about one unit
 constexpr double kMinPortalHeight = 0.5;  // minimum length of a portal, in grid units
 constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
 
@@ -88,7 +88,7 @@ void TrapezoidalDecomposition::add_boundaries(const DiscDomain& domain) {
   const auto [x, y] = half_field_;
   CrossingDivider::append_boundary(std::array<GridPoint, 4>{GridPoint{-x, -y}, {-x, y}, {x, y}, {x, -y}},
                                    boundaries_);
-  const double clearance_m = domain.radius_m() + std::max(kStandoff_m, kStandoff * unit_m_);
+  const double clearance_m = domain.radius_m() + std::max(kStandoff_m, kStandoff_units * unit_m_);
   std::vector<TangentArc> arcs;
   std::vector<Vec2> vertices;
   for (const ObstacleId id : domain.world().obstacles()) {

@@ -81,12 +81,12 @@ void TrapezoidalMap::insert(Index s) {
   if (first.left < segment.left) {
     left_part = new_trapezoid(first.bottom, first.top, first.left, segment.left);
     for (const std::size_t which : {kSameBottom, kSameTop})
-      take_left(left_part, which, first.left_neighbours[which], crossed_.front());
+      adopt_left_neighbour(left_part, which, first.left_neighbours[which], crossed_.front());
   }
   if (segment.right < last.right) {
     right_part = new_trapezoid(last.bottom, last.top, segment.right, last.right);
     for (const std::size_t which : {kSameBottom, kSameTop})
-      take_right(right_part, which, last.right_neighbours[which], crossed_.back());
+      adopt_right_neighbour(right_part, which, last.right_neighbours[which], crossed_.back());
   }
   divide_crossed(s, left_part, right_part);
   for (std::size_t i = 0; i < crossed_.size(); ++i) replace_leaf(i, s, left_part, right_part);
@@ -132,8 +132,8 @@ void TrapezoidalMap::divide_crossed(Index s, Index left_part, Index right_part) 
   Index upper = new_trapezoid(s, first.top, segment.left, segment.right);
   Index lower = new_trapezoid(first.bottom, s, segment.left, segment.right);
   if (left_part == kNone) {
-    take_left(upper, kSameTop, first.left_neighbours[kSameTop], crossed_.front());
-    take_left(lower, kSameBottom, first.left_neighbours[kSameBottom], crossed_.front());
+    adopt_left_neighbour(upper, kSameTop, first.left_neighbours[kSameTop], crossed_.front());
+    adopt_left_neighbour(lower, kSameBottom, first.left_neighbours[kSameBottom], crossed_.front());
   } else {
     link(left_part, upper, kSameTop);
     link(left_part, lower, kSameBottom);
@@ -148,15 +148,15 @@ void TrapezoidalMap::divide_crossed(Index s, Index left_part, Index right_part) 
       const Index next = new_trapezoid(s, after.top, wall, segment.right);
       trapezoids_[upper].right = wall;
       link(upper, next, kSameBottom);
-      take_right(upper, kSameTop, before.right_neighbours[kSameTop], crossed_[i - 1]);
-      take_left(next, kSameTop, after.left_neighbours[kSameTop], crossed_[i]);
+      adopt_right_neighbour(upper, kSameTop, before.right_neighbours[kSameTop], crossed_[i - 1]);
+      adopt_left_neighbour(next, kSameTop, after.left_neighbours[kSameTop], crossed_[i]);
       upper = next;
     } else {
       const Index next = new_trapezoid(after.bottom, s, wall, segment.right);
       trapezoids_[lower].right = wall;
       link(lower, next, kSameTop);
-      take_right(lower, kSameBottom, before.right_neighbours[kSameBottom], crossed_[i - 1]);
-      take_left(next, kSameBottom, after.left_neighbours[kSameBottom], crossed_[i]);
+      adopt_right_neighbour(lower, kSameBottom, before.right_neighbours[kSameBottom], crossed_[i - 1]);
+      adopt_left_neighbour(next, kSameBottom, after.left_neighbours[kSameBottom], crossed_[i]);
       lower = next;
     }
     upper_.push_back(upper);
@@ -164,8 +164,8 @@ void TrapezoidalMap::divide_crossed(Index s, Index left_part, Index right_part) 
   }
   const Trapezoid last = trapezoids_[crossed_.back()];
   if (right_part == kNone) {
-    take_right(upper, kSameTop, last.right_neighbours[kSameTop], crossed_.back());
-    take_right(lower, kSameBottom, last.right_neighbours[kSameBottom], crossed_.back());
+    adopt_right_neighbour(upper, kSameTop, last.right_neighbours[kSameTop], crossed_.back());
+    adopt_right_neighbour(lower, kSameBottom, last.right_neighbours[kSameBottom], crossed_.back());
   } else {
     link(upper, right_part, kSameTop);
     link(lower, right_part, kSameBottom);
@@ -185,14 +185,16 @@ void TrapezoidalMap::replace_leaf(std::size_t i, Index s, Index left_part, Index
   nodes_[trapezoids_[crossed_[i]].leaf] = node;
 }
 
-void TrapezoidalMap::take_left(Index trapezoid, std::size_t which, Index neighbour, Index removed) {
+void TrapezoidalMap::adopt_left_neighbour(Index trapezoid, std::size_t which, Index neighbour,
+                                          Index removed) {
   trapezoids_[trapezoid].left_neighbours[which] = neighbour;
   if (neighbour == kNone) return;
   for (Index& other : trapezoids_[neighbour].right_neighbours)
     if (other == removed) other = trapezoid;
 }
 
-void TrapezoidalMap::take_right(Index trapezoid, std::size_t which, Index neighbour, Index removed) {
+void TrapezoidalMap::adopt_right_neighbour(Index trapezoid, std::size_t which, Index neighbour,
+                                           Index removed) {
   trapezoids_[trapezoid].right_neighbours[which] = neighbour;
   if (neighbour == kNone) return;
   for (Index& other : trapezoids_[neighbour].left_neighbours)

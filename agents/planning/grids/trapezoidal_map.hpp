@@ -70,8 +70,8 @@ class TrapezoidalMap {
   /// Replaces the leaf of a crossed trapezoid with comparisons.
   void replace_leaf(std::size_t i, Index segment, Index left_part, Index right_part);
   /// Makes the neighbour of a removed trapezoid a neighbour of a new trapezoid; `neighbour` may be kNone.
-  void take_left(Index trapezoid, std::size_t which, Index neighbour, Index removed);
-  void take_right(Index trapezoid, std::size_t which, Index neighbour, Index removed);
+  void adopt_left_neighbour(Index trapezoid, std::size_t which, Index neighbour, Index removed);
+  void adopt_right_neighbour(Index trapezoid, std::size_t which, Index neighbour, Index removed);
   void link(Index left, Index right, std::size_t which);
 
   std::vector<GridSegment> segments_;

@@ -18,7 +18,7 @@ bool is_free(const SpaceTimeDomain& domain, const Path& path, std::size_t first)
 
 /// Removes the state `left_out` and moves everything after it forward in time, by all or part of the time
 /// saved. Returns whether it succeeded.
-bool leave_out(const SpaceTimeDomain& domain, Path& path, std::size_t left_out) {
+bool remove_state(const SpaceTimeDomain& domain, Path& path, std::size_t left_out) {
   Path candidate = path;
   candidate.erase(candidate.begin() + static_cast<std::ptrdiff_t>(left_out));
   const Duration saved =
@@ -56,7 +56,7 @@ void shorten(const SpaceTimeDomain& domain, std::vector<SpaceTimeState>& path) {
   for (bool has_changed = true; has_changed;) {
     has_changed = false;
     for (std::size_t i = 1; i + 1 < path.size();) {
-      const bool is_left_out = leave_out(domain, path, i);
+      const bool is_left_out = remove_state(domain, path, i);
       has_changed = has_changed || is_left_out;
       if (!is_left_out) ++i;
     }

@@ -26,12 +26,12 @@ void SweepAndPrune::add(Slot slot, const Shape& shape) {
   boxes_.emplace_back();
   slots_.emplace_back();
   put(slots_.size() - 1, bounds(shape), slot);
-  sort_in(slots_.size() - 1);
+  restore_order_at(slots_.size() - 1);
 }
 
 void SweepAndPrune::replace(Slot slot, const Shape& shape) {
   put(indices_[slot], bounds(shape), slot);
-  sort_in(indices_[slot]);
+  restore_order_at(indices_[slot]);
 }
 
 void SweepAndPrune::remove(Slot slot) {
@@ -49,7 +49,7 @@ void SweepAndPrune::put(std::size_t i, const Box& box, Slot slot) {
   max_length_m_ = std::max(max_length_m_, box.max_m[axis_] - box.min_m[axis_]);
 }
 
-void SweepAndPrune::sort_in(std::size_t i) {
+void SweepAndPrune::restore_order_at(std::size_t i) {
   for (; i > 0 && lows_m_[i] < lows_m_[i - 1]; --i) exchange(i, i - 1);
   for (; i + 1 < lows_m_.size() && lows_m_[i + 1] < lows_m_[i]; ++i) exchange(i, i + 1);
 }

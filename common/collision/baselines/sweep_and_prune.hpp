@@ -37,7 +37,7 @@ class SweepAndPrune {
   /// Writes the obstacle at an index of the sorted arrays.
   void put(std::size_t i, const Box& box, Slot slot);
   /// Swaps the obstacle at an index with its neighbours until the order is restored.
-  void sort_in(std::size_t i);
+  void restore_order_at(std::size_t i);
   void exchange(std::size_t i, std::size_t j);
 
   Eigen::Index axis_ = 0;

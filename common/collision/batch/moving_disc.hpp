@@ -171,7 +171,7 @@ inline bool touches_marked(const Query& query, std::uint64_t bits, const SlotOf&
     const std::uint32_t four[4] = {slot(lowest(bits)), slot(lowest(bits1)), slot(lowest(bits2)),
                                    slot(lowest(bits3))};
     const Touched found = touched(query, four);
-    const unsigned wanted = lowest_four(bits);
+    const unsigned wanted = lowest_bits_mask(bits);
     bool touches = (found.surely & wanted) != 0;
     if (const unsigned undecided = found.undecided & wanted; undecided != 0) [[unlikely]]
       touches = touches || touches_any_undecided(query.shapes, query.from_m, query.to_m, query.radius_m, bits,

@@ -94,7 +94,7 @@ inline unsigned lowest(std::uint64_t bits) {
 }
 
 /// A mask of the lowest n bits, where n is the number of set bits in the argument, at most 4.
-inline unsigned lowest_four(std::uint64_t bits) {
+inline unsigned lowest_bits_mask(std::uint64_t bits) {
   const auto count = static_cast<unsigned>(__builtin_popcountll(bits));
 #ifdef __BMI2__
   return _bzhi_u32(0xf, count);

@@ -26,7 +26,7 @@ void append_part(std::vector<std::uint8_t>& bytes, std::span<const std::uint8_t>
 }
 
 /// Removes a part written by append_part() from the front and returns it.
-std::optional<std::span<const std::uint8_t>> take_part(std::span<const std::uint8_t>& bytes) {
+std::optional<std::span<const std::uint8_t>> read_part(std::span<const std::uint8_t>& bytes) {
   if (bytes.empty() || bytes.size() - 1 < bytes[0]) return std::nullopt;
   const std::span<const std::uint8_t> part = bytes.subspan(1, bytes[0]);
   bytes = bytes.subspan(1 + part.size());
@@ -105,8 +105,8 @@ struct Admission::Announced {
     if (bytes.size() < kMark.size() || !std::ranges::equal(kMark, bytes.first(kMark.size())))
       return std::nullopt;
     bytes = bytes.subspan(kMark.size());
-    const auto version = take_part(bytes), start = version ? take_part(bytes) : std::nullopt,
-               signature = start ? take_part(bytes) : std::nullopt;
+    const auto version = read_part(bytes), start = version ? read_part(bytes) : std::nullopt,
+               signature = start ? read_part(bytes) : std::nullopt;
     if (!signature || start->size() != sizeof(std::int64_t)) return std::nullopt;
     return Announced{std::string(version->begin(), version->end()), *start, *signature, bytes};
   }

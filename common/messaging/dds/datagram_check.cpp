@@ -26,7 +26,7 @@ constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x0002
 
 /// Removes the ids of reader and writer from the front. Returns whether they are a known pair for discovery
 /// or for handshakes, and sets `is_handshake` for the latter. The reader may be unspecified.
-bool take_entities(NumberReader& reader, bool& is_handshake) {
+bool read_entity_ids(NumberReader& reader, bool& is_handshake) {
   const std::uint32_t to = reader.identifier(), from = reader.identifier();
   if (!reader.is_valid()) return false;
   is_handshake = from == kHandshakeWriter;
@@ -38,7 +38,7 @@ bool take_entities(NumberReader& reader, bool& is_handshake) {
 
 bool take_discovery_entities(NumberReader& reader) {
   bool is_handshake = false;
-  return take_entities(reader, is_handshake) && !is_handshake;
+  return read_entity_ids(reader, is_handshake) && !is_handshake;
 }
 
 struct Submessage {
@@ -47,7 +47,7 @@ struct Submessage {
 };
 
 /// Removes a submessage from the front. nullopt if it is truncated, or so long that its length is not stated.
-std::optional<Submessage> take_submessage(Bytes& left) {
+std::optional<Submessage> read_submessage(Bytes& left) {
   if (left.size() < kSubmessageHeaderSize) return std::nullopt;
   Submessage result{left[0], left[1], {}};
   NumberReader reader(left.subspan(2), (result.flags & kLittleEndianFlag) != 0);
@@ -65,7 +65,7 @@ bool is_valid_data(NumberReader& reader, std::uint8_t flags) {
   reader.number(2);
   if (reader.number(2) != kBytesToInlineQos || (has_payload && has_key)) return false;
   bool is_handshake = false;
-  if (!take_entities(reader, is_handshake)) return false;
+  if (!read_entity_ids(reader, is_handshake)) return false;
   reader.sequence_number(1, is_handshake ? std::numeric_limits<std::int64_t>::max() : kMaxPlainNumber);
   if ((flags & kHasInlineQos) != 0) reader.skip_parameters();
   if (!reader.is_valid() || (reader.left() > 0) != (has_payload || has_key)) return false;
@@ -113,7 +113,7 @@ bool skip_encrypted(const Submessage& prefix, Bytes& left) {
   // Prefix: transformation, key, session and counter. Postfix: an authentication code of 16 bytes, and
   // none for individual receivers.
   constexpr std::size_t kPrefixSize = 20, kPostfixSize = 20, kCodeSize = 16;
-  const auto body = take_submessage(left), postfix = take_submessage(left);
+  const auto body = read_submessage(left), postfix = read_submessage(left);
   if (!body || body->kind != kEncryptedBodySubmessage || !postfix ||
       postfix->kind != kEncryptedPostfixSubmessage)
     return false;
@@ -137,7 +137,7 @@ Bytes checked_datagram(Bytes datagram) {
   Bytes left = datagram.subspan(kDatagramHeaderSize);
   while (!left.empty()) {
     const std::size_t begin = datagram.size() - left.size();
-    const auto submessage = take_submessage(left);
+    const auto submessage = read_submessage(left);
     if (!submessage) return {};
     if (submessage->kind == kStatisticsSubmessage)
       return is_statistics(*submessage) && left.empty() && begin > kDatagramHeaderSize ? datagram.first(begin)

@@ -19,7 +19,7 @@ const char* word(DiscoveredEndpoint::Liveliness liveliness) {
   return kWords[static_cast<int>(liveliness)];
 }
 
-std::string in_words(Duration d) {
+std::string duration_text(Duration d) {
   return d == Duration::max() ? std::string("no limit") : fmt::format("{:.3g} s", to_seconds(d));
 }
 
@@ -41,7 +41,7 @@ std::string qos_text(const DiscoveredEndpoint& endpoint) {
       fmt::format("{}, {}, {}, ownership {}, deadline {}, liveliness {} (lease {})",
                   word(endpoint.is_reliable), word(endpoint.durability),
                   endpoint.is_keyed ? "keyed" : "without key", endpoint.is_exclusive ? "exclusive" : "shared",
-                  in_words(endpoint.deadline), word(endpoint.liveliness), in_words(endpoint.lease));
+                  duration_text(endpoint.deadline), word(endpoint.liveliness), duration_text(endpoint.lease));
   for (const std::string& partition : endpoint.partitions) text += ", partition " + partition;
   return text;
 }
@@ -61,9 +61,10 @@ std::vector<std::string> qos_mismatches(const DiscoveredEndpoint& writer, const 
     differ("durability", word(reader.durability), word(writer.durability));
   if (reader.liveliness > writer.liveliness)
     differ("liveliness", word(reader.liveliness), word(writer.liveliness));
-  if (reader.lease < writer.lease) differ("liveliness lease", in_words(reader.lease), in_words(writer.lease));
+  if (reader.lease < writer.lease)
+    differ("liveliness lease", duration_text(reader.lease), duration_text(writer.lease));
   if (reader.deadline < writer.deadline)
-    differ("deadline", in_words(reader.deadline), in_words(writer.deadline));
+    differ("deadline", duration_text(reader.deadline), duration_text(writer.deadline));
   if (reader.is_exclusive != writer.is_exclusive) {
     differ("ownership", reader.is_exclusive ? "exclusive" : "shared",
            writer.is_exclusive ? "exclusive" : "shared");

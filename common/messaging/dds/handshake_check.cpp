@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, 3> kTokens{"DDS:Auth:PKI-DH:1.0+Req", "DD
                                                   "DDS:Auth:PKI-DH:1.0+Final"};
 
 /// A text without its terminating zero; empty if it has none.
-std::string_view take_text(NumberReader& reader) {
+std::string_view read_terminated_text(NumberReader& reader) {
   const auto bytes = reader.counted_bytes();
   if (bytes.empty() || bytes.back() != 0) return {};
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size() - 1};
@@ -49,7 +49,7 @@ bool is_participant_data(std::span<const std::uint8_t> bytes) {
 }
 
 bool take_property(NumberReader& reader) {
-  const std::string_view name = take_text(reader);
+  const std::string_view name = read_terminated_text(reader);
   const auto value = reader.counted_bytes();
   const auto known = std::ranges::find(kProperties, name, &KnownProperty::name);
   return reader.is_valid() && known != kProperties.end() && value.size() >= known->min_size &&
@@ -65,8 +65,8 @@ bool is_handshake_message(std::span<const std::uint8_t> payload) {
   if (payload.size() < kEncapsulationSize || payload[0] != 0 || payload[1] > 1) return false;
   NumberReader reader(payload.subspan(kEncapsulationSize), payload[1] == 1);
   reader.take(kHeadSize);
-  if (take_text(reader) != "dds.sec.auth" || reader.number(4) != 1) return false;
-  if (std::ranges::find(kTokens, take_text(reader)) == kTokens.end()) return false;
+  if (read_terminated_text(reader) != "dds.sec.auth" || reader.number(4) != 1) return false;
+  if (std::ranges::find(kTokens, read_terminated_text(reader)) == kTokens.end()) return false;
   if (reader.number(4) != 0) return false;  // number of properties with text values
   const std::uint32_t count = reader.number(4);
   if (count == 0 || count > kProperties.size()) return false;

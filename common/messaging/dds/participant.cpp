@@ -99,7 +99,7 @@ ParticipantId random_id() {
 }
 
 /// Sets the properties of Fast DDS's security plugins (DDS Security 1.1, 9.3 to 9.5).
-void use_keys(const KeyFolder& keys, DomainParticipantQos& qos) {
+void set_security_properties(const KeyFolder& keys, DomainParticipantQos& qos) {
   auto& properties = qos.properties().properties();
   const auto set = [&](const std::string& name, const std::string& value) {
     properties.emplace_back(name, value);
@@ -147,7 +147,7 @@ DomainParticipantQos participant_qos(const DdsSettings& settings,
     qos.transport().user_transports.push_back(memory);
   }
   qos.transport().user_transports.push_back(udp_transport(udp, impairment, counts, filter));
-  if (keys) use_keys(*keys, qos);
+  if (keys) set_security_properties(*keys, qos);
   // With keys, the keys determine who is an operator.
   if (settings.is_operator && !keys) qos.wire_protocol().prefix = operator_prefix();
   auto& builtin = qos.wire_protocol().builtin;

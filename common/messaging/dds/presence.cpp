@@ -8,7 +8,7 @@ namespace {
 
 constexpr Duration kMaxCheckInterval{3'000'000'000};
 /// Time for which a notice is repeated. It is sent with each announcement, once a second.
-constexpr Duration kRepeatFor{2'500'000'000};
+constexpr Duration kRepeatDuration{2'500'000'000};
 /// After this time, a process that has caught up has read all datagrams that were waiting in its sockets.
 constexpr Duration kCatchUp{300'000'000};
 
@@ -19,11 +19,11 @@ bool Presence::accept(const ParticipantId& sender, Time now) {
   if (found == peers_.end()) return true;
   Peer& peer = found->second;
   if (peer.is_forgotten) {
-    peer.ask_until = now + kRepeatFor;
+    peer.forgotten_notices_until = now + kRepeatDuration;
     return false;
   }
   peer.last_heard = now;
-  return now >= peer.agree_from;
+  return now >= peer.accepts_datagrams_from;
 }
 
 bool Presence::on_announcement(const ParticipantId& self, const ParticipantId& sender,
@@ -39,14 +39,14 @@ bool Presence::on_announcement(const ParticipantId& self, const ParticipantId& s
       must_forget = must_forget || (!peer->is_forgotten && !is_repeated);
       peer->is_forgotten = false;
       peer->agreed = notice.number;
-      if (!is_repeated) peer->agree_from = now + kCatchUp;
-      peer->agree_until = std::max(peer->agree_from, now) + kRepeatFor;
+      if (!is_repeated) peer->accepts_datagrams_from = now + kCatchUp;
+      peer->agreed_notices_until = std::max(peer->accepts_datagrams_from, now) + kRepeatDuration;
     } else if (peer->is_forgotten && notice.number == peer->forgotten_number) {
       peer->is_forgotten = false;
     }
   }
   if (peer->is_forgotten)
-    peer->ask_until = now + kRepeatFor;
+    peer->forgotten_notices_until = now + kRepeatDuration;
   else
     peer->last_heard = now;
   return must_forget;
@@ -71,9 +71,9 @@ std::vector<PresenceNotice> Presence::notices(Time now) const {
   std::vector<PresenceNotice> result;
   for (const auto& [id, peer] : peers_) {
     if (result.size() + 2 > kMaxNotices) break;
-    if (peer.is_forgotten && now < peer.ask_until)
+    if (peer.is_forgotten && now < peer.forgotten_notices_until)
       result.push_back({id, PresenceNotice::Kind::kForgotten, peer.forgotten_number});
-    if (peer.agreed && now >= peer.agree_from && now < peer.agree_until)
+    if (peer.agreed && now >= peer.accepts_datagrams_from && now < peer.agreed_notices_until)
       result.push_back({id, PresenceNotice::Kind::kAgreed, *peer.agreed});
   }
   return result;

@@ -69,9 +69,10 @@ class Presence {
     Time last_heard{};
     bool is_forgotten = false;
     std::uint64_t forgotten_number = 0;
-    Time ask_until{};                     ///< time until which kForgotten notices are sent to the peer
+    Time forgotten_notices_until{};       ///< time until which kForgotten notices are sent to the peer
     std::optional<std::uint64_t> agreed;  ///< number of the peer's last processed kForgotten notice
-    Time agree_from{}, agree_until{};     ///< refuses datagrams until the former; then sends kAgreed
+    Time accepts_datagrams_from{},
+        agreed_notices_until{};  ///< refuses datagrams until the former; then sends kAgreed
   };
 
   Peer* find_or_add(const ParticipantId& id, Time now);

@@ -31,7 +31,7 @@ using Receiver = transport::TransportReceiverInterface;
 constexpr std::array<std::uint8_t, 4> kOperatorMark{'s', 's', 'o', 'p'};
 constexpr Duration kCheckInterval{500'000'000};
 /// Fast DDS announces a participant a few milliseconds before it can process the answers.
-constexpr Duration kUntilReady{50'000'000};
+constexpr Duration kReadyDelay{50'000'000};
 
 /// A number of bytes that writers never reach; they also send periodic heartbeats.
 constexpr std::uint32_t kBytesUntilHeartbeat = 1U << 30;
@@ -143,7 +143,7 @@ class UdpTransport : public fast_dds::ChainedTransport {
 
   bool is_ready() {
     const std::lock_guard lock(state_);
-    return announced_at_ && EventLoop::now() - *announced_at_ > kUntilReady;
+    return announced_at_ && EventLoop::now() - *announced_at_ > kReadyDelay;
   }
 
   std::vector<ParticipantId> to_forget(const ParticipantId& sender,

@@ -22,7 +22,7 @@ void SimLinks::set(ProcessId from, ProcessId to, const LinkQuality& quality, Tim
     width_ = needed;
   }
   Link& link = links_[from * width_ + to];
-  if (is_silent(link.quality) && !is_silent(quality)) link.reachability.end_silence(now);
+  if (is_silent(link.quality) && !is_silent(quality)) link.reachability.on_silence_end(now);
   if (is_silent(quality)) link.reachability.silence(now);
   link.quality = quality;
   link.is_set = true;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint64_t kReliableSeed = 0x9e3779b97f4a7c15;
 // Measured over DDS, see README.md.
 constexpr double kMinMatching_s = 0.03, kMaxMatching_s = 0.15;
-constexpr double kMinMatchingAnew_s = 0.3, kMaxMatchingAnew_s = 1.6;
+constexpr double kMinRematching_s = 0.3, kMaxRematching_s = 1.6;
 
 }  // namespace
 
@@ -114,9 +114,8 @@ void SimNetwork::send_event(Writer& writer, SimSubscription& reader, std::uint32
   // Always drawn, even if the message is lost, so that the delays of other messages do not depend on it.
   const Duration delay = event_delay(from, to, rng_);
   const std::shared_ptr<ReliableStream>& stream = writer.stream_to(reader, begin_, [&] {
-    return ReliableStream::Delays{
-        from_seconds(reliable_rng_.uniform(kMinMatching_s, kMaxMatching_s)),
-        from_seconds(reliable_rng_.uniform(kMinMatchingAnew_s, kMaxMatchingAnew_s))};
+    return ReliableStream::Delays{from_seconds(reliable_rng_.uniform(kMinMatching_s, kMaxMatching_s)),
+                                  from_seconds(reliable_rng_.uniform(kMinRematching_s, kMaxRematching_s))};
   });
   if (!update_match(writer, *stream)) return;
   const bool has_arrived = arrives(from, to);
@@ -167,7 +166,7 @@ void SimNetwork::heartbeat(Writer& writer, ReliableStream& stream) {
 
 void SimNetwork::deliver_arrived(ReliableStream& stream, Duration delay) {
   std::vector<ReliableStream::Sample> arrived;
-  while (const auto next = stream.take_arrived()) arrived.push_back(*next);
+  while (const auto next = stream.pop_arrived()) arrived.push_back(*next);
   // Fast DDS passes waiting messages to a reader in this order.
   std::ranges::stable_sort(arrived, {}, &ReliableStream::Sample::key);
   for (const ReliableStream::Sample& sample : arrived) {
@@ -181,11 +180,11 @@ bool SimNetwork::update_match(const Writer& writer, ReliableStream& stream) {
   const Reachability reachability = both(both(reachability_of(from, now_), reachability_of(to, now_)),
                                          links_.reachability(from.process, to.process));
   const bool result = to.is_alive && stream.update(reachability, now_);
-  if (!result) lose_waiting(stream);
+  if (!result) discard_waiting(stream);
   return result;
 }
 
-void SimNetwork::lose_waiting(ReliableStream& stream) {
+void SimNetwork::discard_waiting(ReliableStream& stream) {
   for (const ReliableStream::Sample& sample : stream.waiting()) release(sample.sent);
   stream.waiting().clear();
 }
@@ -208,7 +207,7 @@ void SimNetwork::deliver_event(SimSubscription& reader, Duration delay, std::uin
 
 Reachability& SimNetwork::reachability_of(SimProcessInstance& instance, Time now) {
   if (instance.paused_until <= now && instance.reachability.silent_from < instance.paused_until)
-    instance.reachability.end_silence(instance.paused_until);
+    instance.reachability.on_silence_end(instance.paused_until);
   return instance.reachability;
 }
 

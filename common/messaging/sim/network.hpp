@@ -104,7 +104,7 @@ class SimNetwork {
   void deliver_arrived(ReliableStream& stream, Duration delay);
   /// Updates and returns whether writer and reader know each other. If not, the waiting messages are lost.
   bool update_match(const Writer& writer, ReliableStream& stream);
-  void lose_waiting(ReliableStream& stream);
+  void discard_waiting(ReliableStream& stream);
   /// Whether a single datagram of a reliable message arrives.
   bool arrives(ProcessId from, ProcessId to);
   Duration event_delay(ProcessId from, ProcessId to, Rng& rng);

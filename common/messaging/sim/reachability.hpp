@@ -14,12 +14,12 @@ struct Reachability {
   Time heard_from = Time::min();  ///< both directions are heard from this time until `silent_from`
   Time silent_from = Time::max();
   Time last_silent_from = Time::min();  ///< start of the silence that ended at `heard_from`
-  Time begun_anew = Time::min();        ///< end of the last silence after which they had forgotten each other
+  Time reconnected_at = Time::min();    ///< end of the last silence after which they had forgotten each other
 
   bool is_forgotten(Time now) const { return silent_from <= now && now - silent_from >= kSilenceLimit; }
   void silence(Time now) { silent_from = std::min(silent_from, now); }
-  void end_silence(Time now) {
-    if (is_forgotten(now)) begun_anew = now;
+  void on_silence_end(Time now) {
+    if (is_forgotten(now)) reconnected_at = now;
     last_silent_from = silent_from;
     heard_from = now;
     silent_from = Time::max();
@@ -30,7 +30,7 @@ struct Reachability {
 /// the two directions of their link.
 inline Reachability both(const Reachability& a, const Reachability& b) {
   return {std::max(a.heard_from, b.heard_from), std::min(a.silent_from, b.silent_from),
-          std::max(a.last_silent_from, b.last_silent_from), std::max(a.begun_anew, b.begun_anew)};
+          std::max(a.last_silent_from, b.last_silent_from), std::max(a.reconnected_at, b.reconnected_at)};
 }
 
 }  // namespace sidestep

@@ -7,8 +7,8 @@ namespace sidestep {
 
 bool ReliableStream::update(const Reachability& reachability, Time now) {
   const bool is_forgotten = reachability.is_forgotten(now);
-  if (is_forgotten || reachability.begun_anew > begin_) {
-    begin_ = is_forgotten ? now : reachability.begun_anew;
+  if (is_forgotten || reachability.reconnected_at > begin_) {
+    begin_ = is_forgotten ? now : reachability.reconnected_at;
     is_rediscovery_ = true;
     is_matched_ = false;
   }
@@ -32,7 +32,7 @@ std::optional<ReliableStream::Sample> ReliableStream::overwrite(const CdrKey& ke
   return lost;
 }
 
-std::optional<ReliableStream::Sample> ReliableStream::take_arrived() {
+std::optional<ReliableStream::Sample> ReliableStream::pop_arrived() {
   if (waiting_.empty() || !waiting_.front().has_arrived) return {};
   const Sample first = waiting_.front();
   waiting_.pop_front();

@@ -42,7 +42,7 @@ class ReliableStream {
   /// Returns the message if it is thereby lost.
   std::optional<Sample> overwrite(const CdrKey& key);
   /// Removes and returns the first message if it has arrived.
-  std::optional<Sample> take_arrived();
+  std::optional<Sample> pop_arrived();
 
   bool has_heartbeat = false;  ///< a heartbeat is scheduled
 

@@ -20,7 +20,7 @@ class SimNetwork::Writer : public RawWriter {
       : network_(network), timers_(timers), topic_(topic), channel_(channel), begin_(network.now()) {}
   ~Writer() override {
     *alive_ = nullptr;
-    for (const auto& [reader, stream] : streams_) network_.lose_waiting(*stream);
+    for (const auto& [reader, stream] : streams_) network_.discard_waiting(*stream);
   }
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
@@ -43,7 +43,7 @@ class SimNetwork::Writer : public RawWriter {
     if (stream) return stream;
     std::erase_if(streams_, [&](const auto& entry) {
       if (entry.second == nullptr || entry.second->reader().instance->is_alive) return false;
-      network_.lose_waiting(*entry.second);
+      network_.discard_waiting(*entry.second);
       return true;
     });
     const Time begin = std::max(begin_, reader.begin);

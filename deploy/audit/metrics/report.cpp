@@ -62,7 +62,8 @@ Json audit_json(const AuditTotals& audit) {
   json["violations"] = audit.violations;
   json["by_rule"] = Json::object();
   for (std::size_t i = 0; i < kAuditRules; ++i) {
-    if (audit.by_rule[i] > 0) json["by_rule"][audit_rule(static_cast<AuditRule>(i)).name] = audit.by_rule[i];
+    if (audit.by_rule[i] > 0)
+      json["by_rule"][rule_info_of(static_cast<AuditRule>(i)).name] = audit.by_rule[i];
   }
   json["first"] = Json::array();
   for (const Violation& violation : audit.first)
@@ -173,7 +174,7 @@ std::string Report::failure_reason() const {
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
   if (audit && audit->violations > 0) {
     add(fmt::format("{} audit violations, the first of rule {}", audit->violations,
-                    audit_rule(audit->first.front().rule).name));
+                    rule_info_of(audit->first.front().rule).name));
   }
   if (must_arrive && arrived < robots) add(fmt::format("{} of {} arrived", arrived, robots));
   return reason;

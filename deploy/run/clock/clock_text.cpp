@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSecondsFrom_s = 10;
 // The host's clock and the process's clock are not read at exactly the same time, and time daemons slew.
-constexpr Duration kSet{1'000'000};
+constexpr Duration kMinClockStep{1'000'000};
 
 const char* verdict_text(ClockVerdict verdict) {
   switch (verdict) {
@@ -36,7 +36,7 @@ std::string offset_text(const std::optional<OffsetInterval>& offset) {
 }
 
 std::string note(const ClockRow& row) {
-  if (row.host_ahead < kSet && row.host_ahead > -kSet) return {};
+  if (row.host_ahead < kMinClockStep && row.host_ahead > -kMinClockStep) return {};
   return fmt::format("  its host's clock has been set by {:+.3f} s since it started",
                      to_seconds(row.host_ahead));
 }

@@ -287,8 +287,8 @@ bool ProcessGroup::reap(Child& child, ChildEvent& event) {
     child.restart_at = now;
     event.will_restart = true;
   } else if (child.spec.restart && !is_terminating_) {
-    const bool lived_long = now - child.started > kMaxBackoff;
-    child.backoff = lived_long ? kMinBackoff : std::min(2 * child.backoff, kMaxBackoff);
+    const bool ran_long = now - child.started > kMaxBackoff;
+    child.backoff = ran_long ? kMinBackoff : std::min(2 * child.backoff, kMaxBackoff);
     child.restart_at = now + child.backoff;
     event.will_restart = true;
   }
@@ -329,15 +329,15 @@ void ProcessGroup::ask_to_end(Child& child) {
     kill(child.pid, SIGTERM);
 }
 
-void ProcessGroup::end_all(Milliseconds timeout, const std::function<bool(const Child&)>& is_meant) {
+void ProcessGroup::end_all(Milliseconds timeout, const std::function<bool(const Child&)>& should_end) {
   Milliseconds rest_time{0};
   for (const auto& child : children_) {
-    if (!is_meant(*child)) continue;
+    if (!should_end(*child)) continue;
     ask_to_end(*child);
     rest_time = std::max(rest_time, child->spec.rest_time);
   }
   const SteadyTime until = steady_clock::now() + timeout + rest_time;
-  const auto is_left = [&](const auto& child) { return child->is_running && is_meant(*child); };
+  const auto is_left = [&](const auto& child) { return child->is_running && should_end(*child); };
   while (std::ranges::any_of(children_, is_left) && steady_clock::now() < until)
     poll(std::chrono::ceil<Milliseconds>(until - steady_clock::now()));
 }

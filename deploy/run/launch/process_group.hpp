@@ -58,7 +58,7 @@ class ProcessGroup : public Processes {
   static bool drives_robots(const Child& child);
   void ask_to_end(Child& child);
   /// Asks children to end, and waits for them up to the timeout.
-  void end_all(Milliseconds timeout, const std::function<bool(const Child&)>& is_meant);
+  void end_all(Milliseconds timeout, const std::function<bool(const Child&)>& should_end);
 
   std::FILE* log_;
   std::vector<std::unique_ptr<Child>> children_;

@@ -79,7 +79,7 @@ int run(const RunOptions& given) {
   const auto former_report = written_at(report_path);
   DirectorWork work;
   work.run = [&](Processes& processes, const std::vector<std::string>& deaths) {
-    return run_guarded("sidestep run", [&] {
+    return run_and_report_errors("sidestep run", [&] {
       if (!deaths.empty() && !options.recording_file.empty())
         options.recording_file = numbered(options.recording_file, deaths.size() + 1);
       const Predecessors before{deaths, std::chrono::steady_clock::now() - began};

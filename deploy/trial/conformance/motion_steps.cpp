@@ -25,7 +25,7 @@ constexpr Duration kLevelTime = 5s;
 // Errors up to this many standard deviations may be due to vision's noise.
 constexpr double kNoiseDeviations = 4;
 // Ratio of the tracking bound to the largest measured error.
-constexpr double kReserve = 1.25;
+constexpr double kTrackingBoundRatio = 1.25;
 // Number of starts from which the latency is measured, and the part of each start that is evaluated: later,
 // the robot's control corrects for the latency.
 constexpr int kStarts = 8;
@@ -47,7 +47,7 @@ void keep_error(ConformanceContext& context, const MotionSample& sample) {
   if (sample.is_off_reference) return;
   const double error_m = (sample.seen_m - sample.reference.state.position_m).norm();
   auto& bound_m = context.report.figures.tracking_bound_m;
-  bound_m = std::max(bound_m.value_or(0), std::ceil(kReserve * error_m * 1e3) * 1e-3);
+  bound_m = std::max(bound_m.value_or(0), std::ceil(kTrackingBoundRatio * error_m * 1e3) * 1e-3);
 }
 
 /// The tracking bound within which the robot can stop from full speed without further observations
@@ -161,7 +161,7 @@ class LatencyStep final : public ConformanceStep {
     append_stop(trajectory, context.scenario.limits.deceleration_mps2);
     start_ = context.stream.next(trajectory);
     probe.version = start_;
-    before_m_ = Vec2(0, 0);
+    rest_error_sum_m_ = Vec2(0, 0);
     before_count_ = 0;
     ++starts_;
   }
@@ -171,12 +171,12 @@ class LatencyStep final : public ConformanceStep {
     const Time robot_at = sample.robot_at;
     const Duration after = robot_at - start_->trajectory.start();
     if (after < Duration{0}) {
-      before_m_ += sample.seen_m - sample.reference.state.position_m;
+      rest_error_sum_m_ += sample.seen_m - sample.reference.state.position_m;
       ++before_count_;
     }
     const bool is_executed = sample.reference.state.velocity_mps.norm() > 0 && !sample.is_off_reference;
     if (after < kStartBegin || after > kStartEnd || before_count_ == 0 || !is_executed) return;
-    samples_.push_back({start_->trajectory, robot_at, sample.seen_m - before_m_ / before_count_});
+    samples_.push_back({start_->trajectory, robot_at, sample.seen_m - rest_error_sum_m_ / before_count_});
   }
 
   /// The delay with which the reference fits the observations best.
@@ -211,7 +211,7 @@ class LatencyStep final : public ConformanceStep {
   bool has_begun_ = false;
   int starts_ = 0;
   std::optional<Version> start_;
-  Vec2 before_m_{0, 0};  ///< the sum of the errors at rest, before the latest start
+  Vec2 rest_error_sum_m_{0, 0};  ///< the sum of the errors at rest, before the latest start
   int before_count_ = 0;
   struct Start {
     Trajectory trajectory;

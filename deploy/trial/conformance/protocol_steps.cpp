@@ -271,8 +271,8 @@ class TakeoverStep final : public ConformanceStep {
       probe.version.reset();
       probe.incarnation += 1000;
     }
-    const bool has_come = probe.incarnation != earlier_;
-    if (has_come && robot_report.obeyed_incarnation == probe.incarnation && !acknowledged_)
+    const bool has_new_agent = probe.incarnation != earlier_;
+    if (has_new_agent && robot_report.obeyed_incarnation == probe.incarnation && !acknowledged_)
       acknowledged_ = probe.robot_report();
     if (robot_report.valid_at < start + kAnswerTimeout) return false;
     const bool is_executed = robot_report.executing.number == sent_->number;

@@ -79,8 +79,8 @@ void RobotProbe::on_world_state(const msg::WorldState& message) {
     seen_ = seen;
     if (std::isfinite(robot.observed_heading_rad()))
       fix_ = PoseFix{seen->observed_at, seen->position_m, robot.observed_heading_rad()};
-    unjudged_.push_back(*seen);
-    if (unjudged_.size() > kMaxUnjudged) unjudged_.pop_front();
+    pending_observations_.push_back(*seen);
+    if (pending_observations_.size() > kMaxUnjudged) pending_observations_.pop_front();
   }
 }
 
@@ -93,10 +93,10 @@ const Version* RobotProbe::executed_at(Time robot_time) const {
 
 // A report shows what was executed up to its time.
 void RobotProbe::take_samples() {
-  while (!unjudged_.empty() &&
-         unjudged_.front().observed_at + robot_clock_offset() < robot_report_->valid_at) {
-    const RobotObservation seen = unjudged_.front();
-    unjudged_.pop_front();
+  while (!pending_observations_.empty() &&
+         pending_observations_.front().observed_at + robot_clock_offset() < robot_report_->valid_at) {
+    const RobotObservation seen = pending_observations_.front();
+    pending_observations_.pop_front();
     const Time at = seen.observed_at + robot_clock_offset();
     const auto executed = std::find_if(executed_.rbegin(), executed_.rend(), [&](const Executed& one) {
       return one.version.trajectory.start() <= at;

@@ -89,8 +89,8 @@ class RobotProbe {
     Version version;
     bool is_off_reference = false;
   };
-  std::deque<Executed> executed_;          ///< in the order of the reports
-  std::deque<RobotObservation> unjudged_;  ///< until reports show what the robot was executing
+  std::deque<Executed> executed_;                      ///< in the order of the reports
+  std::deque<RobotObservation> pending_observations_;  ///< until reports show what the robot was executing
   std::function<void(const MotionSample&)> on_sample_;
 };
 

@@ -32,12 +32,12 @@ Vec2 nearest_on(const Edge& edge, const Vec2& p) {
   return edge.from_m + std::clamp((p - edge.from_m).dot(along) / length2, 0.0, 1.0) * along;
 }
 
-void keep_closer(ClosestPoints& best, const Vec2& a, const Vec2& b) {
+void update_closest(ClosestPoints& best, const Vec2& a, const Vec2& b) {
   const double distance = (a - b).norm();
   if (distance < best.distance_m) best = {a, b, distance};
 }
 
-void keep_closer(ClosestPoints& best, const Edge& a, const Edge& b) {
+void update_closest(ClosestPoints& best, const Edge& a, const Edge& b) {
   const Vec2 along_a = a.to_m - a.from_m, along_b = b.to_m - b.from_m;
   const double b_from = cross_of(along_a, b.from_m - a.from_m), b_to = cross_of(along_a, b.to_m - a.from_m);
   const double a_from = cross_of(along_b, a.from_m - b.from_m), a_to = cross_of(along_b, a.to_m - b.from_m);
@@ -46,10 +46,10 @@ void keep_closer(ClosestPoints& best, const Edge& a, const Edge& b) {
     best = {common, common, 0};
     return;
   }
-  keep_closer(best, a.from_m, nearest_on(b, a.from_m));
-  keep_closer(best, a.to_m, nearest_on(b, a.to_m));
-  keep_closer(best, nearest_on(a, b.from_m), b.from_m);
-  keep_closer(best, nearest_on(a, b.to_m), b.to_m);
+  update_closest(best, a.from_m, nearest_on(b, a.from_m));
+  update_closest(best, a.to_m, nearest_on(b, a.to_m));
+  update_closest(best, nearest_on(a, b.from_m), b.from_m);
+  update_closest(best, nearest_on(a, b.to_m), b.to_m);
 }
 
 bool contains(std::span<const Vec2> polygon, const Vec2& p) {
@@ -73,7 +73,7 @@ ClosestPoints closest_points(std::span<const Vec2> a, std::span<const Vec2> b) {
   ClosestPoints best{a[0], b[0], std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < edge_count(a); ++i)
     for (std::size_t j = 0; j < edge_count(b) && best.distance_m > 0; ++j)
-      keep_closer(best, edge(a, i), edge(b, j));
+      update_closest(best, edge(a, i), edge(b, j));
   return best;
 }
 

@@ -122,10 +122,10 @@ class SimRecorder {
 };
 
 /// Listens to the scans of one robot for a picture, if the options ask for one.
-class SightRecorder {
+class LaserPictureRecorder {
  public:
   /// Throws UsageError if the robot does not exist or has no laser.
-  SightRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options)
+  LaserPictureRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options)
       : bus_(network) {
     if (!options.laser_robot) return;
     try {
@@ -206,7 +206,7 @@ int simulate(const SimulateOptions& options) {
   SimSystem system(scenario, options.seed);
   log_events_of(system, options.log_level);
   RunPicture picture(scenario);
-  SightRecorder sight(system.network(), scenario, options);
+  LaserPictureRecorder sight(system.network(), scenario, options);
   if (!options.picture_file.empty()) {
     system.on_truth([&](const msg::GroundTruth& truth) {
       sight.picture() ? sight.picture()->add(truth) : picture.add(truth);

@@ -124,7 +124,7 @@ std::optional<Vec2> goal_of(const RobotView& robot, Time now) {
 
 RobotFields::RobotFields(const Scenario& scenario) : scenario_(scenario), fixed_(fixed_costs(scenario)) {}
 
-CostGrid RobotFields::costs_with(const FloorState& floor, Time now) const {
+CostGrid RobotFields::costs_with_moving_obstacles(const FloorState& floor, Time now) const {
   CostGrid grid = fixed_;
   for (const Circle& circle : moving_obstacles(floor, now)) block_shape(grid, circle, scenario_.radius_m);
   return grid;
@@ -163,7 +163,7 @@ Json RobotFields::json(RobotId id, const FloorState& floor, Time now) {
   }
   const std::optional<Vec2> goal = goal_of(robot->second, now);
   if (!goal || !fixed_.layout().cell_at(*goal)) return json;
-  EStar field(costs_with(floor, now));
+  EStar field(costs_with_moving_obstacles(floor, now));
   field.set_goal(*goal);
   field.propagate();
   json["navigation"] = navigation_json(field);

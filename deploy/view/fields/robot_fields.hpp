@@ -35,7 +35,7 @@ class RobotFields {
     Time asked_at{};
   };
 
-  CostGrid costs_with(const FloorState& floor, Time now) const;
+  CostGrid costs_with_moving_obstacles(const FloorState& floor, Time now) const;
 
   const Scenario& scenario_;
   CostGrid fixed_;  ///< costs without moving obstacles

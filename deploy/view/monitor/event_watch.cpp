@@ -162,7 +162,9 @@ void EventWatch::on(const msg::Order& order, Time now) {
   const msg::OrderKind kind = order.terms().order_kind();
   if (!is_enumerator(kind, msg::OrderKind::ORDER_REMOVE_ZONE)) return;
   // A client repeats its order until a coordinator answers.
-  if (!store_order(order.header().sender(), order.terms().order_number()) || !outside_.admit(now)) return;
+  if (!store_order(order.header().sender(), order.terms().order_number()) ||
+      !external_event_limit_.admit(now))
+    return;
   add(Severity::kInfo, "order",
       name_of_client(order.header().sender()) + " " +
           fmt::format(fmt::runtime(kTexts[static_cast<std::size_t>(kind)]), who(order.robot())),
@@ -177,14 +179,14 @@ void EventWatch::on(const msg::OrderAnswer& answer, Time now) {
                               "a goal is outside the field",
                               "there are too many holds or zones"};
   const auto result = static_cast<std::size_t>(answer.result());
-  if (result < 2 || result >= kTexts.size() || !outside_.admit(now)) return;
+  if (result < 2 || result >= kTexts.size() || !external_event_limit_.admit(now)) return;
   add(Severity::kWarning, "order",
       fmt::format("an order of {} is refused: {}", name_of_client(answer.client()), kTexts.at(result)), now);
 }
 
 void EventWatch::on(const msg::Disturbance& disturbance, Time now) {
   if (!is_enumerator(disturbance.disturbance_kind(), msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN) ||
-      !outside_.admit(now))
+      !external_event_limit_.admit(now))
     return;
   add(Severity::kWarning, "disturbance",
       fmt::format("{} is disturbed: {}", who(disturbance.robot()), to_text(disturbance.disturbance_kind())),
@@ -192,7 +194,7 @@ void EventWatch::on(const msg::Disturbance& disturbance, Time now) {
 }
 
 void EventWatch::on(const msg::NetworkFault& fault, Time now) {
-  if (!outside_.admit(now)) return;
+  if (!external_event_limit_.admit(now)) return;
   const std::string target =
       fault.target() == kEveryProcess ? std::string("every process") : process_name(fault.target());
   add(Severity::kWarning, "network",
@@ -202,7 +204,7 @@ void EventWatch::on(const msg::NetworkFault& fault, Time now) {
 }
 
 void EventWatch::on(const msg::AbsenceAttestation& attestation, Time now) {
-  if (!outside_.admit(now)) return;
+  if (!external_event_limit_.admit(now)) return;
   add(Severity::kWarning, "attestation",
       fmt::format("an operator attests that robot {} is not on the floor", attestation.robot()), now,
       robots_of(attestation.robot()));
@@ -215,7 +217,7 @@ void EventWatch::on_violation(const Violation& violation) {
 }
 
 void EventWatch::on_refused(std::uint32_t sender, Time now) {
-  if (refused_.contains(sender) || !outside_.admit(now)) return;
+  if (refused_.contains(sender) || !external_event_limit_.admit(now)) return;
   if (refused_.size() >= kMaxSenders) refused_.clear();
   refused_.insert(sender);
   add(Severity::kError, "rules",

@@ -66,7 +66,7 @@ class EventWatch {
 
   EventLog& log_;
   /// Limits events that any participant in the network can cause.
-  RateLimit outside_{1000, std::chrono::milliseconds(10)};
+  RateLimit external_event_limit_{1000, std::chrono::milliseconds(10)};
   std::map<std::uint32_t, std::uint64_t> sent_orders_;  ///< the last order number, by sender
   std::set<std::uint32_t> refused_;                     ///< senders whose messages were refused
   std::map<std::pair<Watched, std::uint32_t>, std::uint64_t> last_;

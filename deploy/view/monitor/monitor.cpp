@@ -132,7 +132,7 @@ Json Monitor::panels() {
   const Time now = bus_.now();
   const bool is_heard = now - heard_at_ <= std::chrono::seconds(1);
   Json json{{"type", "panels"}, {"at_s", unix_seconds(now)}};
-  json["promise"] = promise_json(assessment_.get(), is_heard, closest_, smallest_);
+  json["promise"] = promise_json(assessment_.get(), is_heard, closest_pair_, smallest_);
   json["robots"] = robots_json(floor_, now);
   json["coordinators"] = coordinators_json(floor_, now);
   json["epochs"] = epochs_json(assessment_.get());
@@ -149,8 +149,9 @@ double Monitor::radius_m() const {
 void Monitor::take_snapshot() {
   const Time now = bus_.now();
   if (assessment_) assessment_->auditor.advance(now);
-  closest_ = closest_pair(places_of(floor_, now), radius_m(), now);
-  if (closest_ && (!smallest_ || closest_->clearance_m < smallest_->clearance_m)) smallest_ = closest_;
+  closest_pair_ = closest_pair(places_of(floor_, now), radius_m(), now);
+  if (closest_pair_ && (!smallest_ || closest_pair_->clearance_m < smallest_->clearance_m))
+    smallest_ = closest_pair_;
   const Duration period = floor_.robots().size() > kLargeFleet ? 4 * kPanelPeriod : kPanelPeriod;
   if (now - panels_at_ >= period) {
     panels_at_ = now;

@@ -120,7 +120,7 @@ class Monitor {
   std::map<std::string, std::deque<std::string>> inspections_;
   std::shared_ptr<const std::string> latest_panels_;
   Time panels_at_{}, heard_at_{};
-  std::optional<ClosestPair> closest_, smallest_;
+  std::optional<ClosestPair> closest_pair_, smallest_;
   double progress_ = 1;
   std::function<void(const AnyMessage&)> on_any_message_;
 };

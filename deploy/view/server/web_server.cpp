@@ -112,12 +112,12 @@ class SocketSession : public WebSocket, public std::enable_shared_from_this<Sock
       const std::string message = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
       if (self->is_closing_) return self->read();
-      if (!self->makes_sense(message)) self->close("the message is invalid");
+      if (!self->is_valid_message(message)) self->close("the message is invalid");
       self->read();
     });
   }
 
-  bool makes_sense(const std::string& message) {
+  bool is_valid_message(const std::string& message) {
     try {
       return server_.handlers.on_message(*this, message, stream_.got_binary());
     } catch (const std::exception&) {

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Measures the local methods of navigation: dynamic windows with exact
+// SPDX-License-Identifier: Apache-2.0
+// Measures the local methods of navigation: dynamic windows with exact
 // arcs and with tables, and the bubble band. Fails if a result is wrong. Times are only printed.
 #include <fmt/core.h>
 

@@ -15,7 +15,7 @@
 namespace sidestep {
 namespace {
 
-constexpr std::uint64_t kBatch = 50, kCompared = 10;  // every tenth case is repeated with cameras
+constexpr std::uint64_t kBatch = 50, kComparisonInterval = 10;  // every tenth case is repeated with cameras
 
 /// The sums over a batch of cases.
 struct Batch {
@@ -39,7 +39,7 @@ Batch run_batch(SceneOf scene_of, std::size_t kind, std::uint64_t first, std::ui
     sum.crashes += result.crashes;
     sum.crashes_in_motion += result.crashes_in_motion;
     sum.failed_audits += !result.audit_passed;
-    if (seed % kCompared != 0 || !result.has_arrived) continue;
+    if (seed % kComparisonInterval != 0 || !result.has_arrived) continue;
     const CornerResult camera = run_corner(scenario, seed, false);
     if (!camera.has_arrived) continue;
     sum.laser_s += result.seconds;

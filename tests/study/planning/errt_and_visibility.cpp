@@ -33,9 +33,9 @@ class Smoothed {
 };
 
 /// The full graph of a world, built in advance.
-class KeptGraph {
+class PrebuiltGraph {
  public:
-  explicit KeptGraph(const BenchmarkWorld& world)
+  explicit PrebuiltGraph(const BenchmarkWorld& world)
       : graph_(world.obstacles, world.world.field, world.world.radius_m) {}
   const Plan<Vec2>& plan(const DiscDomain& domain, const Vec2& start, const Budget&, Rng&) {
     return graph_.plan(start, domain.goal(start));
@@ -59,7 +59,7 @@ MeasuredPlanner plain_rrt_connect(std::uint64_t seed) {
 
 /// The planners of one world, beginning with the kept graph. Caches are empty at first.
 std::vector<MeasuredPlanner> planners_of(const BenchmarkWorld& world, std::uint64_t seed) {
-  return {{"graph kept", plan_function(std::make_shared<KeptGraph>(world)), seed},
+  return {{"graph kept", plan_function(std::make_shared<PrebuiltGraph>(world)), seed},
           measured_planner<LazyVisibility>("lazy graph", seed),
           measured_planner<OneTree>("one tree", seed),
           measured_planner<TwoTrees>("two trees", seed),
@@ -84,7 +84,7 @@ std::vector<Row> empty_rows() {
 
 void plan_world(const BenchmarkWorld& world, std::uint64_t seed, std::vector<Row>& rows) {
   const double begin_us = cpu_us();
-  const KeptGraph built(world);
+  const PrebuiltGraph built(world);
   const double build_us = cpu_us() - begin_us;
   std::vector<MeasuredPlanner> planners = planners_of(world, seed);
   Rng order(seed);

@@ -28,7 +28,8 @@ bool is_stuck(const std::vector<Vec2>& path_m) {
 
 }  // namespace
 
-FieldDrive drive_by(const DriveDirection& direction, const PlanWorld& world, const ObstacleWorld& obstacles) {
+FieldDrive drive_by_direction(const DriveDirection& direction, const PlanWorld& world,
+                              const ObstacleWorld& obstacles) {
   const PlanQuery& query = world.queries.front();
   State state{query.start_m, Vec2::Zero()};
   FieldDrive drive;

@@ -26,7 +26,7 @@ using DriveDirection = std::function<Vec2(const Vec2&)>;
 /// Drives a disc with limited acceleration to the goal of the world's query. In each cycle the disc
 /// accelerates towards its target speed in the method's direction. It slows down before the goal. `obstacles`
 /// are the world's obstacles.
-[[nodiscard]] FieldDrive drive_by(const DriveDirection& direction, const PlanWorld& world,
-                                  const ObstacleWorld& obstacles);
+[[nodiscard]] FieldDrive drive_by_direction(const DriveDirection& direction, const PlanWorld& world,
+                                            const ObstacleWorld& obstacles);
 
 }  // namespace sidestep

@@ -34,7 +34,7 @@ struct Drives {
   void add(const FieldMethod& method, const PlanWorld& world) {
     const ObstacleWorld obstacles(world.obstacles);
     const double begin_us = cpu_us();
-    const FieldDrive drive = drive_by(direction_of(method, world, obstacles), world, obstacles);
+    const FieldDrive drive = drive_by_direction(direction_of(method, world, obstacles), world, obstacles);
     compute_us.add(cpu_us() - begin_us);
     ++count;
     ++ends[static_cast<int>(drive.end)];
@@ -124,8 +124,8 @@ std::string picture_of_a_trap(std::uint64_t seed) {
   const PlanWorld world = field_scene(FieldScene::kU, seed);
   const ObstacleWorld obstacles(world.obstacles);
   const auto path = [&](const FieldMethod& method, const char* colour) {
-    return PicturePath{drive_by(direction_of(method, world, obstacles), world, obstacles).path_m, colour,
-                       name_of(method)};
+    return PicturePath{drive_by_direction(direction_of(method, world, obstacles), world, obstacles).path_m,
+                       colour, name_of(method)};
   };
   return field_picture(world, direction_of({Kind::kPotential, 0}, world, obstacles),
                        {path({Kind::kPotential, 0}, "#cf222e"), path({Kind::kPotential, 1}, "#bf8700"),

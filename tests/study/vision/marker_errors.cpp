@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxDotError_m = 0.012;
 
 /// Standard deviation of errors about their mean, per axis.
-class Spread {
+class ErrorDeviation {
  public:
   void add(const Vec2& error) {
     ++count_;
@@ -36,14 +36,14 @@ class Spread {
 
 /// Errors of dots in the robots' frames.
 struct Errors {
-  std::vector<Spread> dots{butterfly().dots.size() + 1};
-  Spread centroids;
+  std::vector<ErrorDeviation> dots{butterfly().dots.size() + 1};
+  ErrorDeviation centroids;
   double square_rad2 = 0;
   std::size_t robots = 0;
 
   double dot_sd_m() const {
     double sum_m2 = 0;
-    for (const Spread& dot : dots) sum_m2 += dot.variance();
+    for (const ErrorDeviation& dot : dots) sum_m2 += dot.variance();
     return std::sqrt(sum_m2 / static_cast<double>(dots.size()));
   }
 };

@@ -327,16 +327,16 @@ TEST_CASE("a world state from the future is counted, displaces no robot and does
   robot.observed_x_m(0.3);
   // The message takes 0.2 to 0.6 ms to arrive. Two clocks may differ by 1 ms, and vision's may be ahead by
   // 0.1 s.
-  const auto see_ahead = [&](std::chrono::microseconds ahead) {
+  const auto observe_early = [&](std::chrono::microseconds ahead) {
     world.valid_at_ns(to_ns(floor.network.now() + ahead));
     robot.observed_at_ns(to_ns(floor.network.now()));
     floor.send(topics::kWorld, world);
   };
-  see_ahead(std::chrono::microseconds(101'700));
+  observe_early(std::chrono::microseconds(101'700));
   CHECK(floor.state.notices().empty());
   CHECK(floor.state.watched_until_ns() == 0);
   CHECK(drops_of(floor.node).total(DropReason::kFutureWorld) == 1);
-  see_ahead(std::chrono::microseconds(101'100));
+  observe_early(std::chrono::microseconds(101'100));
   CHECK(floor.state.notices().size() == 1);
   CHECK(floor.state.watched_until_ns() == robot.observed_at_ns());
   CHECK(drops_of(floor.node).total() == 1);

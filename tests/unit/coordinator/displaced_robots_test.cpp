@@ -68,29 +68,29 @@ TEST_CASE("a resting robot is displaced if the mean of its observations is half 
   Rng rng(seed);
   One one;
   double now = 1;
-  const auto see_often = [&](double x_m, int times) {
+  const auto observe_repeatedly = [&](double x_m, int times) {
     for (int i = 0; i < times; ++i, now += 1.0 / 60)
       one.see({x_m + rng.uniform(-0.002, 0.002), rng.uniform(-0.002, 0.002)}, now);
   };
   constexpr int kEnough = DisplacedRobots::kObservationsOfRest;
-  see_often(0.006, 2 * kEnough);
+  observe_repeatedly(0.006, 2 * kEnough);
   CHECK_FALSE(one.displaced.contains(1));
-  see_often(0.009, kEnough);
+  observe_repeatedly(0.009, kEnough);
   CHECK(one.displaced.contains(1));
   // The robot stays displaced, although each single observation is within vision's error.
   for (int i = 0; i < 100; ++i) {
-    see_often(0.009, 1);
+    observe_repeatedly(0.009, 1);
     REQUIRE(one.displaced.contains(1));
   }
   SECTION("the robot is back after it is seen near its version again") {
-    see_often(0.002, kEnough + DisplacedRobots::kObservationsUntilBack);
+    observe_repeatedly(0.002, kEnough + DisplacedRobots::kObservationsUntilBack);
     CHECK_FALSE(one.displaced.contains(1));
   }
   SECTION("the robot is back after it executes its own stop where it is seen") {
     Version stop = rest_version(1, {0.009, 0}, 1000);
     stop.trajectory = Trajectory::resting(at_s(now), {0.009, 0});
     REQUIRE(one.ledger.on_executing(stop, at_s(now), true) == ReportOutcome::kApplied);
-    see_often(0.009, kEnough + DisplacedRobots::kObservationsUntilBack);
+    observe_repeatedly(0.009, kEnough + DisplacedRobots::kObservationsUntilBack);
     CHECK_FALSE(one.displaced.contains(1));
   }
 }

@@ -16,7 +16,7 @@ struct Seen {
 /// The mean velocity since the newest observation that is at least 15 cm away. If there is none, since the
 /// farthest observation that is at least 1.5 cm away. Uses all observations of the last 0.7 s, without a
 /// buffer.
-Vec2 slow_velocity_mps(const std::vector<Seen>& seen) {
+Vec2 reference_velocity_mps(const std::vector<Seen>& seen) {
   const Seen& last = seen.back();
   const Seen* from = nullptr;
   for (auto old = seen.rbegin() + 1; old != seen.rend() && last.at - old->at <= from_seconds(0.7); ++old) {
@@ -50,7 +50,7 @@ TEST_CASE("an observed robot's velocity is its mean over the last 15 cm, for any
     position_m += velocity_mps * step_s;
     seen.push_back({now, position_m});
     displaced.observe({1, now, position_m, Vec2(0, 0), 0}, ledger);
-    const Vec2 expected_mps = slow_velocity_mps(seen);
+    const Vec2 expected_mps = reference_velocity_mps(seen);
     const Vec2 found_mps = displaced.last_observation(1)->velocity_mps;
     CAPTURE(i, expected_mps.transpose(), found_mps.transpose());
     REQUIRE((found_mps - expected_mps).norm() < 1e-9);

@@ -166,7 +166,7 @@ TEST_CASE(
   c.is_fleet_served = true;
   c.asking = {2};
   double last_s = 0;
-  const auto be_superseded = [&] {
+  const auto supersede_coordinator = [&] {
     epoch = c.failover.epoch() + 8;
     c.other = epoch;
     c.step();
@@ -182,7 +182,7 @@ TEST_CASE(
     last_s = waited_s;
     c.other = 0;
     c.run(0.6);
-    be_superseded();
+    supersede_coordinator();
   }
   CHECK(last_s > 7);
   // If no robot begins new versions, earlier failures do not lengthen the wait.
@@ -193,7 +193,7 @@ TEST_CASE(
   c.is_granting = true;
   c.run(2);
   c.is_fleet_served = true;
-  be_superseded();
+  supersede_coordinator();
   c.asking = {2};
   CHECK(c.takeover_s(30) < 0.8);
 }

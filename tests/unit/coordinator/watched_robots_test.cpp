@@ -155,14 +155,14 @@ TEST_CASE("an observation that is ahead by more than the clock bound counts as b
   Floor floor;
   floor.coordinator = Coordinator(floor_for_tests(), {1, 2}, kEpoch, from_seconds(2 * bound_s));
   floor.register_both();
-  const auto see_ahead = [&](double ahead_s) {
+  const auto observe_early = [&](double ahead_s) {
     const RobotObservation observation{1, at_s(1 + ahead_s), {0.3, 0}, Vec2(0, 0), 1e-6};
     floor.coordinator.on_world_state({&observation, 1}, at_s(1));
   };
-  see_ahead(2 * bound_s + 0.0001);
+  observe_early(2 * bound_s + 0.0001);
   CHECK_FALSE(floor.coordinator.displaced().contains(1));
   CHECK(floor.coordinator.state().watched_until_ns() == 0);
-  see_ahead(2 * bound_s - 0.0001);
+  observe_early(2 * bound_s - 0.0001);
   CHECK(floor.coordinator.displaced().contains(1));
   CHECK(floor.coordinator.state().watched_until_ns() == to_ns(at_s(1)));
 }

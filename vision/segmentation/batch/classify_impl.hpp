@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Classification kernels for one instruction set; see vectors.hpp.
+// SPDX-License-Identifier: Apache-2.0
+// Classification kernels for one instruction set; see vectors.hpp.
 // Sources that include this must not include anything with inline functions: the linker keeps one copy of
 // each, which may use instructions that the machine does not have.
 #include "vision/segmentation/batch/vectors.hpp"

@@ -40,32 +40,32 @@ bool EStar::is_in_disc(GridCell cell) const {
 
 /// The exact distance in cells, times the cost; infinite if the cell has no exact value.
 float EStar::exact_distance(GridCell cell) const {
-  const float cost_there = cost(goal_);
-  if (cost_there == kBlocked) return kBlocked;
-  if (has_line_of_sight()) return line_of_sight_[0].length(cell) * cost_there;
+  const float goal_cost = cost(goal_);
+  if (goal_cost == kBlocked) return kBlocked;
+  if (has_line_of_sight()) return line_of_sight_[0].length(cell) * goal_cost;
   if (cell == goal_ && !is_euclidean()) return 0;
   const double distance = (layout_.centre_of(cell) - goal_m_).norm() / layout_.resolution_m;
   if (cell != goal_) {
     if (distance > settings_.exact_radius_cells) return kBlocked;
-    const auto is_alike = [&](GridCell other) { return cost(other) == cost_there; };
+    const auto is_alike = [&](GridCell other) { return cost(other) == goal_cost; };
     if (!sees(layout_, layout_.in_cells(goal_m_), layout_.in_cells(layout_.centre_of(cell)), is_alike))
       return kBlocked;
   }
-  return static_cast<float>(distance) * cost_there;
+  return static_cast<float>(distance) * goal_cost;
 }
 
 /// Computes the exact distances. Cells whose cost differs from the goal's cost block lines of sight.
 void EStar::compute_sight() {
-  const float cost_there = cost(goal_);
-  bool is_of_one_cost = true;
+  const float goal_cost = cost(goal_);
+  bool is_uniform_cost = true;
   for (GridCell cell = 0; cell < layout_.size(); ++cell) {
     const float here = cost(cell);
-    line_of_sight_[0].set_open(cell, here < kBlocked && here == cost_there);
-    is_of_one_cost = is_of_one_cost && (here == kBlocked || here == cost_there);
+    line_of_sight_[0].set_open(cell, here < kBlocked && here == goal_cost);
+    is_uniform_cost = is_uniform_cost && (here == kBlocked || here == goal_cost);
   }
-  if (is_of_one_cost != has_uniform_cost_)  // a different equation holds in all cells
+  if (is_uniform_cost != has_uniform_cost_)  // a different equation holds in all cells
     for (GridCell cell = 0; cell < layout_.size(); ++cell) changed_.push_back(padded(cell));
-  has_uniform_cost_ = is_of_one_cost;
+  has_uniform_cost_ = is_uniform_cost;
   line_of_sight_[0].compute(layout_.in_cells(goal_m_));
 }
 

@@ -103,8 +103,8 @@ void WorldField::set_goal(const Vec2& goal_m) {
 bool WorldField::reach(GridCell cell) {
   // The values of adjacent cells differ by up to the cost of a cell. A path descends, so all cells between
   // whose centres it interpolates are at most four steps higher than the first cell.
-  const auto dearest = static_cast<float>(1 + (keeps_clear() ? settings_.contact_cost : 0));
-  values_.propagate_until(cell, 4 * dearest);
+  const auto max_cell_cost = static_cast<float>(1 + (keeps_clear() ? settings_.contact_cost : 0));
+  values_.propagate_until(cell, 4 * max_cell_cost);
   return !values_.is_blocked(cell) && values_.value(cell) < kBlocked;
 }
 

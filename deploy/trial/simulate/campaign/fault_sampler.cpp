@@ -161,7 +161,7 @@ class FaultSampler {
     const std::string victim = u < 0.4   ? coordinator_process(scenario_.coordinators - 1)
                                : u < 0.8 ? random_agent()
                                          : "vision";
-    if (!with_other_rules_.insert(victim).second) return;
+    if (!with_changed_rules_.insert(victim).second) return;
     std::size_t rule = rng_.below(rule_mutations().size());
     // An agent needs its own robot on the roster.
     while (victim.starts_with("agent") && rule_mutations()[rule].changes_roster)
@@ -228,7 +228,7 @@ class FaultSampler {
   const FaultTimes& times_;
   Rng& rng_;
   FaultPlan plan_;
-  std::set<std::string> with_other_rules_;
+  std::set<std::string> with_changed_rules_;
   std::set<std::string> seconds_;
 };
 

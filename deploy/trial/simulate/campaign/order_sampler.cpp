@@ -48,8 +48,8 @@ class OrderSampler {
     const Duration end = times_.after(at, sample_log_uniform(0.5, 20, rng_));
     const double u = rng_.uniform();
     const ClientId lifts = u < 0.6 ? client : u < 0.8 ? kFloorOperator : random_client();
-    const bool lifts_one = robot == kAllRobots && rng_.chance(0.3);
-    add(end, {msg::OrderKind::ORDER_RESUME, lifts_one ? random_robot() : robot, lifts});
+    const bool resumes_single_robot = robot == kAllRobots && rng_.chance(0.3);
+    add(end, {msg::OrderKind::ORDER_RESUME, resumes_single_robot ? random_robot() : robot, lifts});
   }
 
   void sample_go() {

@@ -20,9 +20,9 @@ class ReceptionSampler {
 
   void sample() {
     if (rng_.chance(0.15)) {
-      for (std::uint64_t left = 1 + rng_.below(3); left > 0; --left) sample_for_a_while();
+      for (std::uint64_t left = 1 + rng_.below(3); left > 0; --left) sample_temporary_fault();
     }
-    if (scenario_.coordinators > 1 && rng_.chance(0.12) && can_others_serve()) sample_for_good();
+    if (scenario_.coordinators > 1 && rng_.chance(0.12) && can_others_serve()) sample_permanent_fault();
   }
 
  private:
@@ -53,22 +53,22 @@ class ReceptionSampler {
                          [&](const auto& other) { return other != process && rng_.chance(share); });
     return others;
   }
-  void sample_for_a_while() {
+  void sample_temporary_fault() {
     const std::string process = random_process();
     const ProcessNames others = sample_others(process);
-    const bool is_deaf = rng_.chance(0.5);
+    const bool cannot_receive = rng_.chance(0.5);
     const Duration at = times_.sample(rng_);
     const Duration length = times_.until_healed(at, sample_log_uniform(0.5, 15, rng_));
     if (others.empty()) return;
-    plan_.add(at, is_deaf ? Partition{others, {process}} : Partition{{process}, others}, length);
+    plan_.add(at, cannot_receive ? Partition{others, {process}} : Partition{{process}, others}, length);
   }
-  void sample_for_good() {
+  void sample_permanent_fault() {
     const std::string process = random_coordinator();
     const ProcessNames others = sample_others(process);
-    const bool is_deaf = rng_.chance(0.5);
+    const bool cannot_receive = rng_.chance(0.5);
     const Duration at = times_.sample(rng_);
     if (others.empty()) return;
-    plan_.add(at, is_deaf ? Partition{others, {process}} : Partition{{process}, others});
+    plan_.add(at, cannot_receive ? Partition{others, {process}} : Partition{{process}, others});
   }
 
   const Scenario& scenario_;

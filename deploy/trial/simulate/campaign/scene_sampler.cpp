@@ -122,7 +122,7 @@ void sample_people(Scenario& scenario, double min_radius_m, double max_radius_m,
 }
 
 /// Bases follow their versions less exactly than firmware does. The values are from league/crossing.yaml.
-void use_bases(Scenario& scenario) {
+void configure_bases(Scenario& scenario) {
   scenario.tracking_bound_m = 0.014;
   scenario.margin_m = 0.032;
   scenario.vision.position_noise_m = 0.0015;
@@ -138,9 +138,9 @@ std::optional<Duration> sample_base_latency(Rng& rng) {
 Scenario sample_scene(Rng& rng, bool has_driven_bases) {
   Scenario scenario;
   scenario.name = "random";
-  constexpr std::size_t kMost = 30, kMostBases = 16;  // a team has 16 numbers
-  const std::size_t robots = 5 + rng.below((has_driven_bases ? kMostBases : kMost) - 4);
-  if (has_driven_bases) use_bases(scenario);
+  constexpr std::size_t kMost = 30, kMaxDrivenBases = 16;  // a team has 16 numbers
+  const std::size_t robots = 5 + rng.below((has_driven_bases ? kMaxDrivenBases : kMost) - 4);
+  if (has_driven_bases) configure_bases(scenario);
   sample_floor(scenario, robots, rng);
   sample_sensors(scenario, rng);
   if (has_driven_bases) scenario.command_loss = 0;  // only firmware loses commands

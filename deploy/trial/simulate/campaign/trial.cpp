@@ -24,7 +24,7 @@ constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
 // Time after the last fault within which all processes must work again.
 constexpr Duration kRecoveryTime = std::chrono::seconds(2);
 /// Longest time that a robot waits, for example after its own stop, unless it is stuck.
-constexpr Duration kLongestWait = std::chrono::seconds(3);
+constexpr Duration kMaxRobotWait = std::chrono::seconds(3);
 // With more ghosts, there are always some that look like approaching obstacles, and robots on a small floor
 // never move.
 constexpr double kMaxGhostObstacles = 0.02;
@@ -66,7 +66,7 @@ UnexpectedStates find_unexpected_states(const std::vector<RobotProgress>& progre
 
 /// Removes pauses of the process that drives bases: bases that get no commands leave their versions, which
 /// the protocol assumes never happens.
-void keep_driving(FaultPlan& plan) {
+void remove_driver_pauses(FaultPlan& plan) {
   for (TimedFault& timed : plan.faults) {
     if (auto* const pause = std::get_if<Pause>(&timed.fault)) std::erase(pause->processes, "simulator");
   }
@@ -179,7 +179,7 @@ Trial sample_trial(std::uint64_t seed, Duration duration, const std::optional<Sc
   plan.healed_at = times.healed_at();
   if (!has_faults) return trial;
   plan = sample_faults(trial.scenario, system_process_names(trial.scenario), times, fault_rng);
-  if (trial.base_latency) keep_driving(plan);
+  if (trial.base_latency) remove_driver_pauses(plan);
   sample_clocks(trial.scenario, plan, duration, !trial.base_latency, clock_rng);
   if (disturbance_rng.chance(0.08)) trial.scenario.vision.ghost_probability = disturbance_rng.uniform(0, 0.2);
   if (disturbance_rng.chance(0.08))
@@ -208,7 +208,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   });
   if (hooks.on_start) hooks.on_start(system);
   FaultPlayer player(system, trial.scenario, trial.plan);
-  player.run_until(trial.duration - std::min(trial.duration, kLongestWait));
+  player.run_until(trial.duration - std::min(trial.duration, kMaxRobotWait));
   const std::vector<RobotProgress> earlier = system.metrics().progress();
   player.run_until(trial.duration);
   if (hooks.on_end) hooks.on_end();

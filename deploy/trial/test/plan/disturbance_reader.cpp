@@ -14,7 +14,7 @@ using Kind = msg::DisturbanceKind;
 
 // The ranges of the options of `sidestep fault`, or narrower ones where the simulator accepts less.
 constexpr Range kPush_mps{-10, 10};
-constexpr Range kSightError_m{-10, 10};
+constexpr Range kVisionError_m{-10, 10};
 constexpr Range kOffset_ms{-1e6, 1e6};
 constexpr Range kPlace_m{-1000, 1000};
 constexpr Range kSeconds{0.001, 3600};
@@ -81,7 +81,7 @@ RobotDisturbance read_disturbance(YamlMap& map, const std::string& key, const Sc
       break;
     case Kind::DISTURBANCE_SEEN_BESIDE:
       require(map, "by_m");
-      map.read("by_m", kSightError_m, disturbance.place_m);
+      map.read("by_m", kVisionError_m, disturbance.place_m);
       break;
     case Kind::DISTURBANCE_SEEN_AS:
       require(map, "other");

@@ -93,8 +93,8 @@ void SimFaults::apply(const RestartFault& fault, const PlannedFault&) {
   restarts_.erase(fault.process);
   if (!fault.scenario_file.empty()) {
     system_.use_scenario(fault.process, load_scenario(fault.scenario_file));
-    with_other_rules_.insert(fault.process);
-  } else if (with_other_rules_.erase(fault.process) > 0) {
+    with_changed_rules_.insert(fault.process);
+  } else if (with_changed_rules_.erase(fault.process) > 0) {
     system_.use_scenario(fault.process, test_.scenario);
   }
   system_.restart(fault.process);

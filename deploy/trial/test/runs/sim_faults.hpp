@@ -54,8 +54,8 @@ class SimFaults {
   std::set<std::string> impaired_;  // names of impaired processes
   Writer<msg::AbsenceAttestation> attestation_writer_;
   AbsenceAttestations attestations_;
-  std::map<std::string, Time> restarts_;    // when to restart killed processes
-  std::set<std::string> with_other_rules_;  // processes that were last started with another scenario
+  std::map<std::string, Time> restarts_;      // when to restart killed processes
+  std::set<std::string> with_changed_rules_;  // processes that were last started with another scenario
 };
 
 }  // namespace sidestep

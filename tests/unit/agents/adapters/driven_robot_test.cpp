@@ -158,15 +158,15 @@ TEST_CASE("fixes newer than the odometry are used once the odometry has arrived"
 }
 
 TEST_CASE("odometry with wrong timestamps is counted and does not mislead a driven robot") {
-  const Duration date_error = GENERATE(-150ms, -100ms, -40ms, -10ms, 10ms, 40ms, 100ms, 150ms);
-  CAPTURE(date_error.count());
+  const Duration timestamp_error = GENERATE(-150ms, -100ms, -40ms, -10ms, 10ms, 40ms, 100ms, 150ms);
+  CAPTURE(timestamp_error.count());
   Scene scene;
   scene.run(1500ms);
   scene.sees = false;
   std::uint64_t reports = 0;
   const double error_m = drive_and_measure(scene, [&] {
     scene.step();
-    scene.report_odometry(date_error);
+    scene.report_odometry(timestamp_error);
     ++reports;
   });
   CHECK(error_m < 0.002);
@@ -188,13 +188,13 @@ TEST_CASE("a base clock that is set back during the drive misleads the robot onl
 }
 
 TEST_CASE("a driven robot is less certain of its position while its odometry is not trusted") {
-  const auto error_after = [](Duration date_error) {
+  const auto error_after = [](Duration timestamp_error) {
     Scene scene;
     scene.run(1500ms);
     for (int i = 0; i < 150; ++i) {
       scene.sees = i < 50;
       scene.step();
-      scene.report_odometry(date_error);
+      scene.report_odometry(timestamp_error);
     }
     return scene.robot_report().uncertainty.position_error_rms_m;
   };

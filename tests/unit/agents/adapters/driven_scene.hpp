@@ -50,11 +50,11 @@ class DrivenScene {
     return command;
   }
   /// The base reports its odometry, relative to its own frame, with a timestamp that may be wrong.
-  void report_odometry(Duration date_error = {}, Duration ago = {}) {
+  void report_odometry(Duration timestamp_error = {}, Duration ago = {}) {
     const double s = to_seconds(ago);
     const Vec2 place_m = rotated(position_m - s * velocity_mps, 1.1) + Vec2(7, 8);
     const double turned_rad = heading_rad - s * turn_radps + 1.1;
-    robot.on_odometry({kDrivenRobot, now - ago + date_error, place_m, turned_rad}, now - ago);
+    robot.on_odometry({kDrivenRobot, now - ago + timestamp_error, place_m, turned_rad}, now - ago);
   }
   /// Sends a command, which only fences if it contains no version.
   void send(const std::optional<Version>& version) {

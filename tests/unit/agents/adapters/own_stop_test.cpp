@@ -16,7 +16,7 @@ using test::DrivenScene;
 
 /// The robot's first own stop after version `before`, and the body's maximum deviation from this stop
 /// within 1.5 s, minus the stop's inflation.
-struct Excursion {
+struct OwnStopDeviation {
   std::optional<Version> stop;
   double beyond_m = 0;
 
@@ -47,7 +47,7 @@ TEST_CASE("a robot that is pushed just before a short version stays within its o
   scene.run(start - 10ms - scene.now);
   REQUIRE(scene.robot_report().executing.number == base.number);
   scene.position_m += Vec2(0.006, 0);
-  Excursion excursion;
+  OwnStopDeviation excursion;
   excursion.follow(scene, base.number);
   INFO("latency " << to_seconds(latency) << " s");
   REQUIRE(excursion.stop);
@@ -64,7 +64,7 @@ Duration random_latency(Rng& rng) {
 }
 
 /// Drives a robot at random and pushes it once. nullopt if the robot made an own stop without a push.
-std::optional<Excursion> push_at_random(std::uint64_t seed) {
+std::optional<OwnStopDeviation> push_at_random(std::uint64_t seed) {
   Rng rng(seed);
   DrivenScene scene(random_latency(rng));
   const Duration latency = scene.commanded.latency();
@@ -91,7 +91,7 @@ std::optional<Excursion> push_at_random(std::uint64_t seed) {
   const VersionNumber before = scene.robot_report().executing.number;
   const double push_m = rng.uniform(0, 0.02), angle_rad = rng.uniform(-3.14, 3.14);
   scene.position_m += rotated(Vec2(push_m, 0), angle_rad);
-  Excursion excursion;
+  OwnStopDeviation excursion;
   excursion.follow(scene, before);
   return excursion;
 }

@@ -57,9 +57,9 @@ TEST_CASE("velocities are sent as twists, and odometry is received with its time
   CHECK(scene.reports[0].position_m == Vec2(1, 2));
   CHECK(scene.reports[0].heading_rad == Approx(1.2));
   // The base's clock is wrong by less than a second. The driver does not decide whether to trust it.
-  ros::Odometry misdated = scene.odometry();
-  misdated.nanosec += 100'000'000;
-  scene.report(misdated);
+  ros::Odometry wrong_timestamp_odometry = scene.odometry();
+  wrong_timestamp_odometry.nanosec += 100'000'000;
+  scene.report(wrong_timestamp_odometry);
   REQUIRE(scene.reports.size() == 2);
   CHECK(scene.reports[1].measured_at > scene.network.now());
   // The base's clock has a different epoch, for example that of a simulation.

@@ -46,7 +46,7 @@ struct Floor {
   SimNetwork network{1, kBegin, scenario.network};
   SimBus agent_bus{network, {1, {}}}, other_bus{network, {2, {}}};
   Duration robot_clock;  ///< offset of the robot's clock
-  bool names_time = true, denies = false, is_heard = true;
+  bool echoes_request_time = true, denies = false, is_heard = true;
   std::vector<Time> commands, registrations, proposals, order_reports;
   std::optional<msg::Command> last_command;
   Time command_received_at{};  ///< by the robot's clock
@@ -70,7 +70,7 @@ struct Floor {
     });
     other_bus.subscribe(topics::kRegistration, [this](const msg::Registration& registration) {
       registrations.push_back(network.now());
-      answer(names_time ? registration.header().stamp_ns() : 0, 0, msg::Reason::REASON_GRANTED);
+      answer(echoes_request_time ? registration.header().stamp_ns() : 0, 0, msg::Reason::REASON_GRANTED);
     });
     other_bus.subscribe(topics::kProposal, [this](const msg::Proposal& proposal) {
       proposals.push_back(network.now());
@@ -118,7 +118,7 @@ struct Floor {
     state.watched_until_ns(to_ns(robot_now()));
     states.publish(state, network.now());
   }
-  void send_sights() {
+  void send_vision_messages() {
     msg::WorldState world;
     world.header().sender(kVision);
     world.valid_at_ns(to_ns(robot_now()));
@@ -134,7 +134,7 @@ struct Floor {
   void run(Duration duration) {
     for (const Time end = network.now() + duration; network.now() < end;) {
       send_robot_report();
-      send_sights();
+      send_vision_messages();
       if (is_heard) send_heartbeat();
       network.run_until(network.now() + 10ms);
     }
@@ -166,7 +166,7 @@ TEST_CASE("cycles begin at multiples of the cycle time by the robot's clock") {
 
 TEST_CASE("an agent registers every three cycles until it has measured the coordinator's clock") {
   Floor floor;
-  floor.names_time = false;
+  floor.echoes_request_time = false;
   floor.denies = true;
   floor.run(1s);
   floor.registrations.clear();
@@ -174,7 +174,7 @@ TEST_CASE("an agent registers every three cycles until it has measured the coord
   CHECK(floor.registrations.size() >= 19);
   for (const Duration gap : gaps(floor.registrations)) CHECK(std::chrono::abs(gap - 3 * floor.cycle()) < 1ms);
   CHECK(floor.proposals.empty());
-  floor.names_time = true;
+  floor.echoes_request_time = true;
   floor.run(1s);
   CHECK_FALSE(floor.proposals.empty());
   floor.registrations.clear();
@@ -197,7 +197,7 @@ TEST_CASE("an agent whose robot may drive again proposes immediately unless the 
   REQUIRE(floor.proposals.empty());
   const Duration since_cycle = floor.network.now().time_since_epoch() % floor.cycle();
   floor.send_robot_report();
-  floor.send_sights();
+  floor.send_vision_messages();
   floor.network.run_until(floor.network.now() - since_cycle + floor.cycle() +
                           from_seconds(phase * to_seconds(floor.cycle())));
   const Time heard_at = floor.network.now();

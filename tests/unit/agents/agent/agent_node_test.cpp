@@ -123,7 +123,7 @@ struct NodeFixture {
     return dropped() - before;
   }
   template <typename Message, typename Spoil>
-  std::uint64_t send_spoilt(const Topic<Message>& topic, Message message, Spoil spoil) {
+  std::uint64_t send_invalidated(const Topic<Message>& topic, Message message, Spoil spoil) {
     spoil(message);
     return send(topic, message);
   }
@@ -155,14 +155,16 @@ TEST_CASE("valid messages are not counted as invalid") {
 
 TEST_CASE("invalid feedback is counted and changes nothing") {
   NodeFixture f;
-  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kFeedback, valid_robot_report(), spoil); };
+  const auto send = [&](auto spoil) {
+    return f.send_invalidated(topics::kFeedback, valid_robot_report(), spoil);
+  };
   CHECK(send([](msg::Feedback& m) { m.executing().x_m(kNan); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.executing().phase_count(99); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_epoch(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.obeyed_incarnation(kHuge); }) == 1);
   // Needs a new fixture, because the old one would refuse the message as coming from a second process.
-  CHECK(NodeFixture().send_spoilt(topics::kFeedback, valid_robot_report(),
-                                  [](msg::Feedback& m) { m.header().incarnation(kHuge); }) == 1);
+  CHECK(NodeFixture().send_invalidated(topics::kFeedback, valid_robot_report(),
+                                       [](msg::Feedback& m) { m.header().incarnation(kHuge); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.valid_at_ns(static_cast<std::int64_t>(kHuge)); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.vx_mps(kNan); }) == 1);
   CHECK(send([](msg::Feedback& m) { m.robot(kRobot + 1); }) == 1);
@@ -177,7 +179,7 @@ TEST_CASE("invalid feedback is counted and changes nothing") {
 TEST_CASE("invalid coordinator states are counted and change nothing") {
   NodeFixture f;
   const auto send = [&](auto spoil) {
-    return f.send_spoilt(topics::kCoordinator, valid_coordinator_state(), spoil);
+    return f.send_invalidated(topics::kCoordinator, valid_coordinator_state(), spoil);
   };
   REQUIRE(f.send(topics::kFeedback, valid_robot_report()) == 0);
   CHECK(send([](msg::CoordinatorState& m) { m.epoch(kHuge); }) == 1);
@@ -203,7 +205,7 @@ TEST_CASE("invalid verdicts are counted") {
 
 TEST_CASE("each invalid observation in a world state is counted") {
   NodeFixture f;
-  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kWorld, valid_world(), spoil); };
+  const auto send = [&](auto spoil) { return f.send_invalidated(topics::kWorld, valid_world(), spoil); };
   CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_x_m(kNan); }) == 1);
   CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_at_ns(to_ns(kMaxTime)); }) == 1);
   CHECK(send([](msg::WorldState& m) { m.robots()[0].observed_heading_rad(kNan); }) == 1);
@@ -213,7 +215,9 @@ TEST_CASE("each invalid observation in a world state is counted") {
 TEST_CASE("each invalid list of obstacles is counted") {
   NodeFixture f;
   using List = msg::ObstacleList;
-  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kObstacles, valid_obstacles(), spoil); };
+  const auto send = [&](auto spoil) {
+    return f.send_invalidated(topics::kObstacles, valid_obstacles(), spoil);
+  };
   CHECK(send([](List& m) { m.obstacles()[0].radius_m(-1); }) == 1);
   CHECK(send([](List& m) { m.obstacles()[0].x_m(kNan); }) == 1);
   CHECK(send([](List& m) { m.obstacles()[0].observed_at_ns(to_ns(kMaxTime)); }) == 1);
@@ -225,13 +229,13 @@ TEST_CASE("each invalid list of obstacles is counted") {
 
 TEST_CASE("a world state that is not from vision counts as one invalid message") {
   NodeFixture f;
-  CHECK(f.send_spoilt(topics::kWorld, valid_world(), [](msg::WorldState& m) { m.header().sender(kRobot); }) ==
-        1);
+  CHECK(f.send_invalidated(topics::kWorld, valid_world(),
+                           [](msg::WorldState& m) { m.header().sender(kRobot); }) == 1);
 }
 
 TEST_CASE("invalid ledger pages, and invalid versions on valid pages, are counted") {
   NodeFixture f;
-  const auto send = [&](auto spoil) { return f.send_spoilt(topics::kLedger, valid_page(), spoil); };
+  const auto send = [&](auto spoil) { return f.send_invalidated(topics::kLedger, valid_page(), spoil); };
   CHECK(send([](msg::LedgerPage& m) { m.page_index(kMaxRobots); }) == 1);
   CHECK(send([](msg::LedgerPage& m) { m.epoch(kHuge); }) == 1);
   CHECK(send([](msg::LedgerPage& m) { m.versions()[0].vx_mps(kNan); }) == 1);

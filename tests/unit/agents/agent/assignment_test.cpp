@@ -144,7 +144,7 @@ TEST_CASE("an agent remembers the orders of all robots, even if a coordinator's 
 RememberedOrder hold_of(RobotId robot, OrderNumber number) {
   return {{msg::OrderKind::ORDER_HOLD, robot, kClient, number}};
 }
-OrderPage told_by(std::uint32_t process, Incarnation incarnation, OrderPage page) {
+OrderPage page_from_process(std::uint32_t process, Incarnation incarnation, OrderPage page) {
   page.process = process;
   page.incarnation = incarnation;
   return page;
@@ -154,28 +154,28 @@ TEST_CASE("an agent knows whether a coordinator has announced all orders that th
   constexpr std::uint32_t kActive = kCoordinator, kStandby = kCoordinator + 1;
   Robot r;
   CHECK(r.assignment.has_no_orders());
-  r.hear(told_by(kActive, 1, memory({hold_of(8, 5)})));
+  r.hear(page_from_process(kActive, 1, memory({hold_of(8, 5)})));
   CHECK_FALSE(r.assignment.has_no_orders());
   CHECK(r.assignment.has_announced_all_orders(kActive, 1));
   CHECK_FALSE(
       r.assignment.has_announced_all_orders(kActive, 2));  // a restarted coordinator has forgotten all orders
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   // The standby, which was partitioned from the network, claims that its empty memory is complete.
-  r.hear(told_by(kStandby, 1, memory({})));
+  r.hear(page_from_process(kStandby, 1, memory({})));
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   REQUIRE(r.assignment.take_missing().size() == 1);
-  r.hear(told_by(kStandby, 1, memory({})));
+  r.hear(page_from_process(kStandby, 1, memory({})));
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   CHECK(r.assignment.take_missing().size() == 1);  // the orders are announced again
-  r.hear(told_by(kStandby, 1, memory({hold_of(8, 5)})));
+  r.hear(page_from_process(kStandby, 1, memory({hold_of(8, 5)})));
   CHECK(r.assignment.has_announced_all_orders(kStandby, 1));
   CHECK(r.assignment.take_missing().empty());
   // The standby may not have received a new order that the active coordinator announces.
-  r.hear(told_by(kActive, 1, change(hold_of(9, 6))));
+  r.hear(page_from_process(kActive, 1, change(hold_of(9, 6))));
   CHECK(r.assignment.has_announced_all_orders(kActive, 1));
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
-  r.hear(told_by(kActive, 1, memory({hold_of(8, 5), hold_of(9, 6), hold_of(10, 7)})));
-  r.hear(told_by(kStandby, 1, memory({hold_of(8, 5), hold_of(9, 6)})));
+  r.hear(page_from_process(kActive, 1, memory({hold_of(8, 5), hold_of(9, 6), hold_of(10, 7)})));
+  r.hear(page_from_process(kStandby, 1, memory({hold_of(8, 5), hold_of(9, 6)})));
   CHECK_FALSE(r.assignment.has_announced_all_orders(kStandby, 1));
   CHECK(r.assignment.has_announced_all_orders(kActive, 1));
 }
@@ -184,8 +184,8 @@ TEST_CASE("an agent keeps its orders through a succession of coordinators withou
   Robot r;
   r.hear(memory({hold_of(8, 5)}));
   for (Incarnation incarnation = 2; incarnation < 10; ++incarnation) {
-    OrderPage empty =
-        told_by(kCoordinator + static_cast<std::uint32_t>(incarnation % 3), incarnation, memory({}));
+    OrderPage empty = page_from_process(kCoordinator + static_cast<std::uint32_t>(incarnation % 3),
+                                        incarnation, memory({}));
     empty.is_complete = incarnation % 2 == 0;
     r.hear(empty);
     CHECK(r.assignment.take_missing().size() == 1);

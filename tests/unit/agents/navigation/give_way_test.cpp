@@ -19,7 +19,7 @@ ObstacleWorld corridor(double bay_x_m) {
                         Box{{bay_x_m + 0.2, 0.15}, {5, 2}}, Box{{bay_x_m - 0.2, 0.5}, {bay_x_m + 0.2, 2}}});
 }
 
-OtherRobot coming_from(double x_m, double goal_x_m) {
+OtherRobot oncoming_robot(double x_m, double goal_x_m) {
   return {7, true, {x_m, 0}, {Vec2(goal_x_m, 0), Vec2(goal_x_m, 0)}, true};
 }
 
@@ -52,7 +52,7 @@ TEST_CASE("a robot that is stuck in a corridor backs into the nearest bay until 
   Robot robot;
   // A bay behind the other robot is unreachable.
   const bool is_reachable = bay_x_m < 0;
-  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  const std::vector<OtherRobot> facing{oncoming_robot(0.2, -4.9)};
   CHECK_FALSE(robot.decide(0, {0, 0}, facing, fixed));
   CHECK_FALSE(robot.decide(1.4, {0, 0}, facing, fixed));
   std::optional<Vec2> place;
@@ -63,8 +63,8 @@ TEST_CASE("a robot that is stuck in a corridor backs into the nearest bay until 
   CHECK(place->y() >= kSeparation_m);
   CHECK_FALSE(fixed.touches(*place, kRequired_m));
   // The robot stays while the other robot is on its way, and continues once it has passed.
-  CHECK(robot.decide(7, *place, {coming_from(bay_x_m + 0.5, -4.9)}, fixed) == place);
-  CHECK_FALSE(robot.decide(8, *place, {coming_from(bay_x_m - 0.5, -4.9)}, fixed));
+  CHECK(robot.decide(7, *place, {oncoming_robot(bay_x_m + 0.5, -4.9)}, fixed) == place);
+  CHECK_FALSE(robot.decide(8, *place, {oncoming_robot(bay_x_m - 0.5, -4.9)}, fixed));
 }
 
 TEST_CASE("a robot gives way only if it is stuck and blocks a robot with the right of way") {
@@ -72,25 +72,26 @@ TEST_CASE("a robot gives way only if it is stuck and blocks a robot with the rig
   SECTION("the robot makes progress") {
     Robot robot;
     for (int i = 0; i < 50; ++i)
-      CHECK_FALSE(robot.decide(0.1 * i, {-4 + 0.02 * i, 0}, {coming_from(0.2, -4.9)}, fixed));
+      CHECK_FALSE(robot.decide(0.1 * i, {-4 + 0.02 * i, 0}, {oncoming_robot(0.2, -4.9)}, fixed));
   }
   SECTION("the other robot must give way") {
     Robot robot;
-    OtherRobot other = coming_from(0.2, -4.9);
+    OtherRobot other = oncoming_robot(0.2, -4.9);
     other.has_right_of_way = false;
     for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {other}, fixed));
   }
   SECTION("the other robot drives away or stays at rest") {
     Robot robot;
-    for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {coming_from(0.2, 4)}, fixed));
-    for (int i = 50; i < 99; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {coming_from(0.2, 0.2)}, fixed));
+    for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {oncoming_robot(0.2, 4)}, fixed));
+    for (int i = 50; i < 99; ++i)
+      CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {oncoming_robot(0.2, 0.2)}, fixed));
   }
 }
 
 TEST_CASE("a robot that gives way continues after a while if no robot passes") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  const std::vector<OtherRobot> facing{oncoming_robot(0.2, -4.9)};
   CHECK_FALSE(robot.decide(0, {0, 0}, facing, fixed));
   const std::optional<Vec2> place = robot.decide(2, {0, 0}, facing, fixed);
   REQUIRE(place);
@@ -101,7 +102,7 @@ TEST_CASE("a robot that gives way continues after a while if no robot passes") {
 TEST_CASE("a robot that gets a new goal stops giving way") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  const std::vector<OtherRobot> facing{oncoming_robot(0.2, -4.9)};
   CHECK_FALSE(robot.decide(0, {0, 0}, facing, fixed));
   REQUIRE(robot.decide(2, {0, 0}, facing, fixed));
   robot.give_way.restart(at(2.1));
@@ -113,14 +114,14 @@ TEST_CASE("a robot does not choose a place that another robot occupies") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
   OtherRobot in_bay{1, true, {-1, 0.3}}, behind{2, true, {-1.6, 0}};
-  const std::vector<OtherRobot> others{coming_from(0.2, -4.9), in_bay, behind};
+  const std::vector<OtherRobot> others{oncoming_robot(0.2, -4.9), in_bay, behind};
   for (int i = 0; i < 80; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, others, fixed));
 }
 
 TEST_CASE("robots that block each other and move back and forth do not count as making progress") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  const std::vector<OtherRobot> facing{coming_from(0.5, -4.9)};
+  const std::vector<OtherRobot> facing{oncoming_robot(0.5, -4.9)};
   std::optional<Vec2> place;
   for (int i = 0; i < 30 && !place; ++i)
     place = robot.decide(0.1 * i, {0.15 * std::sin(0.1 * i * 7), 0}, facing, fixed);
@@ -130,7 +131,7 @@ TEST_CASE("robots that block each other and move back and forth do not count as 
 TEST_CASE("a robot gives way until the other robot has passed, even while the other robot is far away") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
+  (void)robot.decide(2.5, {0, 0}, {oncoming_robot(0.2, -4.9)}, fixed);
   const std::optional<Vec2> place = robot.give_way.place_m();
   REQUIRE(place);
   const auto yields_to = robot.give_way.yields_to();
@@ -149,11 +150,11 @@ TEST_CASE("a robot that blocks a door only together with another robot gives way
   Robot robot;
   std::optional<Vec2> place;
   for (double t = 0; t < 6 && !place; t += 0.1)
-    place = robot.decide(t, {0, 0.125}, {coming_from(0.4, -4.9), beside}, fixed);
+    place = robot.decide(t, {0, 0.125}, {oncoming_robot(0.4, -4.9), beside}, fixed);
   CHECK(place);
   Robot alone;
   for (int i = 0; i < 60; ++i)
-    CHECK_FALSE(alone.decide(0.1 * i, {0, 0.125}, {coming_from(0.4, -4.9)}, fixed));
+    CHECK_FALSE(alone.decide(0.1 * i, {0, 0.125}, {oncoming_robot(0.4, -4.9)}, fixed));
 }
 
 TEST_CASE("a robot chooses another place if its place is occupied or cannot be reached") {
@@ -162,7 +163,7 @@ TEST_CASE("a robot chooses another place if its place is occupied or cannot be r
                              Box{{-2.2, -2}, {-1.8, -0.5}}, Box{{-5, 0.15}, {-1.2, 2}},
                              Box{{-0.8, 0.15}, {5, 2}}, Box{{-1.2, 0.5}, {-0.8, 2}}});
   Robot robot;
-  std::vector<OtherRobot> others{coming_from(0.2, -4.9)};
+  std::vector<OtherRobot> others{oncoming_robot(0.2, -4.9)};
   (void)robot.decide(2.5, {0, 0}, others, fixed);
   const std::optional<Vec2> first = robot.give_way.place_m();
   REQUIRE(first);
@@ -179,10 +180,10 @@ TEST_CASE("a robot chooses another place if its place is occupied or cannot be r
 TEST_CASE("a robot keeps giving way until the other robot has passed, even if the right of way changes") {
   const ObstacleWorld fixed = corridor(-1);
   Robot robot;
-  (void)robot.decide(2.5, {0, 0}, {coming_from(0.2, -4.9)}, fixed);
+  (void)robot.decide(2.5, {0, 0}, {oncoming_robot(0.2, -4.9)}, fixed);
   const std::optional<Vec2> place = robot.give_way.place_m();
   REQUIRE(place);
-  OtherRobot other = coming_from(0.1, -4.9);
+  OtherRobot other = oncoming_robot(0.1, -4.9);
   other.has_right_of_way = false;
   CHECK(robot.decide(5, *place, {other}, fixed) == place);
   other.position_m = {-1.5, 0};
@@ -195,7 +196,7 @@ TEST_CASE("a search ends when the robot makes progress or gets a new goal") {
   CHECK_FALSE(robot.give_way.track_progress(at(0), 5));
   REQUIRE(robot.give_way.track_progress(at(0.9), 5) == false);
   REQUIRE(robot.give_way.track_progress(at(1.6), 5));
-  const std::vector<OtherRobot> facing{coming_from(0.2, -4.9)};
+  const std::vector<OtherRobot> facing{oncoming_robot(0.2, -4.9)};
   robot.give_way.begin_search(at(1.6), {0, 0}, facing, fixed);
   CHECK(robot.give_way.is_searching());
   CHECK(robot.give_way.track_progress(at(1.7), 5));
@@ -210,12 +211,12 @@ TEST_CASE("a search ends when the robot makes progress or gets a new goal") {
 TEST_CASE("a robot does not give way to a robot that can drive around it, nor immediately after a pause") {
   const ObstacleWorld open;
   Robot robot;
-  const OtherRobot other = coming_from(1, -4.9);
+  const OtherRobot other = oncoming_robot(1, -4.9);
   for (int i = 0; i < 50; ++i) CHECK_FALSE(robot.decide(0.1 * i, {0, 0}, {other}, open));
   const ObstacleWorld fixed = corridor(-1);
   Robot paused;
   CHECK_FALSE(paused.decide_once(0, {0, 0}, {}, fixed));
-  CHECK_FALSE(paused.decide_once(60, {0, 0}, {coming_from(0.2, -4.9)}, fixed));
+  CHECK_FALSE(paused.decide_once(60, {0, 0}, {oncoming_robot(0.2, -4.9)}, fixed));
 }
 
 }  // namespace sidestep::give_way_test

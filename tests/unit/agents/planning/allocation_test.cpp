@@ -14,7 +14,7 @@ namespace sidestep::allocation_test {
 
 /// Number of allocations for queries that the planner has planned before with the same random samples.
 template <typename Planner>
-std::size_t allocations_once_warm(Planner plan, const std::string& name) {
+std::size_t allocations_after_warm_up(Planner plan, const std::string& name) {
   const PlanWorld world = make_world(name, 10, 1);
   const ObstacleWorld obstacles(world.obstacles);
   std::size_t before = 0;
@@ -37,17 +37,17 @@ TEST_CASE("planners do not allocate memory after a warm-up") {
   LazyVisibility lazy;
   NavigationPlanner estar;
   LeaderFollower<DiscDomain> smoother;
-  CHECK(allocations_once_warm(
+  CHECK(allocations_after_warm_up(
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) { errt.plan(d, s, budget, rng); }, name) == 0);
-  CHECK(allocations_once_warm(
+  CHECK(allocations_after_warm_up(
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) { two.plan(d, s, budget, rng); }, name) == 0);
-  CHECK(allocations_once_warm(
+  CHECK(allocations_after_warm_up(
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) { lazy.plan(d, s, budget, rng); }, name) == 0);
-  CHECK(allocations_once_warm(
+  CHECK(allocations_after_warm_up(
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) { estar.plan(d, s, budget, rng); }, name) == 0);
   Plan<Vec2> plan;
   plan.states.reserve(1000);
-  CHECK(allocations_once_warm(
+  CHECK(allocations_after_warm_up(
             [&](const DiscDomain& d, const Vec2& s, Rng& rng) {
               plan = two.plan(d, s, budget, rng);
               smoother.smooth(d, plan);

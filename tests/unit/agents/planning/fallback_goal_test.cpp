@@ -12,7 +12,7 @@ namespace sidestep::fallback_goal_test {
 
 /// Whether a path that starts in obstacles never penetrates any of them more deeply, and touches none once it
 /// is out.
-bool leaves_and_stays_out(const PlanWorld& world, const std::vector<Vec2>& path) {
+bool exits_obstacles_once(const PlanWorld& world, const std::vector<Vec2>& path) {
   std::vector<double> min_distance;
   for (const Shape& shape : world.obstacles)
     min_distance.push_back(std::min(signed_distance(path.front(), shape), world.radius_m));
@@ -54,7 +54,7 @@ double distance_to_free(const PlanWorld& world, const Vec2& position) {
 }
 
 template <typename Planner>
-void leave_obstacles(std::uint64_t seed, int min_solved) {
+void check_paths_out_of_obstacles(std::uint64_t seed, int min_solved) {
   for (const std::string name : {"circles", "mixed"}) {
     const PlanWorld world = make_world(name, 20, seed);
     const ObstacleWorld obstacles(world.obstacles);
@@ -69,7 +69,7 @@ void leave_obstacles(std::uint64_t seed, int min_solved) {
       REQUIRE(plan.start_blocked);
       REQUIRE_FALSE(plan.goal_blocked);
       REQUIRE(plan.states.front() == start);
-      REQUIRE(leaves_and_stays_out(world, plan.states));
+      REQUIRE(exits_obstacles_once(world, plan.states));
       if (!plan.arrives()) continue;
       REQUIRE(plan.states.back() == query.goal_m);
       ++solved;
@@ -80,7 +80,7 @@ void leave_obstacles(std::uint64_t seed, int min_solved) {
 }
 
 template <typename Planner>
-void approach_obstacles(std::uint64_t seed) {
+void check_paths_into_obstacles(std::uint64_t seed) {
   for (const std::string name : {"circles", "mixed"}) {
     const PlanWorld world = make_world(name, 20, seed);
     const ObstacleWorld obstacles(world.obstacles);
@@ -106,17 +106,17 @@ void approach_obstacles(std::uint64_t seed) {
 
 TEST_CASE("a path that starts in an obstacle leaves it without penetrating deeper") {
   const auto seed = GENERATE(1u, 2u, 3u);
-  leave_obstacles<LazyVisibility>(seed, 16);
-  leave_obstacles<BidirectionalErrt<DiscDomain>>(seed, 14);
-  leave_obstacles<Errt<DiscDomain>>(seed, 14);
-  leave_obstacles<NavigationPlanner>(seed, 14);
+  check_paths_out_of_obstacles<LazyVisibility>(seed, 16);
+  check_paths_out_of_obstacles<BidirectionalErrt<DiscDomain>>(seed, 14);
+  check_paths_out_of_obstacles<Errt<DiscDomain>>(seed, 14);
+  check_paths_out_of_obstacles<NavigationPlanner>(seed, 14);
 }
 
 TEST_CASE("a path to a goal in an obstacle ends as near to the goal as possible") {
   const auto seed = GENERATE(1u, 2u, 3u);
-  approach_obstacles<LazyVisibility>(seed);
-  approach_obstacles<BidirectionalErrt<DiscDomain>>(seed);
-  approach_obstacles<NavigationPlanner>(seed);
+  check_paths_into_obstacles<LazyVisibility>(seed);
+  check_paths_into_obstacles<BidirectionalErrt<DiscDomain>>(seed);
+  check_paths_into_obstacles<NavigationPlanner>(seed);
 }
 
 TEST_CASE("a goal in an obstacle is replaced by the nearest reachable free position") {
@@ -159,7 +159,7 @@ TEST_CASE("a start without a way out is reported as blocked") {
         descent.plan(domain, start, {}, rng)}) {
     CHECK_FALSE(plan.arrives());
     CHECK(plan.start_blocked);
-    CHECK(leaves_and_stays_out(world, plan.states));
+    CHECK(exits_obstacles_once(world, plan.states));
   }
 }
 

@@ -26,7 +26,7 @@ Version random_version(RobotId robot, Rng& rng) {
 
 /// Number of allocations in a few hundred runs of the work, after as many warm-up runs.
 template <typename Work>
-std::size_t allocations_once_warm(Work work) {
+std::size_t allocations_after_warm_up(Work work) {
   for (int i = 0; i < 300; ++i) work();
   const std::size_t before = allocation_count();
   for (int i = 0; i < 300; ++i) work();
@@ -51,7 +51,7 @@ TEST_CASE("the safety search does not allocate memory after a warm-up, even if n
     for (RobotId robot = 1; robot <= 20; ++robot) scene.push_back(random_version(robot, rng));
   }
   std::size_t i = 0, found = 0;
-  CHECK(allocations_once_warm([&] {
+  CHECK(allocations_after_warm_up([&] {
           index.assign(scenes[i++ % scenes.size()]);
           const SearchQuery query{kStart, {{0, 0}, {1, 0}}, random_vector(rng, 3), kCycle};
           found += search.search(query, index, rng).count;
@@ -66,7 +66,7 @@ TEST_CASE("batched comparisons do not allocate memory after a warm-up") {
   for (RobotId robot = 0; robot < 50; ++robot)
     others.push_back(trajectory_bounds(random_version(robot, rng).trajectory));
   std::size_t clear = 0;
-  CHECK(allocations_once_warm([&] {
+  CHECK(allocations_after_warm_up([&] {
           clearance.reset(kStart);
           for (const TrajectoryBounds& other : others) clearance.add(other, 0.19);
           const Trajectory one = random_version(99, rng).trajectory;
@@ -102,7 +102,7 @@ TEST_CASE("storing neighbours does not allocate memory after a warm-up") {
   }
   std::uint64_t number = 0;
   std::size_t collected = 0;
-  CHECK(allocations_once_warm([&] {
+  CHECK(allocations_after_warm_up([&] {
           msg::LedgerPage& page = pages[number % pages.size()];
           page.header().message_number(++number);
           neighbours.on_page(*ReceivedPage::decode(page, kStart));
@@ -131,7 +131,7 @@ TEST_CASE("decoding and encoding an agent's messages does not allocate memory") 
   const Registration registration{0, 1, 0, Time{}, VersionSet()};
   WorldStateDecoder decoder(99);
   std::size_t decoded = 0;
-  CHECK(allocations_once_warm([&] {
+  CHECK(allocations_after_warm_up([&] {
           decoded += decode(report_message, 0, kStart).has_value() + decode(verdict, 0).has_value();
           decoded += decode(state, kStart).has_value() + decoder.decode(world).self.has_value();
           decoded += encode(command).has_version() + encode(proposal).candidate_count() +
@@ -159,7 +159,7 @@ TEST_CASE("decoding, storing and avoiding listed obstacles does not allocate mem
   TrajectoryIndex empty_index;
   Time now = kStart;
   std::size_t k = 0, stored = 0, found = 0;
-  CHECK(allocations_once_warm([&] {
+  CHECK(allocations_after_warm_up([&] {
           msg::ObstacleList& list = lists[k++ % lists.size()];
           now += kCycle;
           list.valid_at_ns(to_ns(now));

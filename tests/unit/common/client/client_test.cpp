@@ -168,7 +168,7 @@ TEST_CASE("a client lists the robots that it has heard of with their current tas
   CHECK(client.wait(client.go(5, {{1, 2}}), kTimeout)->phase == OrderPhase::kArrived);
   REQUIRE(client.robots().size() == 1);
   CHECK(client.robots()[0].id == 5);
-  CHECK(client.robots()[0].task == Task::kArrived);
+  CHECK(client.robots()[0].task == TaskState::kArrived);
   CHECK(client.robots()[0].has_own_order);
 }
 

@@ -53,7 +53,7 @@ TEST_CASE("a robot is free if its agent and vision report it, no hold applies an
   const Robot robot = table.robots(kBegin)[0];
   CHECK(robot.id == 3);
   CHECK(robot.is_free());
-  CHECK(robot.task == Task::kNone);
+  CHECK(robot.task == TaskState::kNone);
   REQUIRE(robot.pose);
   CHECK(robot.pose->x_m == 1);
   CHECK(robot.pose->y_m == 2);
@@ -72,8 +72,8 @@ TEST_CASE("the table shows which client's order a robot carries out and its prog
     table.on_status(status_of(3, client, state), kBegin);
     return table.robots(kBegin)[0];
   };
-  CHECK(after(kSelf, msg::OrderState::ORDER_ACCEPTED).task == Task::kWaiting);
-  CHECK(after(kSelf, msg::OrderState::ORDER_DRIVING).task == Task::kDriving);
+  CHECK(after(kSelf, msg::OrderState::ORDER_ACCEPTED).task == TaskState::kWaiting);
+  CHECK(after(kSelf, msg::OrderState::ORDER_DRIVING).task == TaskState::kDriving);
   CHECK(after(kSelf, msg::OrderState::ORDER_DRIVING).has_own_order);
   CHECK_FALSE(after(kOther, msg::OrderState::ORDER_DRIVING).has_own_order);
   CHECK_FALSE(after(kOther, msg::OrderState::ORDER_DRIVING).is_free());
@@ -83,7 +83,7 @@ TEST_CASE("the table shows which client's order a robot carries out and its prog
   blocked.block_reason(msg::BlockReason::BLOCK_ZONE);
   blocked.remaining_s(4);
   table.on_status(blocked, kBegin);
-  CHECK(table.robots(kBegin)[0].task == Task::kBlocked);
+  CHECK(table.robots(kBegin)[0].task == TaskState::kBlocked);
   CHECK(table.robots(kBegin)[0].remaining_s == 4);
 }
 

@@ -65,25 +65,25 @@ TEST_CASE("no identity may use the sender id of another process") {
     senders.insert(static_cast<std::uint32_t>(sender));
   for (std::uint32_t number = 0; number < 3; ++number)
     senders.insert(static_cast<std::uint32_t>(Sender::kCoordinator) + number);
-  const auto spoken_for = [&](const char* text) {
+  const auto allowed_senders = [&](const char* text) {
     std::set<std::uint32_t> result;
     for (const std::uint32_t sender : senders)
       if (may_use_sender(identity(text), sender)) result.insert(sender);
     return result;
   };
   const auto number = [](Sender sender) { return static_cast<std::uint32_t>(sender); };
-  CHECK(spoken_for("agent 3") == std::set<std::uint32_t>{3});
-  CHECK(spoken_for("coordinator 1") == std::set<std::uint32_t>{number(Sender::kCoordinator) + 1});
-  CHECK(spoken_for("vision") == std::set<std::uint32_t>{number(Sender::kVision)});
-  CHECK(spoken_for("referee") == std::set<std::uint32_t>{number(Sender::kReferee)});
-  CHECK(spoken_for("robot 2-3") == std::set<std::uint32_t>{2, 3, number(Sender::kRobots)});
-  CHECK(spoken_for("client a") == std::set<std::uint32_t>{client_id("a")});
-  CHECK(spoken_for("operator") ==
+  CHECK(allowed_senders("agent 3") == std::set<std::uint32_t>{3});
+  CHECK(allowed_senders("coordinator 1") == std::set<std::uint32_t>{number(Sender::kCoordinator) + 1});
+  CHECK(allowed_senders("vision") == std::set<std::uint32_t>{number(Sender::kVision)});
+  CHECK(allowed_senders("referee") == std::set<std::uint32_t>{number(Sender::kReferee)});
+  CHECK(allowed_senders("robot 2-3") == std::set<std::uint32_t>{2, 3, number(Sender::kRobots)});
+  CHECK(allowed_senders("client a") == std::set<std::uint32_t>{client_id("a")});
+  CHECK(allowed_senders("operator") ==
         std::set<std::uint32_t>{number(Sender::kOperator), client_id("a"), client_id("b")});
-  CHECK(spoken_for("viewer").empty());
-  CHECK(spoken_for("judge").empty());
+  CHECK(allowed_senders("viewer").empty());
+  CHECK(allowed_senders("judge").empty());
   // The simulator also runs the robot side of every robot.
-  CHECK(spoken_for("simulator") ==
+  CHECK(allowed_senders("simulator") ==
         std::set<std::uint32_t>{1, 2, 3, kMaxRobots - 1, number(Sender::kSimulator)});
 }
 

@@ -29,7 +29,7 @@ TEST_CASE("runs of bits are found as if by checking each bit") {
     int down = from;
     while (down >= last && !bits.get(down, row)) --down;
     CAPTURE(from, last);
-    CHECK(bits.find_set_down(from, last, row) == down);
+    CHECK(bits.find_last_set(from, last, row) == down);
   }
 }
 

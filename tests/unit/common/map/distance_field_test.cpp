@@ -20,7 +20,7 @@ std::vector<std::int32_t> transformed(const BitGrid& bits) {
   return squared;
 }
 
-std::int32_t slow_squared(const BitGrid& bits, int column, int row) {
+std::int32_t brute_force_squared_cells(const BitGrid& bits, int column, int row) {
   std::int32_t nearest = kNoBlockedCell;
   for (int y = 0; y < bits.rows(); ++y)
     for (int x = 0; x < bits.columns(); ++x)
@@ -40,7 +40,7 @@ TEST_CASE("the distance transform equals a comparison of all pairs of cells") {
   std::size_t i = 0;
   for (int row = 0; row < bits.rows(); ++row) {
     for (int column = 0; column < bits.columns(); ++column, ++i) {
-      const std::int32_t expected = slow_squared(bits, column, row);
+      const std::int32_t expected = brute_force_squared_cells(bits, column, row);
       if (squared[i] != expected) FAIL(column << ", " << row << ": " << squared[i] << ", not " << expected);
       const double distance = std::min(2047.0, std::sqrt(static_cast<double>(expected)));
       const double stored = field.centre_distance_cells({column, row});

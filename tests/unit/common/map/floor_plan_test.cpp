@@ -9,7 +9,7 @@
 namespace sidestep::floor_plan_test {
 
 /// The number of free cells connected with the first one through shared edges, and the number of free cells.
-std::pair<int, int> reached_and_free(const OccupancyMap& map) {
+std::pair<int, int> count_reached_and_free(const OccupancyMap& map) {
   const MapGrid& grid = map.grid();
   BitGrid seen(grid.columns, grid.rows);
   std::vector<Cell> open;
@@ -53,7 +53,7 @@ TEST_CASE("all free cells of a floor plan are connected") {
     settings.aisle_m = rng.uniform(0.05, 1);
   }
   CAPTURE(grid.columns, grid.rows, settings.min_room_m, settings.door_m, settings.wall_m);
-  const auto [reached, free] = reached_and_free(make_floor_plan(seed, grid, settings));
+  const auto [reached, free] = count_reached_and_free(make_floor_plan(seed, grid, settings));
   CHECK(reached == free);
   if (is_usual && std::min(grid.columns, grid.rows) > 30) CHECK(free > grid.columns * grid.rows / 10);
 }

@@ -39,7 +39,7 @@ TEST_CASE("the cells that meet a box are those whose closed squares intersect th
   for (int i = 0; i < 40; ++i) {
     const Vec2 a = test::random_map_position(rng, grid), b = test::random_map_position(rng, grid);
     const Box box = rng.chance(0.2) ? Box{a, a} : Box{a.cwiseMin(b), a.cwiseMax(b)};
-    const CellRange range = grid.cells_that_meet(box);
+    const CellRange range = grid.cells_intersecting(box);
     bool agrees = true;
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {

@@ -17,7 +17,7 @@ double distance_to_outside(const Vec2& p, const Box& map) {
 }
 
 /// The distance from a point to the map, computed from every blocked cell and the outside.
-double slow_distance(const Vec2& p, const OccupancyMap& map) {
+double brute_force_distance_m(const Vec2& p, const OccupancyMap& map) {
   double nearest_m = std::max(0.0, distance_to_outside(p, map.extent()));
   for (const Box& box : test::blocked_boxes(map))
     nearest_m = std::min(nearest_m, test::distance_to_box(p, box));
@@ -25,7 +25,7 @@ double slow_distance(const Vec2& p, const OccupancyMap& map) {
 }
 
 /// The distance from a path to a box, by ternary search: the distance is a convex function of the position.
-double slow_distance(const Vec2& from, const Vec2& to, const Box& box) {
+double brute_force_distance_m(const Vec2& from, const Vec2& to, const Box& box) {
   double low = 0, high = 1;
   const auto at = [&](double part) { return test::distance_to_box(from + part * (to - from), box); };
   for (int i = 0; i < 70; ++i) {
@@ -38,12 +38,13 @@ double slow_distance(const Vec2& from, const Vec2& to, const Box& box) {
   return std::min({at(low), at(0), at(1)});
 }
 
-double slow_distance(const Vec2& from, const Vec2& to, const OccupancyMap& map) {
+double brute_force_distance_m(const Vec2& from, const Vec2& to, const OccupancyMap& map) {
   double nearest_m = std::min(distance_to_outside(from, map.extent()), distance_to_outside(to, map.extent()));
   for (const Box& box : test::blocked_boxes(map)) {
     // No point of the path is nearer than its middle by more than half the path's length.
     const double bound_m = test::distance_to_box((from + to) / 2, box) - (to - from).norm() / 2;
-    if (bound_m <= nearest_m + kTolerance_m) nearest_m = std::min(nearest_m, slow_distance(from, to, box));
+    if (bound_m <= nearest_m + kTolerance_m)
+      nearest_m = std::min(nearest_m, brute_force_distance_m(from, to, box));
   }
   return nearest_m;
 }
@@ -80,7 +81,8 @@ TEST_CASE("the distance to a map is the distance to its nearest blocked cell") {
   for (int i = 0; i < 40; ++i) {
     const Vec2 p = test::random_map_position(rng, map.grid());
     CAPTURE(p.x(), p.y());
-    const double expected_m = slow_distance(p, map), max_m = rng.uniform(0, 5 * map.grid().resolution_m);
+    const double expected_m = brute_force_distance_m(p, map),
+                 max_m = rng.uniform(0, 5 * map.grid().resolution_m);
     CHECK(map.distance_m(p) == Approx(expected_m).margin(kTolerance_m));
     CHECK(map.distance_m(p, max_m) == Approx(std::min(max_m, expected_m)).margin(kTolerance_m));
     CHECK(map.distance_m(p, 0) == 0);
@@ -98,7 +100,7 @@ TEST_CASE("a moving disc touches every cell that it comes near enough to") {
     Vec2 to = rng.chance(0.1) ? from : test::random_map_position(rng, map.grid());
     if (rng.chance(0.7)) to = from + rng.uniform(0, 0.2) * (to - from);
     if (rng.chance(0.1)) to.y() = from.y();
-    const double distance_m = slow_distance(from, to, map);
+    const double distance_m = brute_force_distance_m(from, to, map);
     // Often very close to contact.
     const double radius_m = rng.chance(0.5) ? std::max(0.0, distance_m + rng.uniform(-3e-9, 3e-9))
                                             : rng.uniform(0, 2 * map.grid().resolution_m);

@@ -29,8 +29,8 @@ double entry_m(const Vec2& from, const Vec2& direction, const Box& box) {
 }
 
 /// The range of a ray, by checking every blocked cell and the outside, inflated by `inflation_m`.
-double slow_cast(const std::vector<Box>& cells, const Box& map, const Vec2& from, const Vec2& direction,
-                 double inflation_m) {
+double reference_range_m(const std::vector<Box>& cells, const Box& map, const Vec2& from,
+                         const Vec2& direction, double inflation_m) {
   double nearest_m = kInfinite;
   for (const Box& cell : cells)
     nearest_m = std::min(nearest_m, entry_m(from, direction, inflated(cell, inflation_m)));
@@ -63,8 +63,8 @@ TEST_CASE("a ray ends at the first blocked cell") {
   for (int i = 0; i < 60; ++i) {
     const Vec2 from = test::random_map_position(rng, map.grid()), direction = random_direction(rng);
     CAPTURE(from.x(), from.y(), direction.x(), direction.y());
-    const double longest_m = slow_cast(cells, map.extent(), from, direction, -kTolerance_m);
-    const double shortest_m = slow_cast(cells, map.extent(), from, direction, kTolerance_m);
+    const double longest_m = reference_range_m(cells, map.extent(), from, direction, -kTolerance_m);
+    const double shortest_m = reference_range_m(cells, map.extent(), from, direction, kTolerance_m);
     const double found_m = cast_ray(map, field, from, direction, 1e4);
     if (!(found_m >= shortest_m - kTolerance_m && found_m <= longest_m + kTolerance_m))
       FAIL(found_m << " is not within " << shortest_m << " and " << longest_m);

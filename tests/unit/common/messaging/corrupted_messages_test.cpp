@@ -17,7 +17,7 @@ namespace sidestep::corrupted_messages_test {
 using namespace random_messages;
 
 /// Eight bytes that a hostile sender might choose.
-std::uint64_t hostile_word(Rng& rng) {
+std::uint64_t hostile_eight_bytes(Rng& rng) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr std::array kNumbers{std::numeric_limits<double>::quiet_NaN(), kInfinity, -kInfinity, 1e300, -1.0};
   constexpr std::uint64_t kLowest = std::uint64_t{1} << 63;  // the lowest signed number
@@ -44,7 +44,7 @@ std::optional<Message> corrupted(const Topic<Message>& topic, const Message& ori
       continue;
     }
     // The position is a multiple of eight, because messages align eight-byte numbers.
-    const std::uint64_t word = hostile_word(rng), begin = 8 * rng.below(bytes.size() / 8);
+    const std::uint64_t word = hostile_eight_bytes(rng), begin = 8 * rng.below(bytes.size() / 8);
     for (std::size_t i = 0; i < 8; ++i) bytes[begin + i] = static_cast<std::uint8_t>(word >> (8 * i));
   }
   std::optional<Message> message;

@@ -66,7 +66,7 @@ bool hears(Rig& rig, std::uint64_t number) {
 }
 
 template <typename Rig>
-void sent_again_after_a_cut(Rig& rig) {
+void check_resend_after_cut(Rig& rig) {
   start_both(rig);
   rig.cut();
   write_all(rig, range(1, 10));
@@ -78,7 +78,7 @@ void sent_again_after_a_cut(Rig& rig) {
 }
 
 template <typename Rig>
-void lost_with_the_writer(Rig& rig) {
+void check_loss_with_writer(Rig& rig) {
   start_both(rig);
   rig.cut();
   write_all(rig, range(1, 10));
@@ -92,7 +92,7 @@ void lost_with_the_writer(Rig& rig) {
 }
 
 template <typename Rig>
-void history_of_one_key(Rig& rig) {
+void check_history_of_one_key(Rig& rig) {
   start_both(rig);
   rig.cut();
   write_all(rig, range(1, 100));
@@ -104,7 +104,7 @@ void history_of_one_key(Rig& rig) {
 }
 
 template <typename Rig>
-void history_of_two_keys(Rig& rig) {
+void check_history_of_two_keys(Rig& rig) {
   start_both(rig);
   rig.cut();
   write_all(rig, range(1, 2 * kEventDepth), 2);
@@ -181,19 +181,19 @@ void lost_after_a_long_stop(Rig& rig) {
 #define SIDESTEP_TEST_RELIABLE_TOPICS(Rig, network)                                                    \
   TEST_CASE("reliable messages are sent again in order after a cut, " network) {                       \
     Rig rig;                                                                                           \
-    reliable_topics::sent_again_after_a_cut(rig);                                                      \
+    reliable_topics::check_resend_after_cut(rig);                                                      \
   }                                                                                                    \
   TEST_CASE("undelivered reliable messages are lost with their writer, " network) {                    \
     Rig rig;                                                                                           \
-    reliable_topics::lost_with_the_writer(rig);                                                        \
+    reliable_topics::check_loss_with_writer(rig);                                                      \
   }                                                                                                    \
   TEST_CASE("a writer keeps its last 64 messages of a key for a reader that is cut off, " network) {   \
     Rig rig;                                                                                           \
-    reliable_topics::history_of_one_key(rig);                                                          \
+    reliable_topics::check_history_of_one_key(rig);                                                    \
   }                                                                                                    \
   TEST_CASE("a writer keeps the last messages of each key and their order within the key, " network) { \
     Rig rig;                                                                                           \
-    reliable_topics::history_of_two_keys(rig);                                                         \
+    reliable_topics::check_history_of_two_keys(rig);                                                   \
   }                                                                                                    \
   TEST_CASE("a reader that starts late gets no earlier reliable messages, " network) {                 \
     Rig rig;                                                                                           \

@@ -69,7 +69,7 @@ TEST_CASE("messages from two competing processes are ignored until one of them i
   }
   SECTION("the earlier process is gone") {
     const Time gone_at = now;
-    while (now < gone_at + SingleWriterGuard::kGoneAfterConflict - kCycle)
+    while (now < gone_at + SingleWriterGuard::kConflictSilenceTimeout - kCycle)
       CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kRefused);
     now += kCycle;
     CHECK(sender.receive(kTwo, now += kCycle) == Outcome::kCounts);

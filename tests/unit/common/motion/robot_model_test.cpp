@@ -32,7 +32,7 @@ TEST_CASE("samples lie in A(v) and fill A(v), and limited accelerations respect 
     furthest_behind = std::min(furthest_behind, a.dot(v.normalized()));
     const Vec2 b = limit_acceleration(random_vector(rng, 20), v, kLimits, cycle);
     REQUIRE(is_admissible(b, v, kLimits));
-    REQUIRE(may_be_held(b, v, kLimits, cycle));
+    REQUIRE(stays_admissible(b, v, kLimits, cycle));
     REQUIRE((v + to_seconds(cycle) * b).norm() <= kLimits.speed_mps + 1e-9);
   }
   CHECK(furthest_ahead > 2.95);
@@ -58,7 +58,7 @@ TEST_CASE("an acceleration may be held if and only if it is admissible throughou
       // At rest there is no direction, and in the last instant before rest the robot still brakes.
       if (then.norm() > 1e-6) is_admissible_throughout &= is_admissible(a, then, kLimits);
     }
-    const bool may = may_be_held(a, v, kLimits, duration);
+    const bool may = stays_admissible(a, v, kLimits, duration);
     CAPTURE(i, a, v, duration.count());
     REQUIRE(may == is_admissible_throughout);
     if (is_limited) REQUIRE(may);

@@ -35,7 +35,7 @@ RememberedOrder zone(ClientId client, std::uint32_t zone_number, OrderNumber num
 
 /// Whether a robot is held, from the list of all orders: it has a hold after which neither the hold's owner
 /// nor an operator has sent a resume for the robot.
-bool is_held_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot) {
+bool reference_is_held(const std::vector<RememberedOrder>& orders, RobotId robot) {
   const auto concerns = [=](const Order& o) { return o.robot == robot || o.robot == kAllRobots; };
   return std::ranges::any_of(orders, [&](const RememberedOrder& h) {
     if (h.order.kind != msg::OrderKind::ORDER_HOLD || !concerns(h.order)) return false;
@@ -48,7 +48,7 @@ bool is_held_by_reference(const std::vector<RememberedOrder>& orders, RobotId ro
 }
 
 /// The latest drive order or cancel of a rank for a robot, from the list of all orders.
-const Order* drive_by_reference(const std::vector<RememberedOrder>& orders, RobotId robot, Rank rank) {
+const Order* reference_drive_order(const std::vector<RememberedOrder>& orders, RobotId robot, Rank rank) {
   const Order* last = nullptr;
   for (const RememberedOrder& o : orders) {
     const bool drives =
@@ -87,10 +87,10 @@ TEST_CASE("order books that merge the same orders in any sequence agree with eac
     CHECK(first.all().size() == second.all().size());
     CHECK(first.hold_count() == second.hold_count());
     for (RobotId robot = 0; robot < 3; ++robot) {
-      CHECK(first.is_held(robot) == is_held_by_reference(orders, robot));
+      CHECK(first.is_held(robot) == reference_is_held(orders, robot));
       CHECK(second.is_held(robot) == first.is_held(robot));
       for (std::size_t rank = 0; rank < kRanks; ++rank) {
-        const Order* expected = drive_by_reference(orders, robot, static_cast<Rank>(rank));
+        const Order* expected = reference_drive_order(orders, robot, static_cast<Rank>(rank));
         const RememberedOrder* found = second.drive_order(robot, static_cast<Rank>(rank));
         REQUIRE((found != nullptr) == (expected != nullptr));
         if (expected) CHECK((found->order.number == expected->number && found->order.kind == expected->kind));

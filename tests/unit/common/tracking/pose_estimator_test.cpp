@@ -18,8 +18,8 @@ using std::chrono::milliseconds;
 const Time kBegin = time_from_ns(1'700'000'000'000'000'000);
 
 // A robot that drives in a circle, with a constant scale error of its odometry and delayed fixes.
-struct Circling {
-  explicit Circling(std::uint64_t seed, double scale_error)
+struct CirclingRobot {
+  explicit CirclingRobot(std::uint64_t seed, double scale_error)
       : rng(seed), scale(1 + scale_error), estimator({1, 0}, 0, kBegin, {0.01, 0.005, 0.0015}) {}
 
   Vec2 position(Time t) const { return rotated(Vec2(1, 0), 1.5 * to_seconds(t - kBegin)); }
@@ -51,7 +51,7 @@ struct Circling {
 TEST_CASE("late and noisy fixes keep the estimate within a fraction of their noise") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   CAPTURE(seed);
-  Circling run(seed, 0.01);
+  CirclingRobot run(seed, 0.01);
   double sum = 0;
   for (int i = 0; i < 30'000; ++i) {
     run.step();
@@ -129,7 +129,7 @@ TEST_CASE("carrying a robot while its wheels roll is not mistaken for an odometr
 }
 
 TEST_CASE("a single outlier moves the estimate only slightly") {
-  Circling run(5, 0);
+  CirclingRobot run(5, 0);
   for (int i = 0; i < 5000; ++i) run.step();
   REQUIRE(run.estimator.correct(run.now, {50, 50}, 0));
   CHECK((run.estimator.position_m() - run.position(run.now)).norm() < 0.003);

@@ -195,7 +195,7 @@ TEST_CASE("the newest matching proposal of the last sixteen is found") {
 }
 
 /// Slow reference: why a robot report excludes a version.
-Exclusion slow_exclusion(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& v) {
+Exclusion reference_exclusion(const AuditedRobot::ReceivedReport& robot_report, const KnownVersion& v) {
   const bool begins_later = v.has_content && v.path.start_ns() > robot_report.at_ns;
   if (robot_report.is_lifted && robot_report.executing == 0) {
     if (!begins_later || v.was_executed) return Exclusion::kLifted;
@@ -236,7 +236,7 @@ TEST_CASE("a robot report excludes versions for the same reasons as a slow refer
       known.version.phases()[0].duration_ns(1'000'000'000);
       known.path = AuditPath(known.version);
     }
-    const Exclusion expected = slow_exclusion(robot_report, known);
+    const Exclusion expected = reference_exclusion(robot_report, known);
     ++found[expected];
     CHECK(exclusion_by(robot_report, known) == expected);
   }

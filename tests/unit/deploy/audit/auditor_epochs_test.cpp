@@ -103,8 +103,8 @@ TEST_CASE(
 }
 
 /// Robot 0 executes version 1 of the previous epoch when its agent registers in the next epoch.
-struct Registering : Stage {
-  explicit Registering(const AuditInput& input) : Stage(stage_scenario(), input) {
+struct RegistrationStage : Stage {
+  explicit RegistrationStage(const AuditInput& input) : Stage(stage_scenario(), input) {
     begin();
     first = next(rest(0), 1);
     drive(first);
@@ -126,7 +126,7 @@ struct Registering : Stage {
 
 TEST_CASE("an agent must register its robot's version after the robot has acknowledged agent and epoch") {
   const bool is_complete = GENERATE(true, false);
-  Registering stage(is_complete ? kComplete : kIncomplete);
+  RegistrationStage stage(is_complete ? kComplete : kIncomplete);
   std::uint64_t missing = 0, early = 0;
   SECTION("the agent registers the version") { stage.register_versions(0, {stage.rest(0), stage.first}); }
   SECTION("the agent does not register the version") {
@@ -168,7 +168,7 @@ TEST_CASE("an agent must register its robot's version after the robot has acknow
 }
 
 TEST_CASE("a robot that obeys an older agent has not acknowledged the agent that registers") {
-  Registering stage(kComplete);
+  RegistrationStage stage(kComplete);
   stage.robot_reports[0].obeyed_incarnation(Stage::kAgent);
   msg::Registration registration;
   registration.header(stage.header("registration", 0, Stage::kAgent + 1));
@@ -183,7 +183,7 @@ TEST_CASE("a robot that obeys an older agent has not acknowledged the agent that
 }
 
 TEST_CASE("if messages may be missed, only a command's time proves that a report followed a registration") {
-  Registering stage(kIncomplete);
+  RegistrationStage stage(kIncomplete);
   stage.register_versions(0, {stage.rest(0)});
   const std::int64_t registered_ns = to_ns(stage.now);
   std::uint64_t expected = 0;

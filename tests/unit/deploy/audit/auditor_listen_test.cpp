@@ -48,8 +48,8 @@ Message from(Sender sender) {
   return message;
 }
 
-struct Listening {
-  Listening() { listen(bus, scenario, auditor); }
+struct AuditorOnBus {
+  AuditorOnBus() { listen(bus, scenario, auditor); }
   std::uint64_t invalid() const { return auditor.totals().invalid; }
 
   Scenario scenario = stage_scenario();
@@ -59,7 +59,7 @@ struct Listening {
 
 TEST_CASE("an auditor on a bus hears every topic from every robot on the roster") {
   // Each of these messages is invalid.
-  Listening run;
+  AuditorOnBus run;
   run.bus.deliver(topics::kProposal, msg::Proposal());
   CHECK(run.invalid() == 1);
   run.bus.deliver(topics::kRegistration, msg::Registration());
@@ -102,7 +102,7 @@ TEST_CASE("an auditor on a bus hears every topic from every robot on the roster"
 }
 
 /// Orders that robot 1's agent announces to the second coordinator.
-struct CoordinatorSuccession : Listening {
+struct CoordinatorSuccession : AuditorOnBus {
   template <typename Message>
   Message from(std::uint32_t sender) {
     bus.advance(1ms);
@@ -192,7 +192,7 @@ TEST_CASE("an auditor on a bus hears orders and which processes remember them") 
 }
 
 TEST_CASE("an auditor on a bus advances its time even without messages") {
-  Listening run;
+  AuditorOnBus run;
   for (const RobotId robot : {0u, 1u}) {
     msg::Feedback robot_report;
     robot_report.robot(robot);

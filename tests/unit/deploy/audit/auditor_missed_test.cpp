@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 /// The audit of a history in which all messages of one type arrive late.
 template <typename Late>
-AuditTotals audit_delayed(const History& history, Duration delay) {
+AuditTotals audit_with_delayed(const History& history, Duration delay) {
   std::vector<Delivery> deliveries;
   for (const ReceivedMessage& received : history.messages) {
     const bool is_late = std::holds_alternative<Late>(received.message);
@@ -29,16 +29,16 @@ void require_no_violation(const AuditTotals& totals) {
 TEST_CASE("an overloaded auditor that receives all robot reports late raises no false alarm") {
   const Duration delay = GENERATE(Duration{8ms}, Duration{40ms}, Duration{150ms});
   CAPTURE(to_seconds(delay));
-  require_no_violation(audit_delayed<msg::Feedback>(crossing(), delay));
+  require_no_violation(audit_with_delayed<msg::Feedback>(crossing(), delay));
 }
 
 TEST_CASE("an auditor that receives all messages of one kind late raises no false alarm") {
-  SECTION("verdicts") { require_no_violation(audit_delayed<msg::Verdict>(crossing(), 150ms)); }
-  SECTION("ledger pages") { require_no_violation(audit_delayed<msg::LedgerPage>(crossing(), 150ms)); }
-  SECTION("proposals") { require_no_violation(audit_delayed<msg::Proposal>(crossing(), 150ms)); }
-  SECTION("commands") { require_no_violation(audit_delayed<msg::Command>(crossing(), 150ms)); }
-  SECTION("registrations") { require_no_violation(audit_delayed<msg::Registration>(crossing(), 150ms)); }
-  SECTION("ground truth") { require_no_violation(audit_delayed<msg::GroundTruth>(crossing(), 150ms)); }
+  SECTION("verdicts") { require_no_violation(audit_with_delayed<msg::Verdict>(crossing(), 150ms)); }
+  SECTION("ledger pages") { require_no_violation(audit_with_delayed<msg::LedgerPage>(crossing(), 150ms)); }
+  SECTION("proposals") { require_no_violation(audit_with_delayed<msg::Proposal>(crossing(), 150ms)); }
+  SECTION("commands") { require_no_violation(audit_with_delayed<msg::Command>(crossing(), 150ms)); }
+  SECTION("registrations") { require_no_violation(audit_with_delayed<msg::Registration>(crossing(), 150ms)); }
+  SECTION("ground truth") { require_no_violation(audit_with_delayed<msg::GroundTruth>(crossing(), 150ms)); }
 }
 
 TEST_CASE(

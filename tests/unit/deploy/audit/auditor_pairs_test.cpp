@@ -15,14 +15,14 @@ namespace sidestep::auditor_pairs_test {
 using Pair = std::array<std::pair<RobotId, VersionNumber>, 2>;
 
 /// The facts about one version in a history. Times are the times of messages.
-struct Past {
+struct VersionFacts {
   Version version;
   bool is_registered = false;
   std::int64_t granted_ns = kAlways;  ///< kAlways: not granted by a verdict
   std::int64_t excluded_ns = kNever;  ///< first report after which the robot cannot execute it
   std::int64_t executed_until_ns = kAlways;
 };
-using Pasts = std::map<std::pair<RobotId, VersionNumber>, Past>;
+using VersionFactsByNumber = std::map<std::pair<RobotId, VersionNumber>, VersionFacts>;
 
 bool excludes(const msg::Feedback& robot_report, const Version& version) {
   const VersionNumber executing = robot_report.executing().version_number();
@@ -31,8 +31,8 @@ bool excludes(const msg::Feedback& robot_report, const Version& version) {
 }
 
 /// All versions that were granted or registered, in one epoch, by agents that did not restart.
-Pasts pasts_of(History& history) {
-  Pasts pasts;
+VersionFactsByNumber pasts_of(History& history) {
+  VersionFactsByNumber pasts;
   std::map<std::pair<RobotId, VersionNumber>, Version> proposed;
   std::map<RobotId, msg::Feedback> robot_reports;
   for (ReceivedMessage& received : history.messages) {
@@ -45,7 +45,7 @@ Pasts pasts_of(History& history) {
     } else if (const auto* verdict = std::get_if<msg::Verdict>(&received.message)) {
       if (verdict->granted_version() == 0) continue;
       const std::pair key(verdict->robot(), verdict->granted_version());
-      Past& past = pasts[key];
+      VersionFacts& past = pasts[key];
       if (past.granted_ns != kAlways) continue;
       past.version = proposed.at(key);
       past.granted_ns = at_ns;
@@ -54,7 +54,7 @@ Pasts pasts_of(History& history) {
         past.excluded_ns = kAlways;
     } else if (const auto* registration = std::get_if<msg::Registration>(&received.message)) {
       for (std::size_t i = 0; i < registration->version_count(); ++i) {
-        Past& past = pasts[{registration->robot(), registration->versions()[i].version_number()}];
+        VersionFacts& past = pasts[{registration->robot(), registration->versions()[i].version_number()}];
         past.version = decode(registration->versions()[i]).value();
         past.is_registered = true;
       }
@@ -93,12 +93,12 @@ Trajectory remainder(const Trajectory& whole, Time from) {
 /// Whether a pair must be reported. For a borderline pair, rounding decides.
 enum class Judgement : std::uint8_t { kClear, kTooClose, kBorderline };
 
-class SlowJudge {
+class ReferencePairJudge {
  public:
-  SlowJudge(const Scenario& scenario, const Pasts& pasts)
+  ReferencePairJudge(const Scenario& scenario, const VersionFactsByNumber& pasts)
       : pasts_(pasts), robots_m_(2 * scenario.radius_m + scenario.margin_m) {}
 
-  Judgement judge(const Past& a, const Past& b) const {
+  Judgement judge(const VersionFacts& a, const VersionFacts& b) const {
     if (a.version.number == 0 && b.version.number == 0) return Judgement::kClear;
     const double clearance = clearance_m(a.version.trajectory, b.version.trajectory, required_m(a, b));
     if (clearance > 1e-5) return Judgement::kClear;
@@ -111,7 +111,7 @@ class SlowJudge {
 
  private:
   /// kClear if the base of `later` was already too close and `later` comes no closer.
-  Judgement excuse(const Past& later, const Past& other) const {
+  Judgement excuse(const VersionFacts& later, const VersionFacts& other) const {
     if (later.version.number == 0) return Judgement::kTooClose;
     const Version& base = pasts_.at({later.version.robot, later.version.base}).version;
     const Time from = later.version.trajectory.start();
@@ -123,22 +123,23 @@ class SlowJudge {
     return before > -1e-5 || after < before - 1e-7 ? Judgement::kBorderline : Judgement::kClear;
   }
 
-  double required_m(const Past& a, const Past& b) const {
+  double required_m(const VersionFacts& a, const VersionFacts& b) const {
     return robots_m_ + a.version.inflation_m + b.version.inflation_m;
   }
 
-  const Pasts& pasts_;
+  const VersionFactsByNumber& pasts_;
   double robots_m_;
 };
 
-/// The pairs that are not clear and for which `were_together` holds, with their judgements.
-std::map<Pair, Judgement> judged_pairs(const Scenario& scenario, const Pasts& pasts,
-                                       const std::function<bool(const Past&, const Past&)>& were_together) {
-  const SlowJudge judge(scenario, pasts);
+/// The pairs that are not clear and for which `were_concurrent` holds, with their judgements.
+std::map<Pair, Judgement> judged_pairs(
+    const Scenario& scenario, const VersionFactsByNumber& pasts,
+    const std::function<bool(const VersionFacts&, const VersionFacts&)>& were_concurrent) {
+  const ReferencePairJudge judge(scenario, pasts);
   std::map<Pair, Judgement> result;
   for (const auto& [a, a_past] : pasts) {
     for (const auto& [b, b_past] : pasts) {
-      if (a.first >= b.first || !were_together(a_past, b_past)) continue;
+      if (a.first >= b.first || !were_concurrent(a_past, b_past)) continue;
       const Judgement judgement = judge.judge(a_past, b_past);
       if (judgement != Judgement::kClear) result[{a, b}] = judgement;
     }
@@ -166,14 +167,14 @@ int count(const std::map<Pair, Judgement>& pairs, Judgement judgement) {
 
 /// Whether some ledger held both versions at the same time: no report had excluded either version before both
 /// were granted. Registered versions were in the ledger before any grant.
-bool were_in_ledger(const Past& a, const Past& b) {
+bool were_in_ledger_together(const VersionFacts& a, const VersionFacts& b) {
   const bool is_granted = a.granted_ns != kAlways || b.granted_ns != kAlways;
   const std::int64_t both_ns = std::max(a.granted_ns, b.granted_ns);
   return is_granted && a.excluded_ns >= both_ns && b.excluded_ns >= both_ns;
 }
 
 /// Whether reports prove simultaneous execution of the versions, despite the errors of both clocks.
-bool were_executed(const Past& a, const Past& b, std::int64_t clock_bound_ns) {
+bool were_executed_concurrently(const VersionFacts& a, const VersionFacts& b, std::int64_t clock_bound_ns) {
   const Time from = std::max(a.version.trajectory.start(), b.version.trajectory.start());
   const std::int64_t until_ns = std::min(a.executed_until_ns, b.executed_until_ns);
   return until_ns != kAlways && until_ns > to_ns(from) + 2 * clock_bound_ns + 1000;
@@ -206,7 +207,7 @@ TEST_CASE("each pair of versions that are in the ledger together and too close i
   const double less_m = GENERATE(0.05, 0.15);
   CAPTURE(less_m);
   History history = too_close(less_m);
-  check_reported(judged_pairs(history.scenario, pasts_of(history), were_in_ledger),
+  check_reported(judged_pairs(history.scenario, pasts_of(history), were_in_ledger_together),
                  reported_pairs(history, kComplete));
 }
 
@@ -215,9 +216,10 @@ TEST_CASE("an audit that hears no grants reports exactly the pairs that were exe
   CAPTURE(less_m, clock_bound_s);
   History history = too_close(less_m);
   history.scenario.clock_bound_s = clock_bound_s;
-  const auto expected = judged_pairs(history.scenario, pasts_of(history), [&](const Past& a, const Past& b) {
-    return were_executed(a, b, from_seconds(clock_bound_s).count());
-  });
+  const auto expected =
+      judged_pairs(history.scenario, pasts_of(history), [&](const VersionFacts& a, const VersionFacts& b) {
+        return were_executed_concurrently(a, b, from_seconds(clock_bound_s).count());
+      });
   history.remove_if<msg::Verdict>([](const msg::Verdict&) { return true; });
   history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
   check_reported(expected, reported_pairs(history, kComplete));
@@ -249,9 +251,10 @@ TEST_CASE("an audit that may miss messages reports most pairs that are too close
   CAPTURE(less_m, has_pages);
   History history = too_close(less_m);
   const std::int64_t clock_bound_ns = from_seconds(history.scenario.clock_bound_s).count();
-  const auto expected = judged_pairs(history.scenario, pasts_of(history), [&](const Past& a, const Past& b) {
-    return has_pages ? were_in_ledger(a, b) : were_executed(a, b, clock_bound_ns);
-  });
+  const auto expected =
+      judged_pairs(history.scenario, pasts_of(history), [&](const VersionFacts& a, const VersionFacts& b) {
+        return has_pages ? were_in_ledger_together(a, b) : were_executed_concurrently(a, b, clock_bound_ns);
+      });
   // Without pages the content of the ledger is unknown.
   if (!has_pages) history.remove_if<msg::LedgerPage>([](const msg::LedgerPage&) { return true; });
   const auto reported = reported_pairs(history, {});

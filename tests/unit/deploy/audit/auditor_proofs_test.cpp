@@ -13,14 +13,14 @@ using namespace std::chrono_literals;
 constexpr AuditInput kIncomplete{};
 
 /// Two robots 0.21 m apart. Version 1 of robot 0 comes 0.05 m nearer, which is too close.
-struct NarrowStage : Stage {
+struct CloseRobotsStage : Stage {
   static Scenario narrow() {
     Scenario scenario = stage_scenario();
     scenario.robots[0].start_m = {-0.105, 0};
     scenario.robots[1].start_m = {0.105, 0};
     return scenario;
   }
-  explicit NarrowStage(const AuditInput& input) : Stage(narrow(), input) {
+  explicit CloseRobotsStage(const AuditInput& input) : Stage(narrow(), input) {
     begin();
     closer = moving(next(rest(0), 1), 0.05);
   }
@@ -36,7 +36,7 @@ struct NarrowStage : Stage {
 
 TEST_CASE("a version that comes too close to a registered version is reported when it is granted") {
   const bool is_other_first = GENERATE(true, false);
-  NarrowStage narrow(kComplete);
+  CloseRobotsStage narrow(kComplete);
   if (is_other_first) narrow.report(1);
   narrow.grant(narrow.closer);
   REQUIRE(narrow.too_close() == 0);  // no later report proves an overlap
@@ -60,7 +60,7 @@ TEST_CASE("a version that comes too close to a registered version is reported wh
 }
 
 TEST_CASE("repeating a verdict does not change the time of the grant") {
-  NarrowStage narrow(kComplete);
+  CloseRobotsStage narrow(kComplete);
   narrow.grant(narrow.closer);
   narrow.advance(1ms);
   narrow.report(1);
@@ -71,7 +71,7 @@ TEST_CASE("repeating a verdict does not change the time of the grant") {
 }
 
 TEST_CASE("an excluded version is still compared with versions whose reports arrive soon afterwards") {
-  NarrowStage narrow(kComplete);
+  CloseRobotsStage narrow(kComplete);
   narrow.grant(narrow.closer);
   narrow.report(0);
   narrow.robot_reports[0].executing(narrow.next(narrow.rest(0), 9, -1ms));
@@ -86,7 +86,7 @@ TEST_CASE("an excluded version is still compared with versions whose reports arr
 
 TEST_CASE("a robot's own stop is compared only with versions granted after a page has listed it") {
   const bool is_listed = GENERATE(true, false);
-  NarrowStage narrow(kComplete);
+  CloseRobotsStage narrow(kComplete);
   msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.01);
   narrow.robot_reports[0].executing(stop);
   narrow.robot_reports[0].is_off_reference(true);
@@ -107,7 +107,7 @@ TEST_CASE("a robot's own stop is compared only with versions granted after a pag
 }
 
 TEST_CASE("a robot's own stop that comes too close is not a violation") {
-  NarrowStage narrow(kComplete);
+  CloseRobotsStage narrow(kComplete);
   msg::Version stop = moving(narrow.next(narrow.rest(0), 1, 0ms), 0.05);
   narrow.robot_reports[0].executing(stop);
   narrow.robot_reports[0].is_off_reference(true);
@@ -174,7 +174,7 @@ TEST_CASE("the first twenty of many violations are kept, and all are counted") {
 }
 
 TEST_CASE("two granted versions that are too close together are reported even before they are executed") {
-  NarrowStage narrow(kComplete);
+  CloseRobotsStage narrow(kComplete);
   narrow.grant(moving(narrow.next(narrow.rest(0), 1), 0.01));
   narrow.grant(moving(narrow.next(narrow.rest(1), 2), -0.01));
   narrow.advance(1ms);
@@ -188,7 +188,7 @@ TEST_CASE("times of two robots are compared only while both clocks are within bo
   const bool is_sound = GENERATE(true, false);
   const RobotId first = GENERATE(RobotId{0}, RobotId{1});
   CAPTURE(is_sound, first);
-  NarrowStage narrow(kComplete);
+  CloseRobotsStage narrow(kComplete);
   narrow.command(narrow.closer);
   narrow.now = time_from_ns(narrow.closer.start_ns());
   narrow.robot_reports[0].executing(narrow.closer);
@@ -207,7 +207,7 @@ TEST_CASE("times of two robots are compared only while both clocks are within bo
 }
 
 TEST_CASE("pages before and after a grant prove that the ledger held a registered version at the grant") {
-  NarrowStage narrow(kIncomplete);
+  CloseRobotsStage narrow(kIncomplete);
   const std::vector<msg::Version> before{narrow.rest(0), narrow.rest(1)},
       after{narrow.rest(0), narrow.closer, narrow.rest(1)};
   std::uint64_t expected = 0;
@@ -315,7 +315,7 @@ TEST_CASE("pages before and after a grant prove that the ledger held a registere
 }
 
 TEST_CASE("two granted versions that are too close together are reported, whichever pages list them first") {
-  NarrowStage narrow(kIncomplete);
+  CloseRobotsStage narrow(kIncomplete);
   const msg::Version rest = narrow.rest(0), other_rest = narrow.rest(1);
   const msg::Version version = moving(narrow.next(rest, 1), 0.01);
   const msg::Version other = moving(narrow.next(other_rest, 2), -0.01);

@@ -16,7 +16,7 @@ constexpr Duration kEverything = Duration::max();
 Time at(Duration since_begin) { return kBegin + since_begin; }
 
 /// One second with a source that is heard every 100 ms.
-ReceptionCoverage one_second(std::size_t sources) {
+ReceptionCoverage coverage_of_one_second(std::size_t sources) {
   ReceptionCoverage time(sources);
   time.begin(kBegin);
   for (Duration t = 100ms; t <= 1s; t += 100ms) time.hear(0, at(t), kEverything);
@@ -24,10 +24,12 @@ ReceptionCoverage one_second(std::size_t sources) {
 }
 
 TEST_CASE("a source that is heard often counts as heard all the time") {
-  CHECK(one_second(1).share(at(1s), true) == 1);
+  CHECK(coverage_of_one_second(1).share(at(1s), true) == 1);
 }
 
-TEST_CASE("if a source is never heard, nothing is covered") { CHECK(one_second(2).share(at(1s), true) == 0); }
+TEST_CASE("if a source is never heard, nothing is covered") {
+  CHECK(coverage_of_one_second(2).share(at(1s), true) == 0);
+}
 
 TEST_CASE("the covered share is zero before the beginning and at the beginning") {
   ReceptionCoverage time(1);
@@ -38,7 +40,7 @@ TEST_CASE("the covered share is zero before the beginning and at the beginning")
 }
 
 TEST_CASE("only silence during which messages were missed lowers the coverage") {
-  ReceptionCoverage time = one_second(1);
+  ReceptionCoverage time = coverage_of_one_second(1);
   SECTION("no messages were missed") {
     time.hear(0, at(2s), Duration{0});
     CHECK(time.share(at(2s), true) == 1);
@@ -74,7 +76,7 @@ TEST_CASE("messages heard before the beginning do not count") {
 }
 
 /// The share of milliseconds in which every source counted as heard.
-double slow_share(const std::vector<std::vector<Duration>>& heard_at, Duration end) {
+double reference_share(const std::vector<std::vector<Duration>>& heard_at, Duration end) {
   int covered = 0;
   const auto count = static_cast<int>(end / 1ms);
   for (int ms = 0; ms < count; ++ms) {
@@ -108,7 +110,7 @@ TEST_CASE("the covered share of several sources matches a count of every millise
         time.hear(i, at(t), kEverything);
       }
     }
-    CHECK(time.share(at(end), true) == Approx(slow_share(heard_at, end)).margin(1e-9));
+    CHECK(time.share(at(end), true) == Approx(reference_share(heard_at, end)).margin(1e-9));
   }
 }
 

@@ -25,7 +25,7 @@ struct Frames {
     at_ns += kFrame_ns;
     return contacts.update({{at_ns, first_m, Vec2(0, 0), true}, {at_ns, second_m, Vec2(0, 0), true}}).size();
   }
-  std::size_t show_apart(double distance_m) { return show(Vec2(0, 0), Vec2(distance_m, 0)); }
+  std::size_t show_at_distance(double distance_m) { return show(Vec2(0, 0), Vec2(distance_m, 0)); }
 
   SeenContacts contacts;
   std::int64_t at_ns = 1'000'000'000;
@@ -33,12 +33,12 @@ struct Frames {
 
 TEST_CASE("robots that overlap in two observations count as one contact until they part") {
   Frames frames;
-  CHECK(frames.show_apart(0.179) == 0);
-  CHECK(frames.show_apart(0.179) == 1);
-  for (int i = 0; i < 10; ++i) CHECK(frames.show_apart(0.1795) == 0);
-  CHECK(frames.show_apart(0.19) == 0);
-  CHECK(frames.show_apart(0.179) == 0);
-  CHECK(frames.show_apart(0.179) == 1);
+  CHECK(frames.show_at_distance(0.179) == 0);
+  CHECK(frames.show_at_distance(0.179) == 1);
+  for (int i = 0; i < 10; ++i) CHECK(frames.show_at_distance(0.1795) == 0);
+  CHECK(frames.show_at_distance(0.19) == 0);
+  CHECK(frames.show_at_distance(0.179) == 0);
+  CHECK(frames.show_at_distance(0.179) == 1);
 }
 
 TEST_CASE("a contact states when the robots were last seen apart, if ever") {
@@ -66,9 +66,9 @@ TEST_CASE("a contact states when the robots were last seen apart, if ever") {
 
 TEST_CASE("a single false observation does not count as a contact") {
   Frames frames;
-  CHECK(frames.show_apart(0.1) == 0);
-  CHECK(frames.show_apart(0.3) == 0);
-  CHECK(frames.show_apart(0.1) == 0);
+  CHECK(frames.show_at_distance(0.1) == 0);
+  CHECK(frames.show_at_distance(0.3) == 0);
+  CHECK(frames.show_at_distance(0.1) == 0);
 }
 
 TEST_CASE("a robot that touches an obstacle is found") {
@@ -117,14 +117,14 @@ TEST_CASE("positions more than 20 ms apart in time are not compared") {
 
 TEST_CASE("after missed world states, a contact must again be observed twice") {
   Frames frames;
-  CHECK(frames.show_apart(0.17) == 0);
+  CHECK(frames.show_at_distance(0.17) == 0);
   frames.contacts.on_missed();
-  CHECK(frames.show_apart(0.17) == 0);
-  CHECK(frames.show_apart(0.17) == 1);
+  CHECK(frames.show_at_distance(0.17) == 0);
+  CHECK(frames.show_at_distance(0.17) == 1);
   // A contact that has begun is not forgotten.
   frames.contacts.on_missed();
-  CHECK(frames.show_apart(0.17) == 0);
-  CHECK(frames.show_apart(0.17) == 0);
+  CHECK(frames.show_at_distance(0.17) == 0);
+  CHECK(frames.show_at_distance(0.17) == 0);
 }
 
 TEST_CASE("positions observed at different times are extrapolated to one time") {

@@ -43,7 +43,7 @@ AuditTotals audit_tampered_crossing(const std::function<void(History&)>& tamper)
 
 void require_violation(AuditRule rule, const std::function<void(History&)>& tamper) {
   const AuditTotals totals = audit_tampered_crossing(tamper);
-  INFO(audit_rule(rule).name << " expected; found:\n" << lines(totals));
+  INFO(rule_info_of(rule).name << " expected; found:\n" << lines(totals));
   REQUIRE(count(totals, rule) > 0);
 }
 

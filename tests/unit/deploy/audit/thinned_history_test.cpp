@@ -46,7 +46,7 @@ Counts audit_thinned(std::uint64_t first, std::uint64_t count, std::uint64_t los
     INFO("whole: " << verdict_line(whole) << "\n" << lines(whole));
     CHECK(whole.verdict() == AuditVerdict::kPassed);
     for (std::uint64_t loss = 0; loss < losses; ++loss) {
-      const Thinned part = thinned(history, seed * 1000 + loss);
+      const DegradedHistory part = thinned(history, seed * 1000 + loss);
       CAPTURE(loss, part.losses);
       const AuditTotals totals = audit_of(history.scenario, part.deliveries, {});
       INFO("thinned: " << verdict_line(totals) << "\n" << lines(totals));

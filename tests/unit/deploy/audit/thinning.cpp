@@ -56,7 +56,7 @@ class Thinning {
     if (rng_.chance(0.5)) delay();
   }
 
-  Thinned of(const History& history) && {
+  DegradedHistory of(const History& history) && {
     for (const ReceivedMessage& received : history.messages) {
       if (is_lost(received)) continue;
       const double delay_s = delay_s_[received.message.index()] + jitter_s_ * rng_.uniform();
@@ -129,11 +129,13 @@ class Thinning {
   Time begin_{};
   std::vector<std::pair<Time, Time>> outages_;
   std::map<std::pair<std::size_t, std::uint64_t>, Stream> streams_;
-  Thinned result_;
+  DegradedHistory result_;
 };
 
 }  // namespace
 
-Thinned thinned(const History& history, std::uint64_t seed) { return Thinning(history, seed).of(history); }
+DegradedHistory thinned(const History& history, std::uint64_t seed) {
+  return Thinning(history, seed).of(history);
+}
 
 }  // namespace sidestep

@@ -10,7 +10,7 @@
 namespace sidestep {
 
 /// The messages of a history that an auditor on a bad network receives.
-struct Thinned {
+struct DegradedHistory {
   std::vector<Delivery> deliveries;  ///< in order of arrival; they point into the history
   std::string losses;                ///< a description of the losses
 };
@@ -18,6 +18,6 @@ struct Thinned {
 /// Loses messages of a history for a random mixture of causes: independently, in bursts, by topic, sender or
 /// robot, all messages for whole seconds, or all before a late start. Also delays messages so that topics
 /// overtake each other. Without ground truth, operators' announcements of disturbances are not lost.
-Thinned thinned(const History& history, std::uint64_t seed);
+DegradedHistory thinned(const History& history, std::uint64_t seed);
 
 }  // namespace sidestep

@@ -154,7 +154,7 @@ TEST_CASE("a blocked wheel stops motion in one direction, and the wheels measure
   }
   const double before = body.velocity_mps().dot(across);
   Wheels wheels(body);
-  body.set_blocked(blocked);
+  body.set_blocked_wheel(blocked);
   body.step({});
   CHECK(std::abs(wheels.velocity().dot(along)) < 1e-9);
   for (int i = 0; i < 300; ++i) body.step({});
@@ -162,7 +162,7 @@ TEST_CASE("a blocked wheel stops motion in one direction, and the wheels measure
   body.step({});
   CHECK(std::abs(body.velocity_mps().dot(along)) < 1e-9);
   CHECK(body.velocity_mps().dot(across) == Approx(before).epsilon(0.02));
-  body.set_blocked(std::nullopt);
+  body.set_blocked_wheel(std::nullopt);
   body.step({4 * along, 0});
   CHECK(body.velocity_mps().dot(along) > 0);
 }

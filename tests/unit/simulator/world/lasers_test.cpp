@@ -32,7 +32,8 @@ Scenario scene(std::uint64_t seed) {
 }
 
 /// Slow reference: the distance along a ray to the nearest object, in steps of a millimetre.
-double slow_range_m(const Scenario& scenario, const World& world, std::size_t robot, double angle_rad) {
+double brute_force_range_m(const Scenario& scenario, const World& world, std::size_t robot,
+                           double angle_rad) {
   const Body& body = world.bodies()[robot];
   const Vec2 direction(std::cos(angle_rad), std::sin(angle_rad));
   for (double range_m = 0; range_m <= scenario.laser->settings.max_range_m; range_m += 0.001) {
@@ -70,7 +71,7 @@ TEST_CASE("robots scan in turn and see obstacles, people and other robots with b
       for (int beam = 0; beam < 180; beam += 7) {
         const double angle_rad =
             world.bodies()[robot].heading_rad() + LaserScanner(scenario.laser->settings).beam_angle_rad(beam);
-        const double expected_m = slow_range_m(scenario, world, robot, angle_rad);
+        const double expected_m = brute_force_range_m(scenario, world, robot, angle_rad);
         const auto range_m = static_cast<double>(scan.ranges_m()[static_cast<std::size_t>(beam)]);
         CAPTURE(i, beam, expected_m, range_m);
         if (std::isfinite(expected_m))

@@ -42,7 +42,7 @@ struct Floor {
     return sum;
   }
   // Runs until the robot's next own stop, for at most a second. Returns the elapsed time.
-  Duration until_own_stop(std::size_t robot) {
+  Duration run_until_own_stop(std::size_t robot) {
     const std::uint64_t before = own_stops(robot);
     const Time since = now;
     while (own_stops(robot) == before && now - since < milliseconds(1000)) run_for(kPhysicsStep);
@@ -93,7 +93,7 @@ TEST_CASE("a pushed robot makes an own stop when the second frame after the push
   const Vec2 change = rotated(Vec2(0.3, 0), static_cast<double>(seed));
   push.push_mps = change;
   REQUIRE(floor.world.disturb(0, push, floor.now));
-  const Duration delay = floor.until_own_stop(0);
+  const Duration delay = floor.run_until_own_stop(0);
   // The robot slides for 50 ms. Frames are captured every 17 ms and arrive 10 ms later.
   INFO("own stop after " << to_seconds(delay) * 1e3 << " ms");
   CHECK(delay < milliseconds(75));
@@ -230,7 +230,7 @@ TEST_CASE("a robot detects a blocked wheel from its odometry alone") {
   block.heading_rad = 0;
   block.duration = milliseconds(500);
   REQUIRE(floor.world.disturb(0, block, floor.now));
-  CHECK(floor.until_own_stop(0) <= milliseconds(10));
+  CHECK(floor.run_until_own_stop(0) <= milliseconds(10));
   floor.run_for(milliseconds(450));
   CHECK(floor.world.bodies()[0].velocity_mps().norm() < 0.02);
   CHECK(floor.world.firmware_violations() == 0);
@@ -244,7 +244,7 @@ TEST_CASE("a version that continues the robot's own stop brings the robot back o
   auto push = disturbance(0, msg::DisturbanceKind::DISTURBANCE_PUSH);
   push.push_mps.y() = 1;
   REQUIRE(floor.world.disturb(0, push, floor.now));
-  REQUIRE(floor.until_own_stop(0) < milliseconds(100));
+  REQUIRE(floor.run_until_own_stop(0) < milliseconds(100));
   floor.run_for(milliseconds(1000));
   CHECK_FALSE(floor.world.firmware(0).is_off_reference());
   CHECK(floor.world.reference_error_m(0) < floor.scenario.tracking_bound_m);

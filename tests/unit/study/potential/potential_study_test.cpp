@@ -55,7 +55,7 @@ TEST_CASE("a drive ends at the goal, at a contact, in a local minimum or at the 
   const ObstacleWorld nothing;
   const Vec2 goal = open.queries[0].goal_m;
   const DriveDirection straight = [&](const Vec2& at) -> Vec2 { return (goal - at).normalized(); };
-  const FieldDrive arrives = drive_by(straight, open, nothing);
+  const FieldDrive arrives = drive_by_direction(straight, open, nothing);
   CHECK(arrives.end == DriveEnd::kArrived);
   CHECK(arrives.reversals == 0);
   // The robot drives at 0.5 m/s and needs at most an additional second to accelerate and brake.
@@ -63,13 +63,13 @@ TEST_CASE("a drive ends at the goal, at a contact, in a local minimum or at the 
   CHECK(arrives.seconds < arrives.length_m / 0.5 + 1);
   for (std::size_t i = 1; i < arrives.path_m.size(); ++i)
     REQUIRE((arrives.path_m[i] - arrives.path_m[i - 1]).norm() < 0.5 / 60 + 1e-9);
-  CHECK(drive_by(straight, open, ObstacleWorld({Circle{{0, 0.1}, 0.2}})).end == DriveEnd::kContact);
+  CHECK(drive_by_direction(straight, open, ObstacleWorld({Circle{{0, 0.1}, 0.2}})).end == DriveEnd::kContact);
   const DriveDirection nowhere = [](const Vec2&) -> Vec2 { return {0, 0}; };
-  CHECK(drive_by(nowhere, open, nothing).end == DriveEnd::kLocalMinimum);
+  CHECK(drive_by_direction(nowhere, open, nothing).end == DriveEnd::kLocalMinimum);
   const DriveDirection round = [](const Vec2& at) -> Vec2 { return left_of(at).normalized(); };
   PlanWorld far = open;
   far.queries[0].goal_m = {3.5, 0};
-  CHECK(drive_by(round, far, nothing).end == DriveEnd::kTimeLimit);
+  CHECK(drive_by_direction(round, far, nothing).end == DriveEnd::kTimeLimit);
 }
 
 TEST_CASE("every method drives straight if there is no obstacle") {
@@ -79,7 +79,7 @@ TEST_CASE("every method drives straight if there is no obstacle") {
   for (const FieldMethod& method :
        {FieldMethod{Kind::kPotential, 0}, FieldMethod{Kind::kPotential, 2}, FieldMethod{Kind::kEStar, 0}}) {
     CAPTURE(name_of(method));
-    const FieldDrive drive = drive_by(direction_of(method, open, nothing), open, nothing);
+    const FieldDrive drive = drive_by_direction(direction_of(method, open, nothing), open, nothing);
     CHECK(drive.end == DriveEnd::kArrived);
     CHECK(drive.length_m < 1.01 * (open.queries[0].goal_m - open.queries[0].start_m).norm());
   }

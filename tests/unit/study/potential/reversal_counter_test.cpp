@@ -26,7 +26,7 @@ int counted(const std::vector<double>& headings_rad) {
 /// The number of reversals by definition: one less than the number of turns in the longest sequence of
 /// headings, in order, in which each heading differs from the previous one by more than the threshold,
 /// alternately to the left and to the right.
-int slowly_counted(const std::vector<double>& headings_rad) {
+int reversals_by_definition(const std::vector<double>& headings_rad) {
   int most = 0;
   std::vector<int> left(headings_rad.size(), 0),
       right(headings_rad.size(), 0);  // numbers of turns, by the last turn
@@ -49,7 +49,7 @@ TEST_CASE("reversals of random paths are counted as defined") {
     double heading = rng.uniform(-3, 3);
     const double step = rng.uniform(0.01, 0.4);
     for (int i = 0; i < 80; ++i) headings.push_back(heading += rng.uniform(-step, step));
-    const int expected = slowly_counted(headings);
+    const int expected = reversals_by_definition(headings);
     CHECK(counted(headings) == expected);
     reversals += expected;
   }

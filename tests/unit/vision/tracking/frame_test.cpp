@@ -18,7 +18,7 @@ msg::RobotDetection valid_robot() {
 }
 
 /// Checks that a frame drops and counts `bad`, and keeps a valid detection.
-void check_that_only_the_valid_one_is_kept(const msg::RobotDetection& bad) {
+void check_invalid_detection_is_dropped(const msg::RobotDetection& bad) {
   msg::DetectionFrame message = frame_message(0, kBegin);
   message.robots().push_back(bad);
   message.robots().push_back(valid_robot());
@@ -41,7 +41,7 @@ TEST_CASE("a detection with a NaN or too large number is dropped and counted, an
   SECTION("y") { d.y_m(bad); }
   SECTION("heading") { d.heading_rad(bad); }
   SECTION("confidence") { d.confidence(bad); }
-  check_that_only_the_valid_one_is_kept(d);
+  check_invalid_detection_is_dropped(d);
 }
 
 TEST_CASE("a detection with a confidence or robot number out of range is dropped, and a valid one is kept") {
@@ -50,7 +50,7 @@ TEST_CASE("a detection with a confidence or robot number out of range is dropped
   SECTION("confidence above 1") { d.confidence(1.001); }
   SECTION("first robot number out of range") { d.robot(kMaxRobots); }
   SECTION("largest robot number") { d.robot(0xffffffff); }
-  check_that_only_the_valid_one_is_kept(d);
+  check_invalid_detection_is_dropped(d);
 }
 
 TEST_CASE("invalid balls are dropped and counted, and valid balls are kept") {

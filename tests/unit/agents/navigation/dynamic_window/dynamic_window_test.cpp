@@ -29,7 +29,7 @@ std::vector<Vec2> random_points(Rng& rng, std::size_t count, double half_side_m,
 using Admissible = std::map<std::pair<int, int>, RatedWheelSpeeds>;
 
 /// The admissible wheel speeds of a choice, by their indices in the grid of wheel speeds.
-Admissible by_index(const WindowChoice& choice, const DifferentialDrive& drive) {
+Admissible admissible_by_index(const WindowChoice& choice, const DifferentialDrive& drive) {
   const auto index = [&](double speed) {
     return static_cast<int>(std::lround(speed / drive.wheel_speed_mps * (kGridSide / 2))) + kGridSide / 2;
   };
@@ -104,7 +104,7 @@ TEST_CASE("the exact window agrees with a slow reference") {
     query.window_s = seed % 3 == 0 ? 10 : 0.2;
     const WindowChoice& choice = window.choose(query);
     CHECK(choice.state == DriveState::kGo);
-    const Admissible found = by_index(choice, drive), expected = reference(drive, settings, query);
+    const Admissible found = admissible_by_index(choice, drive), expected = reference(drive, settings, query);
     REQUIRE(found.size() == choice.admissible.size());
     REQUIRE(found.size() == expected.size());
     float best = -1;
@@ -143,10 +143,10 @@ TEST_CASE("tables admit most of the admissible velocities and no others") {
     query.wheels = {rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5)};
     query.goal.position_m = {2, 0};
     query.window_s = 10;
-    const Admissible expected = by_index(exact.choose(query), drive);
+    const Admissible expected = admissible_by_index(exact.choose(query), drive);
     admitted_exactly += expected.size();
     for (std::size_t i = 0; i < 2; ++i) {
-      for (const auto& [index, rated] : by_index(tables[i].choose(query), drive)) {
+      for (const auto& [index, rated] : admissible_by_index(tables[i].choose(query), drive)) {
         REQUIRE(expected.count(index) == 1);
         REQUIRE(rated.time_to_collision_s <= expected.at(index).time_to_collision_s + 1e-6F);
         ++admitted[i];

@@ -191,7 +191,7 @@ double mean_steps(const TrapezoidalMap& map, const GridPoint& half, Rng& rng) {
 
 TEST_CASE("locating a point takes a logarithmic number of steps for any segments") {
   const bool is_staircase = GENERATE(true, false);
-  double small_steps = 0;
+  double steps_of_small_map = 0;
   for (const std::int32_t count : {64, 1024, 16384}) {
     // The expected number over the random orders: de Berg et al. 2008, theorem 6.3, with its constant.
     double mean = 0, slowest = 0;
@@ -210,15 +210,15 @@ TEST_CASE("locating a point takes a logarithmic number of steps for any segments
       mean += steps / kSeeds;
       slowest = std::max(slowest, steps);
     }
-    CAPTURE(is_staircase, count, size, mean, slowest, small_steps);
+    CAPTURE(is_staircase, count, size, mean, slowest, steps_of_small_map);
     double harmonic = 0;
     for (std::size_t i = 1; i <= size; ++i) harmonic += 1 / static_cast<double>(i);
     CHECK(mean < 12 * harmonic);
     CHECK(mean > std::log2(static_cast<double>(size)) / 2);
     CHECK(slowest < 2 * mean);
     // With 16 times as many segments, the number of steps grows only by a constant.
-    if (small_steps > 0) CHECK(mean < small_steps + 5 * std::log(16.0));
-    small_steps = mean;
+    if (steps_of_small_map > 0) CHECK(mean < steps_of_small_map + 5 * std::log(16.0));
+    steps_of_small_map = mean;
   }
 }
 

@@ -10,7 +10,7 @@
 namespace sidestep::course_test {
 
 /// The shortest time for a distance, found by trying peak speeds in small steps.
-double slowly_found_time_s(double distance_m, const MotionLimits& limits) {
+double brute_force_time_s(double distance_m, const MotionLimits& limits) {
   double best_s = 1e9;
   constexpr int kSteps = 20'000;
   for (int i = 1; i <= kSteps; ++i) {
@@ -40,7 +40,7 @@ TEST_CASE("a leg obeys the limits, takes the shortest time and ends exactly at i
     CHECK((leg.rest_position_m() - to).norm() < 1e-12);
     CHECK(leg.residual_speed_mps() < 1e-12);
     CHECK(leg.end() - leg.start() == times.total());
-    const double slow_s = slowly_found_time_s(distance_m, limits);
+    const double slow_s = brute_force_time_s(distance_m, limits);
     CHECK(to_seconds(times.total()) <= slow_s + 4e-9);
     CHECK(to_seconds(times.total()) >= slow_s * (1 - 1e-3) - 4e-9);
   }

@@ -22,7 +22,7 @@ PresenceNotice forgotten(const ParticipantId& whom, std::uint64_t number) {
 }
 
 /// A presence that is checked twice a second, as over DDS.
-struct Clocked {
+struct TimedPresence {
   void run_until(Time when) {
     for (; now < when; now += 500ms) {
       for (const ParticipantId& id : presence.newly_silent(now)) removed.insert(id);
@@ -38,7 +38,7 @@ struct Clocked {
 };
 
 TEST_CASE("a participant that announces no presence is never refused or forgotten") {
-  Clocked a;
+  TimedPresence a;
   CHECK(a.presence.accept(kOther, a.now));
   a.run_until(a.now + 1h);
   CHECK(a.removed.empty());
@@ -47,7 +47,7 @@ TEST_CASE("a participant that announces no presence is never refused or forgotte
 }
 
 TEST_CASE("a silent participant is removed once and refused until it confirms that it has forgotten us") {
-  Clocked a;
+  TimedPresence a;
   CHECK_FALSE(a.hears({}));
   a.run_until(a.now + kSilenceLimit - 1s);
   CHECK(a.presence.accept(kOther, a.now));  // any datagram is a sign of life
@@ -72,7 +72,7 @@ TEST_CASE("a silent participant is removed once and refused until it confirms th
 }
 
 TEST_CASE("a participant that was forgotten removes the other side once and confirms the removal") {
-  Clocked a;
+  TimedPresence a;
   CHECK_FALSE(a.hears({}));
   CHECK(a.hears(std::array{forgotten(kSelf, 7)}));
   CHECK_FALSE(a.presence.accept(kOther, a.now));  // the datagram may be older than the notice
@@ -88,7 +88,7 @@ TEST_CASE("a participant that was forgotten removes the other side once and conf
 }
 
 TEST_CASE("a process that was stopped itself does not forget other processes") {
-  Clocked a;
+  TimedPresence a;
   CHECK_FALSE(a.hears({}));
   a.run_until(a.now + 1s);
   a.now += 1h;
@@ -98,7 +98,7 @@ TEST_CASE("a process that was stopped itself does not forget other processes") {
 }
 
 TEST_CASE("the number of remembered forgotten participants is bounded, and the oldest are dropped first") {
-  Clocked a;
+  TimedPresence a;
   const auto id = [](std::size_t i) {
     return ParticipantId{9, static_cast<std::uint8_t>(i >> 8), static_cast<std::uint8_t>(i)};
   };
@@ -117,7 +117,7 @@ TEST_CASE("the number of remembered forgotten participants is bounded, and the o
 }
 
 TEST_CASE("an announcement names a bounded number of participants") {
-  Clocked a;
+  TimedPresence a;
   const auto id = [](std::uint8_t i) { return ParticipantId{9, i}; };
   for (int i = 0; i < 200; ++i)
     CHECK_FALSE(a.presence.on_announcement(kSelf, id(static_cast<std::uint8_t>(i)), {}, a.now));

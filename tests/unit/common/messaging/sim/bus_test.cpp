@@ -37,8 +37,8 @@ struct Received {
   std::vector<double> delays_s;
 };
 /// Publishes the numbers from 1 to `count`, a millisecond apart, and returns what arrives.
-Received send_through(const NetworkSpec& network, std::uint64_t seed, std::uint64_t count,
-                      const Topic<msg::CoordinatorState>& topic = topics::kCoordinator) {
+Received received_over(const NetworkSpec& network, std::uint64_t seed, std::uint64_t count,
+                       const Topic<msg::CoordinatorState>& topic = topics::kCoordinator) {
   SimNetwork net(seed, kBegin, network);
   SimBus sender(net), receiver(net);
   auto writer = sender.advertise(topic);
@@ -74,7 +74,7 @@ TEST_CASE("timers fire in order of time, and at equal times in order of creation
 }
 
 TEST_CASE("delays lie within their bounds and messages overtake each other") {
-  const auto received = send_through(delays(0.01, 0.05), 2, 2000);
+  const auto received = received_over(delays(0.01, 0.05), 2, 2000);
   REQUIRE(received.numbers.size() == 2000);
   const auto [min, max] = std::ranges::minmax(received.delays_s);
   CHECK(min >= 0.01);
@@ -85,7 +85,7 @@ TEST_CASE("delays lie within their bounds and messages overtake each other") {
 }
 
 TEST_CASE("losses and duplicates have the specified probabilities") {
-  const auto received = send_through(delays(0, 0.001, 0.3, 0.2), 3, 20'000);
+  const auto received = received_over(delays(0, 0.001, 0.3, 0.2), 3, 20'000);
   const std::set<std::uint64_t> distinct(received.numbers.begin(), received.numbers.end());
   CHECK(static_cast<double>(distinct.size()) == Approx(20'000 * 0.7).epsilon(0.02));
   CHECK(static_cast<double>(received.numbers.size()) == Approx(20'000 * 0.7 * 1.2).epsilon(0.02));
@@ -94,15 +94,15 @@ TEST_CASE("losses and duplicates have the specified probabilities") {
 TEST_CASE("all events arrive once and in order on a network that loses and duplicates states") {
   const auto seed = GENERATE(range(1u, 101u));
   CAPTURE(seed);
-  const auto received = send_through(delays(0, 0.1, 0.5, 0.5), seed, kEventDepth, kReliable);
+  const auto received = received_over(delays(0, 0.1, 0.5, 0.5), seed, kEventDepth, kReliable);
   REQUIRE(received.numbers.size() == kEventDepth);
   CHECK(std::ranges::is_sorted(received.numbers));
 }
 
 TEST_CASE("the same seed gives the same run and a different seed a different run") {
   const auto spec = delays(0, 0.15, 0.3, 0.1);
-  const auto first = send_through(spec, 5, 500), again = send_through(spec, 5, 500),
-             other = send_through(spec, 6, 500);
+  const auto first = received_over(spec, 5, 500), again = received_over(spec, 5, 500),
+             other = received_over(spec, 6, 500);
   CHECK(first.numbers == again.numbers);
   CHECK(first.delays_s == again.delays_s);
   CHECK(first.numbers != other.numbers);

@@ -123,14 +123,14 @@ TEST_CASE("a director's failed request throws an exception in the director") {
 TEST_CASE("a director that is asked to end may finish its work and is not replaced if it dies") {
   Fixture f;
   const pid_t self = getpid();
-  const auto ends_well = [&](Processes& processes, const Deaths&) {
+  const auto finish_after_sigterm = [&](Processes& processes, const Deaths&) {
     obey_sigterm();
     (void)processes.start(shell("agent", "exec sleep 1000"));
     kill(self, SIGINT);
     wait_for([] { return is_asked_to_end != 0; });
     return 3;
   };
-  CHECK(f.keep(ends_well) == 3);
+  CHECK(f.keep(finish_after_sigterm) == 3);
   CHECK(f.lost.empty());
   CHECK(f.group.running() == 0);
 

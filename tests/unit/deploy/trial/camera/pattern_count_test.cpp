@@ -40,7 +40,7 @@ bool are_similar(const ColourMap& a, const ColourMap& b) {
 }
 
 /// Counts colourings that differ from all counted ones under every rotation that could map a dot to another.
-std::uint64_t slow_count(const MarkerLayout& layout, std::uint64_t colours) {
+std::uint64_t brute_force_pattern_count(const MarkerLayout& layout, std::uint64_t colours) {
   const std::size_t dots = layout.dots.size();
   std::set<double> angles;
   const auto angle = [&](std::size_t i) {
@@ -83,7 +83,7 @@ TEST_CASE("the number of patterns agrees with an exhaustive search") {
       CAPTURE(symmetries, rings, colours);
       MarkerLayout layout = random_rings(symmetries, rings, rng);
       if (symmetries > 1) REQUIRE(rotational_symmetries(layout).size() == symmetries);
-      CHECK(countable_patterns(layout, colours) == slow_count(layout, colours));
+      CHECK(countable_patterns(layout, colours) == brute_force_pattern_count(layout, colours));
     }
   }
 }

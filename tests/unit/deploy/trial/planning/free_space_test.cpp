@@ -31,10 +31,12 @@ class Grid {
 
   /// Labels cells so that cells with the same label are joined by a free path: every point between the
   /// centres of neighbours is within half a cell of one of the centres.
-  std::vector<int> surely_joined() const { return labels(cell_m_ / 2, false); }
+  std::vector<int> labels_of_connected_cells() const { return labels(cell_m_ / 2, false); }
   /// Labels cells so that cells with different labels are not joined by any free path: each cell with a free
   /// point has a label, and a path may pass diagonally from a cell to the next.
-  std::vector<int> possibly_joined() const { return labels(-cell_m_ * std::sqrt(0.5) - 1e-9, true); }
+  std::vector<int> labels_of_separable_cells() const {
+    return labels(-cell_m_ * std::sqrt(0.5) - 1e-9, true);
+  }
 
  private:
   std::vector<int> labels(double min_clearance_m, bool across_corners) const {
@@ -122,7 +124,8 @@ TEST_CASE("free space connects and separates the same positions as a flood fill"
     CAPTURE(seed);
     const PlanWorld world = crowded_world(seed);
     const Grid grid(world, 0.02);
-    const std::vector<int> surely = grid.surely_joined(), possibly = grid.possibly_joined();
+    const std::vector<int> surely = grid.labels_of_connected_cells(),
+                           possibly = grid.labels_of_separable_cells();
     std::vector<int> free;
     for (int i = 0; i < grid.size(); ++i)
       if (surely[i] >= 0) free.push_back(i);

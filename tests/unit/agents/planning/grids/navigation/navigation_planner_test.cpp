@@ -11,7 +11,7 @@ NavigationSettings with_kernel(GridKernel kernel) { return {.field = {.kernel = 
 
 struct Totals {
   int solved = 0;
-  double over_shortest = 0;  // mean length relative to the shortest path
+  double mean_length_ratio = 0;  // mean length relative to the shortest path
 };
 
 Totals plan_queries(const PlanWorld& world, const NavigationSettings& settings) {
@@ -32,9 +32,9 @@ Totals plan_queries(const PlanWorld& world, const NavigationSettings& settings) 
     graph.plan(query.start_m, query.goal_m);
     REQUIRE(plan.length >= graph.shortest_m() * (1 - 1e-9));
     ++totals.solved;
-    totals.over_shortest += plan.length / graph.shortest_m();
+    totals.mean_length_ratio += plan.length / graph.shortest_m();
   }
-  totals.over_shortest /= totals.solved;
+  totals.mean_length_ratio /= totals.solved;
   return totals;
 }
 
@@ -51,9 +51,9 @@ TEST_CASE(
     CHECK(nf1.solved == estar.solved);
     if (estar.solved == 0) continue;
     // Among circles, cells close passages that the shortest path may use.
-    CHECK(estar.over_shortest < (name == "circles" ? 1.2 : 1.04));
-    CHECK(nf1.over_shortest < 1.3);
-    CHECK((name == "empty" || nf1.over_shortest > estar.over_shortest));
+    CHECK(estar.mean_length_ratio < (name == "circles" ? 1.2 : 1.04));
+    CHECK(nf1.mean_length_ratio < 1.3);
+    CHECK((name == "empty" || nf1.mean_length_ratio > estar.mean_length_ratio));
   }
 }
 

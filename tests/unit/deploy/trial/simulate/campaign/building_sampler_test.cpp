@@ -10,7 +10,8 @@ namespace sidestep::building_sampler_test {
 
 /// The largest connected part of the places where a disc fits, as a fraction of all of them. Grid neighbours
 /// are connected if the disc fits between them.
-double largest_part(const OccupancyMap& map, const Field& field, double radius_m, double step_m) {
+double largest_connected_fraction(const OccupancyMap& map, const Field& field, double radius_m,
+                                  double step_m) {
   const int columns = static_cast<int>(field.length_m / step_m),
             rows = static_cast<int>(field.width_m / step_m);
   const auto place = [&](int index) {
@@ -68,7 +69,8 @@ TEST_CASE("narrow and wide robots fit through the doors of random buildings") {
   for (std::uint64_t seed = 1; seed <= kBuildings; ++seed) {
     Rng rng(seed);
     const Field field{40 * radius_m + 6, 30 * radius_m + 4};
-    sum += largest_part(sample_building(field, radius_m, rng)->cells(), field, radius_m, radius_m / 6);
+    sum += largest_connected_fraction(sample_building(field, radius_m, rng)->cells(), field, radius_m,
+                                      radius_m / 6);
   }
   CHECK(sum / kBuildings > 0.75);
 }

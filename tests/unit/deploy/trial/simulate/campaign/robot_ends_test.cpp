@@ -10,7 +10,7 @@ namespace sidestep::robot_ends_test {
 using namespace std::chrono_literals;
 using Kind = msg::DisturbanceKind;
 
-struct Planned {
+struct PlannedTrial {
   Scenario scenario =
       parse_scenario("field: {length_m: 6, width_m: 5}\ncircle: {count: 3, spacing_m: 0.6}\n", "three.yaml");
   FaultPlan plan;
@@ -28,13 +28,13 @@ struct Planned {
 };
 
 TEST_CASE("robots end as planned if the first simulator lives until the end") {
-  Planned planned;
+  PlannedTrial planned;
   planned.plan.ends = {{0, RobotEnd::kClockLeftBound}, {1, RobotEnd::kLifted}, {2, RobotEnd::kTakenAway}};
   CHECK(planned.ends(0s) == planned.plan.ends);
 }
 
 TEST_CASE("a robot's clock drifts from the start of the last simulator") {
-  Planned planned;
+  PlannedTrial planned;
   planned.scenario.robots[0].clock_drift_ppm = 85;
   planned.plan.ends = {{0, RobotEnd::kClockLeftBound}};
   CHECK(planned.ends(48s).at(0) == RobotEnd::kClockBeyondBound);
@@ -42,7 +42,7 @@ TEST_CASE("a robot's clock drifts from the start of the last simulator") {
 }
 
 TEST_CASE("a robot's clock is wrong at the end only if the last simulator has set it") {
-  Planned planned;
+  PlannedTrial planned;
   planned.plan.ends = {{0, RobotEnd::kClockLeftBound}};
   planned.disturb(20s, 0, Kind::DISTURBANCE_CLOCK, 100ms);
   CHECK(planned.ends(10s).at(0) == RobotEnd::kClockLeftBound);
@@ -50,7 +50,7 @@ TEST_CASE("a robot's clock is wrong at the end only if the last simulator has se
 }
 
 TEST_CASE("a lifted robot is on the floor again in a simulator that starts later") {
-  Planned planned;
+  PlannedTrial planned;
   planned.plan.ends = {{1, RobotEnd::kLifted}, {2, RobotEnd::kTakenAway}};
   planned.disturb(20s, 1, Kind::DISTURBANCE_LIFT);
   CHECK(planned.ends(10s) == planned.plan.ends);
