@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-struct Scenario;
+struct FloorSpec;
 
 /// The planners that can drive robots, for the key `planner` of scenarios
 /// (agents/planning/named_planner.hpp). Six are local methods that follow another planner's paths. Planners
