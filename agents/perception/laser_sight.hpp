@@ -23,7 +23,7 @@ struct LaserSightSettings {
 };
 
 /// Interprets the scans of a robot's own laser: where people may step out, what moves, and which stationary
-/// obstacles are not on the map. Only obstacles that the rules contain limit where people may be.
+/// obstacles are not on the map. Only obstacles listed in the rules are assumed to limit where people may be.
 class LaserSight {
  public:
   /// Unknown stationary obstacles are reported as squares with this side.

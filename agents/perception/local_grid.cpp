@@ -40,7 +40,7 @@ LocalGrid::LocalGrid(const LocalGridSettings& settings) : settings_(settings) {
 }
 
 Cell LocalGrid::cell_at(const Vec2& p) const {
-  constexpr double kMost = 2e9;  // beyond every window
+  constexpr double kMost = 2e9;  // outside any window, but still fits an int
   const auto number = [&](double at_m) {
     const double at = std::floor(at_m / kResolution_m);
     return at >= -kMost && at <= kMost ? static_cast<int>(at) : std::numeric_limits<int>::max();

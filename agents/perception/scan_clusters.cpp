@@ -4,7 +4,7 @@
 namespace sidestep {
 namespace {
 
-/// Maximum number of missing beams within a cluster, and beside a cluster before its surroundings count as
+/// Maximum number of missing beams within a cluster. If more are missing beside it, its surroundings count as
 /// unknown.
 constexpr int kMissing = 2;
 

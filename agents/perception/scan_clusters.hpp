@@ -14,9 +14,9 @@ struct ScanCluster {
   bool is_partial = false;  ///< a nearer object hides one end, or the field of view ends there
 };
 
-/// Finds the clusters among selected hits: consecutive hits that are at most `join_m` apart, or more at
-/// larger distances, where beams diverge (adaptive breakpoints: Borges, Aldon 2004). Dropouts do not separate
-/// clusters. Does not allocate once warm.
+/// Finds the clusters among selected hits: consecutive hits that are at most `join_m` apart, or farther apart
+/// at larger distances, where beams diverge (adaptive breakpoints: Borges, Aldon 2004). Dropouts do not
+/// separate clusters. Does not allocate once warm.
 class ScanClusters {
  public:
   explicit ScanClusters(double join_m) : join_m_(join_m) {}

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kInside_m = 1e-9;    // larger than rounding errors
 constexpr double kShortest_m = 1e-9;  // minimum length of frontiers
-/// Rays at larger angles prove nothing about the space between them.
+/// Two rays that form a larger angle prove nothing about the space between them.
 constexpr double kHalfTurn_rad = std::numbers::pi - 1e-6;
 
 }  // namespace

@@ -7,13 +7,13 @@
 namespace sidestep {
 namespace {
 
-/// Between rays at larger angles than this, nothing is dropped.
+/// No rays are dropped between two rays that form a larger angle than this.
 constexpr double kMaxAngle_rad = std::numbers::pi / 2;
 /// Shorter gaps have no defined direction.
 constexpr double kShortestGap_m = 1e-9;
 
-/// Calls `count_dropped(first)` for each ray in turn, which returns the number of rays after this one to
-/// drop. Dropped rays are marked with the length 0, and removed at the end.
+/// For each ray in turn, calls `count_dropped(first)`, which returns how many of the following rays to drop.
+/// Dropped rays are marked with the length 0, and removed at the end.
 template <typename CountDropped>
 void drop_runs(std::vector<SightRay>& rays, const CountDropped& count_dropped) {
   const std::size_t count = rays.size();
@@ -53,8 +53,8 @@ std::optional<ClosedGap> closed_gap(const SightRay& ray, const SightRay& next, d
   const Vec2 from = ray.free_m * ray.direction, to = next.free_m * next.direction;
   const double width_m = (to - from).norm();
   if (width_m >= 2 * radius_m || width_m < kShortestGap_m) return std::nullopt;
-  // The point of the line that is equally far from both posts: a disc around each post that contains this
-  // point and the end contains everything between them.
+  // The point of the line that is equally far from both posts. A disc around a post that contains this point
+  // and an end of the line also contains everything between the two.
   const double nearer_to_post = (from - next_post).squaredNorm() - (from - post).squaredNorm();
   const double nearer_to_next = (to - post).squaredNorm() - (to - next_post).squaredNorm();
   const double sum = nearer_to_post + nearer_to_next;

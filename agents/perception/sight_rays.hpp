@@ -32,8 +32,8 @@ struct ClosedGap {
 /// The counter-clockwise angle from one ray to another ray; a full turn from a ray to itself.
 [[nodiscard]] double angle_between_rad(const SightRay& ray, const SightRay& next);
 
-/// Maximum distance from a stationary point that a person of this radius can reach by protruding across a
-/// line, if the place on the line is at most `from_m` from the point. Precondition: from_m <= radius_m.
+/// How far from a stationary point a person of this radius can reach by protruding across a line, if the
+/// person crosses the line at most `from_m` from the point. Precondition: from_m <= radius_m.
 [[nodiscard]] double projection_m(double radius_m, double from_m);
 
 /// The closed gap between the ends of two rays; nullopt if it is not closed. It is closed if no disc of this

@@ -73,7 +73,7 @@ void CandidateSet::sample_accelerations(const Vec2& velocity, const Vec2& desire
 }
 
 void CandidateSet::prefer(std::span<const Vec2> accelerations) {
-  constexpr double kStep = 1e-12;  // makes squared distances smaller than the distances of all samples
+  constexpr double kStep = 1e-12;  // ranks them in their order, before all samples
   for (std::size_t i = 1; i < count_ && i <= accelerations.size(); ++i) {
     batch::AccelerationBlock& block = accelerations_[i / kLanes];
     block.x.lane[i % kLanes] = accelerations[i - 1].x();

@@ -95,7 +95,7 @@ class SafetySearch {
   bool is_allowed(const Trajectory& trajectory, bool is_certainly_clear) const;
 
   FloorRules rules_;
-  // Parallel to rules_.obstacles; a circle is at rest at its centre.
+  // Parallel to rules_.obstacles; a circle counts as a trajectory that rests at its centre.
   std::vector<TrajectoryBounds> obstacles_;
   CandidateSet candidates_;
   std::vector<std::uint32_t> found_indices_;

@@ -52,7 +52,7 @@ class TrajectoryIndex {
   // Indexed by cell: first index into order_; has one more entry than there are cells.
   std::vector<std::uint32_t> cell_begin_;
   std::vector<std::uint32_t> order_;              // indices of versions, sorted by cell in row-major order
-  std::vector<batch::Row> x_m_, y_m_, radius_m_;  // discs in the order of order_
+  std::vector<batch::Row> x_m_, y_m_, radius_m_;  // coordinates and radii of discs, sorted like order_
   std::vector<std::uint8_t> masks_;
 };
 

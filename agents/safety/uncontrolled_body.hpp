@@ -24,8 +24,8 @@ struct UncontrolledBody {
   [[nodiscard]] double required_distance_m(const Vec2& position_m) const;
 };
 
-/// The minimum distance, less the required distance, between the body, if it moves as expected, and a robot
-/// that follows the trajectory from a time on and then rests. Negative: the body may touch the robot.
+/// The minimum distance, less the required distance, between the body, moving as expected, and a robot that
+/// follows the trajectory from `from` on and then rests. Negative: the body may touch the robot.
 [[nodiscard]] double excess_distance_m(const Trajectory& trajectory, Time from, const UncontrolledBody& body);
 
 /// Decides which candidates a robot may follow instead of `stop`. The constructor computes everything that

@@ -57,7 +57,7 @@ class DistanceField {
   MapGrid grid_;
   Vec2 size_m_;
   double cells_per_m_, m_per_step_;
-  double margin_m_;                       // half the diagonal of a blocked cell, plus all errors
+  double margin_m_;                       // half a cell's diagonal, plus quantisation and rounding errors
   std::vector<std::uint16_t> distances_;  // distances in 1 / kSteps cells, rounded to the nearest
 };
 

@@ -25,8 +25,8 @@ namespace sidestep {
 /// is implausible. Precondition: the message outlives the result.
 [[nodiscard]] std::optional<CoordinatorHeartbeat> decode(const msg::CoordinatorState& message, Time now);
 
-/// Decodes the untrusted reason of a coordinator's role. Returns nullopt if the reason is unknown or refers
-/// to an impossible process number.
+/// Decodes the reason of a coordinator's role from an untrusted message. Returns nullopt if the reason is
+/// unknown or refers to an impossible process number.
 [[nodiscard]] std::optional<RoleCause> decode_role_cause(const msg::CoordinatorState& message);
 /// Writes a role's reason into a coordinator's state.
 void encode(const RoleCause& cause, msg::CoordinatorState& message);

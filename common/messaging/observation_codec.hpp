@@ -12,8 +12,8 @@ namespace sidestep {
 /// Decodes an untrusted observation of a robot. Returns nullopt if its robot, position, velocity or
 /// variance is out of range, or its time is implausible at `now`, by the local clock.
 [[nodiscard]] std::optional<RobotObservation> decode(const msg::TrackedRobot& message, Time now);
-/// Decodes the untrusted place of a displaced or silent robot, with the same checks. Precondition:
-/// is_uncontrolled(message).
+/// Decodes the place of a displaced or silent robot from an untrusted message, with the same checks.
+/// Precondition: is_uncontrolled(message).
 [[nodiscard]] std::optional<RobotObservation> decode(const msg::RobotNotice& message, Time now);
 
 }  // namespace sidestep

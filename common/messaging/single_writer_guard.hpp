@@ -43,7 +43,7 @@ class SingleWriterGuard {
   /// conflict.
   Outcome listen(std::uint64_t incarnation, Time now);
 
-  static constexpr std::uint32_t kEvidence = 2;  // number of alternating messages of each process
+  static constexpr std::uint32_t kEvidence = 2;  // alternating messages per process that prove a conflict
 
   bool has_sender_ = false, is_reported_ = false;
   std::uint64_t sender_ = 0;  // incarnation of the process that was heard first

@@ -8,7 +8,7 @@
 
 namespace sidestep {
 
-/// Guaranteed bounds of how far a peer's clock is ahead of the local clock.
+/// Guaranteed bounds on how far a peer's clock is ahead of the local clock.
 struct OffsetInterval {
   Duration low{0};
   Duration high{0};

@@ -63,7 +63,7 @@ int finish(const AuditTotals& totals) {
 
 int audit_recording(const AuditOptions& options) {
   PlaybackBus bus(options.recording_file);
-  bus.trust_first_senders();  // the run's own audit trusted them
+  bus.trust_first_senders();  // as the run's own audit did
   const Scenario scenario =
       options.scenario_file.empty() ? bus.scenario() : load_scenario(options.scenario_file);
   AuditInput input;

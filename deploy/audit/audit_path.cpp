@@ -59,7 +59,7 @@ ClosestApproach closest_approach_of(const Pair& pair, double cutoff_m, std::int6
   const double end = pair.end_s();
   double best = pair.distance(0), best_s = 0;
   if (best - cutoff_m > end * (pair.a.max_speed_mps() + pair.b.max_speed_mps())) return {best, from_ns};
-  // The sum of the maximum speeds is a cheap bound that separates most pairs within a few steps.
+  // The sum of the maximum speeds is a cheap bound, with which a few steps suffice for most pairs.
   double speed = pair.a.max_speed_mps() + pair.b.max_speed_mps() + 1e-9;
   const auto sample = [&](double s) {
     const double d = pair.distance(s);

@@ -49,7 +49,7 @@ struct AuditTotals {
   /// Number of messages from processes with different rules, see refuse_other_rules().
   std::uint64_t refused = 0;
   std::uint64_t compared_pairs = 0;  ///< number of pairs of versions whose clearance was checked
-  /// Number of pairs that are too close, unless a missed message excuses them.
+  /// Number of pairs that are too close but may be excused by a missed message.
   std::uint64_t undecided_pairs = 0;
   Coverage coverage;
   bool is_cut_off = false;  ///< the messages come from a recording that lacks an unknown part of the run

@@ -52,15 +52,15 @@ struct KnownVersion {
   Epoch granted_in = 0;                      ///< for an own stop: the epoch whose ledger page contained it
   std::int64_t granted_by_ns = kNever;       ///< upper bound of the sending time of the verdict or page
   std::int64_t executed_until_ns = kAlways;  ///< lower bound, by the robot's clock
-  /// The ledger contained it at least until this time, which is by the clock of
-  /// MessageTimes::granter_time_ns().
+  /// The ledger contained it at least until this time, by the clock that MessageTimes::granter_time_ns()
+  /// uses.
   std::int64_t in_ledger_until_ns = kAlways;
   std::int64_t excluded_ns = kNever;
   // Information from ledger pages, with times by the coordinator's clock. Unused if the auditor receives
   // every message.
   Epoch listed_in = 0;                      ///< the latest epoch whose ledger pages listed it
   std::int64_t listed_from_ns = kNever;     ///< time of the first page that listed it
-  std::int64_t entered_after_ns = kAlways;  ///< time of the last earlier page, which did not list it
+  std::int64_t entered_after_ns = kAlways;  ///< time of the last page before it was listed
   AuditPath path;
   EpochMemory registered_in;
   std::int64_t sent_ns = kNever;    ///< earliest sending time of the first command that contains it
@@ -113,7 +113,7 @@ class AuditedRobot {
   static constexpr std::size_t kMaxProposals = 16;
 
   RobotId id = 0;
-  std::deque<KnownVersion> versions;  ///< sorted by number; mostly appended, and removed at the front
+  std::deque<KnownVersion> versions;  ///< sorted by number; mostly appended at the back, removed at the front
   std::array<ProposalRecord, kMaxProposals> proposals;
   std::uint64_t proposal_count = 0;
   std::array<EarlyVerdict, 8> early_verdicts;
@@ -158,14 +158,14 @@ class AuditedRobot {
   };
   std::optional<Registered> registered;
 
-  /// The robot's latest position by ground truth or vision that has not yet been compared with a report.
+  /// The robot's latest position from ground truth or vision that has not yet been compared with a report.
   struct Observation {
     std::int64_t at_ns = kNever;
-    double x = 0, y = 0, reference_error_m = 0;  ///< reference_error_m is by ground truth
+    double x = 0, y = 0, reference_error_m = 0;  ///< reference_error_m comes from ground truth
   };
   Observation observation;
   EpochMemory registered_in;
-  /// The latest ledger page that listed versions of the robot; its time is by the coordinator's clock.
+  /// The latest ledger page that listed versions of the robot, with its time by the coordinator's clock.
   struct Listing {
     Epoch epoch = 0;
     std::int64_t at_ns = kAlways;

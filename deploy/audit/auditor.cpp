@@ -72,7 +72,7 @@ void Auditor::on_registration(const msg::Registration& registration, Time now) {
     ++findings_.totals.invalid;
     return;
   }
-  // A registration without versions, of a robot on the floor, only informs the coordinator of the epoch.
+  // If a robot on the floor registers without versions, this only informs the coordinator of the epoch.
   if (registration.version_count() == 0 && !registration.is_absent()) return;
   orders_.on_registration(registration);
   epochs_.on_registration(*robot, registration, reception);

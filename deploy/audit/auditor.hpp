@@ -60,9 +60,9 @@ class Auditor {
  private:
   using Kind = MessageTimes::Kind;
 
-  /// The robot; if it is not on the roster, counts the message as invalid and returns nullptr.
+  /// Returns the robot. If it is not on the roster, counts the message as invalid and returns nullptr.
   AuditedRobot* known_robot(RobotId robot);
-  /// The robot; if it did not send the message, counts the message as invalid and returns nullptr.
+  /// Returns the robot. If it did not send the message, counts the message as invalid and returns nullptr.
   AuditedRobot* sender_of(RobotId robot, const msg::Header& header);
   Reception trace(Kind kind, std::uint32_t key, const msg::Header& header);
 

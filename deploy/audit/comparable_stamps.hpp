@@ -20,7 +20,7 @@ class ComparableStamps {
   /// Records a stamp. `channel` distinguishes the streams that one sender numbers separately.
   void record(std::uint64_t channel, const msg::Header& header);
   /// Whether the messages of this run of a process have been stamped in the order of their numbers so far.
-  /// False if no message of the run was recorded, or only long ago.
+  /// False if no message of the run was recorded recently.
   [[nodiscard]] bool are_in_order(std::uint32_t sender, Incarnation incarnation) const;
 
  private:

@@ -7,7 +7,7 @@ namespace sidestep {
 
 /// The fractions of a run that the audit covered, from 0 to 1. A fraction is 1 if there was nothing to cover.
 struct Coverage {
-  /// An audit with a smaller share does not judge the run.
+  /// An audit that covered less than this does not judge the run.
   static constexpr double kMinimum = 0.95;
 
   double messages = 0;  ///< received fraction of the messages of robots, coordinators and the reference

@@ -52,9 +52,9 @@ class Disturbances {
   /// Updates with the robots on the floor at this time.
   void update(Time now, const std::vector<std::optional<ObservedRobot>>& robots);
 
-  /// Messages were missed. From now on it is unknown when a currently disturbed robot will be back in place.
+  /// Call if messages were missed. Then it is unknown when a currently disturbed robot will be back in place.
   void on_missed();
-  /// Messages that show positions were missed. Calls on_missed(), and forgets when robots came to rest.
+  /// Call if messages with positions were missed. Calls on_missed(), and forgets when robots came to rest.
   void on_reference_missed();
   /// Whether the robot may be disturbed although no received message says so.
   bool is_uncertain(std::size_t robot) const { return states_[robot].is_uncertain; }

@@ -113,9 +113,9 @@ void GrantAudit::on_verdict(AuditedRobot& robot, const msg::Verdict& verdict, co
   check_hold(*known, verdict);
 }
 
-// A held robot may be granted a rest version at the place where it will be put down. Verdicts may be
-// repeated; so if messages may be missed, only a version that starts long after the hold was certainly
-// granted after it.
+// A held robot may be granted a rest version at the place where it will be put down. A verdict may be a
+// repetition. So if messages may have been missed, a version is known to have been granted after the hold
+// only if it starts long after the hold.
 void GrantAudit::check_hold(const KnownVersion& known, const msg::Verdict& verdict) {
   const bool is_place = known.version.base() == 0 && known.path.duration_s() <= 0;
   if (!known.has_content || is_place) return;

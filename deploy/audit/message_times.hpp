@@ -46,9 +46,8 @@ class MessageTimes {
   bool are_comparable(const msg::Header& header) const {
     return run_.is_complete() || stamps_.are_in_order(header.sender(), header.incarnation());
   }
-  /// An upper bound of the time at which a coordinator sent a message. It is by the auditor's clock if the
-  /// auditor receives every message. Otherwise it is by the coordinator's clock, which orders the
-  /// coordinator's messages exactly.
+  /// An upper bound of the time at which a coordinator sent a message: by the auditor's clock if the auditor
+  /// receives every message, otherwise by the coordinator's clock, which orders its messages exactly.
   std::int64_t granter_time_ns(const msg::Header& header, const Reception& reception) const {
     return run_.is_complete() ? reception.latest_ns : header.stamp_ns();
   }

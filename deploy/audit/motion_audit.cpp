@@ -59,7 +59,7 @@ void MotionAudit::check_own_stop(const AuditedRobot& robot, const KnownVersion& 
   const AuditPath::Node& end = own_stop.path.last();
   if (std::hypot(end.vx, end.vy) > 1e-5)
     fail(fmt::format("ends at {:.6f} m/s instead of at rest", std::hypot(end.vx, end.vy)));
-  // The stop brakes at D to rest, after the motion that is already under way in motors that respond late.
+  // After the lead time of the robot's motors, the stop brakes at D to rest.
   const double lead_s = static_cast<double>(std::clamp<std::int64_t>(lead_ns, 0, kMaxMotorLead_ns)) * 1e-9;
   const AuditPath::Node braked = own_stop.path.at_s(lead_s);
   const double speed = std::hypot(braked.vx, braked.vy);

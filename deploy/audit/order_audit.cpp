@@ -11,9 +11,9 @@ namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxKept = 4096;
-// A coordinator may forget clients' oldest resumes beyond 512, except those that exempt a robot from a hold
-// of all robots that is in force, and the oldest removals of zones beyond 256. If a complete memory contains
-// half as many, the coordinator may do so before the next one.
+// Of clients' resumes, a coordinator keeps at least the latest 512 and those that exempt a robot from a hold
+// of all robots that is in force; of removals of zones, the latest 256. If a complete memory contains half as
+// many, the coordinator may forget some before the next memory.
 constexpr std::size_t kManyResumes = 256, kManyRemovals = 128;
 constexpr auto kOperator = static_cast<std::uint32_t>(Sender::kOperator);
 // Clients other than operator, referee and scenario share one entry for orders to drive.

@@ -116,7 +116,7 @@ class OrderAudit {
   std::map<Key, Witnesses> witnesses_;                 // bounded; the lowest numbers are forgotten first
   std::map<RobotId, AgentRegistration> registered_;    // latest registrations
   std::map<RobotId, HeldFlag> held_;
-  /// Some coordinator may have forgotten why holds or zones are no longer in force.
+  /// Whether some coordinator may have forgotten why holds or zones are no longer in force.
   bool may_miss_resumes_ = false, may_miss_removals_ = false;
 };
 

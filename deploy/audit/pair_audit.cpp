@@ -47,8 +47,8 @@ std::optional<Epoch> PairAudit::common_epoch(const KnownVersion& a, const Eviden
 bool PairAudit::was_checked_against(const KnownVersion& granted, const KnownVersion& other) const {
   const Epoch epoch = granted.granted_in;
   if (!run_.is_complete()) {
-    // Pages show that the ledger held both versions. Two granted versions were checked in either order. Own
-    // stops and versions of robots that register late enter the ledger unchecked.
+    // Pages show that the ledger held both versions. If both were granted, the one granted later was checked
+    // against the other. Own stops and versions of robots that register late enter the ledger unchecked.
     const bool are_listed = granted.listed_in == epoch && other.listed_in == epoch;
     const bool was_granted = other.granted_in == epoch && !other.is_own_stop;
     return are_listed && (was_granted || other.listed_from_ns <= granted.entered_after_ns);

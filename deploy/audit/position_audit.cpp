@@ -32,13 +32,13 @@ void PositionAudit::check(AuditedRobot& robot, const AuditedRobot::ReceivedRepor
   // A simulator of robots without firmware does not know their references.
   const bool is_seen = is_vision || pending.reference_error_m < 0;
   // If messages may be missed, the delay of reports is unknown, and so is the offset of the robot's clock.
-  // That clock is then assumed to be within bound of the clocks of cameras and of such a simulator.
+  // That clock is then assumed to be within the clock bound of the clocks of cameras and such a simulator.
   const bool is_by_bound = is_vision || (is_seen && !run_.is_complete());
   const std::int64_t ahead_ns = robot_report.at_ns - reception.latest_ns;
   const std::int64_t clock_change_ns = ahead_ns - std::exchange(robot.clock_ahead_ns, ahead_ns);
   if (pending.at_ns == kNever) return;
   if (run_.is_complete() && !is_vision && std::abs(clock_change_ns) > run_.clock_bound_ns()) {
-    // The clock has jumped since the observation, which therefore has no time by this clock.
+    // The clock has jumped since the observation, so the time of the observation on this clock is unknown.
     pending = {};
     return;
   }

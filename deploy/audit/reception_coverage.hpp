@@ -19,8 +19,8 @@ class ReceptionCoverage {
 
   /// Starts the period. Anything heard earlier does not count.
   void begin(Time now);
-  /// Records that the source is heard. If it was silent for longer than kMaxSilence, the last `unheard` of
-  /// that silence counts as unheard. Precondition: times never decrease.
+  /// Records that the source is heard. If it was silent for longer than kMaxSilence, the last part of that
+  /// silence, as long as `unheard`, counts as unheard. Precondition: times never decrease.
   void hear(std::size_t source, Time now, Duration unheard);
   /// Excuses the next silence of this source.
   void expect_silence(std::size_t source) { sources_[source].is_silence_expected = true; }

@@ -13,8 +13,8 @@ namespace {
 constexpr std::int64_t kRetention_ns = 1'500'000'000;
 // Versions excluded longer ago than this were compared before they were excluded.
 constexpr std::int64_t kRecentWindow_ns = 50'000'000;
-// A robot's incarnation is that of its simulator, which is a clock reading in nanoseconds, plus the number of
-// times that the robot's clock was set back. A later simulator's incarnation is higher by more than this.
+// A robot's incarnation is that of its simulator (a clock reading in nanoseconds) plus the number of times
+// that the robot's clock was set back. A later simulator's incarnation is higher by more than this.
 constexpr std::uint64_t kMaxSetbacks = 100'000;
 // If a robot is silent for this long, reports of an earlier simulator may be the true ones (PROTOCOL.md,
 // "Processes that must be alone").
@@ -108,7 +108,7 @@ AuditedRobot::ReceivedReport RobotReportAudit::report_of(const AuditedRobot& rob
 
 bool RobotReportAudit::is_clock_sound(const msg::Feedback& feedback, const Reception& reception) const {
   const std::int64_t bound_ns = run_.clock_bound_ns() + 1000;
-  // A report's time is by the robot's own clock; its header's stamp is by the clock of the sending process.
+  // A report's time is read from the robot's own clock, its header's stamp from the sending process's clock.
   const bool is_dated_as_sent = std::abs(feedback.valid_at_ns() - feedback.header().stamp_ns()) <= bound_ns;
   if (!run_.is_complete() && !is_dated_as_sent) return false;
   return feedback.valid_at_ns() - reception.latest_ns <= bound_ns &&
@@ -124,7 +124,7 @@ void RobotReportAudit::check_executing(AuditedRobot& robot, KnownVersion& execut
   epochs_.check_obeyed(robot, executing, feedback, reception);
   if (executing.is_own_stop && !executing.was_executed)
     motion_.check_own_stop(robot, executing, feedback.lead_ns());
-  // The times of a clock that is out of bound prove nothing, even after the clock has been set.
+  // Times read from a clock beyond its bound prove nothing, even after the clock has been set.
   if (robot_report.is_clock_sound) {
     KnownVersion* base = robot.find(executing.version.base());
     if (base && base->was_executed && robot.last_report && robot.last_report->executing == base->number)
@@ -145,7 +145,7 @@ void RobotReportAudit::check_order(const AuditedRobot& robot, const ReceivedRepo
     findings_.report(AuditRule::kFacts, robot.id, robot.find(robot_report.executing),
                      robot_report.obeyed_epoch, detail);
   };
-  // A clock that was out of bound may be set back.
+  // A clock that was beyond its bound may be set back.
   const bool was_clock_sound = last.is_clock_sound && (run_.is_complete() || is_next);
   if (robot_report.at_ns < last.at_ns && was_clock_sound)
     fail(fmt::format("is stamped {} ns, earlier than the report before it, {} ns", robot_report.at_ns,
@@ -205,8 +205,8 @@ void RobotReportAudit::exclude(AuditedRobot& robot, const ReceivedReport& robot_
     // If messages may be missed, the delay of reports is unknown, and only pages show what the ledger
     // contains.
     if (!known.has_content || !run_.is_complete()) continue;
-    // If no report was missed, this is the first one that excludes the version, and no component could know
-    // earlier.
+    // If no report was missed, this is the first report that excludes the version, and no component could
+    // know this earlier.
     if (known.exclusion == Exclusion::kNone || reception.is_next)
       known.in_ledger_until_ns = std::max(known.in_ledger_until_ns, reception.earliest_ns);
   }

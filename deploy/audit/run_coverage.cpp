@@ -57,8 +57,8 @@ void RunCoverage::add_to(AuditTotals& totals, const MessageTimes& times) const {
     versions.traced += executed.traced;
   }
   Coverage& coverage = totals.coverage;
-  // Agents' messages count only by their effect, in coverage.versions, because messages from a host that is
-  // cut off have no effect.
+  // Agents' messages count only through their effect (see coverage.versions), because messages from a host
+  // that is cut off have no effect.
   const std::uint64_t distinct = times.trace().distinct();
   coverage.messages = distinct > 0 ? share_of(distinct, distinct + times.trace().missed()) : 0;
   coverage.versions = share_of(versions.traced, versions.all);

@@ -37,7 +37,7 @@ class RunCoverage {
   const AuditedRun& run_;
   RobotRecords& robots_;
   AuditFindings& findings_;
-  std::optional<Time> motion_sign_at_, begun_at_;  ///< when a message first showed that robots may move
+  std::optional<Time> motion_sign_at_, begun_at_;  ///< first sign that robots may move; start of the period
   ReceptionCoverage report_coverage_;              ///< reports of all robots
   std::optional<ReceptionCoverage> reference_coverage_;
 };

@@ -30,7 +30,7 @@ class TruthAudit {
   void check_contacts(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining);
   /// Reports new crashes. `reported` is the number of crashes of moving robots in the previous ground truth.
   void check_crashes(const msg::GroundTruth& truth, std::uint64_t reported, bool is_joining);
-  /// A robot to name in a violation if the robot is unknown; `none` if the roster is empty.
+  /// Any robot, to name in a violation whose robot is unknown; `none` if the roster is empty.
   RobotId any_robot(RobotId none) const { return robots_.all().empty() ? none : robots_.all().front().id; }
 
   const AuditedRun& run_;

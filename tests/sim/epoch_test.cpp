@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequences of single messages between real agents (their negotiation),
-// coordinators and firmware, with a one-way partition or an agent that receives nothing. If robots did not
-// fence epochs, each sequence would bring two robots too close together.
+// Sequences of single messages between the real negotiation of agents, coordinators and firmware, with a
+// one-way partition or an agent that receives nothing. If robots did not fence epochs, each sequence would
+// bring two robots too close together.
 #include "agents/agent/negotiation.hpp"
 #include "agents/safety/safety_search.hpp"
 #include "common/messaging/negotiation_codec.hpp"

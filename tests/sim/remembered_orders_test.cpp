@@ -68,7 +68,8 @@ TEST_CASE(
   run.require_held(0);
 }
 
-// Agent 2 does not hear the coordinator while the hold is given. Agent 1 does not hear it while it restarts.
+// Agent 2 does not hear the coordinator when the robot is put on hold. Agent 1 does not hear the coordinator
+// when the coordinator restarts.
 TEST_CASE(
     "a hold survives the restart of the only coordinator, even if another agent does not know about the "
     "hold") {

@@ -36,7 +36,7 @@ double passage_width_m(const Bubble& a, const Bubble& b) {
   const double distance2 = (a.centre_m - b.centre_m).squaredNorm();
   const double smaller = std::min(a.radius_m, b.radius_m), larger = std::max(a.radius_m, b.radius_m);
   if (distance2 > (a.radius_m + b.radius_m) * (a.radius_m + b.radius_m)) return 0;
-  // The chord lies beyond the smaller bubble's centre.
+  // The common chord lies beyond the smaller bubble's centre, so the passage is as wide as that bubble.
   if (larger * larger >= distance2 + smaller * smaller) return 2 * smaller;
   const double to_chord2 = (distance2 + smaller * smaller - larger * larger) *
                            (distance2 + smaller * smaller - larger * larger) / (4 * distance2);

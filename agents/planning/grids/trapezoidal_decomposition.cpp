@@ -17,7 +17,7 @@ constexpr std::uint64_t kOrderSeed = 1;  ///< seed of the random order in which 
 using Index = TrapezoidalMap::Index;
 
 constexpr std::int32_t kMargin = 16;      // margin of the box around the field, in grid units
-constexpr double kStandoff_m = 1e-6;      // clearance beyond the robot's radius, unless kStandoff is longer
+constexpr double kStandoff_m = 1e-6;      // clearance beyond the radius, unless kStandoff_units is longer
 constexpr double kStandoff_units = 4;     // in grid units; rounding moves boundaries by about one unit
 constexpr double kMinPortalHeight = 0.5;  // minimum length of a portal, in grid units
 constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();

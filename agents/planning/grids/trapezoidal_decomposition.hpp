@@ -40,7 +40,7 @@ class TrapezoidalDecomposition {
   GridPoint rounded(const Vec2& position_m) const;
 
   double unit_m_ = 1;     // unit of the grid
-  GridPoint half_field_;  // half the size of the area of the robot's centre
+  GridPoint half_field_;  // half the size of the area in which the robot's centre may lie
   CrossingDivider divider_;
   std::vector<WindingSegment> boundaries_;
   std::vector<GridSegment> segments_;

@@ -142,7 +142,7 @@ void TrapezoidalMap::divide_crossed(Index s, Index left_part, Index right_part) 
   lower_.assign(1, lower);
   for (std::size_t i = 1; i < crossed_.size(); ++i) {
     const Trapezoid before = trapezoids_[crossed_[i - 1]], after = trapezoids_[crossed_[i]];
-    // The wall between them ends at the segment: it remains only on the side of the end that causes it.
+    // The segment cuts the wall between them, which remains only on the side of the point that causes it.
     const GridPoint wall = before.right;
     if (height_above(segment, wall) > 0) {
       const Index next = new_trapezoid(s, after.top, wall, segment.right);

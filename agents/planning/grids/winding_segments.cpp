@@ -11,7 +11,7 @@ constexpr int kMaxRounds = 100;
 
 void append_edge(const GridPoint& from, const GridPoint& to, std::int32_t winding,
                  std::vector<WindingSegment>& segments) {
-  // The polygon lies to the left, that is, above an edge that leads to the right.
+  // The polygon lies to the left of each of its edges, so it is above an edge that runs rightwards.
   if (from < to) segments.push_back({{from, to}, winding});
   if (to < from) segments.push_back({{to, from}, -winding});
 }

@@ -16,7 +16,7 @@ bool is_free(const SpaceTimeDomain& domain, const Path& path, std::size_t first)
   return true;
 }
 
-/// Removes the state `left_out` and moves everything after it forward in time, by all or part of the time
+/// Removes the state `left_out` and moves everything after it to an earlier time, by all or part of the time
 /// saved. Returns whether it succeeded.
 bool remove_state(const SpaceTimeDomain& domain, Path& path, std::size_t left_out) {
   Path candidate = path;
@@ -35,8 +35,8 @@ bool remove_state(const SpaceTimeDomain& domain, Path& path, std::size_t left_ou
   return false;
 }
 
-/// Moves the state `next` and everything after it forward in time, by the part of the wait before it that can
-/// be skipped while the path stays free.
+/// Moves the state `next` and everything after it to an earlier time, by the part of the wait before it that
+/// can be skipped while the path stays free.
 void shorten_wait(const SpaceTimeDomain& domain, Path& path, std::size_t next) {
   constexpr int kHalvings = 6;
   Duration step = path[next].at - domain.earliest_arrival(path[next - 1], path[next].at_m);

@@ -26,7 +26,7 @@ class Bridges {
   /// returns its length. Requires at least one bridge.
   double shortest(const Tree& from_start, const Tree& from_goal, std::vector<State>& states) {
     find_shortest(from_start, from_goal);
-    // Follows the labels from the goal, the last end of the goal tree, back to the start.
+    // Follows the labels back to the start from the goal, which is the last end of the goal tree.
     order_.clear();
     for (End end{true, bridges_.size()};; end = label_of(end).previous) {
       order_.push_back(end);

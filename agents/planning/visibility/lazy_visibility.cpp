@@ -18,8 +18,8 @@ constexpr std::uint32_t kNone = 0xffffffff;
 // A corner's arc covers at most half a circle, or slightly more if the start lies within the standoff.
 constexpr double kMaxCornerTurn_rad = 3.2, kMaxCornerTurnSine = -0.0584;
 
-/// Lower bounds of the angles from a direction, tight up to a right angle: the power series of an arc's
-/// length in terms of its chord.
+/// Lower bounds of the angles from one direction to two others, tight up to a right angle. Uses the power
+/// series of an arc's length in its chord.
 SidePair min_turns_rad(const Vec2& from, const DirectionPair& to) {
   const SidePair chord2 = (to.x - from.x()).square() + (to.y - from.y()).square();
   return chord2.sqrt() * (1 + chord2 * (1.0 / 24 + chord2 * (3.0 / 640 + chord2 * (5.0 / 7168))));
@@ -66,7 +66,7 @@ void LazyVisibility::plan_from_blocked(const DiscDomain& domain, const Vec2& sta
     return;
   }
   if (!plan_straight(domain, *exit, plan_)) plan_from(domain, *exit, budget);
-  // The path continues from the last state that the start can reach in a straight line, which skips the exit.
+  // The path continues from the last state that the start can reach in a straight line, to skip the exit.
   std::size_t first = plan_.states.size() - 1;
   while (first > 0 && !domain.check(start, plan_.states[first])) --first;
   plan_.states.erase(plan_.states.begin(), plan_.states.begin() + static_cast<std::ptrdiff_t>(first));

@@ -52,10 +52,10 @@ class Admission {
   /// A start time farther in the future than this does not count as the latest: it comes from a wrong clock,
   /// and would remain the latest until then.
   static constexpr Duration kMaxAhead{600'000'000'000};
-  /// Time for which a displaced participant is not admitted again: the first time, and at most. The first
-  /// wait is short, because a genuine participant may be slow on a busy machine.
+  /// Time for which a displaced participant is not admitted again: after its first displacement, and at most.
+  /// The first wait is short, because a genuine participant may be slow on a busy machine.
   static constexpr Duration kFirstWait{10'000'000'000}, kMaxWait{3'600'000'000'000};
-  /// Limit on the certificates and announcements whose signatures are checked: a burst, and then a rate.
+  /// Limits how many signatures of certificates and announcements are checked: in a burst, then per second.
   static constexpr int kMaxChecks = 400, kChecksPerSecond = 400;
 
   enum class Refusal : std::uint8_t {

@@ -19,7 +19,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kStatisticsSize = 56;
 /// Upper bound of the sequence numbers of a process's discovery messages, which count its own endpoints. Fast
-/// DDS 2.9.1 visits each number below the number in a heartbeat or a gap.
+/// DDS 2.9.1 iterates over all numbers below the one in a heartbeat or a gap.
 constexpr std::int64_t kMaxPlainNumber = 1 << 15;
 /// Entity ids of handshake messages (DDS Security 1.1, 7.4.3), whose sequence numbers count participants.
 constexpr std::uint32_t kHandshakeWriter = 0x000201c3, kHandshakeReader = 0x000201c4;

@@ -9,7 +9,7 @@ namespace {
 constexpr Duration kMaxCheckInterval{3'000'000'000};
 /// Time for which a notice is repeated. It is sent with each announcement, once a second.
 constexpr Duration kRepeatDuration{2'500'000'000};
-/// After this time, a process that has caught up has read all datagrams that were waiting in its sockets.
+/// Time within which a process that was stopped reads all datagrams that were waiting in its sockets.
 constexpr Duration kCatchUp{300'000'000};
 
 }  // namespace

@@ -72,7 +72,7 @@ class Presence {
     Time forgotten_notices_until{};       ///< time until which kForgotten notices are sent to the peer
     std::optional<std::uint64_t> agreed;  ///< number of the peer's last processed kForgotten notice
     Time accepts_datagrams_from{},
-        agreed_notices_until{};  ///< refuses datagrams until the former; then sends kAgreed
+        agreed_notices_until{};  ///< refuses datagrams until the former, then sends kAgreed until the latter
   };
 
   Peer* find_or_add(const ParticipantId& id, Time now);

@@ -52,9 +52,9 @@ struct UdpDescriptor : transport::ChainingTransportDescriptor {
 
   transport::TransportInterface* create_transport() const override;
   /// Fast DDS sends a heartbeat to all readers of a writer whenever the writer has sent this many bytes. For
-  /// discovery writers the count is far too high (2.9.1 adds up totals), so each new participant would cause
-  /// heartbeats from and to all others for every second endpoint. With 25 participants, these heartbeats are
-  /// most of the packets at start-up.
+  /// discovery writers the count is far too high (2.9.1 sums running totals), so each new participant would
+  /// cause heartbeats from and to all others for every second endpoint. With 25 participants, these
+  /// heartbeats are most of the packets at start-up.
   std::uint32_t min_send_buffer_size() const override { return kBytesUntilHeartbeat; }
 
   std::shared_ptr<Impairment> impairment;

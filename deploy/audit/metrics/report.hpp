@@ -65,7 +65,7 @@ struct Report {
   std::uint64_t cycles = 0;
   std::uint64_t missed_cycles = 0;
   std::uint64_t route_changes = 0;            ///< number of times that an agent changed its route
-  std::optional<double> route_changes_per_s;  ///< number of route changes per agent and second of planning
+  std::optional<double> route_changes_per_s;  ///< route changes per agent per second of planning
   std::uint64_t firmware_violations = 0;
   std::set<std::pair<RobotId, RobotId>>
       conflicts;                  ///< pairs that were brought into conflict by a cause outside the protocol

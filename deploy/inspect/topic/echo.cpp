@@ -22,7 +22,7 @@ namespace {
 bool print_channel(Bus& bus, const std::string& channel, MessagePrinter& printer,
                    const std::function<void()>& stop) {
   return subscribe_to_channel(bus, channel, [&printer, stop](const TopicInfo& topic, const auto& message) {
-    printer.add(describe(topic, &message));
+    printer.print_if_wanted(describe(topic, &message));
     if (printer.is_done()) stop();
   });
 }
@@ -58,7 +58,7 @@ int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
   bool is_decodable = true;
   listener.listen(*writer, [&](const RawSample& sample) {
     try {
-      printer.add(decode_by_idl(*type, sample.bytes));
+      printer.print_if_wanted(decode_by_idl(*type, sample.bytes));
     } catch (const IdlDecodingError& error) {
       fmt::print(stderr, "a message of '{}' is not a valid {}: {}\n", options.topic, type->name,
                  error.what());

@@ -86,7 +86,7 @@ bool MessagePrinter::is_wanted(const Json& message) const {
   });
 }
 
-void MessagePrinter::add(const Json& message) {
+void MessagePrinter::print_if_wanted(const Json& message) {
   if (is_done() || !is_wanted(message)) return;
   if (settings_.is_csv) {
     CsvLine line;

@@ -34,7 +34,7 @@ class MessagePrinter {
       : settings_(std::move(settings)), print_(std::move(print)) {}
 
   /// Prints the message if it is wanted. Throws std::invalid_argument if a filter names an unknown member.
-  void add(const nlohmann::ordered_json& message);
+  void print_if_wanted(const nlohmann::ordered_json& message);
   bool is_done() const { return settings_.count > 0 && printed_ == settings_.count; }
   std::uint64_t printed() const { return printed_; }
 

@@ -76,7 +76,7 @@ int publish_topic(const TopicOptions& options) {
   while (publisher.readers() == 0 && listener.now() < deadline && !listener.stopped())
     listener.run_until(listener.now() + kStep);
   if (publisher.readers() == 0) {
-    fmt::print(stderr, "topic '{}' has no reader that matches\n", options.topic);
+    fmt::print(stderr, "topic '{}' has no matching reader\n", options.topic);
     return kExitFailure;
   }
   const std::uint64_t count = std::max<std::uint64_t>(options.printer.count, 1);

@@ -20,7 +20,7 @@ class RevokedKeys {
   [[nodiscard]] std::optional<std::string> changed(Time now);
 
  private:
-  std::filesystem::file_time_type time_of_file() const;
+  std::filesystem::file_time_type modification_time() const;
 
   std::string folder_;
   std::filesystem::file_time_type time_;

@@ -54,7 +54,7 @@ class RobotProbe {
   Duration longest_gap() const { return longest_gap_; }
   void reset_gap() { longest_gap_ = Duration{0}; }
   const std::optional<RobotObservation>& seen() const { return seen_; }
-  /// Bounds of how far the robot's clock is ahead of this process's clock; nullopt before the first exchange.
+  /// Bounds on how far the robot's clock is ahead of this process's clock; nullopt before the first exchange.
   std::optional<OffsetInterval> clock_offset() const { return clock_.at(bus_.now()); }
   Time now() const { return bus_.now(); }
   Time robot_now() const;

@@ -181,7 +181,8 @@ void EventWatch::on(const msg::OrderAnswer& answer, Time now) {
   const auto result = static_cast<std::size_t>(answer.result());
   if (result < 2 || result >= kTexts.size() || !external_event_limit_.admit(now)) return;
   add(Severity::kWarning, "order",
-      fmt::format("an order of {} is refused: {}", name_of_client(answer.client()), kTexts.at(result)), now);
+      fmt::format("an order from {} was refused: {}", name_of_client(answer.client()), kTexts.at(result)),
+      now);
 }
 
 void EventWatch::on(const msg::Disturbance& disturbance, Time now) {

@@ -25,7 +25,7 @@ struct Batch {
   double laser_s = 0, camera_s = 0;  // over cases in which the robot arrived with laser and with cameras
 };
 
-/// Makes a random scene of a kind.
+/// Makes a random scene of the given kind.
 using SceneOf = Scenario (*)(std::size_t kind, std::uint64_t seed);
 
 Batch run_batch(SceneOf scene_of, std::size_t kind, std::uint64_t first, std::uint64_t count) {

@@ -14,7 +14,7 @@ namespace {
 struct ExplicitSizes {
   std::vector<int> robots{2, 4, 6, 8, 12, 16};
   int trials = kMinForP99;  // number of trials of explicit planners
-  int driven_trials = 200;  // number of trials, from the first on, that the safety search also runs
+  int driven_trials = 200;  // the safety search runs only this many of them, the first ones
   double budget_s = 1;
 };
 ExplicitSizes quick_explicit_sizes() { return {{2, 4}, 3, 2, 0.5}; }

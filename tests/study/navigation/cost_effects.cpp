@@ -22,7 +22,7 @@ std::vector<Vec2> path_of(const CostGrid& grid) {
   return path_m;
 }
 
-/// Measurements of a path, in steps of a millimetre.
+/// Measurements along a path, in steps of a millimetre.
 struct PathMeasures {
   double length_m = 0, in_region_m = 0, clearance_m = std::numeric_limits<double>::infinity();
 };

@@ -13,9 +13,8 @@ struct CollisionDomains {
 };
 
 /// Measures the distribution of query times in two domains with the same number of circles as in the thesis
-/// (Bruce 2006, figures 3.8 and 3.9): at random positions and on a grid. A query's time is its mean over
-/// repetitions, so branches are predicted and obstacles are cached, and then the median over rounds in
-/// shuffled order.
+/// (Bruce 2006, figures 3.8 and 3.9): at random positions and on a grid. A query's time is the median, over
+/// rounds in shuffled order, of its mean over repetitions, with predicted branches and cached obstacles.
 StudyTable collision_domains(const CollisionDomains& settings, std::uint64_t seed,
                              const ProgressCallback& progress);
 

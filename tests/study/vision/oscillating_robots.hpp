@@ -29,7 +29,7 @@ class OscillatingRobots {
     Vec2 velocity_mps(double time_s) const;
   };
   std::vector<SceneRobot> robots_;         ///< only teams and patterns are set
-  std::vector<Oscillation> oscillations_;  ///< in the order of robots_, then the ball's
+  std::vector<Oscillation> oscillations_;  ///< in the same order as robots_, then the ball's
 };
 
 }  // namespace sidestep

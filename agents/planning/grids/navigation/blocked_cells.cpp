@@ -74,7 +74,8 @@ void block_occupied(CostGrid& grid, std::span<const std::uint8_t> occupied, doub
   const GridLayout& layout = grid.layout();
   if (occupied.size() != layout.size()) throw std::invalid_argument("the bitmap and the grid differ in size");
   const double radius = (radius_m + kRounding_m) / layout.resolution_m;  // in cells
-  // A cell that is `up` rows away is within the radius up to this many columns beside the occupied cell.
+  // How many columns to either side of an occupied cell are within the radius, in the row `up` rows away; -1:
+  // none, not even the cell straight above.
   const auto reach_at = [&](std::int64_t up) {
     const auto gap = static_cast<double>(std::max<std::int64_t>(up - 1, 0));
     if (gap > radius) return std::int64_t{-1};

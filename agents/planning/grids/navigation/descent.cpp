@@ -11,8 +11,7 @@ namespace {
 constexpr double kStep = 0.5;             // step of a traced path, in cells
 constexpr double kDescent = 0.1 * kStep;  // minimum decrease of the value in each step
 
-/// The cells between whose centres a position lies, as far as they can be reached from it, with their
-/// weights.
+/// The cells between whose centres a position lies, except those not reachable from it, and their weights.
 struct Corners {
   std::array<GridCell, 4> cells{};
   std::array<double, 4> weights{};

@@ -17,8 +17,8 @@ struct NavigationSettings {
 /// replan to the same goal computes only the values that a new start or changed obstacles require. The path
 /// is the same as the path of a newly created planner. Cells are blocked conservatively, so a passage must be
 /// up to three cells wider than the disc; PlanReason::kUnreachable applies to these cells only. The number of
-/// cells limits the effort. Only the budget's time limit applies: after it, the planner tries no further way
-/// to join the goal to the grid. Does not allocate once warm.
+/// cells limits the effort. Only the budget's time limit applies: once it has passed, the planner tries no
+/// further ways to join the goal to the grid. Does not allocate once warm.
 class NavigationPlanner {
  public:
   explicit NavigationPlanner(const NavigationSettings& settings = {}) : settings_(settings) {}

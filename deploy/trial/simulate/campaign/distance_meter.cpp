@@ -29,7 +29,7 @@ double DistanceMeter::total_m() const {
   return sum;
 }
 
-double DistanceMeter::total_since_m() const {
+double DistanceMeter::recent_total_m() const {
   double sum = 0;
   for (const auto& [robot, distance] : distances_) sum += distance.since_m;
   return sum;

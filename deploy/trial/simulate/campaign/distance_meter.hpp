@@ -18,7 +18,7 @@ class DistanceMeter {
   void add(const msg::GroundTruth& truth);
 
   double total_m() const;
-  double total_since_m() const;
+  double recent_total_m() const;
   /// Robots that have driven less than `min_distance_m` since the given time.
   std::vector<RobotId> stationary_robots(double min_distance_m) const;
 

@@ -140,7 +140,7 @@ void OrderClients::on_truth(const msg::GroundTruth& truth) {
 void OrderClients::on_memory(const msg::OrderMemory& message) {
   if (message.page_count() == 0) return;
   const auto page = decode(message, bus_.now());
-  if (!page) return;  // for example from a coordinator with different rules
+  if (!page) return;  // invalid, for example because its coordinator has different rules
   if (!page->is_complete) {
     // The process was restarted, and may know no order yet.
     memories_.erase(page->process);

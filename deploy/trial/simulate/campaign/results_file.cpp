@@ -14,7 +14,7 @@ namespace sidestep {
 ResultsFile::ResultsFile(const std::string& path, const std::string& campaign) : path_(path) {
   file_ = open_output(path, WriteMode::kAppend);
   if (flock(fileno(file_.get()), LOCK_EX | LOCK_NB) != 0)
-    throw std::runtime_error(fmt::format("{}: another campaign is writing it", path));
+    throw std::runtime_error(fmt::format("{}: another campaign is writing to this file", path));
   if (std::filesystem::file_size(path) == 0)
     write(campaign);
   else

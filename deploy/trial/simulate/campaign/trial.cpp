@@ -97,7 +97,7 @@ void copy_metrics(const Report& report, const DistanceMeter& meter, TrialResult&
   result.denials = report.denials;
   result.min_clearance_m = report.min_clearance_m.value_or(result.min_clearance_m);
   result.distance_m = meter.total_m();
-  result.distance_after_recovery_m = meter.total_since_m();
+  result.distance_after_recovery_m = meter.recent_total_m();
   result.stationary = static_cast<int>(meter.stationary_robots(kStationaryDistance_m).size());
 }
 

@@ -65,7 +65,7 @@ class FaultReader {
     return robot;
   }
 
-  /// Reads the name of a process, which may be a second agent or the active coordinator.
+  /// Reads the name of a process. A second agent and the active coordinator may also be named.
   std::string read_running_process() {
     ProcessNames names = processes_;
     names.emplace_back(kActiveCoordinator);

@@ -98,8 +98,8 @@ struct Crowd {
 
   enum class Touch { kNone, kWall, kPerson };
 
-  /// Whether a person can walk straight to the robot and touch it while it moves, or the robot reaches a wall
-  /// first.
+  /// What happens first while the robot moves: it hits a wall, or a person who walks straight towards it can
+  /// touch it.
   Touch first_touch(const Trajectory& motion) const {
     constexpr Duration kStep{10'000'000};
     for (Time t = motion.start(); t < motion.end(); t += kStep) {

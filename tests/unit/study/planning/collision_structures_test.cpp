@@ -17,7 +17,7 @@ TEST_CASE("the experiment on collision structures depends only on its seed") {
   });
 }
 
-TEST_CASE("the experiment on domains depends only on its seed") {
+TEST_CASE("the experiment on collision domains depends only on its seed") {
   check_experiment([](std::uint64_t seed, const ProgressCallback& advance) {
     return collision_domains({.obstacles = 64, .queries = 200, .repetitions = 2, .rounds = 2}, seed, advance);
   });

@@ -72,7 +72,7 @@ struct ObstacleFixture {
 const std::array<Rgb, 5> kPaints{SceneCylinder{}.colour, named(Colour::kRed).rgb, named(Colour::kCyan).rgb,
                                  named(Colour::kPurple).rgb, Rgb{118, 44, 150}};
 
-TEST_CASE("obstacles of unnamed colours are found with their positions and radii") {
+TEST_CASE("obstacles of colours that no robot or ball uses are found with their positions and radii") {
   const auto format = GENERATE(PixelFormat::kYuv422, PixelFormat::kRgb);
   const double height_m = GENERATE(0.002, 0.15, 0.3);
   ObstacleFixture fixture(11, format);

@@ -40,7 +40,7 @@ const msg::TrackedObstacle* nearest(const msg::ObstacleList& list, const Vec2& t
   return best;
 }
 
-TEST_CASE("walkers seen by two cameras keep their numbers and are reported at their last observations") {
+TEST_CASE("walkers seen by two cameras keep their numbers and are reported where they were last observed") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   const double missed = GENERATE(0.0, 0.2);
   CAPTURE(seed, missed);

@@ -22,7 +22,7 @@ class CdrCoder {
                                             : eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS,
              eprosima::fastcdr::Cdr::CORBA_CDR) {}
 
-  /// The coding functions throw a std::exception if the bytes are too few or do not encode such a message.
+  /// These functions throw a std::exception if there are too few bytes or they do not encode such a message.
   template <typename Message>
   void write(const Message& message) {
     message.serialize(cdr_);

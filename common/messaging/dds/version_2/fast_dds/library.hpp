@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A guard instead of #pragma once: this file is in a precompiled header, which a cache may have made from a
-// copy of another date, and g++ takes copies of different dates for different files.
+// An include guard instead of #pragma once: this file is part of a precompiled header, which a cache may have
+// built from a copy with another date, and g++ treats copies with different dates as different files.
 #ifndef SIDESTEP_FAST_DDS_LIBRARY_HPP
 #define SIDESTEP_FAST_DDS_LIBRARY_HPP
 

@@ -35,7 +35,7 @@ class CdrCoder {
     cdr_.set_encoding_flag(eprosima::fastcdr::EncodingAlgorithmFlag::PLAIN_CDR);
   }
 
-  /// The coding functions throw a std::exception if the bytes are too few or do not encode such a message.
+  /// These functions throw a std::exception if there are too few bytes or they do not encode such a message.
   template <typename Message>
   void write(const Message& message) {
     eprosima::fastcdr::serialize(cdr_, message);

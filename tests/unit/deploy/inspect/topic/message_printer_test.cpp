@@ -25,7 +25,7 @@ Lines print(const std::vector<std::string>& filters, bool is_csv = false, std::u
   Json message = kMessage;
   for (int robot = 3; robot <= 5; ++robot) {
     message["robot"] = robot;
-    printer.add(message);
+    printer.print_if_wanted(message);
   }
   return lines;
 }

@@ -368,7 +368,7 @@ TEST_CASE("topic pub reports errors in a message and topics without a reader") {
   CHECK_THROWS_WITH(topic({"pub", "nothing", "{}"}), ContainsSubstring("give its type with --type"));
   const Outcome outcome = topic({"pub", "disturbance", "{}"});
   CHECK(outcome.exit_code == kExitFailure);
-  CHECK(outcome.err == "topic 'disturbance' has no reader that matches\n");
+  CHECK(outcome.err == "topic 'disturbance' has no matching reader\n");
 }
 
 TEST_CASE("unusable IDL is a usage error of topic pub and topic echo") {

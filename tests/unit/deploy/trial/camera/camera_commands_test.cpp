@@ -34,7 +34,7 @@ struct PictureFile {
   ~PictureFile() { std::filesystem::remove(path); }
 };
 
-TEST_CASE("a scenario's frame shows its robots at their starts") {
+TEST_CASE("the image rendered for a scenario shows its robots at their start positions") {
   const PictureFile file;
   REQUIRE(run("frame " + kCrossing + " " + file.path) == 0);
   const cv::Mat3b bgr = cv::imread(file.path);

@@ -18,7 +18,7 @@ TEST_CASE("distances are measured in total and since a given time, without posit
     meter.add(truth);
   }
   CHECK(meter.total_m() == Approx(2).margin(0.02));
-  CHECK(meter.total_since_m() == Approx(1).margin(0.02));
+  CHECK(meter.recent_total_m() == Approx(1).margin(0.02));
   CHECK(meter.stationary_robots(0.05) == std::vector<RobotId>{4});
 }
 

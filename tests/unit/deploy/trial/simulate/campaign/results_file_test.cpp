@@ -67,7 +67,7 @@ TEST_CASE("two campaigns cannot write one file at the same time") {
   {
     ResultsFile results(folder.file(), "campaign A");
     CHECK_THROWS_WITH(ResultsFile(folder.file(), "campaign A"),
-                      ContainsSubstring("another campaign is writing it"));
+                      ContainsSubstring("another campaign is writing to this file"));
     results.add(result_of(1));
   }
   CHECK(ResultsFile(folder.file(), "campaign A").found().size() == 1);
