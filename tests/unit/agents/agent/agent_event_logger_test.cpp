@@ -39,7 +39,7 @@ TEST_CASE("each step of an agent's startup is reported once") {
   f.run(100ms);
   CHECK(f.events.count("epoch 7 of coordinator 1") == 1);
   f.changes.on_epoch(8, std::nullopt);
-  CHECK(f.events.count("epoch 8, which the robot obeys already") == 1);
+  CHECK(f.events.count("adopted epoch 8, which the robot already obeys") == 1);
   f.activity.epoch = 8;
   f.activity.is_registered = true;
   f.run(1s);

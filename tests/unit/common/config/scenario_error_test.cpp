@@ -270,7 +270,7 @@ TEST_CASE("unknown map cells are free only if the scenario allows it, and a noti
              ContainsSubstring("map map.yaml is rotated by -1.5708 rad"));
   CHECK_THROWS_WITH(load("unknown: perhaps\n", "[-2, -2, 0]"),
                     ContainsSubstring("scenario.yaml:2: unknown: "));
-  check_rejected(kRobot + "unknown: free\n", 2, "there is no map");
+  check_rejected(kRobot + "unknown: free\n", 2, "expected only together with the key map");
   // A path that begins with ~ is relative to the user's home folder.
   const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
   setenv("HOME", (folder / "").c_str(), 1);

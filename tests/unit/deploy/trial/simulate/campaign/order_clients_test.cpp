@@ -72,11 +72,12 @@ TEST_CASE("a trial does not fail while a held robot without power coasts to rest
   Trial trial;
   trial.give(msg::OrderKind::ORDER_GO, 0, kClient, {{{1.5, 1.5}}});
   trial.system.run_for(900ms);
+  trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);
+  trial.system.run_for(60ms);
   RobotDisturbance switch_off;
   switch_off.robot = 0;
   switch_off.kind = msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF;
   trial.system.disturb(encode(switch_off));
-  trial.give(msg::OrderKind::ORDER_HOLD, 0, kClient);
   double speed_mps = 0;
   trial.system.on_truth([&](const msg::GroundTruth& truth) {
     for (const msg::TrueRobotState& body : truth.robots())
@@ -86,6 +87,7 @@ TEST_CASE("a trial does not fail while a held robot without power coasts to rest
   REQUIRE(speed_mps > 0.05);
   trial.system.run_for(4s);
   CHECK(speed_mps == 0);
+  for (const std::string& failure : trial.clients.failures()) UNSCOPED_INFO(failure);
   CHECK(trial.clients.failures().empty());
 }
 
