@@ -136,4 +136,14 @@ KeyFolder load_key_folder(const std::string& path, Time now) {
   return keys;
 }
 
+void require_domain(const KeyFolder& keys, int domain) {
+  const Certificate authority = Certificate::load(keys.file(key_files::kPermissionsAuthority));
+  for (const char* name : {key_files::kGovernance, key_files::kPermissions}) {
+    if (!covers_domain(load_signed_document(keys.file(name), authority), domain))
+      throw std::invalid_argument(
+          fmt::format("{}: these keys do not cover DDS domain {}; make new keys in another folder",
+                      keys.file(name), domain));
+  }
+}
+
 }  // namespace sidestep

@@ -41,6 +41,10 @@ struct KeyFolder {
 /// set yet.
 [[nodiscard]] KeyFolder load_key_folder(const std::string& path, Time now);
 
+/// Throws std::invalid_argument if the governance or the permissions of these keys do not cover the DDS
+/// domain. Fast DDS would then create a participant, and refuse each of its topics.
+void require_domain(const KeyFolder& keys, int domain);
+
 /// Finds the key folder of an identity inside a folder made by `sidestep keys init`. For a range of robots,
 /// finds a folder whose keys cover all of them. Throws std::invalid_argument if there is none.
 [[nodiscard]] std::string key_folder_of(const std::string& store, const Identity& identity);

@@ -25,6 +25,16 @@ std::optional<std::string> element(const std::string& xml, const std::string& na
   return xml.substr(begin + open.size(), end - begin - open.size());
 }
 
+/// The number in an element; nullopt if there is no such element or it holds something else.
+std::optional<int> number_in(const std::string& xml, const std::string& name, std::size_t from) {
+  const auto text = element(xml, name, from);
+  int result = 0;
+  std::string rest;
+  if (std::istringstream stream(text.value_or("")); !(stream >> result) || stream >> rest)
+    return std::nullopt;
+  return result;
+}
+
 /// Parses a time such as 2026-11-28T03:00:00 in this host's time zone, as Fast DDS does.
 std::optional<Time> parse_time(const std::string& text) {
   std::tm parts{};
@@ -63,6 +73,19 @@ std::optional<Validity> permissions_validity(const std::string& permissions, con
   const auto until_time = until ? parse_time(*until) : std::nullopt;
   if (!from_time || !until_time) return std::nullopt;
   return Validity{*from_time, *until_time};
+}
+
+bool covers_domain(const std::string& document, int domain) {
+  constexpr auto kNone = std::string::npos;
+  for (auto at = document.find("<id>"); at != kNone; at = document.find("<id>", at + 1)) {
+    if (number_in(document, "id", at) == domain) return true;
+  }
+  for (auto at = document.find("<id_range>"); at != kNone; at = document.find("<id_range>", at + 1)) {
+    const std::string range = element(document, "id_range", at).value_or("");
+    const int min = number_in(range, "min", 0).value_or(0), max = number_in(range, "max", 0).value_or(min);
+    if (domain >= min && domain <= max) return true;
+  }
+  return false;
 }
 
 }  // namespace sidestep

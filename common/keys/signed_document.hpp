@@ -17,4 +17,9 @@ namespace sidestep {
 [[nodiscard]] std::optional<Validity> permissions_validity(const std::string& permissions,
                                                            const std::string& subject);
 
+/// Whether a governance or permissions document names the domain, alone or in a range (DDS Security 1.1,
+/// 9.4.1.2.4). As for Fast DDS, a range without a minimum begins at 0, and one without a maximum is its
+/// minimum alone.
+[[nodiscard]] bool covers_domain(const std::string& document, int domain);
+
 }  // namespace sidestep

@@ -203,6 +203,7 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
   check(settings);
   if (!settings.keys.empty()) {
     keys_ = load_key_folder(own_key_folder(settings.keys, settings.identity), EventLoop::now());
+    require_domain(*keys_, settings.domain);
     warn_of_expiry(*keys_);
     filter_ = std::make_shared<ParticipantFilter>(*keys_, fast_dds_version());
     listener_->on_authentication = [filter = filter_](const fast_dds::rtps::GuidPrefix_t& prefix,

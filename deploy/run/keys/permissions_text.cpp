@@ -4,12 +4,16 @@
 #include <fmt/format.h>
 
 #include "common/keys/key_folder.hpp"
+#include "common/messaging/dds/bus.hpp"
 #include "common/messaging/topic_access.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr const char* kDomains = "<domains><id_range><min>0</min><max>99</max></id_range></domains>";
+/// All DDS domains that programs accept.
+std::string all_domains() {
+  return fmt::format("<domains><id_range><min>0</min><max>{}</max></id_range></domains>", kMaxDomain);
+}
 
 std::string xml_time(Time time) { return utc_text(time, "%Y-%m-%dT%H:%M:%S"); }
 
@@ -62,7 +66,7 @@ std::string governance_text() {
   </domain_access_rules>
 </dds>
 )",
-                     kDomains);
+                     all_domains());
 }
 
 std::string permissions_text(const Identity& identity, const std::string& subject, Time from, Time until) {
@@ -88,7 +92,7 @@ std::string permissions_text(const Identity& identity, const std::string& subjec
   </permissions>
 </dds>
 )",
-                     to_text(identity), subject, xml_time(from), xml_time(until), kDomains,
+                     to_text(identity), subject, xml_time(from), xml_time(until), all_domains(),
                      rule("publish", written), rule("subscribe", read));
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/file/write_file.hpp"
+#include "deploy/run/keys/permissions_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/test_keys.hpp"
 #include "tests/unit/common/messaging/dds/test_support.hpp"
@@ -22,17 +23,60 @@ DdsSettings settings_with(const TestKeys& keys) {
   return settings;
 }
 
-TEST_CASE("if Fast DDS refuses keys that look right, the error contains the reason of Fast DDS") {
-  const TestKeys keys({"agent", "3"});
+/// Signs the text in place of a document of agent 3.
+void replace_document(const TestKeys& keys, const char* name, const std::string& text) {
   const Authority authority(keys.folder() + "/public/permissions_ca.cert.pem",
                             keys.folder() + "/private/permissions_ca.key.pem");
-  const std::string governance = keys.folder_of("agent 3") + "/governance.p7s";
-  fs::remove(governance);
-  write_file(governance, authority.sign("<dds></dds>"));
+  const std::string file = keys.folder_of("agent 3") + "/" + name;
+  fs::remove(file);
+  write_file(file, authority.sign(text));
+}
+
+TEST_CASE("if Fast DDS refuses keys that look right, the error contains the reason of Fast DDS") {
+  const TestKeys keys({"agent", "3"});
+  replace_document(keys, key_files::kGovernance,
+                   "<dds><domains><id>" + std::to_string(test_settings().domain) + "</id></domains></dds>");
   CHECK_THROWS_WITH(DdsParticipant(settings_with(keys), nullptr),
                     ContainsSubstring("DDS failed to create a participant") &&
                         ContainsSubstring("with the keys in " + keys.folder_of("agent 3")) &&
                         ContainsSubstring(": Fast DDS says: ") && ContainsSubstring("domain_access_rules"));
+}
+
+TEST_CASE("with keys a process can write and read in the highest domain") {
+  const TestKeys keys({"agent", "3"});
+  DdsSettings settings = settings_with(keys);
+  settings.domain = kMaxDomain;  // used by no other test
+  DdsBus bus(settings);
+  CHECK_NOTHROW((void)bus.advertise(topics::kCommand, 3));
+  CHECK_NOTHROW(bus.subscribe<msg::WorldState>(topics::kWorld, [](const msg::WorldState&) {}));
+}
+
+/// The document without the domains above `max`.
+std::string up_to_domain(std::string text, int max) {
+  const std::string all = fmt::format("<max>{}</max>", kMaxDomain);
+  const auto at = text.find(all);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, all.size(), fmt::format("<max>{}</max>", max));
+}
+
+TEST_CASE("keys that do not cover the domain are refused with the reason") {
+  const TestKeys keys({"agent", "3"});
+  const Time from = keys.now() - std::chrono::hours(24), until = keys.now() + std::chrono::hours(24);
+  const Identity agent{Role::kAgent, 3, 3};
+  const auto [file, text] = GENERATE_COPY(table<const char*, std::string>(
+      {{key_files::kGovernance, governance_text()},
+       {key_files::kPermissions, permissions_text(agent, "CN=agent 3,O=Sidestep", from, until)}}));
+  CAPTURE(file);
+  DdsSettings settings = settings_with(keys);
+  const int covered = settings.domain;
+  replace_document(keys, file, up_to_domain(text, covered));
+  settings.domain = covered + 1;
+  CHECK_THROWS_AS(DdsParticipant(settings, nullptr), std::invalid_argument);
+  CHECK_THROWS_WITH(
+      DdsParticipant(settings, nullptr),
+      ContainsSubstring(fmt::format("{}: these keys do not cover DDS domain {}", file, covered + 1)));
+  settings.domain = covered;
+  CHECK_NOTHROW(DdsParticipant(settings, nullptr));
 }
 
 /// Sets the time zone of this process.

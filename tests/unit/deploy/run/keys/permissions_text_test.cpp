@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "common/keys/signed_document.hpp"
+#include "common/messaging/dds/bus.hpp"
 #include "common/messaging/topic_access.hpp"
 #include "tests/catch.hpp"
 
@@ -30,6 +32,16 @@ TEST_CASE("permissions state their owner and validity period, and deny everythin
   CHECK_THAT(text, ContainsSubstring("<not_before>2027-01-15T08:00:00</not_before>"));
   CHECK_THAT(text, ContainsSubstring("<not_after>2028-01-15T08:00:00</not_after>"));
   CHECK_THAT(text, ContainsSubstring("<default>DENY</default>"));
+}
+
+TEST_CASE("permissions and governance cover every domain that programs accept") {
+  for (const std::string& text : {permissions_of("agent 3"), governance_text()}) {
+    for (int domain = 0; domain <= kMaxDomain; ++domain) {
+      CAPTURE(domain);
+      CHECK(covers_domain(text, domain));
+    }
+    CHECK_FALSE(covers_domain(text, kMaxDomain + 1));
+  }
 }
 
 TEST_CASE("an agent's permissions include its own robot's channels") {
