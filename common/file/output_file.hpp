@@ -19,6 +19,10 @@ enum class WriteMode { kReplace, kAppend };
 /// interrupted. Throws std::runtime_error ("cannot write PATH: reason").
 [[nodiscard]] OutputFile open_output(const std::string& path, WriteMode mode = WriteMode::kReplace);
 
+/// Why a file could not be opened for writing, given errno: names the folder that does not exist, or that the
+/// user may not write.
+[[nodiscard]] std::string write_problem(const std::string& path, int error);
+
 /// Throws std::runtime_error ("cannot write PATH: reason").
 [[noreturn]] void throw_unwritable(const std::string& path, const std::string& reason);
 

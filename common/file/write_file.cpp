@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -22,28 +23,74 @@ bool write(OutputFile file, const std::string& text) {
   return is_written;
 }
 
+/// Writes the text to a temporary file beside the path, and returns its name. Throws if that is impossible.
+std::string write_beside(const std::string& path, const std::string& text) {
+  const std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
+  if (write(OutputFile(std::fopen(temporary.c_str(), "we")), text)) return temporary;
+  const std::string reason = write_problem(temporary, errno);
+  std::error_code error;
+  std::filesystem::remove(temporary, error);
+  throw_unwritable(path, reason);
+}
+
+std::filesystem::file_type type_of(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::symlink_status(path, error).type();
+}
+
+/// Throws unless a file or device exists that the user may write, or nothing exists. Does not open it, which
+/// would end the work of a process that reads a pipe.
+void require_write_permission(const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) throw_unwritable(path, std::strerror(EISDIR));
+  const bool is_denied = faccessat(AT_FDCWD, path.c_str(), W_OK, AT_EACCESS) != 0 && errno != ENOENT;
+  if (is_denied) throw_unwritable(path, write_problem(path, errno));
+}
+
+/// Throws unless a file can be created beside the path and a byte written to it.
+void require_room_beside(const std::string& path) {
+  std::error_code error;
+  std::filesystem::remove(write_beside(path, " "), error);
+}
+
 }  // namespace
 
+void create_folder_of(const std::string& path) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  std::error_code error, none;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (!error || std::filesystem::is_directory(folder, none)) return;
+  if (error.value() == ENOTDIR) throw_unwritable(path, error.message());
+  throw_unwritable(path, fmt::format("cannot create the folder {}: {}", folder.string(),
+                                     write_problem(folder.string(), error.value())));
+}
+
 void write_file(const std::string& path, const std::string& text) {
-  std::error_code error;
-  if (const auto folder = std::filesystem::path(path).parent_path(); !folder.empty())
-    std::filesystem::create_directories(folder, error);
-  const auto type = std::filesystem::symlink_status(path, error).type();
+  create_folder_of(path);
+  const auto type = type_of(path);
   if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::not_found) {
     if (!write(open_output(path), text)) throw_unwritable(path, std::strerror(errno));
     return;
   }
-  const std::string temporary = fmt::format("{}.{}.tmp", path, getpid());
-  if (!write(OutputFile(std::fopen(temporary.c_str(), "we")), text)) {
-    const std::string reason = std::strerror(errno);
-    std::filesystem::remove(temporary, error);
-    throw_unwritable(path, reason);
-  }
+  const std::string temporary = write_beside(path, text);
+  std::error_code error, none;
   std::filesystem::rename(temporary, path, error);
   if (!error) return;
-  const std::string reason = error.message();
-  std::filesystem::remove(temporary, error);
-  throw_unwritable(path, reason);
+  std::filesystem::remove(temporary, none);
+  throw_unwritable(path, error.message());
+}
+
+void require_replaceable(const std::string& path) {
+  create_folder_of(path);
+  require_write_permission(path);
+  const auto type = type_of(path);
+  if (type == std::filesystem::file_type::regular || type == std::filesystem::file_type::not_found)
+    require_room_beside(path);
+}
+
+void require_openable(const std::string& path) {
+  require_write_permission(path);
+  if (type_of(path) == std::filesystem::file_type::not_found) require_room_beside(path);
 }
 
 }  // namespace sidestep

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "common/file/read_file.hpp"
-#include "common/file/read_permission.hpp"
+#include "common/file/permission.hpp"
 
 namespace sidestep {
 

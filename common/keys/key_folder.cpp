@@ -7,7 +7,7 @@
 #include <openssl/x509.h>
 #include <stdexcept>
 
-#include "common/file/read_permission.hpp"
+#include "common/file/permission.hpp"
 #include "common/keys/private_key.hpp"
 #include "common/keys/signed_document.hpp"
 

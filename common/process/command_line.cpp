@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <fmt/format.h>
 #include <limits>
@@ -257,6 +258,8 @@ CommandLine::CommandLine(const std::string& description, const std::string& prog
     : app_(std::make_unique<CLI::App>(description, program_name)) {
   // Called here, because every program starts by creating its command line.
   reopen_standard_streams();
+  // Writing beyond the limit of a file's size then fails like writing to a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 CommandLine::~CommandLine() = default;

@@ -61,7 +61,12 @@ void add_dds_options_but_domain(const CliCommand& app, DdsSettings& settings) {
 }
 
 int run_and_report_errors(const std::string& name, const std::function<int()>& work) {
-  return run_reporting(work,
+  const auto work_and_print = [&] {
+    const int exit_code = work();
+    finish_output();
+    return exit_code;
+  };
+  return run_reporting(work_and_print,
                        [&](const std::string& problem) { print_to(stderr, "{}: {}\n", name, problem); });
 }
 

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <unistd.h>
 
-#include "common/file/read_permission.hpp"
+#include "common/file/permission.hpp"
 #include "common/file/write_file.hpp"
 #include "common/keys/key_folder.hpp"
 #include "deploy/run/keys/permissions_text.hpp"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/file/read_permission.hpp"
+#include "common/file/permission.hpp"
 #include "common/keys/key_folder.hpp"
 #include "common/yaml/yaml_document.hpp"
 #include "deploy/run/launch/hosts/command.hpp"

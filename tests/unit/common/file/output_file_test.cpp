@@ -29,6 +29,9 @@ TEST_CASE("an error about an unwritable file or a pipe without a reader states t
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   CHECK_THROWS_WITH(open_output("/dev/null/x"), "cannot write /dev/null/x: Not a directory");
   CHECK_THROWS_WITH(open_output(pipe), "cannot write " + pipe + ": no process reads this pipe");
+  CHECK_THROWS_WITH(
+      open_output(folder.file("none/file")),
+      "cannot write " + folder.file("none/file") + ": the folder " + folder.file("none") + " does not exist");
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
   CHECK_NOTHROW(open_output(pipe));
   close(reader);

@@ -8,8 +8,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "common/file/output_file.hpp"
 #include "common/file/temporary_folder.hpp"
+#include "tests/as_nobody.hpp"
 #include "tests/catch.hpp"
+#include "tests/needs_root.hpp"
+#include "tests/small_disk.hpp"
 
 namespace sidestep {
 namespace {
@@ -24,6 +28,21 @@ std::size_t count_files(const TemporaryFolder& folder) {
 std::string content(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The message of the exception that the work throws; empty if it throws none.
+template <typename Work>
+std::string problem_of(const Work& work) {
+  try {
+    work();
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::vector<std::string> problems_of_all(const std::string& path) {
+  return {problem_of([&] { write_file(path, "text"); }), problem_of([&] { require_replaceable(path); })};
 }
 
 }  // namespace
@@ -76,6 +95,90 @@ TEST_CASE("writing to a link or a device does not replace it by a file") {
   CHECK(fs::is_symlink(folder.file("link")));
   CHECK(content(folder.file("target")) == "new");
   CHECK_NOTHROW(write_file("/dev/null", "text"));
+}
+
+TEST_CASE("a folder that cannot be created is reported with its name and the true cause") {
+  SIDESTEP_NEEDS_ROOT();
+  const SmallDisk disk;
+  fs::permissions(disk.path(), fs::perms(0755));
+  const std::string path = disk.file("reports/r.json");
+  for (const bool is_read_only : {false, true}) {
+    if (is_read_only) disk.make_read_only();
+    const std::string cause = is_read_only ? "Read-only file system"
+                                           : "user nobody may not write " + disk.path() + ": " + disk.path() +
+                                                 " belongs to root and has mode 0755";
+    const std::string expected =
+        "cannot write " + path + ": cannot create the folder " + disk.file("reports") + ": " + cause;
+    const auto first_problem = [&] { return problems_of_all(path).front(); };
+    const auto second_problem = [&] { return problems_of_all(path).back(); };
+    CHECK((is_read_only ? first_problem() : as_nobody(first_problem)) == expected);
+    CHECK((is_read_only ? second_problem() : as_nobody(second_problem)) == expected);
+  }
+}
+
+TEST_CASE("the check before the work finds what would keep a file from being written, and changes nothing") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("new/r.json");
+  require_replaceable(file);
+  CHECK(fs::is_empty(folder.file("new")));
+  write_file(file, "old");
+  require_replaceable(file);
+  require_openable(file);
+  CHECK(content(file) == "old");
+  CHECK(std::distance(fs::directory_iterator(folder.file("new")), fs::directory_iterator()) == 1);
+  CHECK_THROWS_WITH(require_replaceable(folder.path()), ContainsSubstring("Is a directory"));
+  CHECK_THROWS_WITH(require_openable(folder.path()), ContainsSubstring("Is a directory"));
+  CHECK_THROWS_WITH(require_replaceable("/dev/null/x"), "cannot write /dev/null/x: Not a directory");
+  CHECK_THROWS_WITH(require_openable(folder.file("none/a.mcap")),
+                    ContainsSubstring("the folder " + folder.file("none") + " does not exist"));
+  CHECK_FALSE(fs::exists(folder.file("none")));
+  for (const char* device : {"/dev/null", "/dev/full"}) {
+    CHECK_NOTHROW(require_replaceable(device));
+    CHECK_NOTHROW(require_openable(device));
+  }
+}
+
+TEST_CASE("the check before the work does not end a process that reads a pipe") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder.file("pipe");
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  const int writer = open(pipe.c_str(), O_WRONLY);
+  REQUIRE((reader >= 0 && writer >= 0));
+  require_replaceable(pipe);
+  require_openable(pipe);
+  CHECK(write(writer, "x", 1) == 1);
+  char read_back[2] = {};
+  CHECK(read(reader, read_back, sizeof read_back) == 1);
+  close(writer);
+  close(reader);
+}
+
+TEST_CASE("the check before the work finds a full, a read-only and a closed folder") {
+  SIDESTEP_NEEDS_ROOT();
+  const SmallDisk disk(64);
+  const std::string path = disk.file("r.json");
+  SECTION("full") {
+    disk.fill();
+    CHECK_THROWS_WITH(require_replaceable(path), "cannot write " + path + ": No space left on device");
+    CHECK_THROWS_WITH(require_openable(path), "cannot write " + path + ": No space left on device");
+    CHECK_FALSE(fs::exists(path));
+  }
+  SECTION("read-only") {
+    write_file(path, "old");
+    disk.make_read_only();
+    CHECK_THROWS_WITH(require_replaceable(path), "cannot write " + path + ": Read-only file system");
+    CHECK_THROWS_WITH(require_openable(path), "cannot write " + path + ": Read-only file system");
+    CHECK_THROWS_WITH(open_output(path), "cannot write " + path + ": Read-only file system");
+  }
+  SECTION("closed") {
+    fs::permissions(disk.path(), fs::perms(0755));
+    const std::string expected = "cannot write " + path + ": user nobody may not write " + disk.path() +
+                                 ": " + disk.path() + " belongs to root and has mode 0755";
+    CHECK(as_nobody([&] { return problem_of([&] { require_replaceable(path); }); }) == expected);
+    CHECK(as_nobody([&] { return problem_of([&] { require_openable(path); }); }) == expected);
+    CHECK(as_nobody([&] { return problem_of([&] { (void)open_output(path); }); }) == expected);
+  }
 }
 
 }  // namespace sidestep

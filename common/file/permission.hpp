@@ -11,6 +11,10 @@ namespace sidestep {
 /// because the file does not exist. Follows links.
 [[nodiscard]] std::optional<std::string> denied_read(const std::string& path);
 
+/// Why the user of this process has no permission to write a file, or to make it in its folder; the text is
+/// like that of denied_read(). If folders are missing, the last one that exists counts.
+[[nodiscard]] std::optional<std::string> denied_write(const std::string& path);
+
 /// Throws std::invalid_argument with the text of denied_read() if it returns one.
 void require_read_permission(const std::string& path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/file/read_permission.hpp"
+#include "common/file/permission.hpp"
 
 #include <filesystem>
 
@@ -9,7 +9,7 @@
 #include "tests/catch.hpp"
 #include "tests/needs_root.hpp"
 
-namespace sidestep::read_permission_test {
+namespace sidestep::permission_test {
 
 namespace fs = std::filesystem;
 
@@ -23,6 +23,9 @@ struct Tree {
   std::string file(const std::string& name) const { return temporary.file(name); }
   std::string problem(const std::string& name) const {
     return as_nobody([&] { return denied_read(file(name)).value_or(""); });
+  }
+  std::string write_problem(const std::string& name) const {
+    return as_nobody([&] { return denied_write(file(name)).value_or(""); });
   }
   TemporaryFolder temporary;
 };
@@ -65,4 +68,22 @@ TEST_CASE("a denied read names the user, the path, and the file or folder withou
   }
 }
 
-}  // namespace sidestep::read_permission_test
+TEST_CASE("a denied write names the user, the file or folder, and the one without permission") {
+  SIDESTEP_NEEDS_ROOT();
+  const Tree tree;
+  for (const char* folder : {"open", "open/closed"}) fs::permissions(tree.file(folder), fs::perms(0755));
+  fs::permissions(tree.file("open/closed/file"), fs::perms(0644));
+  const auto denied = [&](const std::string& target, const std::string& closed, const std::string& mode) {
+    return "user nobody may not write " + tree.file(target) + ": " + tree.file(closed) +
+           " belongs to root and has mode " + mode;
+  };
+  CHECK(tree.write_problem("open/closed/file") == denied("open/closed/file", "open/closed/file", "0644"));
+  CHECK(tree.write_problem("open/none") == denied("open", "open", "0755"));
+  CHECK(tree.write_problem("open/none/neither/file") == denied("open", "open", "0755"));
+  fs::permissions(tree.file("open/closed"), fs::perms(0700));
+  CHECK(tree.write_problem("open/closed/file") == denied("open/closed", "open/closed", "0700"));
+  fs::permissions(tree.file("open/closed"), fs::perms(0777));
+  CHECK(tree.write_problem("open/closed/none").empty());
+}
+
+}  // namespace sidestep::permission_test

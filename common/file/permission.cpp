@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/file/read_permission.hpp"
+#include "common/file/permission.hpp"
 
 #include <array>
 #include <cerrno>
@@ -36,40 +36,51 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return stat(path.c_str(), &status) == 0 ? std::optional(status) : std::nullopt;
 }
 
-/// The permission needed for a part of a path: folders before the last part must be searchable, and the last
-/// part must be readable and, if it is a folder, searchable.
-int needed_access(const fs::path& part, const fs::path& path) {
+/// The permission needed for a part of a path: folders before the last part must be searchable. The last part
+/// must allow `access` (R_OK or W_OK) and, if it is a folder, be searchable.
+int needed_access(const fs::path& part, const fs::path& path, int access) {
   const auto status = status_of(part);
   const bool is_folder = status && S_ISDIR(status->st_mode);
   if (part != path) return X_OK;
-  return is_folder ? R_OK | X_OK : R_OK;
+  return is_folder ? access | X_OK : access;
 }
 
-/// The file or folder whose permissions prevent the user from reading an absolute path.
-fs::path inaccessible_part(const fs::path& path, int links = 0) {
+/// The file or folder whose permissions prevent the user from accessing an absolute path.
+fs::path inaccessible_part(const fs::path& path, int access, int links = 0) {
   fs::path part;
   for (const fs::path& name : path) {
     part /= name;
-    if (!is_denied(part, needed_access(part, path))) continue;
+    if (!is_denied(part, needed_access(part, path, access))) continue;
     std::error_code none;
     if (status_of(part) || links == kMaxLinks || !fs::is_symlink(fs::symlink_status(part, none))) return part;
     const fs::path target = part.parent_path() / fs::read_symlink(part, none);
-    return inaccessible_part(target.lexically_normal(), links + 1);
+    return inaccessible_part(target.lexically_normal(), access, links + 1);
   }
   return path;
+}
+
+std::optional<std::string> denied_access(const fs::path& absolute, int access) {
+  if (!is_denied(absolute, needed_access(absolute, absolute, access))) return std::nullopt;
+  const fs::path closed = inaccessible_part(absolute, access);
+  std::string reason = "permission denied at " + closed.string();
+  if (const auto status = status_of(closed))
+    reason = fmt::format("{} belongs to {} and has mode {:04o}", closed.string(), user_name(status->st_uid),
+                         status->st_mode & 07777);
+  return fmt::format("user {} may not {} {}: {}", user_name(geteuid()), access == R_OK ? "read" : "write",
+                     absolute.string(), reason);
 }
 
 }  // namespace
 
 std::optional<std::string> denied_read(const std::string& path) {
-  const fs::path absolute = fs::absolute(path).lexically_normal();
-  if (!is_denied(absolute, needed_access(absolute, absolute))) return std::nullopt;
-  const fs::path closed = inaccessible_part(absolute);
-  std::string reason = "permission denied at " + closed.string();
-  if (const auto status = status_of(closed))
-    reason = fmt::format("{} belongs to {} and has mode {:04o}", closed.string(), user_name(status->st_uid),
-                         status->st_mode & 07777);
-  return fmt::format("user {} may not read {}: {}", user_name(geteuid()), absolute.string(), reason);
+  return denied_access(fs::absolute(path).lexically_normal(), R_OK);
+}
+
+std::optional<std::string> denied_write(const std::string& path) {
+  fs::path target = fs::absolute(path).lexically_normal();
+  std::error_code none;
+  while (!fs::exists(target, none) && target.has_relative_path()) target = target.parent_path();
+  return denied_access(target, W_OK);
 }
 
 void require_read_permission(const std::string& path) {
