@@ -1,36 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <cstdlib>
 #include <functional>
 #include <grp.h>
 #include <string>
-#include <sys/wait.h>
 #include <unistd.h>
+
+#include "tests/forked.hpp"
 
 namespace sidestep {
 
 /// Runs `work` in a process of user nobody, and returns its text. Needs root.
 inline std::string as_nobody(const std::function<std::string()>& work) {
   constexpr uid_t kNobody = 65534;
-  std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) return "cannot create a pipe";
-  const pid_t process = fork();
-  if (process == 0) {
-    std::string text = "user nobody could not be used";
-    if (setgroups(0, nullptr) == 0 && setgid(kNobody) == 0 && setuid(kNobody) == 0) text = work();
-    (void)!write(ends[1], text.data(), text.size());
-    std::_Exit(0);
-  }
-  close(ends[1]);
-  std::string result;
-  std::array<char, 4096> buffer{};
-  for (ssize_t got = 0; (got = read(ends[0], buffer.data(), buffer.size())) > 0;)
-    result.append(buffer.data(), static_cast<std::size_t>(got));
-  close(ends[0]);
-  waitpid(process, nullptr, 0);
-  return result;
+  return forked([&]() -> std::string {
+    const bool is_nobody = setgroups(0, nullptr) == 0 && setgid(kNobody) == 0 && setuid(kNobody) == 0;
+    return is_nobody ? work() : "user nobody could not be used";
+  });
 }
 
 }  // namespace sidestep

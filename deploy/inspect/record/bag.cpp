@@ -40,6 +40,8 @@ class Copier {
   void copy(const McapMetadata& metadata) {
     if (metadata_.insert({metadata.name, metadata.texts}).second) writer_.add_metadata(metadata);
   }
+  bool has_failed() const { return !writer_.failure().empty(); }
+  /// Throws std::runtime_error if any write has failed.
   void close() { writer_.close(); }
 
  private:
@@ -185,7 +187,7 @@ std::string cut_bag(const std::string& path, const BagCut& cut, const std::strin
   McapReader reader(path);
   Copier copier(out);
   std::optional<std::uint64_t> begin_ns;
-  for (McapRecord record = reader.next(); !is_end(record); record = reader.next()) {
+  for (McapRecord record = reader.next(); !is_end(record) && !copier.has_failed(); record = reader.next()) {
     if (const auto* message = std::get_if<McapMessage>(&record)) {
       if (!begin_ns) begin_ns = message->logged_ns;
       const double at_s = (static_cast<double>(message->logged_ns) - static_cast<double>(*begin_ns)) * 1e-9;
@@ -235,7 +237,7 @@ std::string merge_bags(const std::vector<std::string>& paths, const std::string&
   for (;;) {
     Source& next = **std::ranges::min_element(sources, {}, time_of);
     const auto* message = std::get_if<McapMessage>(&next.record);
-    if (message == nullptr) break;
+    if (message == nullptr || copier.has_failed()) break;
     copier.copy(next.reader, *message);
     advance(next);
   }

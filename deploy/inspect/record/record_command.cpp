@@ -25,19 +25,21 @@ struct RecordOptions {
 
 int record_messages(const RecordOptions& options) {
   const Scenario scenario = load_scenario(options.scenario_file);
-  RecordingWriter writer(options.recording_file, recording_header(scenario, options.scenario_file),
-                         {.is_compressed = options.is_compressed});
+  const RecordingHeader header = recording_header(scenario, options.scenario_file);
+  std::optional<RecordingWriter> writer;  // outlives the bus
   DdsBus bus(options.dds);
-  record(bus, scenario, writer);
+  writer.emplace(options.recording_file, header, McapWriterSettings{.is_compressed = options.is_compressed});
+  record(bus, scenario, *writer);
   fmt::print(stderr, "recording domain {}{}\n", options.dds.domain, options.seconds ? "" : " until Ctrl-C");
   const StopSignals stop_signals([&bus] { bus.stop(); });
+  writer->on_failure([&bus](const std::string&) { bus.stop(); });
   if (options.seconds)
     bus.run_until(bus.now() + from_seconds(*options.seconds));
   else
     bus.run();
-  writer.close();
-  fmt::print("{}: {} messages\n", options.recording_file, writer.messages());
-  return writer.messages() > 0 ? 0 : kExitFailure;
+  writer->close();
+  fmt::print("{}: {} messages\n", options.recording_file, writer->messages());
+  return writer->messages() > 0 ? 0 : kExitFailure;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <limits>
 #include <stdexcept>
+#include <unistd.h>
 #include <utility>
 #include <zstd.h>
 
@@ -24,6 +25,8 @@ void McapWriter::ContextDeleter::operator()(ZSTD_CCtx_s* context) const { ZSTD_f
 
 McapWriter::McapWriter(const std::string& path, const McapWriterSettings& settings)
     : path_(path), settings_(settings), file_(open_output(path)) {
+  // Without a buffer, nothing is written after a failure.
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   if (settings.is_compressed) compressor_.reset(ZSTD_createCCtx());
   McapBytes bytes(kMcapMagic.begin(), kMcapMagic.end());
   McapEncoder encoder(bytes);
@@ -32,7 +35,7 @@ McapWriter::McapWriter(const std::string& path, const McapWriterSettings& settin
     encoder.text("sidestep");
   });
   write(bytes);
-  if (std::fflush(file_.get()) != 0) note_failure();
+  keep();
 }
 
 McapWriter::~McapWriter() = default;
@@ -44,9 +47,19 @@ void McapWriter::on_failure(std::function<void(const std::string&)> callback) {
   if (!failure_.empty()) on_failure_(failure_);
 }
 
+void McapWriter::keep() {
+  if (!failure_.empty()) return;
+  kept_bytes_ = size_;
+  kept_messages_ = messages_;
+}
+
 void McapWriter::note_failure() {
   if (!failure_.empty()) return;
-  failure_ = fmt::format("{}: {}", path_, std::strerror(errno));
+  const std::string kept =
+      kept_messages_ > 0 ? fmt::format("; the recording ends after {} messages", kept_messages_) : "";
+  failure_ = fmt::format("{}: {}{}", path_, std::strerror(errno), kept);
+  // Removes the incomplete record. Devices and pipes cannot be shortened.
+  if (file_) (void)!ftruncate(fileno(file_.get()), static_cast<off_t>(kept_bytes_));
   if (on_failure_) on_failure_(failure_);
 }
 
@@ -165,7 +178,7 @@ void McapWriter::end_chunk() {
   ++chunks_;
   chunk_.records.clear();
   chunk_.messages = chunk_.begin_ns = chunk_.end_ns = 0;
-  if (file_ && failure_.empty() && std::fflush(file_.get()) != 0) note_failure();
+  keep();
 }
 
 McapBytes McapWriter::write_message_index() {
@@ -214,6 +227,7 @@ void McapWriter::add_attachment(const McapAttachment& attachment) {
     index.text(attachment.media_type);
   });
   write(bytes);
+  keep();
   ++attachments_;
 }
 
@@ -232,6 +246,7 @@ void McapWriter::add_metadata(const McapMetadata& metadata) {
     index.text(metadata.name);
   });
   write(bytes);
+  keep();
   ++metadata_;
 }
 

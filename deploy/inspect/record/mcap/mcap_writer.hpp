@@ -20,8 +20,9 @@ struct McapWriterSettings {
 };
 
 /// Writes an MCAP file: messages in chunks, each with an index, and a summary at the end. A chunk's messages
-/// are in the file once the chunk has ended, even if the process is killed afterwards. After a write has
-/// failed, the rest is discarded until close().
+/// are in the file once the chunk has ended, even if the process is killed afterwards. When a write fails,
+/// for example because the disk is full, the file ends after the last complete chunk, and the rest is
+/// discarded.
 class McapWriter {
  public:
   /// Throws std::runtime_error with the reason if the file cannot be written.
@@ -52,6 +53,8 @@ class McapWriter {
   /// Calls back with the path and the reason when a write fails for the first time; immediately if a write
   /// has already failed.
   void on_failure(std::function<void(const std::string& failure)> callback);
+  /// Empty unless a write has failed.
+  const std::string& failure() const { return failure_; }
   std::uint64_t messages() const { return messages_; }
   /// Writes the summary. Anything added afterwards is discarded. Throws std::runtime_error if any write has
   /// failed.
@@ -78,6 +81,8 @@ class McapWriter {
   std::span<const std::uint8_t> compressed(std::span<const std::uint8_t> records);
   /// Returns the channels of the chunk's messages, each with the offset of its index in the file.
   McapBytes write_message_index();
+  /// Everything written so far stays in the file if a later write fails.
+  void keep();
   void note_failure();
   /// Writes bytes to the file and counts them.
   void write(std::span<const std::uint8_t> bytes);
@@ -88,7 +93,8 @@ class McapWriter {
   std::unique_ptr<ZSTD_CCtx_s, ContextDeleter> compressor_;
   std::uint64_t size_ = 0;
   std::uint32_t checksum_ = 0;  // checksum of everything written
-  std::string failure_;         // reason of the first failed write; empty: none
+  std::uint64_t kept_bytes_ = 0, kept_messages_ = 0;
+  std::string failure_;  // reason of the first failed write; empty: none
   std::function<void(const std::string&)> on_failure_;
   Chunk chunk_;
   McapBytes compressed_;

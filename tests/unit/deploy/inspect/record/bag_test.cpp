@@ -117,4 +117,13 @@ TEST_CASE("bag cut copies a damaged recording up to the damage and reports the d
   CHECK(bag_info(folder.file("a.mcap")).damage == "the file ends in the middle of a record");
 }
 
+TEST_CASE("a cut or merge that does not fit on the disk ends with the cause") {
+  const TemporaryFolder folder;
+  record(folder.file("a.mcap"), 1000, 2000);
+  CHECK_THROWS_WITH(cut_bag(folder.file("a.mcap"), {}, "/dev/full"), "/dev/full: No space left on device");
+  CHECK_THROWS_WITH(merge_bags({folder.file("a.mcap")}, "/dev/full"), "/dev/full: No space left on device");
+  CHECK_THROWS_WITH(cut_bag(folder.file("a.mcap"), {}, folder.file("none/b.mcap")),
+                    ContainsSubstring("the folder " + folder.file("none") + " does not exist"));
+}
+
 }  // namespace sidestep::bag_test

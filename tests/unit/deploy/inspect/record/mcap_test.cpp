@@ -8,6 +8,8 @@
 #include "deploy/inspect/record/mcap/mcap_reader.hpp"
 #include "deploy/inspect/record/mcap/mcap_writer.hpp"
 #include "tests/catch.hpp"
+#include "tests/file_limit.hpp"
+#include "tests/forked.hpp"
 
 namespace sidestep::mcap_test {
 
@@ -264,6 +266,37 @@ TEST_CASE("a failure to write a recording is reported once, as soon as it occurs
   full.add_metadata({"name", {}});
   CHECK_THROWS(full.close());
   CHECK(failures.size() == 1);
+}
+
+TEST_CASE("a recording on a full disk says so, and keeps every message of the chunks before") {
+  const TemporaryFolder folder;
+  const std::string whole = folder.file("whole.mcap"), cut = folder.file("cut.mcap");
+  const McapWriterSettings settings{.chunk_bytes = 2000};
+  constexpr std::size_t kCount = 200, kMaxPerChunk = 64;
+  const auto written = write_file(whole, 3, kCount, settings);
+  const std::size_t limit = GENERATE(100, 1500, 10'000, 20'000);
+  REQUIRE(limit < contents(whole).size());
+  const std::string problem = forked([&]() -> std::string {
+    if (!limit_files(limit)) return "no limit";
+    try {
+      (void)write_file(cut, 3, kCount, settings);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  });
+  const Contents result = read(cut);
+  const std::size_t kept = result.messages.size();
+  write(folder.file("part.mcap"), contents(whole).substr(0, limit));
+  const std::size_t possible = read(folder.file("part.mcap")).messages.size();
+  CAPTURE(limit, kept, possible);
+  CHECK(kept <= possible);
+  CHECK(kept + kMaxPerChunk >= possible);
+  CHECK((kept > 0) == (limit > 1500));
+  CHECK(std::equal(result.messages.begin(), result.messages.end(), written.begin()));
+  CHECK(result.damage == "the file was not finished");
+  const std::string end = kept > 0 ? fmt::format("; the recording ends after {} messages", kept) : "";
+  CHECK(problem == cut + ": File too large" + end);
 }
 
 }  // namespace sidestep::mcap_test
