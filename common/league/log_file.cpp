@@ -5,8 +5,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
+#include <fstream>
 #include <stdexcept>
 #include <string_view>
+#include <unistd.h>
 
 #include "common/file/read_file.hpp"
 
@@ -166,27 +168,39 @@ bool LogReader::seek(Duration after_first) {
   return pending_.has_value();
 }
 
-LogWriter::LogWriter(const std::string& path) : path_(path), file_(path, std::ios::binary) {
-  if (!file_)
-    throw std::runtime_error(fmt::format("{}: cannot write the file: {}", path, std::strerror(errno)));
+LogWriter::LogWriter(const std::string& path) : path_(path), file_(open_output(path)) {
+  // Without a buffer, nothing is written after a failure.
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   std::vector<char> bytes(kMagic.begin(), kMagic.end());
   put_big_endian(bytes, kVersion);
-  file_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  write(bytes);
+}
+
+void LogWriter::write(std::span<const char> bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) {
+    size_ += bytes.size();
+    return;
+  }
+  const std::string reason = std::strerror(errno);
+  // Removes the incomplete record. Devices and pipes cannot be shortened.
+  (void)!ftruncate(fileno(file_.get()), static_cast<off_t>(size_));
+  throw_unwritable(
+      path_, records_ > 0 ? fmt::format("{}; the log ends after {} packets", reason, records_) : reason);
 }
 
 void LogWriter::add(Time received, LogType type, std::span<const std::byte> bytes) {
-  std::vector<char> header;
-  put_big_endian(header, to_ns(received));
-  put_big_endian(header, static_cast<std::int32_t>(type));
-  put_big_endian(header, static_cast<std::int32_t>(bytes.size()));
-  file_.write(header.data(), static_cast<std::streamsize>(header.size()));
-  file_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::vector<char> record;
+  put_big_endian(record, to_ns(received));
+  put_big_endian(record, static_cast<std::int32_t>(type));
+  put_big_endian(record, static_cast<std::int32_t>(bytes.size()));
+  const auto* const packet = reinterpret_cast<const char*>(bytes.data());
+  record.insert(record.end(), packet, packet + bytes.size());
+  write(record);
   ++records_;
 }
 
 void LogWriter::close() {
-  file_.close();
-  if (!file_) throw std::runtime_error(fmt::format("{}: some records could not be written", path_));
+  if (std::fclose(file_.release()) != 0) throw_unwritable(path_, std::strerror(errno));
 }
 
 }  // namespace sidestep::league

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <istream>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/file/output_file.hpp"
 #include "common/league/decode_error.hpp"
 #include "common/time/time.hpp"
 
@@ -78,22 +78,26 @@ class LogReader {
   std::string error_;
 };
 
-/// Writes a log of version 1.
+/// Writes a log of version 1. Each record is in the file as soon as it has been added. If one cannot be
+/// written, for example because the disk is full, the file ends after the previous one.
 class LogWriter {
  public:
   /// Throws std::runtime_error if the file cannot be written.
   explicit LogWriter(const std::string& path);
 
-  /// Precondition: at most kMaxDatagramSize bytes.
+  /// Throws std::runtime_error if the record cannot be written; add none after that. Precondition: at most
+  /// kMaxDatagramSize bytes.
   void add(Time received, LogType type, std::span<const std::byte> bytes);
   std::uint64_t records() const { return records_; }
-  /// Flushes and closes the file. Throws std::runtime_error if any record could not be written.
+  /// Throws std::runtime_error if the file system reports an error only now.
   void close();
 
  private:
+  void write(std::span<const char> bytes);
+
   std::string path_;
-  std::ofstream file_;
-  std::uint64_t records_ = 0;
+  OutputFile file_;
+  std::uint64_t size_ = 0, records_ = 0;
 };
 
 }  // namespace sidestep::league

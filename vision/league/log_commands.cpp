@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -90,12 +91,12 @@ int replay(const LogOptions& options) {
 /// Records the packets of one multicast group.
 class Recorder {
  public:
-  Recorder(EventLoop& loop, league::LogWriter& log, const std::string& endpoint, const std::string& interface,
-           LogType type)
+  Recorder(EventLoop& loop, std::optional<league::LogWriter>& log, const std::string& endpoint,
+           const std::string& interface, LogType type)
       : receiver_(league::parse_multicast_endpoint(endpoint), interface) {
     loop.watch(receiver_.descriptor(), [this, &log, type] {
       receiver_.receive([&](std::span<const std::byte> datagram, const league::Endpoint&) {
-        log.add(EventLoop::now(), type, datagram);
+        log->add(EventLoop::now(), type, datagram);
       });
     });
   }
@@ -105,16 +106,18 @@ class Recorder {
 };
 
 int record(const LogOptions& options) {
-  league::LogWriter log(options.file);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
+  std::optional<league::LogWriter> log;
   Recorder vision(loop, log, options.vision, options.interface, LogType::kVision);
   Recorder tracked(loop, log, options.tracked, options.interface, LogType::kTracked);
   Recorder referee(loop, log, options.referee, options.interface, LogType::kReferee);
+  // Only now, because an earlier log of this name is lost.
+  log.emplace(options.file);
   fmt::print(stderr, "sidestep-vision record: recording to {}, stop with SIGINT\n", options.file);
   loop.run_until(Time::max());
-  log.close();
-  fmt::print(stderr, "sidestep-vision record: {} packets recorded\n", log.records());
+  log->close();
+  fmt::print(stderr, "sidestep-vision record: {} packets recorded\n", log->records());
   return 0;
 }
 

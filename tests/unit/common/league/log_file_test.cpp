@@ -2,10 +2,14 @@
 #include "common/league/log_file.hpp"
 
 #include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
 #include <sstream>
 
 #include "common/file/temporary_folder.hpp"
 #include "tests/catch.hpp"
+#include "tests/file_limit.hpp"
+#include "tests/forked.hpp"
 #include "tests/unit/common/league/random_packets.hpp"
 
 namespace sidestep::league::log_file_test {
@@ -109,6 +113,36 @@ TEST_CASE("a log has the league's format: magic, version and big-endian records"
   const std::string content =
       log_of({{time_from_ns(0x0102030405060708), LogType::kVision, {payload[0], payload[1]}}});
   CHECK(content == kFileHeader + std::string("\1\2\3\4\5\6\7\10\0\0\0\4\0\0\0\2\xaa\xbb", 18));
+}
+
+TEST_CASE("a log on a full disk says so, and keeps all records that fit") {
+  Rng rng(4);
+  const auto records = random_records(rng, 8);
+  std::size_t limit = kFileHeader.size();
+  for (std::size_t kept = 0; kept < records.size(); ++kept) {
+    const std::size_t missing_bytes = 1 + kept;
+    const std::size_t full = limit + 16 + records[kept].bytes.size();
+    const TemporaryFile file;
+    const std::string problem = forked([&]() -> std::string {
+      if (!limit_files(full - missing_bytes)) return "no limit";
+      try {
+        LogWriter writer(file.path());
+        for (const LogRecord& record : records) writer.add(record.received, record.type, record.bytes);
+      } catch (const std::runtime_error& error) {
+        return error.what();
+      }
+      return "";
+    });
+    CAPTURE(kept, missing_bytes);
+    CHECK(problem == "cannot write " + file.path() + ": File too large" +
+                         (kept > 0 ? fmt::format("; the log ends after {} packets", kept) : ""));
+    CHECK(file.content().size() == limit);
+    LogReader reader(file.path());
+    check_same(all_of(reader), std::span(records).first(kept));
+    CHECK(reader.status() == LogStatus::kComplete);
+    limit = full;
+  }
+  CHECK_THROWS_WITH(LogWriter("/dev/full"), "cannot write /dev/full: No space left on device");
 }
 
 TEST_CASE("all complete records of a truncated log are read") {
