@@ -9,10 +9,27 @@
 
 namespace sidestep {
 
-TemporaryFolder::TemporaryFolder()
-    : path_((std::filesystem::temp_directory_path() / "sidestep-XXXXXX").string()) {
-  if (mkdtemp(path_.data()) == nullptr)
-    throw std::runtime_error("cannot create a temporary folder: " + std::string(std::strerror(errno)));
+namespace {
+
+[[noreturn]] void fail(const std::string& folder, const std::string& reason) {
+  throw std::runtime_error("cannot create a temporary folder in " + folder + ": " + reason);
+}
+
+/// The folder that TMPDIR or a similar variable names, or /tmp.
+std::filesystem::path parent_folder() {
+  std::error_code error;
+  const auto folder = std::filesystem::temp_directory_path(error);
+  const char* const named = std::getenv("TMPDIR");
+  if (error) fail(named ? named : "/tmp", error.message());
+  return folder;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  const std::filesystem::path folder = parent_folder();
+  path_ = (folder / "sidestep-XXXXXX").string();
+  if (mkdtemp(path_.data()) == nullptr) fail(folder.string(), std::strerror(errno));
 }
 
 TemporaryFolder::~TemporaryFolder() {

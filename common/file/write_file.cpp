@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "common/file/folder.hpp"
 #include "common/file/output_file.hpp"
 
 namespace sidestep {
@@ -54,16 +55,6 @@ void require_room_beside(const std::string& path) {
 }
 
 }  // namespace
-
-void create_folder_of(const std::string& path) {
-  const auto folder = std::filesystem::path(path).parent_path();
-  std::error_code error, none;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (!error || std::filesystem::is_directory(folder, none)) return;
-  if (error.value() == ENOTDIR) throw_unwritable(path, error.message());
-  throw_unwritable(path, fmt::format("cannot create the folder {}: {}", folder.string(),
-                                     write_problem(folder.string(), error.value())));
-}
 
 void write_file(const std::string& path, const std::string& text) {
   create_folder_of(path);

@@ -11,9 +11,6 @@ namespace sidestep {
 /// remains.
 void write_file(const std::string& path, const std::string& text);
 
-/// Creates the folder of a file. Throws std::runtime_error ("cannot write PATH: reason").
-void create_folder_of(const std::string& path);
-
 /// Checks, before work whose result goes to a file, that write_file() could write the file now, and creates
 /// its folder. Leaves the file as it is. Throws what write_file() would throw.
 void require_replaceable(const std::string& path);

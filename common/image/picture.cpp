@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/file/read_file.hpp"
+#include "common/file/write_file.hpp"
 #include "common/image/colour_space.hpp"
 #include "common/image/picture_size.hpp"
 
@@ -74,13 +75,15 @@ Image read_picture(const std::string& path) {
 }
 
 void write_png(const cv::Mat3b& bgr, const std::string& path) {
-  bool is_written = false;
+  std::vector<std::uint8_t> bytes;
+  bool is_encoded = false;
   try {
-    is_written = cv::imwrite(path, bgr);
+    is_encoded = cv::imencode(".png", bgr, bytes);
   } catch (const cv::Exception&) {
     // Reported below, because OpenCV's message names its own source file.
   }
-  if (!is_written) throw std::runtime_error("cannot write " + path);
+  if (!is_encoded) throw std::runtime_error("cannot write " + path + ": OpenCV cannot encode the picture");
+  write_file(path, {bytes.begin(), bytes.end()});
 }
 
 }  // namespace sidestep

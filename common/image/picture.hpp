@@ -20,7 +20,7 @@ inline constexpr std::size_t kMaxPictureBytes = 64'000'000;
 /// header is checked before memory is allocated for it.
 Image read_picture(const std::string& path);
 
-/// Throws std::runtime_error if the file cannot be written.
+/// Writes a picture as write_file() does, and throws the same exceptions.
 void write_png(const cv::Mat3b& bgr, const std::string& path);
 
 }  // namespace sidestep

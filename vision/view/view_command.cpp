@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vision/view/view_command.hpp"
 
-#include <filesystem>
 #include <fmt/core.h>
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
+#include "common/file/folder.hpp"
 #include "common/image/picture.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -67,9 +68,8 @@ class Viewer {
     const std::string file =
         fmt::format("{}/camera-{}-{:04}.png", options_.folder, image.camera(), progress.count);
     write_png(picture, file);
-    fmt::print("{}: {} robots, {} balls, {} obstacles\n", file, detections_.robots().size(),
-               detections_.ball_count(), detections_.obstacle_count());
-    std::fflush(stdout);
+    print_to(stdout, "{}: {} robots, {} balls, {} obstacles\n", file, detections_.robots().size(),
+             detections_.ball_count(), detections_.obstacle_count());
     if (is_done()) bus_.stop();
   }
 
@@ -88,7 +88,7 @@ int view(const ViewOptions& options) {
     throw std::invalid_argument(options.scenario_file +
                                 ": expected the key vision.images: its cameras send no images");
   }
-  std::filesystem::create_directories(options.folder);
+  create_folder(options.folder);
   DdsBus bus(options.dds);
   const StopSignals stop_signals([&bus] { bus.stop(); });
   const Viewer viewer(bus, scenario, options);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "common/file/folder.hpp"
 #include "common/file/write_file.hpp"
 #include "common/map/floor_plan.hpp"
 #include "common/map/map_file.hpp"
@@ -77,11 +78,7 @@ std::string scenario_text(const BuildingOptions& options, const Scenario& scenar
 
 void write_building(const BuildingOptions& options) {
   // Creates the folder first, because generating the building takes seconds.
-  std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
-  if (!std::filesystem::is_directory(options.folder))
-    throw std::runtime_error(fmt::format("cannot create the folder {}: {}", options.folder,
-                                         error ? error.message() : "it is not a folder"));
+  create_folder(options.folder);
   Scenario scenario;
   const double side_m = options.cells * options.resolution_m;
   scenario.field = {side_m, side_m};

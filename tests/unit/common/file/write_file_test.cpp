@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "common/file/folder.hpp"
 #include "common/file/output_file.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "tests/as_nobody.hpp"
@@ -113,6 +114,9 @@ TEST_CASE("a folder that cannot be created is reported with its name and the tru
     const auto second_problem = [&] { return problems_of_all(path).back(); };
     CHECK((is_read_only ? first_problem() : as_nobody(first_problem)) == expected);
     CHECK((is_read_only ? second_problem() : as_nobody(second_problem)) == expected);
+    const auto folder_problem = [&] { return problem_of([&] { create_folder(disk.file("reports")); }); };
+    CHECK((is_read_only ? folder_problem() : as_nobody(folder_problem)) ==
+          "cannot create the folder " + disk.file("reports") + ": " + cause);
   }
 }
 

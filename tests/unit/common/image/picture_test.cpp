@@ -91,6 +91,12 @@ TEST_CASE("damaged images and data that is not an image are rejected") {
                     "/nowhere/a.png: cannot be read: No such file or directory");
 }
 
+TEST_CASE("a picture that cannot be written is reported with the cause") {
+  const cv::Mat3b picture(4, 4, cv::Vec3b(1, 2, 3));
+  CHECK_THROWS_WITH(write_png(picture, "/dev/null/a.png"), "cannot write /dev/null/a.png: Not a directory");
+  CHECK_THROWS_WITH(write_png(picture, "/dev/full"), "cannot write /dev/full: No space left on device");
+}
+
 TEST_CASE("the size that an image's header states is read without decoding the image") {
   const auto size = [](std::string_view text) -> std::string {
     const auto found = stated_size(text);
