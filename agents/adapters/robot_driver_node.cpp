@@ -58,6 +58,7 @@ void RobotDriverNode::tick() {
     commands_.push_back({entry.robot->id(), entry.robot->tick(now, *entry.memory)});
   driver_.send(commands_);
   for (Entry& entry : robots_) {
+    report_memory(entry);
     publish_if_changed(entry, now);
     if (entry.report_due <= now) publish(entry, now);
   }
@@ -119,6 +120,19 @@ void RobotDriverNode::report_changes(Entry& entry) {
         side.own_stop_reason() == robot::OwnStopReason::kRestart ? LogLevel::kInfo : LogLevel::kWarning,
         entry.robot->id(), "robot {} makes its own stop: {}", entry.robot->id(),
         to_text(side.own_stop_reason()));
+}
+
+void RobotDriverNode::report_memory(Entry& entry) {
+  const std::string& failure = entry.memory->failure();
+  if (failure == entry.memory_failure) return;
+  entry.memory_failure = failure;
+  if (failure.empty())
+    events_.report(LogLevel::kInfo, entry.robot->id(), "robot {} can store its state again",
+                   entry.robot->id());
+  else
+    events_.report(LogLevel::kError, entry.robot->id(),
+                   "robot {} refuses commands because it cannot store its state: {}", entry.robot->id(),
+                   failure);
 }
 
 bool RobotDriverNode::is_commanded() const {

@@ -50,6 +50,7 @@ class RobotDriverNode {
     Incarnation incarnation = 0;
     Epoch epoch = 0;
     bool is_known = false;
+    std::string memory_failure;  ///< the last reported failure to store the state; empty: none
   };
   Time clock();
   void tick();
@@ -58,6 +59,7 @@ class RobotDriverNode {
   void publish(Entry& entry, Time now);
   void watch_start(Entry& entry, Time now);
   void report_changes(Entry& entry);
+  void report_memory(Entry& entry);
 
   Bus& bus_;
   Duration cycle_;

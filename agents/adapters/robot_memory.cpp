@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "agents/adapters/robot_memory.hpp"
 
+#include <cerrno>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
@@ -10,6 +12,9 @@
 #include <stdexcept>
 #include <sys/file.h>
 #include <unistd.h>
+
+#include "common/file/folder.hpp"
+#include "common/file/output_file.hpp"
 
 namespace sidestep {
 namespace {
@@ -68,12 +73,17 @@ class MemoryReader {
   int line_number_ = 0;
 };
 
+/// False, with errno set, if writing failed.
 bool write_and_sync(const std::string& path, const std::string& text) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) return false;
+  errno = ENOSPC;  // a part was written
   const bool is_written =
       write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && fsync(file) == 0;
-  return close(file) == 0 && is_written;
+  const int error = errno;
+  if (close(file) != 0) return false;
+  errno = error;
+  return is_written;
 }
 
 bool sync_folder(const std::string& path) {
@@ -89,20 +99,22 @@ bool sync_folder(const std::string& path) {
 MemoryLock::MemoryLock(const std::string& path)
     : file_(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
   if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0) return;
-  if (file_ >= 0) close(file_);
-  throw std::runtime_error(fmt::format("{}: cannot be locked; does another process drive this robot?", path));
+  const int error = errno;
+  if (file_ < 0) throw_unwritable(path, write_problem(path, error));
+  close(file_);
+  throw std::runtime_error(
+      error == EWOULDBLOCK ? fmt::format("{}: cannot be locked; does another process drive this robot?", path)
+                           : fmt::format("{}: cannot be locked: {}", path, std::strerror(error)));
 }
 
 MemoryLock::~MemoryLock() { close(file_); }
 
 RobotMemory::RobotMemory(const std::string& folder, RobotId robot)
     : folder_(folder), path_(fmt::format("{}/robot-{}.memory", folder, robot)) {
+  if (const std::string problem = try_create_folder(folder); !problem.empty())
+    throw std::runtime_error(
+        fmt::format("{}: cannot create this folder for the robots' memories: {}", folder, problem));
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  std::error_code none;
-  if (!std::filesystem::is_directory(folder, none))
-    throw std::runtime_error(fmt::format("{}: cannot create this folder for the robots' memories: {}", folder,
-                                         error ? error.message() : "it is not a folder"));
   lock_.emplace(path_ + ".lock");
   if (std::filesystem::exists(path_, error))
     state_ = MemoryReader(path_).read();
@@ -112,11 +124,11 @@ RobotMemory::RobotMemory(const std::string& folder, RobotId robot)
 
 bool RobotMemory::store(const robot::DurableState& state) {
   const std::string next = path_ + ".next";
-  if (!write_and_sync(next, to_text(state)) || rename(next.c_str(), path_.c_str()) != 0 ||
-      !sync_folder(folder_))
-    return false;
-  state_ = state;
-  return true;
+  const bool is_stored = write_and_sync(next, to_text(state)) && rename(next.c_str(), path_.c_str()) == 0 &&
+                         sync_folder(folder_);
+  failure_ = is_stored ? "" : fmt::format("cannot write {}: {}", path_, write_problem(path_, errno));
+  if (is_stored) state_ = state;
+  return is_stored;
 }
 
 std::string default_memory_folder() {

@@ -12,7 +12,7 @@ namespace sidestep {
 /// A lock held by the only process that drives a robot. It is released whenever that process ends.
 class MemoryLock {
  public:
-  /// Throws std::runtime_error if another process holds it.
+  /// Throws std::runtime_error if another process holds it, or with the reason if the file cannot be written.
   explicit MemoryLock(const std::string& path);
   ~MemoryLock();
   MemoryLock(const MemoryLock&) = delete;
@@ -34,9 +34,11 @@ class RobotMemory final : public robot::StableMemory {
   const robot::DurableState& state() const { return state_; }
   /// Replaces the file atomically and waits until it is on the disk.
   [[nodiscard]] bool store(const robot::DurableState& state) override;
+  /// Why the last store() failed; empty if it did not.
+  const std::string& failure() const { return failure_; }
 
  private:
-  std::string folder_, path_;
+  std::string folder_, path_, failure_;
   std::optional<MemoryLock> lock_;
   robot::DurableState state_;
 };

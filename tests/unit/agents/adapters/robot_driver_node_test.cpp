@@ -8,6 +8,7 @@
 #include "common/messaging/sim/bus.hpp"
 #include "common/motion/robot_model.hpp"
 #include "tests/catch.hpp"
+#include "tests/log_events.hpp"
 
 namespace sidestep::robot_driver_node_test {
 namespace {
@@ -164,6 +165,7 @@ TEST_CASE("restarted robots remember the agent that they obey, and count command
                          scene.driver, scene.memory.path());
   CHECK(second.robot(1).side().obeyed_incarnation() == 100);
   CHECK(second.robot(1).side().obeyed_epoch() == 9);
+  const LogEvents events(second);
   std::filesystem::remove_all(scene.memory.path());
   scene.command(1, 300, 10);
   scene.run(5ms);
@@ -171,7 +173,16 @@ TEST_CASE("restarted robots remember the agent that they obey, and count command
   DropCounters drops;
   second.count_drops(drops);
   CHECK(drops.total(DropReason::kUnstoredCommand) == 1);
+  scene.run(100ms);
+  INFO(events.text());
+  CHECK(events.count("robot 7 refuses commands because it cannot store its state: cannot write " +
+                     scene.memory.file("robot-7.memory") + ": the folder " + scene.memory.path() +
+                     " does not exist") == 1);
   std::filesystem::create_directories(scene.memory.path());
+  scene.command(1, 300, 10);
+  scene.run(100ms);
+  CHECK(second.robot(1).side().obeyed_incarnation() == 300);
+  CHECK(events.count("robot 7 can store its state again") == 1);
 }
 
 }  // namespace sidestep::robot_driver_node_test

@@ -6,6 +6,8 @@
 
 #include "common/file/temporary_folder.hpp"
 #include "tests/catch.hpp"
+#include "tests/needs_root.hpp"
+#include "tests/small_disk.hpp"
 
 namespace sidestep::robot_memory_test {
 
@@ -57,6 +59,26 @@ TEST_CASE("a robot whose folder was deleted cannot store anything") {
   std::filesystem::remove_all(folder.file("robots"));
   CHECK_FALSE(memory.store({1, 2, 4, false}));
   CHECK(memory.state().number_bound == 3);
+}
+
+TEST_CASE("a memory that cannot be written is reported with the cause, not as held by another process") {
+  SIDESTEP_NEEDS_ROOT();
+  const SmallDisk disk(64);
+  {
+    RobotMemory memory(disk.path(), 3);
+    REQUIRE(memory.store({1, 2, 3, false}));
+    CHECK(memory.failure().empty());
+    disk.fill();
+    CHECK_FALSE(memory.store({1, 2, 4, false}));
+    CHECK(memory.failure() == "cannot write " + disk.file("robot-3.memory") + ": No space left on device");
+  }
+  CHECK(RobotMemory(disk.path(), 3).state().number_bound == 3);
+  disk.make_read_only();
+  CHECK_THROWS_WITH(RobotMemory(disk.path(), 3),
+                    "cannot write " + disk.file("robot-3.memory.lock") + ": Read-only file system");
+  CHECK_THROWS_WITH(
+      RobotMemory(disk.file("robots"), 3),
+      disk.file("robots") + ": cannot create this folder for the robots' memories: Read-only file system");
 }
 
 }  // namespace sidestep::robot_memory_test
