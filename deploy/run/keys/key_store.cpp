@@ -10,6 +10,8 @@
 #include <system_error>
 #include <unistd.h>
 
+#include "common/file/folder.hpp"
+#include "common/file/output_file.hpp"
 #include "common/file/permission.hpp"
 #include "common/file/write_file.hpp"
 #include "common/keys/key_folder.hpp"
@@ -32,16 +34,44 @@ constexpr std::chrono::hours kTimeZones(24);
 /// announcement.
 constexpr std::size_t kMaxPermissions = 58'000;
 
-/// Writes a file that no other user can read at any moment.
-void write_private_file(const std::string& path, const std::string& text) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+constexpr mode_t kPrivate = 0600, kPublic = 0666;  // less the umask
+
+/// Writes a new file to the disk. With kPrivate, no other user can read it at any moment.
+void write_new_file(const std::string& path, const std::string& text, mode_t mode) {
+  fs::remove(path);
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   const bool is_written = file >= 0 &&
                           write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
                           fsync(file) == 0;
   const int error = errno;
   if (file >= 0) close(file);
-  if (!is_written) throw std::system_error(error, std::generic_category(), "cannot write " + path);
+  if (!is_written) throw_unwritable(path, write_problem(path, error));
 }
+
+/// New contents of several files. They are all written beside the files before the first file changes, so a
+/// full disk leaves all files as they were.
+class FileChanges {
+ public:
+  FileChanges() = default;
+  ~FileChanges() {
+    std::error_code none;
+    for (const auto& [path, temporary] : written_) fs::remove(temporary, none);
+  }
+  FileChanges(const FileChanges&) = delete;
+  FileChanges& operator=(const FileChanges&) = delete;
+
+  void add(const std::string& path, const std::string& text, mode_t mode) {
+    const auto& [file, temporary] = written_.emplace_back(path, fmt::format("{}.{}.tmp", path, getpid()));
+    write_new_file(temporary, text, mode);
+  }
+  void apply() {
+    for (const auto& [path, temporary] : written_) fs::rename(temporary, path);
+    written_.clear();
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::string>> written_;  // the files, each with its temporary file
+};
 
 /// A lock on the folder of keys: while it exists, no other process changes the folder.
 class FolderLock {
@@ -66,9 +96,30 @@ class FolderLock {
 
 /// Replaces a file or link by a link to a file of the folder `public`.
 void link_public_file(const std::string& folder, const char* name) {
-  const fs::path link = folder + "/" + name;
-  fs::remove(link);
-  fs::create_symlink(fs::path("../../public") / name, link);
+  const fs::path link = folder + "/" + name, target = fs::path("../../public") / name;
+  std::error_code none;
+  if (fs::read_symlink(link, none) == target) return;
+  const fs::path temporary = fmt::format("{}.{}.tmp", link.string(), getpid());
+  fs::remove(temporary);
+  fs::create_symlink(target, temporary);
+  fs::rename(temporary, link);
+}
+
+void write_authorities(const std::string& folder, Time now, Time until) {
+  create_folder(folder + "/public/" + kIssued);
+  create_folder(folder + "/private");
+  create_folder(folder + "/enclaves");
+  fs::permissions(folder + "/private", fs::perms::owner_all);
+  fs::permissions(folder + "/enclaves", fs::perms::owner_all);
+  const Authority identities("identity authority", now, until),
+      permissions("permissions authority", now, until);
+  write_new_file(folder + "/private/" + kIdentityKey, to_pem(identities.key()), kPrivate);
+  write_new_file(folder + "/private/" + kPermissionsKey, to_pem(permissions.key()), kPrivate);
+  const std::string publicly = folder + "/public/";
+  write_file(publicly + key_files::kIdentityAuthority, to_pem(identities.certificate()));
+  write_file(publicly + key_files::kPermissionsAuthority, to_pem(permissions.certificate()));
+  write_file(publicly + key_files::kGovernance, permissions.sign(governance_text()));
+  write_file(publicly + key_files::kRevoked, identities.revocation_list({}, now, until));
 }
 
 std::set<std::string> revoked_serials(const std::string& folder) {
@@ -86,20 +137,19 @@ void KeyStore::create(const std::string& folder, Time now, Time until) {
   std::error_code none;
   if (fs::exists(folder, none) && (!fs::is_directory(folder, none) || !fs::is_empty(folder, none)))
     throw std::invalid_argument(folder + " exists and is not an empty folder; keys are never overwritten");
-  fs::create_directories(folder + "/public/" + kIssued);
-  fs::create_directories(folder + "/private");
-  fs::create_directories(folder + "/enclaves");
-  fs::permissions(folder + "/private", fs::perms::owner_all);
-  fs::permissions(folder + "/enclaves", fs::perms::owner_all);
-  const Authority identities("identity authority", now, until),
-      permissions("permissions authority", now, until);
-  write_private_file(folder + "/private/" + kIdentityKey, to_pem(identities.key()));
-  write_private_file(folder + "/private/" + kPermissionsKey, to_pem(permissions.key()));
-  const std::string publicly = folder + "/public/";
-  write_file(publicly + key_files::kIdentityAuthority, to_pem(identities.certificate()));
-  write_file(publicly + key_files::kPermissionsAuthority, to_pem(permissions.certificate()));
-  write_file(publicly + key_files::kGovernance, permissions.sign(governance_text()));
-  write_file(publicly + key_files::kRevoked, identities.revocation_list({}, now, until));
+  const bool is_new = !fs::exists(folder, none);
+  create_folder(folder);
+  // The parts move to their places only once they are complete.
+  const std::string made = fmt::format("{}/{}.tmp", folder, getpid());
+  try {
+    write_authorities(made, now, until);
+    for (const char* part : {"/private", "/public", "/enclaves"}) fs::rename(made + part, folder + part);
+    fs::remove(made);
+  } catch (const std::exception&) {
+    fs::remove_all(made, none);
+    if (is_new) fs::remove(folder, none);
+    throw;
+  }
 }
 
 KeyStore::KeyStore(const std::string& folder) : folder_(folder) {
@@ -135,16 +185,18 @@ std::string KeyStore::issue(const Identity& identity, Time now, Time until) {
         "{}; issue several keys for fewer robots each",
         to_text(identity), signed_permissions.size(), kMaxPermissions));
   const std::string folder = folder_ + "/enclaves/" + folder_name(identity);
-  fs::create_directories(folder);
+  create_folder(folder);
   fs::permissions(folder, fs::perms::owner_all);
   for (const char* name : {key_files::kIdentityAuthority, key_files::kPermissionsAuthority,
                            key_files::kRevoked, key_files::kGovernance})
     link_public_file(folder, name);
-  write_file(public_file(fmt::format("{}/{}.pem", kIssued, certificate.serial())), to_pem(certificate));
-  write_file(folder + "/" + key_files::kPermissions, signed_permissions);
-  fs::remove(folder + "/" + key_files::kPrivateKey);
-  write_private_file(folder + "/" + key_files::kPrivateKey, to_pem(key));
-  write_file(folder + "/" + key_files::kCertificate, to_pem(certificate));
+  FileChanges changes;
+  changes.add(public_file(fmt::format("{}/{}.pem", kIssued, certificate.serial())), to_pem(certificate),
+              kPublic);
+  changes.add(folder + "/" + key_files::kPermissions, signed_permissions, kPublic);
+  changes.add(folder + "/" + key_files::kPrivateKey, to_pem(key), kPrivate);
+  changes.add(folder + "/" + key_files::kCertificate, to_pem(certificate), kPublic);
+  changes.apply();
   return folder;
 }
 

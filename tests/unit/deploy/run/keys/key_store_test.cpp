@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <sstream>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -17,7 +19,10 @@
 #include "common/file/write_file.hpp"
 #include "common/random/rng.hpp"
 #include "tests/catch.hpp"
+#include "tests/needs_root.hpp"
+#include "tests/small_disk.hpp"
 #include "tests/test_keys.hpp"
+#include "tests/text_of.hpp"
 
 namespace sidestep::key_store_test {
 
@@ -211,6 +216,59 @@ TEST_CASE("a key for more robots than a handshake can carry is rejected, and not
   keys.issue({Role::kRobot, 0, 399});
   CHECK_THROWS_WITH(keys.issue({Role::kRobot, 0, 1023}), ContainsSubstring("too many robots for one key"));
   CHECK_FALSE(fs::exists(keys.folder() + "/enclaves/robot-0-1023"));
+}
+
+/// All files of a folder with their contents, and all links with their targets.
+std::map<std::string, std::string> contents(const std::string& folder) {
+  std::map<std::string, std::string> result;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_symlink())
+      result[entry.path().string()] = fs::read_symlink(entry.path()).string();
+    else if (entry.is_regular_file())
+      result[entry.path().string()] = text_of(entry.path());
+  }
+  return result;
+}
+
+TEST_CASE("keys on a full disk stay as they are, and the cause is named") {
+  SIDESTEP_NEEDS_ROOT();
+  const Time now = EventLoop::now();
+  const SmallDisk disk(256);
+  const std::string folder = disk.file("keys");
+  const Identity agent{Role::kAgent, 3, 3};
+  KeyStore::create(folder, now, now + hours(24));
+  KeyStore store(folder);
+  (void)store.issue(agent, now, now + hours(1));
+  disk.fill();
+  const auto before = contents(folder);
+  CHECK_THROWS_WITH(store.issue(agent, now, now + hours(1)),
+                    StartsWith("cannot write ") && EndsWith("No space left on device"));
+  CHECK_THROWS_WITH(store.revoke(std::span(&agent, 1), now),
+                    StartsWith("cannot write ") && EndsWith("No space left on device"));
+  CHECK(contents(folder) == before);
+}
+
+TEST_CASE("new authorities that do not fit on the disk leave nothing behind") {
+  SIDESTEP_NEEDS_ROOT();
+  const Time now = EventLoop::now();
+  const SmallDisk disk(256);
+  disk.fill();
+  const std::string folder = disk.file("keys");
+  CHECK_THROWS_WITH(KeyStore::create(folder, now, now + hours(24)),
+                    StartsWith("cannot write ") && EndsWith("No space left on device"));
+  CHECK_FALSE(fs::exists(folder));
+  fs::remove(disk.file("filling"));
+  KeyStore::create(folder, now, now + hours(24));
+  CHECK(std::distance(fs::directory_iterator(folder), fs::directory_iterator()) == 3);
+}
+
+TEST_CASE("the error about a read-only folder of keys names the folder") {
+  SIDESTEP_NEEDS_ROOT();
+  const Time now = EventLoop::now();
+  const SmallDisk disk;
+  disk.make_read_only();
+  CHECK_THROWS_WITH(KeyStore::create(disk.file("keys"), now, now + hours(24)),
+                    "cannot create the folder " + disk.file("keys") + ": Read-only file system");
 }
 
 TEST_CASE("no key outlives its authorities") {
