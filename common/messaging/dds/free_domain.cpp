@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/messaging/dds/free_domain.hpp"
 
+#include <cerrno>
 #include <fcntl.h>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <sys/file.h>
 #include <unistd.h>
+#include <utility>
+
+#include "common/file/output_file.hpp"
 
 namespace sidestep {
 namespace {
@@ -38,18 +43,30 @@ bool is_used(int domain, const std::set<unsigned>& ports) {
   return found != ports.end() && *found < first + kPorts;
 }
 
+/// Opens a domain's lock file. Without permission to write a file that another user has made, reading
+/// suffices.
+int open_lock(const std::string& path) {
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  return file < 0 && errno == EACCES ? open(path.c_str(), O_RDONLY | O_CLOEXEC) : file;
+}
+
 }  // namespace
 
 FreeDomain::FreeDomain() {
   const std::set<unsigned> ports = open_ports();
+  std::optional<std::pair<std::string, std::string>> unwritable;  // a lock file, and why it cannot be made
   // Users tend to choose domains below 10; from 101 on, Linux may assign the ports to any program.
   for (number_ = 10; number_ <= 100; ++number_) {
     if (is_used(number_, ports)) continue;
     const std::string path = "/tmp/sidestep-domain-" + std::to_string(number_);
-    lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    lock_ = open_lock(path);
     if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-    if (lock_ >= 0) close(lock_);
+    if (lock_ < 0)
+      unwritable = {path, write_problem(path, errno)};
+    else
+      close(lock_);
   }
+  if (unwritable) throw_unwritable(unwritable->first, unwritable->second);
   throw std::runtime_error("no DDS domain from 10 to 100 is free on this machine");
 }
 

@@ -7,7 +7,7 @@ namespace sidestep {
 /// gets the same domain during its lifetime; a file lock ensures that.
 class FreeDomain {
  public:
-  /// Throws std::runtime_error if all domains are in use.
+  /// Throws std::runtime_error if all domains are in use, or with the reason if a lock file cannot be made.
   FreeDomain();
   ~FreeDomain();
   FreeDomain(const FreeDomain&) = delete;
