@@ -12,10 +12,6 @@
 namespace sidestep {
 namespace {
 
-[[noreturn]] void throw_unprinted(const std::string& reason) {
-  throw std::runtime_error("cannot write to standard output: " + reason);
-}
-
 std::string output_problem(int error) {
   if (error == EBADF) return "it is closed";
   if (error == EPIPE) return "the process that read it has ended";
@@ -35,13 +31,15 @@ int write_text(std::FILE* stream, const std::string& text) noexcept {
   return error;
 }
 
-void write_output(const std::string& text) {
-  if (const int error = write_text(stdout, text)) throw_unprinted(output_problem(error));
+void write_output(const std::string& text) { require_printed(write_text(stdout, text)); }
+
+void require_printed(int error) {
+  if (error != 0) throw std::runtime_error("cannot write to standard output: " + output_problem(error));
 }
 
 void finish_output() {
-  if (std::fflush(stdout) != 0) throw_unprinted(output_problem(errno));
-  if (std::ferror(stdout) != 0) throw_unprinted("a part of the output is lost");
+  if (std::fflush(stdout) != 0) require_printed(errno);
+  if (std::ferror(stdout) != 0) require_printed(EIO);
 }
 
 bool is_output_abandoned() {

@@ -29,6 +29,10 @@ void print_output(fmt::format_string<Values...> format, Values&&... values) {
   write_output(fmt::format(format, std::forward<Values>(values)...));
 }
 
+/// Throws what write_output() throws, given what write_text() returned for stdout, unless that was 0. For
+/// commands that do something else before they end.
+void require_printed(int error);
+
 /// Flushes stdout. Throws as write_output() does if anything printed with fmt::print() could not be written.
 void finish_output();
 

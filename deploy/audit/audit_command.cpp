@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/audit/audit_command.hpp"
 
+#include <csignal>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/audit/auditor.hpp"
@@ -23,9 +26,10 @@ struct AuditOptions {
   DdsSettings dds;
 };
 
-/// Runs the bus until a stop signal, or for this many seconds.
+/// Runs the bus until a stop signal, for this many seconds, or until nobody reads the violations any more.
 void run_for(DdsBus& bus, const std::optional<double>& seconds) {
   const StopSignals stop_signals([&bus] { bus.stop(); });
+  stop_without_reader(bus);
   if (seconds)
     bus.run_until(bus.now() + from_seconds(*seconds));
   else
@@ -34,8 +38,7 @@ void run_for(DdsBus& bus, const std::optional<double>& seconds) {
 
 void print_violations(Auditor& auditor, bool is_json) {
   auditor.on_violation([is_json](const Violation& violation) {
-    fmt::print("{}\n", is_json ? to_json_line(violation) : to_line(violation));
-    std::fflush(stdout);
+    print_to(stdout, "{}\n", is_json ? to_json_line(violation) : to_line(violation));
   });
 }
 
@@ -57,7 +60,7 @@ std::string audit_summary(const AuditTotals& totals) {
 
 /// Prints the summary and the verdict, and returns the exit code.
 int finish(const AuditTotals& totals) {
-  fmt::print(stderr, "{}audit: {}\n", audit_summary(totals), verdict_line(totals));
+  print_to(stderr, "{}audit: {}\n", audit_summary(totals), verdict_line(totals));
   return exit_code(totals.verdict());
 }
 
@@ -73,11 +76,11 @@ int audit_recording(const AuditOptions& options) {
   refuse_other_rules(bus, scenario, auditor);
   listen(bus, scenario, auditor);
   const PlaybackResult result = bus.play();
-  fmt::print(stderr, "{}: {} messages of scenario {}{}\n", options.recording_file, result.messages,
-             bus.header().scenario_name,
-             result.unreadable > 0 ? fmt::format(", {} of them unreadable", result.unreadable) : "");
+  print_to(stderr, "{}: {} messages of scenario {}{}\n", options.recording_file, result.messages,
+           bus.header().scenario_name,
+           result.unreadable > 0 ? fmt::format(", {} of them unreadable", result.unreadable) : "");
   if (!result.damage.empty())
-    fmt::print(stderr, "{}: {}; earlier messages were used\n", options.recording_file, result.damage);
+    print_to(stderr, "{}: {}; earlier messages were used\n", options.recording_file, result.damage);
   auditor.advance(bus.now());
   AuditTotals totals = auditor.totals();
   totals.is_cut_off = !result.damage.empty();
@@ -91,7 +94,7 @@ int audit_live(const AuditOptions& options) {
   DdsBus bus(options.dds);
   refuse_other_rules(bus, scenario, auditor);
   listen(bus, scenario, auditor);
-  fmt::print(stderr, "auditing domain {}{}\n", options.dds.domain, options.seconds ? "" : " until Ctrl-C");
+  print_to(stderr, "auditing domain {}{}\n", options.dds.domain, options.seconds ? "" : " until Ctrl-C");
   run_for(bus, options.seconds);
   auditor.advance(bus.now());
   return finish(auditor.totals());
@@ -117,6 +120,8 @@ void add_audit_command(const CliCommand& root, std::function<int()>& action) {
     if (options->recording_file.empty() && !scenario.is_given())
       throw UsageError("SCENARIO or --recording is required");
     action = [options] {
+      // The verdict is printed even if the reader of the violations disappears.
+      std::signal(SIGPIPE, SIG_IGN);
       return options->recording_file.empty() ? audit_live(*options) : audit_recording(*options);
     };
   });

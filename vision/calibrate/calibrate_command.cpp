@@ -84,8 +84,10 @@ int calibrate_command(int argc, char** argv) {
       .excludes(geometry);
   app.add_option("--out", options.out_file, "file for the thresholds or cameras [standard output]");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
-  return run_and_report_errors(
-      kName, [&] { return options.points_file.empty() ? run_colours(options) : run_geometry(options); });
+  return run_and_report_errors(kName, [&] {
+    if (!options.out_file.empty()) require_replaceable(options.out_file);
+    return options.points_file.empty() ? run_colours(options) : run_geometry(options);
+  });
 }
 
 }  // namespace sidestep

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include "common/file/console.hpp"
+#include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
@@ -32,12 +34,13 @@ int measure_delay(const TopicOptions& options) {
     DdsBus bus(options.dds);
     if (!measure(bus, options.topic, meter)) return kExitFailure;
     const StopSignals stop_signals([&bus] { bus.stop(); });
+    stop_without_reader(bus);
     if (options.seconds > 0)
       bus.run_until(bus.now() + from_seconds(options.seconds));
     else
       bus.run();
   }
-  fmt::print("{}", meter.table());
+  print_output("{}", meter.table());
   return is_damaged ? kExitFailure : 0;
 }
 

@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/file/console.hpp"
 #include "common/messaging/dds/listener.hpp"
+#include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
@@ -66,22 +68,20 @@ int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
     }
     if (printer.is_done() || !is_decodable) listener.stop();
   });
-  while (!listener.stopped()) listener.run_until(listener.now() + Duration{1'000'000'000});
+  while (!listener.stopped() && !is_output_abandoned()) listener.run_until(listener.now() + kReaderPeriod);
   return is_decodable ? 0 : kExitFailure;
 }
 
 }  // namespace
 
 int echo_topic(const TopicOptions& options) {
-  MessagePrinter printer(options.printer, [](const std::string& line) {
-    fmt::print("{}\n", line);
-    std::fflush(stdout);
-  });
+  MessagePrinter printer(options.printer, [](const std::string& line) { print_output("{}\n", line); });
   if (!options.recording_file.empty()) return echo_recording(options, printer);
   if (!options.idl_file.empty()) return echo_foreign(options, printer);
   DdsBus bus(options.dds);
   const StopSignals stop_signals([&bus] { bus.stop(); });
   if (!print_channel(bus, options.topic, printer, [&bus] { bus.stop(); })) return kExitFailure;
+  stop_without_reader(bus);
   bus.run();
   return 0;
 }

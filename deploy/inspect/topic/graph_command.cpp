@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/inspect/topic/graph_command.hpp"
 
-#include <fmt/core.h>
+#include <csignal>
 #include <memory>
 #include <string>
 
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "common/process/process.hpp"
@@ -21,12 +22,16 @@ struct GraphOptions {
 };
 
 int show_graph(const GraphOptions& options) {
+  // The picture is drawn even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
+  if (!options.picture_file.empty()) require_replaceable(options.picture_file);
   DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
   const ProcessGraph graph = graph_of(listener.endpoints());
-  fmt::print("{}", to_text(graph));
+  const int error = write_text(stdout, to_text(graph));
   if (!options.picture_file.empty()) write_file(options.picture_file, to_svg(graph));
+  require_printed(error);
   return graph.processes.empty() ? kExitFailure : 0;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/file/console.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
@@ -19,22 +20,20 @@ constexpr Duration kSecond{1'000'000'000};
 
 void print_rate(const char* label, const Rate& rate) {
   if (!rate.min_gap) {
-    fmt::print("{}{} sample(s)\n", label, rate.samples);
+    print_output("{}{} sample(s)\n", label, rate.samples);
   } else {
-    fmt::print("{}{} samples  {:.2f} Hz  gap min {:.2f} ms  max {:.2f} ms  {:.2f} kB/s\n", label,
-               rate.samples, rate.rate_hz, to_seconds(*rate.min_gap) * 1e3, to_seconds(*rate.max_gap) * 1e3,
-               rate.bytes_per_second * 1e-3);
+    print_output("{}{} samples  {:.2f} Hz  gap min {:.2f} ms  max {:.2f} ms  {:.2f} kB/s\n", label,
+                 rate.samples, rate.rate_hz, to_seconds(*rate.min_gap) * 1e3, to_seconds(*rate.max_gap) * 1e3,
+                 rate.bytes_per_second * 1e-3);
   }
-  std::fflush(stdout);
 }
 
 void print_bandwidth(const char* label, const Rate& rate) {
   if (rate.samples == 0)
-    fmt::print("{}nothing\n", label);
+    print_output("{}nothing\n", label);
   else
-    fmt::print("{}{} samples  {:.2f} kB/s  size min {} B  mean {:.0f} B  max {} B\n", label, rate.samples,
-               rate.bytes_per_second * 1e-3, rate.min_bytes, rate.mean_bytes, rate.max_bytes);
-  std::fflush(stdout);
+    print_output("{}{} samples  {:.2f} kB/s  size min {} B  mean {:.0f} B  max {} B\n", label, rate.samples,
+                 rate.bytes_per_second * 1e-3, rate.min_bytes, rate.mean_bytes, rate.max_bytes);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "deploy/trial/camera/frame_command.hpp"
 
 #include <cmath>
+#include <csignal>
 #include <fmt/format.h>
 #include <memory>
 #include <numbers>
@@ -9,6 +10,8 @@
 
 #include "common/camera/camera_grid.hpp"
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
+#include "common/file/write_file.hpp"
 #include "common/image/picture.hpp"
 #include "common/marking/butterfly.hpp"
 #include "common/marking/layout_file.hpp"
@@ -35,9 +38,10 @@ struct FrameOptions {
 const Ink kTruth{255, 255, 255};
 constexpr double kCrossRadius_m = 0.03;
 
-/// Draws the true positions and, on top, the detections made with default colours; prints the errors.
-void overlay(const Image& image, const CameraModel& camera, const Scenario& scenario,
-             const MarkerLayout& layout, cv::Mat3b& picture) {
+/// Draws the true positions and, on top, the detections made with default colours. Returns a text with their
+/// errors.
+std::string overlay(const Image& image, const CameraModel& camera, const Scenario& scenario,
+                    const MarkerLayout& layout, cv::Mat3b& picture) {
   const FloorScene floor = floor_scene(scenario);
   Detector detector(camera,
                     detector_settings(scenario, default_colours(image.view().format, layout).boxes, layout));
@@ -50,17 +54,21 @@ void overlay(const Image& image, const CameraModel& camera, const Scenario& scen
     pen.cross(cylinder.circle.centre_m, 0, cylinder.circle.radius_m, kTruth);
   if (floor.ball) pen.cross(floor.ball->position_m.head<2>(), RollingBall::kRadius_m, kCrossRadius_m, kTruth);
   draw_detections(frame, scenario, pen);
+  std::string text;
   for (const msg::RobotDetection& robot : frame.robots()) {
     const RobotSpec& truth = *find_robot(scenario, robot.robot());
-    fmt::print("robot {}: error {:.2f} mm, {:.2f} degrees\n", robot.robot(),
-               1e3 * (truth.start_m - Vec2(robot.x_m(), robot.y_m())).norm(),
-               std::abs(wrapped_rad(robot.heading_rad() - truth.start_heading_rad)) * 180 / std::numbers::pi);
+    text += fmt::format(
+        "robot {}: error {:.2f} mm, {:.2f} degrees\n", robot.robot(),
+        1e3 * (truth.start_m - Vec2(robot.x_m(), robot.y_m())).norm(),
+        std::abs(wrapped_rad(robot.heading_rad() - truth.start_heading_rad)) * 180 / std::numbers::pi);
   }
-  fmt::print("{} robots, {} balls and {} unknown obstacles detected\n", frame.robots().size(),
-             frame.ball_count(), frame.obstacle_count());
+  return text + fmt::format("{} robots, {} balls and {} unknown obstacles detected\n", frame.robots().size(),
+                            frame.ball_count(), frame.obstacle_count());
 }
 
 int write_frame(const FrameOptions& options) {
+  // The picture is written even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
   const Scenario scenario = load_scenario(options.scenario_file);
   const MarkerLayout layout = options.layout_file.empty() ? butterfly() : load_layout(options.layout_file);
   ImageSpec images = scenario.vision.images.value_or(ImageSpec{.format = PixelFormat::kRgb});
@@ -73,14 +81,17 @@ int write_frame(const FrameOptions& options) {
                cameras.size() - 1, options.scenario_file, options.camera);
     return kExitUsage;
   }
+  require_replaceable(options.picture_file);
   const CameraModel& camera = cameras[options.camera];
   RenderSpec spec;
   spec.format = images.format;
   FrameRenderer renderer(camera, scenario.field, layout, spec, Rng(options.seed), static_scene(scenario));
   const Image image = renderer.render(floor_scene(scenario).scene());
   cv::Mat3b picture = bgr_of(image.view());
-  if (options.shows_detections) overlay(image, camera, scenario, layout, picture);
+  int error = 0;
+  if (options.shows_detections) error = write_text(stdout, overlay(image, camera, scenario, layout, picture));
   write_png(picture, options.picture_file);
+  require_printed(error);
   return 0;
 }
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <fmt/format.h>
 #include <memory>
 
 #include "agents/navigation/local_driver.hpp"
 #include "agents/planning/smoothing/leader_follower.hpp"
 #include "common/config/planner_names.hpp"
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
@@ -66,12 +68,15 @@ std::vector<Circle> band_along(const std::vector<Vec2>& path_m, const NamedPlann
 }
 
 int plan(const PlanOptions& options) {
+  // The picture is drawn even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
   const PlanWorld world = world_of(options);
   if (options.query >= world.queries.size()) {
     fmt::print(stderr, "sidestep: --query: expected 0..{} for {}, got {}\n", world.queries.size() - 1,
                options.world, options.query);
     return kExitUsage;
   }
+  if (!options.picture_file.empty()) require_replaceable(options.picture_file);
   const PlanQuery& query = world.queries[options.query];
   const ObstacleWorld obstacles(world.obstacles);
   const NamedPlanner planner = planner_of(options.planner);
@@ -85,16 +90,19 @@ int plan(const PlanOptions& options) {
   Plan<Vec2> smoothed = found;
   LeaderFollower<DiscDomain>().smooth(domain, smoothed);
   const Time end = now();
-  fmt::print("{}: {}{}{}, {:.3f} m in {:.1f} us, smoothed {:.3f} m in {:.1f} us; {} nodes, {} samples\n",
-             world.name, name_of(found.reason), found.start_blocked ? ", start blocked" : "",
-             found.goal_blocked ? ", goal blocked" : "", found.length, 1e6 * to_seconds(planned - begin),
-             smoothed.length, 1e6 * to_seconds(end - planned), found.nodes, found.samples);
+  const std::string result =
+      fmt::format("{}: {}{}{}, {:.3f} m in {:.1f} us, smoothed {:.3f} m in {:.1f} us; {} nodes, {} samples\n",
+                  world.name, name_of(found.reason), found.start_blocked ? ", start blocked" : "",
+                  found.goal_blocked ? ", goal blocked" : "", found.length, 1e6 * to_seconds(planned - begin),
+                  smoothed.length, 1e6 * to_seconds(end - planned), found.nodes, found.samples);
+  const int error = write_text(stdout, result);
   if (!options.picture_file.empty()) {
     PlanDrawing drawing = planner.draw();
     if (planner.local && planner.local->uses_band && found.arrives() && smoothed.states.size() > 1)
       drawing.band = band_along(smoothed.states, planner, world, obstacles);
     write_file(options.picture_file, plan_picture(world, query, drawing, found.states, smoothed.states));
   }
+  require_printed(error);
   return found.arrives() ? 0 : kExitFailure;
 }
 
