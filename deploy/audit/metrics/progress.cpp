@@ -2,19 +2,19 @@
 #include "deploy/audit/metrics/progress.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <array>
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
+#include <fmt/ranges.h>
+#include <vector>
 
 #include "common/file/console.hpp"
+#include "common/terminal/screen_text.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr Duration kTablePeriod = std::chrono::milliseconds(200);
 constexpr Duration kLinePeriod = std::chrono::seconds(1);
-constexpr int kDefaultTerminalRows = 24;
 
 const char* state_name(const RobotProgress& row) {
   if (row.arrived) return "arrived";
@@ -42,79 +42,169 @@ const char* state_name(const RobotProgress& row) {
   return "?";
 }
 
-std::string clock_text(const Report& report) {
-  if (!report.max_clock_offset_s) return "";
-  return fmt::format("  clocks {:.2f} +- {:.2f} ms", *report.max_clock_offset_s * 1e3,
-                     report.clock_uncertainty_s.value_or(0) * 1e3);
-}
-
 double milliseconds(Duration duration) { return to_seconds(duration) * 1e3; }
 
-int terminal_rows() {
-  winsize size{};
-  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 0 ? size.ws_row : kDefaultTerminalRows;
+/// A duration in milliseconds with three digits, so that it fits into its column.
+std::string milliseconds_text(Duration duration) {
+  const double value = milliseconds(duration);
+  return fmt::format("{:.{}f}", value, value < 9.995 ? 2 : value < 99.95 ? 1 : 0);
 }
 
-}  // namespace
+Colour state_colour(const RobotProgress& row) {
+  if (row.arrived) return Colour::kGreen;
+  if (!row.agent_state) return Colour::kRed;
+  switch (*row.agent_state) {
+    case msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND:
+    case msg::AgentState::AGENT_ABSENT:
+      return Colour::kRed;
+    case msg::AgentState::AGENT_FENCING:
+    case msg::AgentState::AGENT_REGISTERING:
+    case msg::AgentState::AGENT_HELD:
+      return Colour::kYellow;
+    default:
+      return Colour::kNone;
+  }
+}
 
-std::string progress_line(const RunMetrics& metrics, Time now) {
+/// The parts of the progress line, the most important ones first.
+std::vector<std::string> progress_parts(const RunMetrics& metrics, Time now) {
   const Report report = metrics.report();
   const auto since = metrics.granting_since();
   const double missed = report.cycles > 0 ? 100.0 * static_cast<double>(report.missed_cycles) /
                                                 static_cast<double>(report.cycles)
                                           : 0;
-  const std::string named = metrics.named_robots();
-  return fmt::format(
-      "{}  {} of {} arrived  {} contacts{}{}  clearance {}  {} grants  {} denials  {:.2f} % missed  "
-      "negotiation {:.2f} / {:.2f} ms{}",
-      since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting", report.arrived, report.robots,
-      report.contacts, metrics.conflicts() > 0 ? fmt::format("  {} in conflict", metrics.conflicts()) : "",
-      named.empty() ? "" : "  " + named,
-      report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?", report.grants,
-      report.denials, missed, milliseconds(report.negotiation.quantile(0.5)),
-      milliseconds(report.negotiation.quantile(0.99)), clock_text(report));
+  std::vector<std::string> parts{since ? fmt::format("{:5.1f} s", to_seconds(now - *since)) : "starting",
+                                 fmt::format("{} of {} arrived", report.arrived, report.robots),
+                                 fmt::format("{} contacts", report.contacts)};
+  if (metrics.conflicts() > 0) parts.push_back(fmt::format("{} in conflict", metrics.conflicts()));
+  if (const std::string named = metrics.named_robots(); !named.empty()) parts.push_back(named);
+  parts.push_back("clearance " +
+                  (report.min_clearance_m ? fmt::format("{:.3f} m", *report.min_clearance_m) : "?"));
+  parts.push_back(fmt::format("{} grants", report.grants));
+  parts.push_back(fmt::format("{} denials", report.denials));
+  parts.push_back(fmt::format("{:.2f} % missed", missed));
+  parts.push_back(fmt::format("negotiation {:.2f} / {:.2f} ms",
+                              milliseconds(report.negotiation.quantile(0.5)),
+                              milliseconds(report.negotiation.quantile(0.99))));
+  if (report.max_clock_offset_s)
+    parts.push_back(fmt::format("clocks {:.2f} +- {:.2f} ms", *report.max_clock_offset_s * 1e3,
+                                report.clock_uncertainty_s.value_or(0) * 1e3));
+  return parts;
 }
 
-std::string progress_table(const RunMetrics& metrics, Time now, int max_rows) {
-  std::string text = progress_line(metrics, now) + "\n";
-  text += "robot  team    state          to go      speed   grants  denials  negotiation p50 / p99\n";
-  const auto rows = metrics.progress();
-  const auto shown = std::min<std::size_t>(rows.size(), static_cast<std::size_t>(std::max(max_rows, 1)));
-  for (std::size_t i = 0; i < shown; ++i) {
-    const RobotProgress& row = rows[i];
-    text += fmt::format("{:5}  {:6}  {:11}  {:6.2f} m  {:5.2f} m/s  {:7}  {:7}  {:11.2f} / {:.2f} ms\n",
-                        row.robot, row.team == Team::kBlue ? "blue" : "yellow", state_name(row),
-                        row.distance_to_go_m, row.speed_mps, row.grants, row.denials,
-                        milliseconds(row.negotiation_p50), milliseconds(row.negotiation_p99));
+/// A column of the table of robots.
+struct TableColumn {
+  const char* title;
+  int width;
+  bool is_left_aligned = false;
+};
+/// The first ones are the most important.
+constexpr std::array kTableColumns{
+    TableColumn{"robot", 5},   TableColumn{"team", 6, true},    TableColumn{"state", 11, true},
+    TableColumn{"to go", 8},   TableColumn{"speed", 9},         TableColumn{"grants", 7},
+    TableColumn{"denials", 7}, TableColumn{"p50 / p99 ms", 12},
+};
+/// Replaces the last column on a wide screen.
+constexpr TableColumn kWideColumn{"negotiation p50 / p99 ms", 24};
+constexpr int kGap = 2;
+
+using TableRow = std::array<std::string, kTableColumns.size()>;
+
+/// The columns that fit into this width, at least one.
+std::vector<TableColumn> fitting_columns(int width) {
+  std::vector<TableColumn> columns;
+  int left = width + kGap;
+  for (const TableColumn& column : kTableColumns) {
+    left -= kGap + column.width;
+    if (left < 0 && !columns.empty()) return columns;
+    columns.push_back(column);
   }
+  if (left >= kWideColumn.width - columns.back().width) columns.back() = kWideColumn;
+  return columns;
+}
+
+/// A line of the table; the state may have a colour.
+std::string table_line(const TableRow& row, const std::vector<TableColumn>& columns, Colour state) {
+  constexpr std::size_t kState = 2;
+  std::string line;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const TableColumn& column = columns[i];
+    const std::string cell = column.is_left_aligned ? fmt::format("{:<{}}", row[i], column.width)
+                                                    : fmt::format("{:>{}}", row[i], column.width);
+    line += std::string(i == 0 ? 0 : kGap, ' ') + (i == kState ? coloured(cell, state) : cell);
+  }
+  return line;
+}
+
+TableRow cells_of(const RobotProgress& row) {
+  return {
+      fmt::format("{}", row.robot),
+      row.team == Team::kBlue ? "blue" : "yellow",
+      state_name(row),
+      fmt::format("{:.2f} m", row.distance_to_go_m),
+      fmt::format("{:.2f} m/s", row.speed_mps),
+      fmt::format("{}", row.grants),
+      fmt::format("{}", row.denials),
+      fmt::format("{} / {}", milliseconds_text(row.negotiation_p50), milliseconds_text(row.negotiation_p99))};
+}
+
+}  // namespace
+
+std::string progress_line(const RunMetrics& metrics, Time now) {
+  return fmt::format("{}", fmt::join(progress_parts(metrics, now), "  "));
+}
+
+std::string progress_table(const RunMetrics& metrics, Time now, const ScreenSize& screen, bool has_colours) {
+  // The last column stays empty, and so does the line of the cursor below the table.
+  const int width = screen.columns - 1;
+  std::string text = wrapped(progress_parts(metrics, now), width);
+  const std::vector<TableColumn> columns = fitting_columns(width);
+  TableRow titles;
+  for (std::size_t i = 0; i < columns.size(); ++i) titles[i] = columns[i].title;
+  text += coloured(table_line(titles, columns, Colour::kNone), has_colours ? Colour::kBold : Colour::kNone) +
+          "\n";
+  const auto rows = metrics.progress();
+  const auto room =
+      static_cast<std::size_t>(std::max<std::ptrdiff_t>(screen.rows - 1 - std::ranges::count(text, '\n'), 1));
+  const std::size_t shown = rows.size() <= room ? rows.size() : std::max<std::size_t>(room - 1, 1);
+  for (std::size_t i = 0; i < shown; ++i)
+    text +=
+        table_line(cells_of(rows[i]), columns, has_colours ? state_colour(rows[i]) : Colour::kNone) + "\n";
   if (shown < rows.size()) text += fmt::format("... and {} more\n", rows.size() - shown);
   return text;
 }
 
-ProgressDisplay::ProgressDisplay() : is_terminal_(isatty(STDOUT_FILENO) == 1) {}
-
-void ProgressDisplay::erase_table() {
-  if (drawn_lines_ > 0) print_to(stdout, "\x1b[{}A\x1b[J", drawn_lines_);
-  drawn_lines_ = 0;
+std::string with_coloured_verdict(const std::string& summary, AuditVerdict verdict) {
+  const Colour colour = verdict == AuditVerdict::kPassed   ? Colour::kGreen
+                        : verdict == AuditVerdict::kFailed ? Colour::kRed
+                                                           : Colour::kYellow;
+  const std::size_t end = summary.find_last_not_of('\n') + 1;
+  const std::size_t before = summary.substr(0, end).find_last_of('\n');
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return summary.substr(0, begin) + coloured(summary.substr(begin, end - begin), colour) +
+         summary.substr(end);
 }
 
-void ProgressDisplay::print(const std::string& line) {
-  erase_table();
-  print_to(stdout, "{}\n", line);
-  if (is_terminal_) next_ = Time{};
+ProgressDisplay::ProgressDisplay(std::FILE* stream)
+    : stream_(stream), terminal_(terminal_of(fileno(stream))), table_(stream) {}
+
+void ProgressDisplay::print(const std::string& line, LogLevel level) {
+  table_.erase();
+  const Colour colour = level >= LogLevel::kError     ? Colour::kRed
+                        : level == LogLevel::kWarning ? Colour::kYellow
+                                                      : Colour::kNone;
+  print_to(stream_, "{}\n", terminal_.has_colours ? coloured(line, colour) : line);
+  if (terminal_.can_redraw) next_ = Time{};
 }
 
 void ProgressDisplay::update(const RunMetrics& metrics, Time now) {
   if (now < next_) return;
-  if (is_terminal_) {
+  if (terminal_.can_redraw) {
     next_ = now + kTablePeriod;
-    erase_table();
-    const std::string table = progress_table(metrics, now, terminal_rows() - 4);
-    drawn_lines_ = static_cast<int>(std::count(table.begin(), table.end(), '\n'));
-    print_to(stdout, "{}", table);
+    table_.draw(progress_table(metrics, now, screen_size(fileno(stream_)), terminal_.has_colours));
   } else {
     next_ = now + kLinePeriod;
-    print_to(stdout, "{}\n", progress_line(metrics, now));
+    print_to(stream_, "{}\n", progress_line(metrics, now));
   }
 }
 

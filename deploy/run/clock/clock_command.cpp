@@ -13,6 +13,8 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "common/protocol/process_names.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 #include "deploy/run/clock/clock_survey.hpp"
 #include "deploy/run/clock/clock_text.hpp"
 
@@ -86,14 +88,12 @@ int show_clocks(const ClockOptions& options) {
   const StopSignals stop_signals([&bus] { bus.stop(); });
   const ClockProber prober(bus, client_id(fmt::format("clock {} {}", host_name(), getpid())));
   const auto rows = [&] { return prober.survey().rows(bus.now(), options.reference); };
-  if (options.once || isatty(STDOUT_FILENO) == 0) {
+  if (options.once || !terminal_of(STDOUT_FILENO).can_redraw) {
     bus.run_until(bus.now() + kOnceDuration);
     fmt::print("{}", to_table(rows(), options.reference_name));
   } else {
-    const auto refresh = [&] {
-      fmt::print("\x1b[H\x1b[J{}", to_table(rows(), options.reference_name));
-      std::fflush(stdout);
-    };
+    RedrawnText table(stdout);
+    const auto refresh = [&] { table.draw(to_table(rows(), options.reference_name)); };
     refresh();
     call_periodically(bus, kTablePeriod, refresh);
     bus.run();

@@ -16,6 +16,8 @@
 #include "common/messaging/version_codec.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 #include "common/yaml/yaml_document.hpp"
 #include "deploy/run/order/goal_text.hpp"
 #include "deploy/run/order/order_text.hpp"
@@ -126,14 +128,12 @@ int show_status(const OrderOptions& options) {
   DdsBus bus(dds_of(options));
   const StopSignals stop_signals([&bus] { bus.stop(); });
   const OrderClient client(bus, client_of(options));
-  if (options.once || isatty(STDOUT_FILENO) == 0) {
+  if (options.once || !terminal_of(STDOUT_FILENO).can_redraw) {
     bus.run_until(bus.now() + kOnceDuration);
     fmt::print("{}", to_table(client.reports()));
   } else {
-    const auto refresh = [&] {
-      fmt::print("\x1b[H\x1b[J{}", to_table(client.reports()));
-      std::fflush(stdout);
-    };
+    RedrawnText table(stdout);
+    const auto refresh = [&] { table.draw(to_table(client.reports())); };
     refresh();
     call_periodically(bus, kTablePeriod, refresh);
     bus.run();

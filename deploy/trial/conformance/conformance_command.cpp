@@ -9,11 +9,14 @@
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/file/temporary_folder.hpp"
 #include "common/messaging/rules_exchange.hpp"
 #include "common/process/process.hpp"
 #include "common/process/process_identity.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 #include "deploy/audit/audit_totals.hpp"
 #include "deploy/run/launch/floor_processes.hpp"
 #include "deploy/run/launch/process_group.hpp"
@@ -101,23 +104,25 @@ int examine(const ConformanceOptions& options) {
   });
   Floor floor(options);
   const Conformance conformance(bus, scenario, robot.id, next_incarnation(0, bus.now()));
-  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  const bool has_activity = terminal_of(STDERR_FILENO).can_redraw;
   std::size_t printed = 0;
   std::string activity;
   while (!conformance.is_finished() && !is_interrupted) {
     bus.run_until(bus.now() + 100ms);
     floor.check();
     const auto& rows = conformance.report().rows;
-    for (; printed < rows.size(); ++printed)
-      fmt::print("{}{}\n", is_terminal ? "\r\x1b[K" : "", to_line(rows[printed]));
-    std::fflush(stdout);
-    if (is_terminal && conformance.activity() != activity) {
+    for (; printed < rows.size(); ++printed) {
+      if (has_activity) print_to(stderr, "{}", kEraseLine);
+      print_output("{}\n", to_line(rows[printed]));
+    }
+    if (has_activity && conformance.activity() != activity) {
       activity = conformance.activity();
-      fmt::print(stderr, "\r\x1b[K... {}", activity);
+      print_to(stderr, "{}", redrawn_line("... " + activity, STDERR_FILENO));
     }
   }
+  if (has_activity) print_to(stderr, "{}", kEraseLine);
   if (is_interrupted) return kExitNotJudged;
-  fmt::print("{}", scenario_lines(conformance.report().figures));
+  print_output("{}", scenario_lines(conformance.report().figures));
   if (conformance.report().is_conformant()) return 0;
   return conformance.report().has_failed() ? kExitFailure : kExitNotJudged;
 }

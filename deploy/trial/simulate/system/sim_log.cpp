@@ -6,14 +6,16 @@
 
 #include "common/file/console.hpp"
 #include "common/log/log.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 
 namespace sidestep {
 
 void log_events_of(SimSystem& system, LogLevel level) {
   set_up_log("sidestep", level);
-  const bool is_terminal = isatty(STDERR_FILENO) == 1;
-  system.on_event(level, [&system, is_terminal](const std::string& process, const LogEvent& event) {
-    if (is_terminal) print_to(stderr, "\r\x1b[K");  // erases the progress line
+  const bool has_progress = terminal_of(STDERR_FILENO).can_redraw;
+  system.on_event(level, [&system, has_progress](const std::string& process, const LogEvent& event) {
+    if (has_progress) print_to(stderr, "{}", kEraseLine);
     log(event.level,
         fmt::format("{:.3f} s {}: {}", to_seconds(system.now() - system.begin()), process, event.text));
   });
