@@ -62,6 +62,7 @@ class RecordingWriter {
   void on_failure(std::function<void(const std::string& failure)> callback) {
     mcap_.on_failure(std::move(callback));
   }
+  const std::string& failure() const { return mcap_.failure(); }
   std::uint64_t messages() const { return mcap_.messages(); }
   /// Finishes the file. Throws std::runtime_error if any write has failed.
   void close() { mcap_.close(); }

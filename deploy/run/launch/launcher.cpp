@@ -11,7 +11,6 @@
 #include "common/process/stop_signals.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/senders.hpp"
-#include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_command.hpp"
 #include "deploy/run/launch/process_group.hpp"
 #include "deploy/run/launch/process_keys.hpp"
@@ -84,7 +83,6 @@ Report Launcher::run() {
     is_interrupted_ = true;
     bus_.stop();
   });
-  if (before_.deaths.empty()) require_free_domain(options_.dds);
   began_ = bus_.now();
   try {
     work();
@@ -103,12 +101,11 @@ Report Launcher::run() {
   if (ready_at_) report.startup_s = to_seconds(*ready_at_ - began_);
   report.processes = children_.resource_use();
   report.director_deaths = before_.deaths;
-  finish_recording(report);
   report.recording_failure = recording_failure_;
   return report;
 }
 
-void Launcher::finish_recording(const Report& report) {
+void Launcher::finish_recording(Report& report) {
   if (!recording_) return;
   recording_->add_report(bus_.now(), to_json(report));
   try {
@@ -116,6 +113,7 @@ void Launcher::finish_recording(const Report& report) {
   } catch (const std::runtime_error&) {
     // on_failure() has already reported the failure.
   }
+  report.recording_failure = recording_failure_;
 }
 
 void Launcher::work() {
@@ -141,7 +139,7 @@ void Launcher::work() {
 
 void Launcher::print(const std::string& line, LogLevel level) {
   if (level >= options_.log_level) children_.log(log_line(options_.dds.participant, level, line));
-  if (!options_.is_quiet) display_.print(line);
+  if (!options_.is_quiet) display_.print(line, level);
 }
 
 void Launcher::print_new_epochs() {

@@ -54,6 +54,8 @@ class Launcher {
   void set_director(RunDirector director) { director_ = std::move(director); }
 
   Report run();
+  /// Adds the report to the recording and closes it. If that fails, adds the reason to the report.
+  void finish_recording(Report& report);
 
   // The following functions are for directors. Processes have the same names as in the report.
   DdsBus& bus() { return bus_; }
@@ -85,8 +87,6 @@ class Launcher {
   void start_monitor();
   /// Runs until the run is over.
   void work();
-  /// Adds the report to the recording and closes it. Stores the reason of a failure in recording_failure_.
-  void finish_recording(const Report& report);
   void print_last_lines(const std::string& process);
   /// Whether the run is over; sets abort_reason_ if the run must be aborted.
   bool check_end();

@@ -16,8 +16,10 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 #include "common/file/console.hpp"
+#include "common/file/folder.hpp"
 #include "common/file/output_file.hpp"
 
 // glibc 2.36 declares the functions of this header without C linkage.
@@ -124,10 +126,8 @@ std::string sibling_program_path(const std::string& name) {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
-ProcessGroup::ProcessGroup(const std::string& log_path) {
-  const auto folder = std::filesystem::path(log_path).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+ProcessGroup::ProcessGroup(const std::string& log_path) : log_path_(log_path) {
+  create_folder_of(log_path);
   log_ = open_output(log_path).release();
 }
 
@@ -140,7 +140,11 @@ ProcessGroup::~ProcessGroup() {
   std::fclose(log_);
 }
 
-void ProcessGroup::log(const std::string& line) { print_to(log_, "{}\n", line); }
+void ProcessGroup::log(const std::string& line) {
+  const int error = write_text(log_, line + "\n");
+  if (error == 0 || std::exchange(has_lost_lines_, true)) return;
+  print_to(stderr, "cannot write {}: {}; lines are missing from here on\n", log_path_, std::strerror(error));
+}
 
 pid_t ProcessGroup::start(const ChildSpec& spec) {
   if (spec.argv.empty() || access(spec.argv[0].c_str(), X_OK) != 0) {

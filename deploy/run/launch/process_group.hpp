@@ -60,7 +60,9 @@ class ProcessGroup : public Processes {
   /// Asks children to end, and waits for them up to the timeout.
   void end_all(Milliseconds timeout, const std::function<bool(const Child&)>& should_end);
 
+  std::string log_path_;
   std::FILE* log_;
+  bool has_lost_lines_ = false;  ///< whether a line could not be written to the log
   std::vector<std::unique_ptr<Child>> children_;
   std::map<std::string, ProcessUse> resource_use_;
   bool is_terminating_ = false;

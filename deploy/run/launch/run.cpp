@@ -6,17 +6,23 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <stdexcept>
+#include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/console.hpp"
 #include "common/file/temporary_folder.hpp"
+#include "common/file/write_file.hpp"
 #include "common/messaging/dds/free_domain.hpp"
 #include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
+#include "common/terminal/terminal.hpp"
+#include "deploy/audit/metrics/progress.hpp"
 #include "deploy/run/launch/hosts/run_hosts.hpp"
 #include "deploy/run/launch/launcher.hpp"
+#include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_keeper.hpp"
 #include "deploy/run/launch/process_keys.hpp"
+#include "deploy/run/launch/separate_process.hpp"
 
 namespace sidestep {
 
@@ -34,6 +40,31 @@ std::optional<std::filesystem::file_time_type> written_at(const std::string& fil
   std::error_code error;
   const auto time = std::filesystem::last_write_time(file, error);
   return error ? std::nullopt : std::optional(time);
+}
+
+void print_verdict(const Report& report) {
+  const std::string text = summary(report);
+  const bool has_colours = terminal_of(STDOUT_FILENO).has_colours;
+  print_to(stdout, "\n{}: {}", report.scenario,
+           has_colours ? with_coloured_verdict(text, report.verdict()) : text);
+}
+
+/// Throws std::runtime_error if a file cannot be written, before robots start in vain.
+void require_outputs(const RunOptions& options, const std::string& report_path, const std::string& log_path) {
+  require_replaceable(report_path);
+  require_openable(log_path);
+  if (!options.recording_file.empty()) require_openable(options.recording_file);
+}
+
+/// Prints an error and returns its exit code if another run uses the domain; otherwise returns 0. Listens in
+/// a process of its own, because the process that keeps the others must not use the network.
+int check_domain(const DdsSettings& dds) {
+  return run_separately([&dds] {
+    return run_and_report_errors("sidestep run", [&dds] {
+      require_free_domain(dds);
+      return 0;
+    });
+  });
 }
 
 }  // namespace
@@ -65,13 +96,14 @@ int run(const RunOptions& given) {
       {{"SCENARIO", options.scenario_file}, {"--hosts", options.hosts_file}},
       {{"the log", log_path}, {"--report", report_path}, {"--record", options.recording_file}});
   require_keys(options, scenario);
+  require_outputs(options, report_path, log_path);
+  if (const int exit_code = check_domain(options.dds); exit_code != 0) return exit_code;
   const TemporaryFolder robot_memory;  // starts empty with each run
   options.floor.memory_folder = robot_memory.path();
   ProcessGroup group(log_path);
   const auto finish = [&](const Report& report) {
     const std::string problem = try_write_report(report, report_path);
-    print_to(stdout, "\n{}: {}{}log: {}\n", scenario.name, summary(report),
-             problem.empty() ? "report: " + report_path + "\n" : "", log_path);
+    print_to(stdout, "{}log: {}\n", problem.empty() ? "report: " + report_path + "\n" : "", log_path);
     if (!problem.empty()) throw std::runtime_error(problem);
     return exit_code(report.verdict());
   };
@@ -83,7 +115,15 @@ int run(const RunOptions& given) {
       if (!deaths.empty() && !options.recording_file.empty())
         options.recording_file = numbered(options.recording_file, deaths.size() + 1);
       const Predecessors before{deaths, std::chrono::steady_clock::now() - began};
-      return finish(Launcher(options, scenario, hosts.placement(), hosts.network(), processes, before).run());
+      Launcher launcher(options, scenario, hosts.placement(), hosts.network(), processes, before);
+      Report report = launcher.run();
+      // Before anything is written, because that may fail.
+      print_verdict(report);
+      const bool had_failed = !report.recording_failure.empty();
+      launcher.finish_recording(report);
+      if (!had_failed && !report.recording_failure.empty())
+        print_to(stdout, "failed: {}\n", report.failure_reason());
+      return finish(report);
     });
   };
   work.on_director_lost = [&](const std::string& reason) {
@@ -98,6 +138,7 @@ int run(const RunOptions& given) {
     report.scenario = scenario.name;
     report.robots = static_cast<int>(scenario.robots.size());
     report.abort_reason = "the process that directs the run died: " + reason;
+    print_verdict(report);
     (void)finish(report);
   };
   return keep_processes(group, work);

@@ -14,6 +14,8 @@
 #include "common/log/log.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/output_paths.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 #include "deploy/audit/metrics/progress.hpp"
 #include "deploy/inspect/record/recording.hpp"
 #include "deploy/trial/simulate/campaign/build_commit.hpp"
@@ -37,28 +39,32 @@ std::string report_path(const SimulateOptions& options, const std::string& scena
   return options.report_file.empty() ? default_report_path(scenario, options.seed) : options.report_file;
 }
 
-/// Throws UsageError if an output would overwrite another file of the run.
+/// Throws UsageError if an output would overwrite another file of the run, and std::runtime_error if one
+/// cannot be written.
 void check_paths(const SimulateOptions& options, const std::string& scenario) {
-  require_separate_outputs({{"SCENARIO", options.scenario_file}},
-                           {{"--report", report_path(options, scenario)},
-                            {"--record", options.recording_file},
-                            {"--svg", options.picture_file}});
+  const std::string report = report_path(options, scenario);
+  require_separate_outputs(
+      {{"SCENARIO", options.scenario_file}},
+      {{"--report", report}, {"--record", options.recording_file}, {"--svg", options.picture_file}});
+  require_replaceable(report);
+  if (!options.recording_file.empty()) require_openable(options.recording_file);
+  if (!options.picture_file.empty()) require_replaceable(options.picture_file);
 }
 
 /// Shows the progress line on stderr if that is a terminal; stdout is for the summary.
 class ProgressLine {
  public:
   void update(const SimSystem& system) {
-    if (!is_terminal_ || steady_clock::now() < next_) return;
+    if (!is_shown_ || steady_clock::now() < next_) return;
     next_ = steady_clock::now() + kDisplayPeriod;
-    print_to(stderr, "\r\x1b[K{}", progress_line(system.metrics(), system.now()));
+    print_to(stderr, "{}", redrawn_line(progress_line(system.metrics(), system.now()), STDERR_FILENO));
   }
   ~ProgressLine() {
-    if (is_terminal_) print_to(stderr, "\r\x1b[K");
+    if (is_shown_) print_to(stderr, "{}", kEraseLine);
   }
 
  private:
-  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+  bool is_shown_ = terminal_of(STDERR_FILENO).can_redraw;
   steady_clock::time_point next_{};
 };
 
@@ -103,7 +109,9 @@ class SimRecorder {
     if (bus_) stopped_at_ = bus_->now();
     bus_.reset();
   }
-  /// Adds the report to the recording. If messages could not be recorded, adds the reason to the report.
+  /// Why messages could not be recorded; empty: there was no problem.
+  std::string failure() const { return writer_ ? writer_->failure() : ""; }
+  /// Adds the report to the recording and closes it. If that fails, adds the reason to the report.
   void close(Report& report) {
     if (!writer_) return;
     writer_->add_report(stopped_at_, to_json(report));
@@ -145,17 +153,25 @@ class LaserPictureRecorder {
   SimBus bus_;
 };
 
-/// Completes, writes and prints the report, and returns the exit code.
+/// Completes, prints and writes the report, and returns the exit code. Prints it first, because writing may
+/// fail.
 int finish(const SimulateOptions& options, Report& report, SimRecorder& recorder,
            const std::function<std::string()>& picture, steady_clock::time_point begin) {
   report.program = "simulate";
   report.seed = options.seed;
   report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
+  report.recording_failure = recorder.failure();
+  const std::string text = summary(report);
+  const double speed = report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0;
+  print_to(stdout, "{}, seed {}: {}{:.1f} times as fast as real time\n", report.scenario, options.seed,
+           terminal_of(STDOUT_FILENO).has_colours ? with_coloured_verdict(text, report.verdict()) : text,
+           speed);
+  const bool had_failed = !report.recording_failure.empty();
   recorder.close(report);
+  if (!had_failed && !report.recording_failure.empty())
+    print_to(stdout, "failed: {}\n", report.failure_reason());
   const std::string path = report_path(options, report.scenario), problem = try_write_report(report, path);
-  print_to(stdout, "{}, seed {}: {}{:.1f} times as fast as real time\n{}", report.scenario, options.seed,
-           summary(report), report.duration_s > 0 ? report.robot_time_s / report.duration_s : 0.0,
-           problem.empty() ? "report: " + path + "\n" : "");
+  if (problem.empty()) print_to(stdout, "report: {}\n", path);
   if (!options.picture_file.empty()) write_file(options.picture_file, picture());
   if (!problem.empty()) throw std::runtime_error(problem);
   return exit_code(report.verdict());

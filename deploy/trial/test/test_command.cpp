@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
 #include <iterator>
 #include <memory>
 
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/messaging/dds/free_domain.hpp"
 #include "common/process/exit_code.hpp"
@@ -47,11 +49,10 @@ TestResult run_test(const FaultTest& test, std::uint64_t seed, const TestOptions
 
 void print_result(const TestResult& result) {
   const std::vector<std::string> failures = result.failures();
-  fmt::print("{}, {} expectations, {:.1f} s in {:.1f} s\n", failures.empty() ? "passed" : "FAILED",
-             result.expectations.size(), result.run_s, result.wall_s);
-  for (const std::string& failure : failures) fmt::print("  {}\n", failure);
-  if (!failures.empty() && !result.log_file.empty()) fmt::print("  log: {}\n", result.log_file);
-  std::fflush(stdout);
+  print_to(stdout, "{}, {} expectations, {:.1f} s in {:.1f} s\n", failures.empty() ? "passed" : "FAILED",
+           result.expectations.size(), result.run_s, result.wall_s);
+  for (const std::string& failure : failures) print_to(stdout, "  {}\n", failure);
+  if (!failures.empty() && !result.log_file.empty()) print_to(stdout, "  log: {}\n", result.log_file);
 }
 
 /// Runs each test with each seed, until the user interrupts.
@@ -60,8 +61,7 @@ std::vector<TestResult> run_all(const std::vector<FaultTest>& tests, const TestO
   std::vector<TestResult> results;
   for (const FaultTest& test : tests) {
     for (std::uint64_t seed = options.seeds.first;; ++seed) {
-      fmt::print("{}, seed {}: ", test.file, seed);
-      std::fflush(stdout);
+      print_to(stdout, "{}, seed {}: ", test.file, seed);
       results.push_back(run_test(test, seed, options, dds));
       print_result(results.back());
       if (results.back().abort_reason == kInterrupted) return results;
@@ -74,8 +74,11 @@ std::vector<TestResult> run_all(const std::vector<FaultTest>& tests, const TestO
 }  // namespace
 
 int run_tests(const TestOptions& options) {
+  // The results are written even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
   std::vector<FaultTest> tests;
   for (const std::string& file : options.files) tests.push_back(load_fault_test(file));
+  if (!options.junit_file.empty()) require_replaceable(options.junit_file);
   DdsSettings dds;
   dds.interface = options.interface;
   dds.keys = options.keys;
@@ -84,7 +87,7 @@ int run_tests(const TestOptions& options) {
   if (options.is_over_dds) dds.domain = options.domain ? *options.domain : free_domain.emplace().number();
   const std::vector<TestResult> results = run_all(tests, options, dds);
   const auto passed = std::ranges::count_if(results, &TestResult::passed);
-  fmt::print("{} of {} runs passed\n", passed, results.size());
+  print_to(stdout, "{} of {} runs passed\n", passed, results.size());
   if (!options.junit_file.empty()) write_file(options.junit_file, junit_xml(results));
   return passed == std::ssize(results) ? 0 : kExitFailure;
 }

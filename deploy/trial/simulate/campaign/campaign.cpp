@@ -6,12 +6,15 @@
 #include <fmt/format.h>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <thread>
 #include <unistd.h>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 #include "deploy/trial/simulate/campaign/build_commit.hpp"
 #include "deploy/trial/simulate/campaign/campaign_summary.hpp"
 #include "deploy/trial/simulate/campaign/results_file.hpp"
@@ -27,7 +30,8 @@ using std::chrono::steady_clock;
 constexpr auto kTerminalPeriod = std::chrono::milliseconds(500);
 constexpr auto kLinePeriod = std::chrono::seconds(10);
 
-/// Progress on stderr: one line that is redrawn in a terminal, elsewhere one line every ten seconds.
+/// Progress on stderr: one line that is redrawn in a terminal, elsewhere one line every ten seconds. The most
+/// important figures come first, because a narrow terminal shows only the beginning.
 class CampaignProgress {
  public:
   /// `resumed_hours`: robot-hours taken from a results file.
@@ -37,23 +41,22 @@ class CampaignProgress {
   void update(const CampaignSummary& summary) {
     const auto now = steady_clock::now();
     if (now < next_) return;
-    next_ = now + (is_terminal_ ? steady_clock::duration(kTerminalPeriod) : kLinePeriod);
+    next_ = now + (can_redraw_ ? steady_clock::duration(kTerminalPeriod) : kLinePeriod);
     const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
     const double hours = summary.robot_hours();
-    print_to(
-        stderr,
-        "{}{} of {} seeds, {:.2f} robot-hours, {:.0f} robot-seconds per second, {} contacts, {} failed{}",
-        is_terminal_ ? "\r\x1b[K" : "", summary.seeds(), seeds_, hours,
-        elapsed_s > 0 ? (hours - resumed_hours_) * 3600 / elapsed_s : 0, summary.contacts(), summary.failed(),
-        is_terminal_ ? "" : "\n");
+    const std::string line = fmt::format(
+        "{} of {} seeds, {} failed, {} contacts, {:.2f} robot-hours, {:.0f} robot-seconds per second",
+        summary.seeds(), seeds_, summary.failed(), summary.contacts(), hours,
+        elapsed_s > 0 ? (hours - resumed_hours_) * 3600 / elapsed_s : 0);
+    print_to(stderr, "{}", can_redraw_ ? redrawn_line(line, STDERR_FILENO) : line + "\n");
   }
   /// Clears the line before other output.
   void clear() const {
-    if (is_terminal_) print_to(stderr, "\r\x1b[K");
+    if (can_redraw_) print_to(stderr, "{}", kEraseLine);
   }
 
  private:
-  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+  bool can_redraw_ = terminal_of(STDERR_FILENO).can_redraw;
   std::uint64_t seeds_;
   double resumed_hours_;
   steady_clock::time_point begin_ = steady_clock::now();
@@ -99,17 +102,32 @@ std::vector<std::uint64_t> remaining_seeds(const CampaignOptions& options,
   }
 }
 
+/// Adds a result to the file. If that fails, prints the reason and returns it, and the campaign continues
+/// without the file, which keeps the earlier results.
+std::string add_result(std::optional<ResultsFile>& results, const TrialResult& result) {
+  try {
+    results->add(result);
+  } catch (const std::runtime_error& error) {
+    results.reset();
+    print_to(stderr, "{}; the campaign continues without it\n", error.what());
+    return error.what();
+  }
+  return "";
+}
+
 }  // namespace
 
 int run_campaign(const CampaignOptions& options) {
   std::optional<Scenario> scenario;
   if (!options.scenario_file.empty()) scenario = load_scenario(options.scenario_file);
+  if (!options.report_file.empty()) require_replaceable(options.report_file);
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const auto begin = steady_clock::now();
   print_to(stdout, "seeds {}..{}, {:g} s each, at commit {}\n", options.first_seed, options.last_seed,
            to_seconds(options.duration), kBuildCommit);
   CampaignSummary summary;
   std::optional<ResultsFile> results;
+  std::string results_problem;
   const std::vector<std::uint64_t> remaining = remaining_seeds(options, results, summary);
   CampaignProgress progress(options.last_seed - options.first_seed + 1, summary.robot_hours());
   WorkerPool pool(
@@ -125,8 +143,8 @@ int run_campaign(const CampaignOptions& options) {
         else
           result.failures.push_back("the worker process died: " + death_reason);
         summary.add(result);
-        if (results) results->add(result);
         progress.clear();
+        if (results) results_problem = add_result(results, result);
         if (!result.failures.empty()) print_failure(options, scenario, result);
         progress.update(summary);
       });
@@ -136,6 +154,7 @@ int run_campaign(const CampaignOptions& options) {
            std::chrono::duration<double>(steady_clock::now() - begin).count(),
            summary.failed() == 0 ? "passed" : "failed");
   if (!options.report_file.empty()) write_file(options.report_file, summary.json());
+  if (!results_problem.empty()) throw std::runtime_error(results_problem);
   return summary.failed() == 0 ? 0 : 1;
 }
 

@@ -46,7 +46,7 @@ void ResultsFile::read(const std::string& campaign) {
 
 void ResultsFile::write(const std::string& line) {
   if (std::fputs((line + '\n').c_str(), file_.get()) < 0 || std::fflush(file_.get()) != 0)
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+    throw_unwritable(path_, std::strerror(errno));
 }
 
 void ResultsFile::add(const TrialResult& result) { write(to_line(result)); }

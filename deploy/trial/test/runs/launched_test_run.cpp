@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_group.hpp"
 #include "deploy/run/launch/process_keys.hpp"
 #include "deploy/trial/fault/fault_schedule.hpp"
@@ -60,12 +61,13 @@ class LaunchedTestRun {
 
   RunOutcome run() {
     const Report report = launcher_.run();
-    write_report(report, options_.report_file);
     RunOutcome outcome;
     if (schedule_) outcome.problems = schedule_->problems();
     std::ranges::copy(faults_.problems(), std::back_inserter(outcome.problems));
     outcome.history = observer_.history();
     outcome.history.end = run_end(report, observer_, ended_at_.value_or(launcher_.bus().now()));
+    if (const std::string problem = try_write_report(report, options_.report_file); !problem.empty())
+      outcome.problems.push_back({outcome.history.end.at_s, "write the report: " + problem});
     return outcome;
   }
 
@@ -101,6 +103,7 @@ RunOutcome run_over_dds(const FaultTest& test, const LaunchOptions& options) {
   const RunHosts hosts(hosts_of(test, options), test.scenario);
   const RunOptions run = run_options(test, options, hosts);
   const std::string log_file = std::filesystem::path(run.report_file).replace_extension(".log").string();
+  require_free_domain(run.dds);
   ProcessGroup processes(log_file);
   Launcher launcher(run, test.scenario, hosts.placement(), hosts.network(), processes);
   RunOutcome outcome = LaunchedTestRun(test, hosts, run, launcher).run();
