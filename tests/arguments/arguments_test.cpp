@@ -4,13 +4,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
+#include <functional>
 #include <sys/stat.h>
 
 #include "common/file/temporary_folder.hpp"
 #include "tests/arguments/program_run.hpp"
 #include "tests/arguments/table.hpp"
 #include "tests/catch.hpp"
+#include "tests/needs_root.hpp"
 #include "tests/sanitized.hpp"
+#include "tests/small_disk.hpp"
 #include "tests/test_domain.hpp"
 
 namespace sidestep::arguments {
@@ -196,6 +199,69 @@ TEST_CASE("invalid command lines are refused with the reason", "[slow]") {
   const std::vector<Row> rows = single_rows(runner.table(), runner.placeholders());
   REQUIRE(rows.size() > 150);
   for (const Row& row : rows) runner.check(row);
+}
+
+/// Folders in which nothing can be written, each with the part of the message that names the cause.
+class FlawedFolders {
+ public:
+  /// Makes a folder of keys in each folder before it gets its flaw.
+  explicit FlawedFolders(const std::function<void(const std::string& folder)>& make_keys) {
+    for (const SmallDisk* disk : {&full_, &read_only_}) make_keys(disk->file("keys"));
+    full_.fill();
+    read_only_.make_read_only();
+    fs::permissions(closed_.path(), fs::perms(0555));
+  }
+  std::string path(const std::string& flaw) const {
+    return flaw == "full" ? full_.path() : flaw == "read-only" ? read_only_.path() : closed_.path();
+  }
+  std::string cause(const std::string& flaw) const {
+    if (flaw == "full") return "No space left on device";
+    if (flaw == "read-only") return "Read-only file system";
+    return "user root may not write " + closed_.path() + ": " + closed_.path() +
+           " belongs to root and has mode 0555";
+  }
+
+ private:
+  SmallDisk full_{512}, read_only_{512};
+  TemporaryFolder closed_;
+};
+
+/// The command as root without the right to ignore permissions.
+std::vector<std::string> without_override(std::vector<std::string> command) {
+  command[0] = (fs::read_symlink("/proc/self/exe").parent_path() / command[0]).string();
+  command.insert(command.begin(), {"/usr/bin/setpriv", "--bounding-set=-dac_override,-dac_read_search"});
+  return command;
+}
+
+TEST_CASE("every command that writes refuses a full, read-only or closed folder, and names the true cause",
+          "[slow]") {
+  SIDESTEP_NEEDS_ROOT();
+  Runner runner;
+  const auto run = [&](const std::vector<std::string>& command) {
+    const ProgramRun done = run_program(command, runner.file(""), 60s, SIGKILL);
+    INFO(command[0] << " " << command[1] << "\n" << done.errors);
+    REQUIRE((done.exit_code == 0 || command[1] == "simulate"));
+  };
+  const FlawedFolders folders([&](const std::string& keys) {
+    run({"sidestep", "keys", "init", keys});
+    run({"sidestep", "keys", "issue", "agent 3", "--keys", keys});
+  });
+  Placeholders placeholders = runner.placeholders();
+  placeholders["recording"] = runner.file("short.mcap");
+  placeholders["frame"] = runner.file("frame.png");
+  run({"sidestep", "simulate", placeholders["scenario"], "--seconds", "0.2", "--record",
+       placeholders["recording"]});
+  run({"sidestep", "frame", placeholders["images"], placeholders["frame"]});
+  const std::vector<WritingCommand> commands = writing_commands(runner.table());
+  REQUIRE(commands.size() > 20);
+  for (const auto& [flaws, command] : commands) {
+    for (const std::string& flaw : flaws) {
+      placeholders["out"] = folders.path(flaw);
+      Row row{1, {folders.path(flaw), folders.cause(flaw)}, words_of(command, placeholders)};
+      if (flaw == "closed") row.command = without_override(row.command);
+      runner.check(row);
+    }
+  }
 }
 
 }  // namespace sidestep::arguments

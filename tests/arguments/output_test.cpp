@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <csignal>
 #include <filesystem>
+#include <tuple>
+#include <utility>
 
 #include "common/file/temporary_folder.hpp"
 #include "tests/arguments/program_run.hpp"
 #include "tests/catch.hpp"
+#include "tests/needs_root.hpp"
 #include "tests/sanitized.hpp"
+#include "tests/small_disk.hpp"
+#include "tests/taken_port.hpp"
 #include "tests/test_domain.hpp"
 #include "tests/text_of.hpp"
 
@@ -17,6 +22,7 @@ using arguments::run_program;
 using namespace std::chrono_literals;
 
 const std::string kScenario = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+const std::string kImages = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing-images.yaml";
 constexpr auto kPatience = kIsSanitized ? 240s : 60s;
 
 /// Runs a command of bash, in which "$0" is the program; its exit code is that of the first program in a
@@ -29,9 +35,9 @@ ProgramRun run_in_shell(const std::string& command, const TemporaryFolder& folde
 }
 
 struct RunFixture {
-  std::string command(const std::string& more) const {
-    return "\"$0\" run " + kScenario + " --seconds 1 --domain " + std::to_string(domain.number()) + " " +
-           more;
+  std::string command(const std::string& more, int seconds = 1) const {
+    return "\"$0\" run " + kScenario + " --seconds " + std::to_string(seconds) + " --domain " +
+           std::to_string(domain.number()) + " " + more;
   }
   std::string text(const std::string& name) const { return text_of(folder.file(name)); }
 
@@ -80,17 +86,163 @@ TEST_CASE(
                  ContainsSubstring("\"violations\": 0"));
 }
 
-TEST_CASE("a run that cannot write its report still prints its summary") {
+TEST_CASE("a run that cannot write its report still prints its verdict, and names the cause") {
   const RunFixture f;
   const std::string command = GENERATE("run", "simulate");
-  std::filesystem::create_directory(f.folder.file("taken"));
-  const ProgramRun run =
-      command == "run" ? run_in_shell(f.command("--report taken >out"), f.folder)
-                       : run_in_shell("\"$0\" simulate " + kScenario + " --report /dev/full >out", f.folder);
-  CAPTURE(command);
+  // From 1 kB on, files are as on a full disk; the reader of the output is not limited.
+  const std::string limited = "(ulimit -f 1; exec " +
+                              (command == "run" ? f.command("--report r.json")
+                                                : "\"$0\" simulate " + kScenario + " --report r.json") +
+                              ") | cat >out";
+  const ProgramRun run = run_in_shell(limited, f.folder);
+  CAPTURE(command, run.errors);
   CHECK(run.exit_code == 1);
-  CHECK_THAT(run.errors, ContainsSubstring("cannot write "));
+  CHECK_THAT(run.errors, ContainsSubstring("cannot write r.json: File too large"));
   CHECK_THAT(f.text("out"), ContainsSubstring("robots arrived") && !ContainsSubstring("report: "));
+  CHECK_THAT(f.text("out"),
+             ContainsSubstring(command == "run" ? "\nfailed: time limit of 1 s" : "\npassed\n"));
+  CHECK_FALSE(std::filesystem::exists(f.folder.file("r.json")));
+  if (command == "run")
+    CHECK_THAT(run.errors,
+               ContainsSubstring("cannot write r.log: File too large; lines are missing from here on"));
+}
+
+TEST_CASE("a run whose report or recording cannot be written ends before it starts anything") {
+  const RunFixture f;
+  std::filesystem::create_directory(f.folder.file("taken"));
+  const auto [options, message] =
+      GENERATE(std::pair("--report taken", "cannot write taken: Is a directory"),
+               std::pair("--report r.json --record taken", "cannot write taken: Is a directory"),
+               std::pair("--report r.json --record none/a.mcap", "the folder none does not exist"));
+  const ProgramRun run = run_in_shell(f.command(options + std::string(" >out")), f.folder);
+  CAPTURE(options, run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring(message));
+  CHECK(f.text("out").empty());
+  CHECK_FALSE(std::filesystem::exists(f.folder.file("r.json")));
+  CHECK_FALSE(std::filesystem::exists(f.folder.file("r.log")));
+}
+
+TEST_CASE("a monitor whose port is taken announces nothing and keeps an earlier recording") {
+  const RunFixture f;
+  const TakenPort port;
+  const std::string command = "echo earlier >r.mcap; \"$0\" monitor " + kScenario +
+                              " --record r.mcap --port " + port.number() + " --domain " +
+                              std::to_string(f.domain.number()) + " >out";
+  const ProgramRun run = run_in_shell(command, f.folder);
+  CAPTURE(run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring("cannot listen on 127.0.0.1:" + port.number()));
+  CHECK(f.text("out").empty());
+  CHECK(f.text("r.mcap") == "earlier\n");
+}
+
+TEST_CASE("a run in a domain that another run uses keeps all files") {
+  const RunFixture f;
+  // The second run begins once the first one grants, and ends before the first one.
+  const std::string script = f.command("--report first.json >first & first=$!", 30) +
+                             "\nuntil grep -q 'coordinator grants' first; do sleep 0.1; done\n"
+                             "echo earlier | tee r.log >r.mcap\n" +
+                             f.command("--report r.json --record r.mcap >second") +
+                             "\ncode=$?; kill -INT $first; wait $first; exit $code";
+  const ProgramRun run = run_in_shell(script, f.folder);
+  CAPTURE(run.errors);
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.errors, ContainsSubstring("DDS domain " + std::to_string(f.domain.number()) +
+                                           " is in use: another run of crossing"));
+  CHECK(f.text("second").empty());
+  CHECK(f.text("r.log") == "earlier\n");
+  CHECK(f.text("r.mcap") == "earlier\n");
+  CHECK_FALSE(std::filesystem::exists(f.folder.file("r.json")));
+  CHECK_THAT(f.text("first.json"), ContainsSubstring("\"director_deaths\": []"));
+}
+
+TEST_CASE("a recording on a full disk ends with a clear word, and keeps what was written") {
+  SIDESTEP_NEEDS_ROOT();
+  const RunFixture f;
+  const SmallDisk disk(3000);
+  const std::string file = disk.file("r.mcap");
+  const std::string command = GENERATE("run", "simulate", "record");
+  const std::string outputs = "--record " + file + " --report r.json >out";
+  const ProgramRun run =
+      run_in_shell(command == "run" ? f.command(outputs, 30)
+                   : command == "simulate"
+                       ? "\"$0\" simulate " + kScenario + " " + outputs
+                       : f.command("--report r.json >out & run=$!", 30) + "\n\"$0\" record " + kScenario +
+                             " --out " + file + " --domain " + std::to_string(f.domain.number()) +
+                             "; code=$?; kill -INT $run; wait; exit $code",
+                   f.folder);
+  CAPTURE(command, run.errors);
+  CHECK(run.exit_code == 1);
+  const ProgramRun info = run_in_shell("\"$0\" bag info " + file + " >info", f.folder);
+  CHECK(info.exit_code == 1);
+  CHECK_THAT(info.errors, ContainsSubstring("the file was not finished"));
+  const std::string text = f.text("info");
+  const std::size_t begin = text.find(", ") + 2;
+  const std::string messages = text.substr(begin, text.find(" messages") - begin);
+  CHECK(std::stoi(messages) > 100);
+  const std::string failure =
+      file + ": No space left on device; the recording ends after " + messages + " messages";
+  if (command == "record") {
+    CHECK_THAT(run.errors, ContainsSubstring(failure));
+  } else {
+    CHECK_THAT(f.text("out"), ContainsSubstring("\nfailed: ") && ContainsSubstring("recording: " + failure));
+    CHECK_THAT(f.text("r.json"), ContainsSubstring("recording: " + failure));
+  }
+}
+
+TEST_CASE("a campaign whose results file is full goes on, and keeps the results before") {
+  const TemporaryFolder folder;
+  const std::string command =
+      "(ulimit -f 2; exec \"$0\" simulate --faults none --seeds 1..30 --seconds 1 --jobs 1 --results "
+      "results) | cat >out";
+  const ProgramRun run = run_in_shell(command, folder);
+  CAPTURE(run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors,
+             ContainsSubstring("cannot write results: File too large; the campaign continues without it"));
+  CHECK_THAT(text_of(folder.file("out")), ContainsSubstring("30 seeds"));
+  const ProgramRun resumed = run_in_shell(
+      "\"$0\" simulate --faults none --seeds 1..30 --seconds 1 --jobs 1 --results results >out", folder);
+  CHECK_THAT(text_of(folder.file("out")), ContainsSubstring("resuming after "));
+  CHECK_THAT(resumed.errors, !ContainsSubstring("cannot"));
+}
+
+TEST_CASE("a command that waits for something to print ends with the reader of its output") {
+  const RunFixture f;
+  const std::string domain = " --domain " + std::to_string(f.domain.number());
+  const auto [command, exit_code, message] = GENERATE_REF(
+      std::tuple("topic echo world" + domain, 0, ""), std::tuple("topic delay world" + domain, 0, ""),
+      std::tuple("audit " + kScenario + domain, 3, "audit: not judged"));
+  // Without the signal, which would end the program when it prints.
+  const ProgramRun run = run_in_shell("(trap '' PIPE; exec \"$0\" " + command + ") | true", f.folder);
+  CAPTURE(command, run.errors);
+  CHECK(run.exit_code == exit_code);
+  CHECK_THAT(run.errors, ContainsSubstring(message));
+  CHECK(run.wall_s < 10);
+}
+
+TEST_CASE("a command whose output cannot be written says so, and still writes its files") {
+  const RunFixture f;
+  struct Case {
+    std::string command, file;
+  };
+  const auto [command, file] = GENERATE_REF(
+      Case{"keys init new-keys", "new-keys/private"}, Case{"building b --cells 200 --robots 2", "b/map.pgm"},
+      Case{"plan empty --svg p.svg", "p.svg"}, Case{"frame " + kImages + " p.png --detections", "p.png"},
+      Case{"topic list --domain " + std::to_string(f.domain.number()), ""});
+  const auto [output, cause] =
+      GENERATE(std::pair(">/dev/full", "No space left on device"), std::pair(">&-", "it is closed"),
+               std::pair("| true", "the process that read it has ended"));
+  const bool is_pipe = output == std::string("| true");
+  const ProgramRun run =
+      run_in_shell(is_pipe ? "(trap '' PIPE; sleep 0.3; exec \"$0\" " + command + ") | true"
+                           : "\"$0\" " + command + " " + output,
+                   f.folder);
+  CAPTURE(command, output, run.errors);
+  CHECK(run.exit_code == 1);
+  CHECK_THAT(run.errors, ContainsSubstring(std::string("cannot write to standard output: ") + cause));
+  if (!file.empty()) CHECK(std::filesystem::exists(f.folder.file(file)));
 }
 
 TEST_CASE("a simulated run ends normally if stderr is closed or its disk is full") {

@@ -158,6 +158,13 @@ std::vector<Row> single_rows(const std::vector<Section>& table, const Placeholde
   return rows;
 }
 
+std::vector<WritingCommand> writing_commands(const std::vector<Section>& table) {
+  std::vector<WritingCommand> commands;
+  for (const auto& parts : section(table, "writes").rows)
+    commands.push_back({words_of(parts.at(0), {}), parts.at(1)});
+  return commands;
+}
+
 std::vector<std::string> commands_of(const std::vector<Section>& table, const std::string& heading) {
   std::vector<std::string> commands;
   for (const auto& parts : section(table, heading).rows) commands.push_back(parts.at(0));

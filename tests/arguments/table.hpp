@@ -39,6 +39,13 @@ using Placeholders = std::map<std::string, std::string>;
 [[nodiscard]] std::vector<Row> single_rows(const std::vector<Section>& table,
                                            const Placeholders& placeholders);
 
+/// A command of the section "writes".
+struct WritingCommand {
+  std::vector<std::string> flaws;  ///< "full", "read-only" or "closed"
+  std::string command;             ///< with {out} for the folder with the flaw
+};
+[[nodiscard]] std::vector<WritingCommand> writing_commands(const std::vector<Section>& table);
+
 /// The commands of a section such as "yaml"; {file} remains.
 [[nodiscard]] std::vector<std::string> commands_of(const std::vector<Section>& table,
                                                    const std::string& heading);

@@ -11,7 +11,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/file/temporary_folder.hpp"
 #include "tests/catch.hpp"
+#include "tests/forked.hpp"
 #include "tests/text_of.hpp"
 
 // glibc 2.36 declares the functions of this header without C linkage.
@@ -316,6 +318,24 @@ TEST_CASE("no child outlives its launcher, even after SIGKILL") {
 
 TEST_CASE("programs are found in the folder of the running program") {
   CHECK(std::filesystem::exists(sibling_program_path("unit_deploy_launch")));
+}
+
+TEST_CASE("a log on a full disk is reported once, and the children go on") {
+  const TemporaryFolder folder;
+  const std::string errors = forked([&]() -> std::string {
+    const std::string file = folder.file("errors");
+    dup2(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+    ProcessGroup group("/dev/full");
+    group.start(shell("child", "echo one; echo two"));
+    const bool has_ended = group.poll(kDeadline).size() == 1;
+    const bool has_lines = group.last_lines("child") == std::vector<std::string>{"one", "two"};
+    return (has_ended && has_lines ? "" : "lost: ") + text_of(file);
+  });
+  CHECK(errors == "cannot write /dev/full: No space left on device; lines are missing from here on\n");
+}
+
+TEST_CASE("a log in a folder that cannot be created is refused with the cause") {
+  CHECK_THROWS_WITH(ProcessGroup("/dev/null/r.log"), "cannot write /dev/null/r.log: Not a directory");
 }
 
 }  // namespace sidestep
