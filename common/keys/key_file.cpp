@@ -5,8 +5,8 @@
 #include <openssl/bio.h>
 #include <stdexcept>
 
-#include "common/file/read_file.hpp"
 #include "common/file/permission.hpp"
+#include "common/file/read_file.hpp"
 
 namespace sidestep {
 

@@ -5,18 +5,22 @@
 #include <filesystem>
 #include <unistd.h>
 
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
+#include "common/terminal/redrawn_text.hpp"
+#include "common/terminal/terminal.hpp"
 #include "deploy/trial/simulate/campaign/build_commit.hpp"
 
 namespace sidestep {
 
 void StudyProgress::operator()(std::size_t done, std::size_t of) {
-  const bool is_terminal = isatty(STDERR_FILENO) == 1;
+  const bool can_redraw = terminal_of(STDERR_FILENO).can_redraw;
   const auto now = std::chrono::steady_clock::now();
   if (done < of && now < next_) return;
-  next_ = now + (is_terminal ? std::chrono::milliseconds(200) : std::chrono::seconds(5));
-  fmt::print(stderr, "{}{}: {} of {} runs{}", is_terminal ? "\r\x1b[K" : "", name_, done, of,
-             is_terminal && done < of ? "" : "\n");
+  next_ = now + (can_redraw ? std::chrono::milliseconds(200) : std::chrono::seconds(5));
+  const std::string line = fmt::format("{}: {} of {} runs", name_, done, of);
+  print_to(stderr, "{}{}", can_redraw ? redrawn_line(line, STDERR_FILENO) : line,
+           can_redraw && done < of ? "" : "\n");
 }
 
 void require_study_output(const StudyOptions& options) {
