@@ -15,7 +15,11 @@
 #include <vector>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
+#include "common/file/folder.hpp"
+#include "common/file/write_file.hpp"
 #include "common/json/json_text.hpp"
+#include "common/log/log.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
@@ -98,9 +102,8 @@ class MonitorServer {
                           monitor_.now());
     });
     const AccessSettings& access = server_.access();
-    fmt::print("monitor: http://{}:{}/{}\n", access.address, access.port,
-               access.token.empty() ? "" : "#token=" + access.token);
-    std::fflush(stdout);
+    print_to(stdout, "monitor: http://{}:{}/{}\n", access.address, access.port,
+             access.token.empty() ? "" : "#token=" + access.token);
   }
 
   WebServer& server() { return server_; }
@@ -202,9 +205,10 @@ class MonitorServer {
 /// folder.
 std::string new_recording_file(const Scenario& scenario) {
   const std::string report = default_report_path(scenario.name, std::nullopt);
-  const std::filesystem::path folder = "recordings";
-  std::filesystem::create_directories(folder);
-  return (folder / std::filesystem::path(report).filename().replace_extension(".mcap")).string();
+  const std::filesystem::path name = std::filesystem::path(report).filename().replace_extension(".mcap");
+  const std::string path = (std::filesystem::path("recordings") / name).string();
+  create_folder_of(path);
+  return path;
 }
 
 int monitor_system(const MonitorOptions& options) {
@@ -212,7 +216,7 @@ int monitor_system(const MonitorOptions& options) {
   if (!options.file.empty()) scenario = load_scenario(options.file);
   std::optional<MonitorRecorder> recorder;
   if (scenario) recorder.emplace(*scenario, options.file);
-  if (!options.recording_file.empty()) recorder->start(options.recording_file);
+  if (!options.recording_file.empty()) require_openable(options.recording_file);
   DdsBus bus(options.dds);
   MonitorSettings settings;
   settings.scenario = scenario ? &*scenario : nullptr;
@@ -248,6 +252,13 @@ int monitor_system(const MonitorOptions& options) {
   MonitorServer server(options, monitor,
                        {control ? &*control : nullptr, &network, recorder ? &*recorder : nullptr,
                         cameras ? &*cameras : nullptr, fields ? &*fields : nullptr});
+  if (recorder)
+    recorder->on_failure([&](const std::string& failure) {
+      log(LogLevel::kError, "recording: " + failure);
+      monitor.events().add({0, bus.now(), Severity::kError, "recording", failure});
+    });
+  // Only now, because an earlier recording of this name is lost.
+  if (!options.recording_file.empty()) recorder->start(options.recording_file);
   const StopSignals stop_signals([&bus] { bus.stop(); });
   call_periodically(bus, Monitor::kFramePeriod, [&] {
     monitor.take_snapshot();

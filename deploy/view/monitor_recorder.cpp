@@ -5,7 +5,12 @@ namespace sidestep {
 
 void MonitorRecorder::start(const std::string& path) {
   channels_.clear();
+  failure_.clear();
   writer_.emplace(path, recording_header(scenario_, scenario_file_));
+  writer_->on_failure([this](const std::string& failure) {
+    failure_ = failure;
+    if (on_failure_) on_failure_(failure);
+  });
 }
 
 void MonitorRecorder::stop() {
@@ -16,7 +21,7 @@ void MonitorRecorder::stop() {
 }
 
 void MonitorRecorder::add(const AnyMessage& message, Time now) {
-  if (!writer_) return;
+  if (!is_recording()) return;
   auto channel = channels_.find(message.channel);
   if (channel == channels_.end())
     channel =
@@ -25,17 +30,17 @@ void MonitorRecorder::add(const AnyMessage& message, Time now) {
 }
 
 void MonitorRecorder::add_scene(const FloorState& floor, Time now) {
-  if (!writer_ || now < next_scene_) return;
+  if (!is_recording() || now < next_scene_) return;
   next_scene_ = now + RecordingWriter::scene_period(scenario_.robots.size());
   writer_->add_scene(now, floor, scenario_.radius_m);
 }
 
 void MonitorRecorder::add_event(Time at, const std::string& kind, const std::string& text) {
-  if (writer_) writer_->add_event(at, kind, text);
+  if (is_recording()) writer_->add_event(at, kind, text);
 }
 
 void MonitorRecorder::flush() {
-  if (writer_) writer_->flush();
+  if (is_recording()) writer_->flush();
 }
 
 }  // namespace sidestep

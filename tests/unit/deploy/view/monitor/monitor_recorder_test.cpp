@@ -62,6 +62,27 @@ TEST_CASE("a monitor can record several intervals of a run") {
   }
 }
 
+TEST_CASE("a full disk ends the monitor's recording with a message, and another can be started") {
+  const std::string file = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
+  const Scenario scenario = load_scenario(file);
+  const TemporaryFolder folder;
+  MonitorRecorder recorder(scenario, file);
+  std::vector<std::string> failures;
+  recorder.on_failure([&](const std::string& failure) { failures.push_back(failure); });
+  recorder.start("/dev/full");
+  CHECK(failures == std::vector<std::string>{"/dev/full: No space left on device"});
+  CHECK_FALSE(recorder.is_recording());
+  recorder.add_event(Time{}, "bookmark", "lost");
+  recorder.flush();
+  CHECK_THROWS_WITH(recorder.stop(), "/dev/full: No space left on device");
+  recorder.stop();
+  recorder.start("/dev/full");
+  recorder.start(folder.file("a.mcap"));
+  CHECK(recorder.is_recording());
+  recorder.stop();
+  CHECK(failures.size() == 2);
+}
+
 TEST_CASE("the messages of a channel of a recording are found in any interval") {
   const std::string file = SIDESTEP_SOURCE_DIR "/deploy/scenarios/crossing.yaml";
   const Scenario scenario = load_scenario(file);
