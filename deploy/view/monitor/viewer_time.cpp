@@ -10,7 +10,8 @@ Time ViewerTime::update(const History& history, Time clock) {
   if (mode_ == Mode::kLive) return end;
   if (mode_ == Mode::kPlaying) {
     const Time moment = shown_ + from_seconds(speed_ * to_seconds(clock - started_));
-    if (moment > begin && moment < end) return moment;
+    const bool is_at_end = speed_ > 0 ? moment >= end : moment <= begin;
+    if (!is_at_end) return std::clamp(moment, begin, end);
     mode_ = Mode::kPaused;
     shown_ = moment;
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/view/monitor/history.hpp"
 
+#include <tuple>
+
 #include "deploy/view/monitor/viewer_time.hpp"
 #include "tests/catch.hpp"
 
@@ -89,6 +91,30 @@ TEST_CASE("a playback stops at either end, and seeking beyond an end shows the e
   CHECK(time.mode() == ViewerTime::Mode::kPaused);
   time.pause_at(at_ms(123'456));
   CHECK(time.update(history, at_ms(0)) == at_ms(1000));
+}
+
+TEST_CASE("a playback starts at the very start, and a backward one at the very end") {
+  const History history = filled(100);
+  ViewerTime time;
+  for (const auto& [start_ms, speed, then_ms] : {std::tuple{10, 1.0, 110}, std::tuple{1000, -1.0, 900}}) {
+    time.pause_at(at_ms(start_ms));
+    time.play(time.update(history, at_ms(0)), speed, at_ms(0));
+    CHECK(time.update(history, at_ms(0)) == at_ms(start_ms));
+    CHECK(time.mode() == ViewerTime::Mode::kPlaying);
+    CHECK(time.update(history, at_ms(100)) == at_ms(then_ms));
+    CHECK(time.mode() == ViewerTime::Mode::kPlaying);
+  }
+}
+
+TEST_CASE("a playback continues when the history has forgotten the moment that it shows") {
+  History history(20'000, History::WhenFull::kForgetOldest);
+  history.add(snapshot(10));
+  ViewerTime time;
+  time.play(at_ms(10), 1, at_ms(0));
+  for (int i = 2; i <= 1000; ++i) history.add(snapshot(10 * i));
+  REQUIRE(history.first().at > at_ms(100));
+  CHECK(time.update(history, at_ms(90)) == history.first().at);
+  CHECK(time.mode() == ViewerTime::Mode::kPlaying);
 }
 
 }  // namespace sidestep::history_test
