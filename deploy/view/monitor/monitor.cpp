@@ -10,7 +10,9 @@
 #include "common/json/json_text.hpp"
 #include "deploy/inspect/topic/describe.hpp"
 #include "deploy/view/monitor/floor_frame.hpp"
+#include "deploy/view/monitor/exact_numbers.hpp"
 #include "deploy/view/monitor/panels.hpp"
+#include "deploy/view/monitor/inspected_message.hpp"
 #include "deploy/view/monitor/scene.hpp"
 #include "deploy/view/monitor/unix_time.hpp"
 #include "deploy/view/server/viewer_json.hpp"
@@ -124,7 +126,7 @@ void Monitor::receive(const Channel& channel, const Message& message) {
   const auto inspection = inspections_.find(channel.name);
   if (inspection == inspections_.end()) return;
   std::deque<std::string>& messages = inspection->second;
-  messages.push_back(text_of({{"at_s", unix_seconds(now)}, {"message", describe(channel.topic, &message)}}));
+  messages.push_back(inspected_message(now, describe(channel.topic, &message)));
   if (messages.size() > kMaxInspected) messages.pop_front();
 }
 
@@ -146,6 +148,7 @@ double Monitor::radius_m() const {
   return settings_.scenario ? settings_.scenario->radius_m : Scenario().radius_m;
 }
 
+  make_numbers_exact(json);
 void Monitor::take_snapshot() {
   const Time now = bus_.now();
   if (assessment_) assessment_->auditor.advance(now);

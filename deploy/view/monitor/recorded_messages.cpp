@@ -5,13 +5,13 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <variant>
 
-#include "common/json/json_text.hpp"
 #include "common/messaging/topics.hpp"
 #include "deploy/inspect/time_range.hpp"
 #include "deploy/inspect/topic/describe.hpp"
-#include "deploy/view/monitor/unix_time.hpp"
+#include "deploy/view/monitor/inspected_message.hpp"
 
 namespace sidestep {
 namespace {
@@ -54,10 +54,9 @@ std::vector<std::string> RecordedMessages::between(const std::string& channel, T
     if (at > to + kDisorder) break;
     if (at <= from || at > to || message->payload.size() < kEncapsulation) continue;
     if (reader_.channel(*message).topic != channel) continue;
-    const Json json = describe_cdr(*topic, message->payload.subspan(kEncapsulation));
+    Json json = describe_cdr(*topic, message->payload.subspan(kEncapsulation));
     if (json.is_null()) continue;
-    const Json entry{{"at_s", unix_seconds(at)}, {"message", json}};
-    messages.push_back(json_text(entry));
+    messages.push_back(inspected_message(at, std::move(json)));
     bytes += messages.back().size();
     for (; bytes > kMaxBytes && messages.size() > 1; messages.pop_front()) bytes -= messages.front().size();
   }

@@ -6,6 +6,9 @@ const kColours = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#d55e0
 const kSpan_s = 30;
 const kMaxPoints = 6000;
 
+/** A whole number that JavaScript would round; the monitor sends its digits as text. */
+const kLongNumber = /^-?\d{16,20}$/;
+
 /**
  * The numbers of a message by their paths, e.g. "executing.x_m".
  * @param {any} value @param {string} path @param {Map<string, number>} found
@@ -13,6 +16,7 @@ const kMaxPoints = 6000;
 export function numbersOf(value, path, found) {
   if (typeof value === "number") found.set(path, value);
   else if (typeof value === "boolean") found.set(path, value ? 1 : 0);
+  else if (typeof value === "string" && kLongNumber.test(value)) found.set(path, Number(value));
   else if (value && typeof value === "object")
     for (const [key, inner] of Object.entries(value)) numbersOf(inner, path ? `${path}.${key}` : key, found);
   return found;
