@@ -306,9 +306,9 @@ int monitor_recording(const MonitorOptions& options) {
     for (int i = 0; i < 500 && !is_over; ++i) {
       is_over = !bus.play_next(result);
       if (!is_over && bus.now() < next_snapshot) continue;
-      monitor.take_snapshot();
-      next_snapshot = bus.now() + Monitor::kFramePeriod;
       monitor.set_progress(is_over ? 1 : bus.progress());
+      is_over ? monitor.take_last_snapshot() : monitor.take_snapshot();
+      next_snapshot = bus.now() + Monitor::kFramePeriod;
       if (is_over && !result.damage.empty())
         fmt::print(stderr, "{}: {}; earlier messages are shown\n", options.file, result.damage);
     }

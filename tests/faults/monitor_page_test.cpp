@@ -185,7 +185,17 @@ TEST_CASE("the page shows a recording, and a link to a time opens the recording 
   page.open(recording.url());
   REQUIRE(page.wait_until(
       "window.monitor && monitor.frame && document.getElementById('clock').textContent.startsWith('00:')"));
+  // It opens at the first granted moment, with the verdict on the whole recording, and plays from there.
+  CHECK(page.wait_until("document.getElementById('lamp-whole').textContent.includes('promise kept')"));
+  CHECK(page.wait_until(
+      "document.getElementById('clock').textContent.includes(' 0.00 s after the first grant · paused')"));
+  CHECK(page.run("return monitor.frame.sections.robots.rows") ==
+        page.run("return monitor.scene.robots.length"));
+  const Json opened_s = page.run("return monitor.frame.time");
+  page.click("play");
+  CHECK(page.wait_until(fmt::format("monitor.frame.time > {:.3f}", opened_s.get<double>() + 0.2)));
   page.click("live");
+  CHECK(page.wait_until("document.getElementById('clock').textContent.includes('the end')"));
   REQUIRE(page.wait_until("monitor.panels.promise.state === 'kept'"));
   CHECK(page.run("return monitor.panels.promise.contacts") == 0);
   CHECK(page.run("return monitor.events.filter((e) => e.kind === 'arrived').length") ==

@@ -44,6 +44,11 @@ std::size_t History::index_at(Time time) const {
   return after == snapshots_.begin() ? 0 : static_cast<std::size_t>(after - snapshots_.begin()) - 1;
 }
 
+const Snapshot& History::from(Time time) const {
+  const auto found = std::ranges::lower_bound(snapshots_, time, {}, &Snapshot::at);
+  return found == snapshots_.end() ? last() : *found;
+}
+
 const Snapshot& History::stepped(Time time, int steps) const {
   const auto index = static_cast<std::ptrdiff_t>(index_at(time)) + steps;
   const auto last = static_cast<std::ptrdiff_t>(snapshots_.size()) - 1;

@@ -35,6 +35,8 @@ class History {
   const Snapshot& last() const { return snapshots_.back(); }
   /// The last snapshot at or before a time; the first one if there is none.
   const Snapshot& at(Time time) const { return snapshots_[index_at(time)]; }
+  /// The first snapshot at or after a time; the last one if there is none.
+  const Snapshot& from(Time time) const;
   /// The snapshot `steps` after the one at a time (or before it, if negative), limited to the ends of the
   /// history.
   const Snapshot& stepped(Time time, int steps) const;

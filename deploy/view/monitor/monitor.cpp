@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/view/monitor/monitor.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <concepts>
@@ -9,10 +10,10 @@
 #include "common/config/shared_rules.hpp"
 #include "common/json/json_text.hpp"
 #include "deploy/inspect/topic/describe.hpp"
-#include "deploy/view/monitor/floor_frame.hpp"
 #include "deploy/view/monitor/exact_numbers.hpp"
-#include "deploy/view/monitor/panels.hpp"
+#include "deploy/view/monitor/floor_frame.hpp"
 #include "deploy/view/monitor/inspected_message.hpp"
+#include "deploy/view/monitor/panels.hpp"
 #include "deploy/view/monitor/scene.hpp"
 #include "deploy/view/monitor/unix_time.hpp"
 #include "deploy/view/server/viewer_json.hpp"
@@ -22,7 +23,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum Slot : unsigned { kFrameSlot, kPanelSlot, kTimeSlot, kInspectionSlot };
+enum Slot : unsigned { kFrameSlot, kPanelSlot, kWholeSlot, kTimeSlot, kInspectionSlot };
 constexpr std::size_t kMaxInspected = 500;  // number of messages that are kept for slow viewers
 constexpr double kMaxPlaySpeed = 100;
 constexpr std::size_t kHistoryBytes = 512 << 20;
@@ -32,6 +33,11 @@ constexpr std::size_t kLargeFleet = 200;
 std::string text_of(const Json& json) { return json_text(json); }
 std::shared_ptr<const std::string> shared_text(const Json& json) {
   return std::make_shared<const std::string>(text_of(json));
+}
+
+bool shows_grant(const FloorState& floor) {
+  return std::ranges::any_of(floor.robots(),
+                             [](const auto& robot) { return robot.second.granted.has_value(); });
 }
 
 /// `is_new`: the messages do not continue those that were sent before.
@@ -65,7 +71,8 @@ Monitor::Monitor(Bus& bus, const MonitorSettings& settings)
     : bus_(bus),
       settings_(settings),
       history_(kHistoryBytes,
-               settings.is_recording ? History::WhenFull::kThinOut : History::WhenFull::kForgetOldest) {
+               settings.is_recording ? History::WhenFull::kThinOut : History::WhenFull::kForgetOldest),
+      progress_(settings.is_recording ? 0 : 1) {
   events_.on_event([this](const MonitorEvent& event) {
     Json json = to_json(event);
     json["type"] = "event";
@@ -86,7 +93,7 @@ Monitor::Monitor(Bus& bus, const MonitorSettings& settings)
   });
   if (settings_.scenario)
     for (const RobotSpec& robot : settings_.scenario->robots) follow_robot(robot.id);
-  latest_panels_ = shared_text(panels());
+  update_panels();
 }
 
 Monitor::~Monitor() = default;
@@ -141,14 +148,23 @@ Json Monitor::panels() {
   json["zones"] = zones_json(floor_);
   json["topics"] = traffic_.take(now);
   json["history_bytes"] = history_.bytes();
+  make_numbers_exact(json);
   return json;
+}
+
+void Monitor::update_panels() {
+  const Json json = panels();
+  latest_panels_ = shared_text(json);
+  whole_ = shared_text({{"type", "whole"},
+                        {"at_s", json["at_s"]},
+                        {"is_over", settings_.is_recording && progress_ >= 1},
+                        {"promise", json["promise"]}});
 }
 
 double Monitor::radius_m() const {
   return settings_.scenario ? settings_.scenario->radius_m : Scenario().radius_m;
 }
 
-  make_numbers_exact(json);
 void Monitor::take_snapshot() {
   const Time now = bus_.now();
   if (assessment_) assessment_->auditor.advance(now);
@@ -156,12 +172,36 @@ void Monitor::take_snapshot() {
   if (closest_pair_ && (!smallest_ || closest_pair_->clearance_m < smallest_->clearance_m))
     smallest_ = closest_pair_;
   const Duration period = floor_.robots().size() > kLargeFleet ? 4 * kPanelPeriod : kPanelPeriod;
-  if (now - panels_at_ >= period) {
+  const bool is_first_grant = !first_grant_ && shows_grant(floor_);
+  if (is_first_grant) first_grant_ = now;
+  const bool is_due = now - panels_at_ >= period;
+  if (is_due) {
     panels_at_ = now;
     event_watch_.tick(floor_, now);
-    latest_panels_ = shared_text(panels());
   }
+  // A recording opens at the first grant, so its panels must not be those of an earlier moment.
+  if (is_due || is_first_grant) update_panels();
   history_.add({now, std::make_shared<const std::string>(encode_frame(floor_, now)), latest_panels_});
+}
+
+void Monitor::take_last_snapshot() {
+  update_panels();
+  // The history would ignore a second snapshot of the same moment.
+  const Time now = history_.empty() ? bus_.now() : std::max(bus_.now(), history_.last().at + Duration{1});
+  history_.add({now, std::make_shared<const std::string>(encode_frame(floor_, now)), latest_panels_});
+}
+
+void Monitor::end() {
+  settings_.is_recording = true;
+  settings_.can_command = false;
+  take_last_snapshot();
+  ended_at_ = bus_.now();
+  events_.add({0, *ended_at_, Severity::kInfo, "end", "the run is over"});
+  const auto text = shared_text(scene());
+  for (auto& [socket, viewer] : viewers_) {
+    viewer.has_chosen = true;
+    socket->send_event({text, false});
+  }
 }
 
 Json Monitor::scene() const {
@@ -193,9 +233,16 @@ void Monitor::forget_inspections() {
   });
 }
 
+void Monitor::open_recording(Viewer& viewer) const {
+  if (!settings_.is_recording || viewer.has_chosen) return;
+  viewer.time.pause_at(first_grant_ ? history_.from(*first_grant_).at : history_.first().at);
+  viewer.has_chosen = first_grant_ || progress_ >= 1;
+}
+
 void Monitor::update_viewers(Time clock) {
   if (history_.empty()) return;
   for (auto& [socket, viewer] : viewers_) {
+    open_recording(viewer);
     viewer.shown = viewer.time.update(history_, clock);
     const Snapshot& snapshot = history_.at(viewer.shown);
     if (snapshot.frame != viewer.frame) {
@@ -205,6 +252,10 @@ void Monitor::update_viewers(Time clock) {
     if (snapshot.panels != viewer.panels) {
       viewer.panels = snapshot.panels;
       socket->send_state(kPanelSlot, {snapshot.panels, false});
+    }
+    if (whole_ != viewer.whole) {
+      viewer.whole = whole_;
+      socket->send_state(kWholeSlot, {whole_, false});
     }
     send_time(*socket, viewer);
     if (settings_.recorded_messages) send_recorded_messages(*socket, viewer, clock);
@@ -221,6 +272,7 @@ void Monitor::send_time(WebSocket& socket, Viewer& viewer) {
                                  {"speed", viewer.time.speed()},
                                  {"begin_s", rounded(history_.first().at)},
                                  {"end_s", rounded(history_.last().at)},
+                                 {"first_grant_s", first_grant_ ? Json(unix_seconds(*first_grant_)) : Json()},
                                  {"progress", std::floor(progress_ * 100) / 100}});
   if (viewer.time_text && *viewer.time_text == *text) return;
   viewer.time_text = text;
@@ -271,6 +323,7 @@ bool Monitor::on_message(WebSocket& socket, const std::string& message, Time clo
     forget_inspections();
     return true;
   }
+  if (!history_.empty()) open_recording(viewer);
   if (op == "live") {
     viewer.time.go_live();
   } else if (history_.empty()) {
@@ -293,6 +346,7 @@ bool Monitor::on_message(WebSocket& socket, const std::string& message, Time clo
   } else {
     return false;
   }
+  viewer.has_chosen = true;
   update_viewers(clock);
   return true;
 }

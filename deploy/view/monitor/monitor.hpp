@@ -49,9 +49,14 @@ class Monitor {
 
   /// Takes a snapshot of the floor. Call it every kFramePeriod of the run.
   void take_snapshot();
+  /// Takes the snapshot of the end of a run or of a recording; its panels show the final verdict.
+  void take_last_snapshot();
+  /// Ends the run: from now on it is shown as a recording, and the bus is no longer used. Viewers stay at the
+  /// moment that they see.
+  void end();
   /// Sends each viewer the state at its chosen moment. Call it often. `clock` is the real time.
   void update_viewers(Time clock);
-  /// For a recording: how much of it has been read, 0 to 1.
+  /// For a recording: how much of it has been read, 0 to 1. At first it is 0.
   void set_progress(double progress) { progress_ = progress; }
 
   /// Answers GET requests whose path starts with /api/. nullopt if there is no such path.
@@ -67,7 +72,7 @@ class Monitor {
   }
   double radius_m() const;
   /// The time of the run.
-  Time now() const { return bus_.now(); }
+  Time now() const { return ended_at_ ? *ended_at_ : bus_.now(); }
 
   EventLog& events() { return events_; }
   const FloorState& floor() const { return floor_; }
@@ -76,7 +81,8 @@ class Monitor {
   struct Viewer {
     ViewerTime time;
     Time shown{};
-    std::shared_ptr<const std::string> frame, panels, time_text;
+    bool has_chosen = false;  ///< has chosen a moment; until then a recording shows its first granted one
+    std::shared_ptr<const std::string> frame, panels, whole, time_text;
     std::optional<std::string> inspected;  ///< the inspected channel
     std::optional<Time> inspected_until;   ///< for a recording: messages up to this time have been sent
     Time next_inspection{};                ///< by the real-time clock
@@ -97,6 +103,10 @@ class Monitor {
   void follow(const msg::AgentStatus& status) { follow_robot(status.robot()); }
   template <typename Message>
   void follow(const Message&) {}
+  /// Makes the texts of the panels and of the verdict on the whole run.
+  void update_panels();
+  /// Shows a viewer of a recording the first granted moment, or the start if nothing was granted.
+  void open_recording(Viewer& viewer) const;
   nlohmann::ordered_json panels();
   nlohmann::ordered_json scene() const;
   void send_time(WebSocket& socket, Viewer& viewer);
@@ -118,10 +128,12 @@ class Monitor {
   std::map<WebSocket*, Viewer> viewers_;
   /// Messages in JSON that were received since the last sending, by channel.
   std::map<std::string, std::deque<std::string>> inspections_;
-  std::shared_ptr<const std::string> latest_panels_;
+  std::shared_ptr<const std::string> latest_panels_, whole_;
   Time panels_at_{}, heard_at_{};
+  std::optional<Time> first_grant_;  ///< time of the first snapshot that shows a granted motion
+  std::optional<Time> ended_at_;     ///< when the run ended; see end()
   std::optional<ClosestPair> closest_pair_, smallest_;
-  double progress_ = 1;
+  double progress_;
   std::function<void(const AnyMessage&)> on_any_message_;
 };
 

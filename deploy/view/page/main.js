@@ -10,7 +10,7 @@ import {Frame, Layout} from "./frame.js";
 import {onMapLoaded} from "./floor_layers.js";
 import {layers} from "./layers.js";
 import {coordinatorPanel, eventPanel, onSeek, robotTable, Tabs, topicPanel, updateCoordinators, updateEvents, updateLamp,
-        updateNetwork, updateRobots, updateTopics} from "./panels.js";
+        updateNetwork, updateRobots, updateTopics, updateWhole} from "./panels.js";
 import {Inspector} from "./plots.js";
 import {shared} from "./shapes.js";
 import {Timeline} from "./timeline.js";
@@ -77,6 +77,7 @@ function useScene(scene) {
   scene.teams = new Map(scene.robots.map((/** @type {any} */ robot) => [robot.id, robot.team]));
   element("title").textContent = scene.name ? `Sidestep: ${scene.name}` : "Sidestep";
   element("live").textContent = scene.is_recording ? "End" : "Live";
+  timeline.isRecording = scene.is_recording;
   inspector.setChannels(scene.channels);
   if (scene.can_command && isFirst) tabs.add("control", "Control", controls.node);
   if (isFirst && scene.cameras > 0 && !scene.is_recording) {
@@ -88,7 +89,6 @@ function useScene(scene) {
   if (inspector.channel.value) inspector.choose();
   const at_s = Number(link.get("t"));
   if (isFirst && at_s > 0) timeline.seek(at_s);
-  else if (isFirst && scene.is_recording) send({op: "seek", at_s: 0});
 }
 
 function useEvents() {
@@ -118,6 +118,8 @@ function onMessage(message) {
       updateCoordinators(message);
       updateTopics(message);
       return;
+    case "whole":
+      return updateWhole(message, monitor.scene);
     case "time":
       return timeline.update(message);
     case "messages":
@@ -135,6 +137,8 @@ const connection = new Connection(
     },
     (state) => {
       monitor.connection = state;
+      timeline.isConnected = state === "connected";
+      if (timeline.shown_s > 0) timeline.show(timeline.shown_s);
       element("connection").textContent = state === "lost" ? "connection lost, trying again" : "connected";
       element("connection").dataset.state = state;
     });

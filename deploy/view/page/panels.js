@@ -211,12 +211,25 @@ export function updateEvents(events) {
 const kShapes = {"kept": "✓", "broken": "✕", "not judged": "?"};
 
 /** @param {any} promise */
+const verdictText = (promise) =>
+    (promise.state === "kept" ? "promise kept" : promise.state === "broken" ? "promise broken" : "not judged");
+
+/**
+ * The verdict on the whole recording, beside that on the moment shown.
+ * @param {any} whole @param {any} scene
+ */
+export function updateWhole(whole, scene) {
+  const {promise} = whole;
+  const text = !whole.is_over ? "reading" : `${kShapes[promise.state] || "?"} ${verdictText(promise)}`;
+  element("lamp-whole").textContent = scene.is_recording ? `whole recording: ${text}` : "";
+}
+
+/** @param {any} promise */
 export function updateLamp(promise) {
   const lamp = element("lamp");
   lamp.dataset.state = promise.state;
   element("lamp-shape").textContent = kShapes[promise.state] || "?";
-  element("lamp-text").textContent = promise.state === "kept" ? "promise kept" : promise.state === "broken"
-      ? "promise broken" : "not judged";
+  element("lamp-text").textContent = verdictText(promise);
   const smallest = promise.smallest;
   const figures = [];
   if (promise.contacts !== undefined)

@@ -13,6 +13,9 @@ export class Timeline {
     this.begin_s = 0;
     this.end_s = 1;
     this.shown_s = 0;
+    this.firstGrant_s = /** @type {number | null} */ (null);
+    this.isRecording = false;
+    this.isConnected = false;
     /** @type {any[]} */
     this.events = [];
     this.isDragged = false;
@@ -33,7 +36,8 @@ export class Timeline {
 
   /** @param {any} message */
   update(message) {
-    Object.assign(this, {mode: message.mode, begin_s: message.begin_s, end_s: message.end_s});
+    Object.assign(this, {mode: message.mode, begin_s: message.begin_s, end_s: message.end_s,
+                         firstGrant_s: message.first_grant_s});
     const slider = element("time");
     slider.max = String(Math.max(message.end_s - message.begin_s, 0.1));
     element("play").textContent = this.mode === "paused" ? "play" : "||";
@@ -47,10 +51,14 @@ export class Timeline {
   show(at_s) {
     this.shown_s = at_s;
     if (!this.isDragged) element("time").value = String(at_s - this.begin_s);
-    const ago = this.end_s - at_s;
-    const loading = this.progress < 1 ? ` · reading ${Math.round(100 * this.progress)} %` : "";
-    element("clock").textContent =
-        `${timeOfDay(at_s)} · ${this.mode === "live" ? "live" : `${this.mode}, ${ago.toFixed(2)} s before the end`}${loading}`;
+    const parts = [timeOfDay(at_s)];
+    if (this.isRecording && this.firstGrant_s !== null)
+      parts.push(`${(at_s - this.firstGrant_s).toFixed(2)} s after the first grant`);
+    if (!this.isConnected) parts.push("not connected");
+    else if (this.mode !== "live") parts.push(`${this.mode}, ${(this.end_s - at_s).toFixed(2)} s before the end`);
+    else parts.push(this.isRecording ? "the end" : "live");
+    if (this.progress < 1) parts.push(`reading ${Math.round(100 * this.progress)} %`);
+    element("clock").textContent = parts.join(" · ");
   }
 
   /** @param {number} at_s */

@@ -29,6 +29,9 @@ TEST_CASE("a history finds the snapshot at or before a time") {
   CHECK(history.at(at_ms(509)).at == at_ms(500));
   CHECK(history.at(at_ms(0)).at == at_ms(10));
   CHECK(history.at(at_ms(99'999)).at == at_ms(1000));
+  CHECK(history.from(at_ms(500)).at == at_ms(500));
+  CHECK(history.from(at_ms(501)).at == at_ms(510));
+  CHECK(history.from(at_ms(99'999)).at == at_ms(1000));
   CHECK(history.stepped(at_ms(505), 1).at == at_ms(510));
   CHECK(history.stepped(at_ms(505), -3).at == at_ms(470));
   CHECK(history.stepped(at_ms(20), -3).at == at_ms(10));

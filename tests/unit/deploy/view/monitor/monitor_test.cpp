@@ -6,6 +6,7 @@
 
 #include "common/config/scenario_loader.hpp"
 #include "common/json/json_text.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "deploy/view/monitor/floor_frame.hpp"
 #include "tests/catch.hpp"
@@ -78,8 +79,8 @@ struct MonitoredRun {
   FakeViewer viewer;
   msg::GroundTruth truth;
 
-  explicit MonitoredRun(bool knows_scenario = true)
-      : monitor((bus.become_observer(), bus), settings(knows_scenario)) {
+  explicit MonitoredRun(bool knows_scenario = true, bool is_recording = false)
+      : monitor((bus.become_observer(), bus), settings(knows_scenario, is_recording)) {
     system.on_truth([this](const msg::GroundTruth& t) { truth = t; });
     monitor.add_viewer(viewer);
     call_periodically(bus, Monitor::kFramePeriod, [this] {
@@ -87,8 +88,9 @@ struct MonitoredRun {
       monitor.update_viewers(bus.now());
     });
   }
-  MonitorSettings settings(bool knows_scenario) const {
+  MonitorSettings settings(bool knows_scenario, bool is_recording) const {
     MonitorSettings result;
+    result.is_recording = is_recording;
     result.scenario = knows_scenario ? &scenario : nullptr;
     result.audit.is_complete = true;
     return result;
@@ -191,6 +193,92 @@ TEST_CASE("a viewer can seek back while the run continues") {
   CHECK(run.send(R"({"op":"live"})"));
   run.system.run_for(100ms);
   CHECK(run.viewer.time_s() == Approx(end_s + 2.1).margin(0.1));
+}
+
+TEST_CASE("a recording opens at its first granted moment, beside the verdict on the whole of it") {
+  MonitoredRun run(true, true);
+  run.system.run_for(6s);
+  const Json& time = run.viewer.states.at("time");
+  CHECK(time.at("mode") == "paused");
+  const double first_grant_s = time.at("first_grant_s");
+  CHECK(first_grant_s > time.at("begin_s"));
+  CHECK(first_grant_s < time.at("begin_s").get<double>() + 3);
+  CHECK(run.viewer.time_s() == first_grant_s);
+  const auto is_granted = [&](const RobotSpec& robot) {
+    const auto x_m = run.viewer.value(robot.id, "granted_x");
+    return x_m && std::isfinite(*x_m);
+  };
+  CHECK(std::ranges::any_of(run.scenario.robots, is_granted));
+  // The panels are of this moment too, but the verdict is on all that was read.
+  CHECK(run.viewer.states.at("panels").at("at_s") == first_grant_s);
+  CHECK(run.promise().at("state") == "not judged");
+  CHECK(run.viewer.states.at("whole").at("is_over") == false);
+  run.monitor.set_progress(1);
+  run.monitor.take_last_snapshot();
+  run.monitor.update_viewers(run.bus.now());
+  CHECK(run.viewer.states.at("whole").at("is_over") == true);
+  CHECK(run.viewer.states.at("whole").at("promise").at("state") == "kept");
+  CHECK(run.promise().at("state") == "not judged");
+  // From there, it plays.
+  CHECK(run.send(R"({"op":"play","speed":1})"));
+  run.system.run_for(1s);
+  CHECK(run.viewer.time_s() == Approx(first_grant_s + 1).margin(0.1));
+}
+
+TEST_CASE("a recording without a grant opens at its start") {
+  MonitoredRun run(true, true);
+  run.system.run_for(100ms);
+  run.monitor.set_progress(1);
+  run.system.run_for(100ms);
+  const Json& time = run.viewer.states.at("time");
+  REQUIRE(time.at("first_grant_s").is_null());
+  CHECK(time.at("mode") == "paused");
+  CHECK(run.viewer.time_s() == Approx(time.at("begin_s").get<double>()).margin(0.1));
+}
+
+TEST_CASE("a viewer's choice of a moment replaces the first granted one") {
+  MonitoredRun run(true, true);
+  run.system.run_for(100ms);
+  CHECK(run.send(R"({"op":"live"})"));
+  run.system.run_for(6s);
+  CHECK(run.viewer.states.at("time").at("mode") == "live");
+  CHECK(run.viewer.time_s() > run.viewer.states.at("time").at("first_grant_s").get<double>() + 2);
+}
+
+TEST_CASE("an epoch that JavaScript would round reaches the page exactly") {
+  MonitoredRun run(false);
+  msg::CoordinatorState state;
+  state.header().sender(static_cast<std::uint32_t>(Sender::kCoordinator) + 1);
+  state.coordinator(1);
+  state.epoch(9'007'199'254'740'993);
+  SimBus other(run.system.network());
+  const auto writer = other.relay(topics::kCoordinator, "coordinator");
+  writer->write(&state);
+  run.system.run_for(1s);
+  const Json& coordinators = run.viewer.states.at("panels").at("coordinators");
+  const auto found = std::ranges::find_if(coordinators, [](const Json& c) { return c.at("number") == 1; });
+  REQUIRE(found != coordinators.end());
+  CHECK(found->at("epoch") == "9007199254740993");
+}
+
+TEST_CASE("a run that has ended is shown as a recording") {
+  MonitoredRun run;
+  run.system.run_for(6s);
+  const double end_s = run.viewer.time_s();
+  run.monitor.end();
+  run.monitor.update_viewers(run.bus.now());
+  CHECK(run.viewer.states.at("scene").at("is_recording") == true);
+  CHECK(run.viewer.states.at("scene").at("can_command") == false);
+  CHECK(run.viewer.states.at("whole").at("is_over") == true);
+  CHECK(run.viewer.events.back().at("text") == "the run is over");
+  CHECK(run.promise().at("state") == "kept");
+  CHECK(run.viewer.time_s() == Approx(end_s).margin(0.05));
+  FakeViewer late;
+  run.monitor.add_viewer(late);
+  run.monitor.update_viewers(run.bus.now());
+  CHECK(late.states.at("time").at("mode") == "paused");
+  CHECK(late.time_s() == late.states.at("time").at("first_grant_s"));
+  CHECK(late.states.at("whole").at("promise").at("state") == "kept");
 }
 
 TEST_CASE("a viewer gets all messages of the channel that it inspects and no other messages") {
