@@ -11,6 +11,7 @@
 #include "common/messaging/histogram_codec.hpp"
 #include "common/messaging/message_schema.hpp"
 #include "common/protocol/drop_reasons.hpp"
+#include "common/protocol/senders.hpp"
 #include "deploy/inspect/topic/idl/idl_decoder.hpp"
 #include "deploy/inspect/topic/idl/idl_parser.hpp"
 #include "deploy/inspect/topic/idl/readable_form.hpp"
@@ -25,6 +26,15 @@ Json fingerprint(const Json& number) { return fmt::format("{:016x}", number.get<
 Json drop_reason(const Json& number) {
   const auto row = number.get<std::size_t>();
   return row < kDropReasonCount ? kDropReasons[row].name : "unknown " + std::to_string(row);
+}
+
+static_assert(kEveryProcess == msg::ALL_ROBOTS);
+Json number_or_all(const Json& number) {
+  return number.get<std::uint32_t>() == msg::ALL_ROBOTS ? Json("all") : number;
+}
+
+Json number_or_none(const Json& number) {
+  return number.get<std::uint32_t>() == msg::NO_ROBOT ? Json("none") : number;
 }
 
 /// Replaces the ranges of beams without a hit, which JSON cannot represent as numbers, by words.
@@ -57,6 +67,11 @@ struct Described {
 /// The types of all topics, indexed by their IDL names.
 std::map<std::string, Described> described_types() {
   const Rewrites rewrites{{"sidestep::msg::Header.rules", fingerprint},
+                          {"sidestep::msg::Order.robot", number_or_all},
+                          {"sidestep::msg::RememberedOrder.robot", number_or_all},
+                          {"sidestep::msg::NetworkFault.target", number_or_all},
+                          {"sidestep::msg::ContactPair.second", number_or_none},
+                          {"sidestep::msg::Counter.robot", number_or_none},
                           {"sidestep::msg::Counter.reason", drop_reason},
                           {"sidestep::msg::LaserScan.ranges_m", ranges},
                           {"sidestep::msg::DurationCounts", quantiles}};

@@ -9,7 +9,7 @@ namespace sidestep {
 
 /// A topic's message in readable form. Members are converted by ReadableForm and OctetSequences::kText;
 /// fingerprints are in hexadecimal, drop reasons by name, laser beams without a range in words, and
-/// histograms as quantiles.
+/// histograms as quantiles. Numbers that mean every robot, every process or no robot are "all" and "none".
 [[nodiscard]] nlohmann::ordered_json describe(const TopicInfo& topic, const void* message);
 
 }  // namespace sidestep

@@ -14,6 +14,7 @@
 #include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/drop_reasons.hpp"
 #include "common/protocol/reason_text.hpp"
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::describe_test {
@@ -314,6 +315,28 @@ TEST_CASE("a counter is described by the name of its reason, and an unknown reas
   for (std::size_t i = 0; i < kDropReasonCount; ++i)
     CHECK(description["counts"][i]["reason"] == kDropReasons[i].name);
   CHECK(description["counts"].back()["reason"] == "unknown " + std::to_string(kDropReasonCount));
+}
+
+TEST_CASE("numbers that mean every robot, every process or no robot are described in words") {
+  msg::Order order;
+  order.robot(msg::ALL_ROBOTS);
+  CHECK(describe(topics::kOrder, &order)["robot"] == "all");
+  order.robot(3);
+  CHECK(describe(topics::kOrder, &order)["robot"] == 3);
+  const auto memory = std::make_unique<msg::OrderMemory>();
+  memory->order_count(1);
+  memory->orders()[0].robot(msg::ALL_ROBOTS);
+  CHECK(describe(topics::kOrderMemory, memory.get())["orders"][0]["robot"] == "all");
+  msg::NetworkFault fault;
+  fault.target(kEveryProcess);
+  CHECK(describe(topics::kNetworkFault, &fault)["target"] == "all");
+  const auto truth = std::make_unique<msg::GroundTruth>();
+  truth->recent_contacts()[1].second(msg::NO_ROBOT);
+  CHECK(describe(topics::kTruth, truth.get())["recent_contacts"][0]["second"] == 0);
+  CHECK(describe(topics::kTruth, truth.get())["recent_contacts"][1]["second"] == "none");
+  msg::Counters counters;
+  counters.counts().emplace_back().robot(msg::NO_ROBOT);
+  CHECK(describe(topics::kCounters, &counters)["counts"][0]["robot"] == "none");
 }
 
 TEST_CASE("the README of the audit lists every drop reason") {
