@@ -230,15 +230,11 @@ int monitor_system(const MonitorOptions& options) {
       if (recorder) recorder->add_event(bus.now(), "bookmark", text);
     };
     if (recorder)
-      hooks.record = [&](bool begins) -> std::string {
-        if (begins == recorder->is_recording()) return "";
-        if (!begins) {
-          recorder->stop();
-          return "";
-        }
-        const std::string path = new_recording_file(*scenario);
-        recorder->start(path);
-        return path;
+      hooks.record = [&](bool begins) -> std::optional<std::string> {
+        if (!begins && !recorder->is_recording()) return std::nullopt;
+        if (!begins) recorder->stop();
+        if (begins && !recorder->is_recording()) recorder->start(new_recording_file(*scenario));
+        return recorder->file();
       };
     control.emplace(bus, hooks);
   }

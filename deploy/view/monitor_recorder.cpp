@@ -7,6 +7,7 @@ void MonitorRecorder::start(const std::string& path) {
   channels_.clear();
   failure_.clear();
   writer_.emplace(path, recording_header(scenario_, scenario_file_));
+  file_ = path;
   writer_->on_failure([this](const std::string& failure) {
     failure_ = failure;
     if (on_failure_) on_failure_(failure);

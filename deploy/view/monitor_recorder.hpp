@@ -27,6 +27,8 @@ class MonitorRecorder {
     on_failure_ = std::move(callback);
   }
   bool is_recording() const { return writer_ && failure_.empty(); }
+  /// The file of the recording in progress, or of the last one; empty if there was none.
+  const std::string& file() const { return file_; }
   /// Precondition: no recording is in progress. Throws std::runtime_error if the file cannot be written.
   void start(const std::string& path);
   /// Finishes the recording. Throws std::runtime_error if a write has failed.
@@ -39,7 +41,7 @@ class MonitorRecorder {
 
  private:
   const Scenario& scenario_;
-  std::string scenario_file_;
+  std::string scenario_file_, file_;
   std::function<void(const std::string&)> on_failure_;
   std::string failure_;  ///< reason of a failed write; empty: none
   std::optional<RecordingWriter> writer_;

@@ -9,7 +9,9 @@
 #include <stdexcept>
 
 #include "common/json/json_text.hpp"
+#include "common/messaging/blockage_text.hpp"
 #include "common/messaging/order_codec.hpp"
+#include "common/messaging/refusal_text.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/protocol/disturbance_text.hpp"
 #include "common/yaml/heading.hpp"
@@ -147,6 +149,12 @@ const char* to_text(OrderPhase phase) {
   return kTexts[static_cast<std::size_t>(phase)];
 }
 
+/// Why an order was refused, or why its robot is blocked; empty if it is neither.
+std::string reason_of(const SentOrder& sent) {
+  if (sent.phase == OrderPhase::kRefused) return refusal_text(sent.refusal);
+  return sent.phase == OrderPhase::kBlocked && sent.blockage ? to_text(*sent.blockage) : std::string();
+}
+
 WebResponse accepted(OrderHandle handle) { return json_response(200, {{"order", handle}}); }
 
 }  // namespace
@@ -198,7 +206,8 @@ WebResponse ControlApi::command(const WebRequest& request, std::span<const std::
 WebResponse ControlApi::record(bool begins) {
   if (!hooks_.record) return error_response(409, "without a scenario file, nothing can be recorded");
   try {
-    return json_response(200, {{"file", hooks_.record(begins)}});
+    const std::optional<std::string> file = hooks_.record(begins);
+    return file ? json_response(200, {{"file", *file}}) : error_response(409, "nothing is being recorded");
   } catch (const std::runtime_error& error) {
     return error_response(500, error.what());
   }
@@ -246,10 +255,13 @@ WebResponse ControlApi::disturb(RobotId robot, const std::string& body) {
 WebResponse ControlApi::order_state(OrderHandle handle) const {
   const SentOrder* sent = client_.find(handle);
   if (!sent) return error_response(404, fmt::format("there is no order {}", handle));
-  return json_response(200, {{"order", handle},
-                             {"robot", sent->order.robot},
-                             {"phase", to_text(sent->phase)},
-                             {"goal_index", sent->goal_index}});
+  const RobotId robot = sent->order.robot;
+  Json state{{"order", handle},
+             {"robot", robot == kAllRobots ? Json("all") : Json(robot)},
+             {"phase", to_text(sent->phase)},
+             {"goal_index", sent->goal_index}};
+  if (const std::string reason = reason_of(*sent); !reason.empty()) state["reason"] = reason;
+  return json_response(200, state);
 }
 
 }  // namespace sidestep

@@ -14,9 +14,9 @@ namespace sidestep {
 /// Actions that ControlApi delegates.
 struct ControlHooks {
   std::function<void(const std::string& text)> bookmark;
-  /// Starts or stops a recording. Returns the file that it starts, or "" if there is nothing to do. Throws
-  /// std::runtime_error if the file cannot be written. Empty: nothing can be recorded.
-  std::function<std::string(bool begins)> record;
+  /// Starts a recording unless one is in progress, or ends it. Returns its file; nullopt if there is none to
+  /// end. Throws std::runtime_error if the file cannot be written. Empty: nothing can be recorded.
+  std::function<std::optional<std::string>(bool begins)> record;
 };
 
 /// Orders and faults by HTTP, in JSON:
@@ -29,9 +29,9 @@ struct ControlHooks {
 /// | POST /api/zones/1 | {"corners": [[0, 0], [1, 0], [1, 1]], "radius_m": 0.1, "speed_limit_mps": 0.5} |
 /// | DELETE /api/zones/1 | none |
 /// | POST /api/robots/3/fault | {"kind": "push", "vx_mps": 1, "vy_mps": 0} and others, see below |
-/// | POST /api/recording/start, stop | none; answer {"file": …} |
+/// | POST /api/recording/start, stop | none; answer {"file": …}: what is or was recorded |
 /// | POST /api/bookmark | {"text": "here"} |
-/// | GET /api/orders/17 | none; the state of an order |
+/// | GET /api/orders/17 | none; the state of an order, with the reason if it is refused or blocked |
 ///
 /// Orders are sent as the operator, and answered by {"order": 17}. Kinds of faults: push (vx_mps, vy_mps),
 /// slip (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m), reboot, switch off, switch on.

@@ -9,6 +9,7 @@
 #include "common/messaging/blockage_text.hpp"
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/order_codec.hpp"
+#include "common/messaging/refusal_text.hpp"
 #include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/role_cause.hpp"
@@ -172,16 +173,14 @@ void EventWatch::on(const msg::Order& order, Time now) {
 }
 
 void EventWatch::on(const msg::OrderAnswer& answer, Time now) {
-  constexpr std::array kTexts{"",
-                              "",
-                              "it is malformed",
-                              "there is no such robot",
-                              "a goal is outside the field",
-                              "there are too many holds or zones"};
-  const auto result = static_cast<std::size_t>(answer.result());
-  if (result < 2 || result >= kTexts.size() || !external_event_limit_.admit(now)) return;
+  const msg::OrderResult result = answer.result();
+  const bool is_refused =
+      result != msg::OrderResult::RESULT_REMEMBERED && result != msg::OrderResult::RESULT_REPLACED;
+  if (!is_refused || !is_enumerator(result, msg::OrderResult::RESULT_TOO_MANY) ||
+      !external_event_limit_.admit(now))
+    return;
   add(Severity::kWarning, "order",
-      fmt::format("an order from {} was refused: {}", name_of_client(answer.client()), kTexts.at(result)),
+      fmt::format("an order from {} was refused: {}", name_of_client(answer.client()), refusal_text(result)),
       now);
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/view/control/control_api.hpp"
 
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/json/json_text.hpp"
@@ -22,10 +24,11 @@ struct ControlledRun {
   std::string recordings;
   ControlApi api{bus,
                  {[this](const std::string& text) { bookmarks += text; },
-                  [this](bool begins) {
+                  [this](bool begins) -> std::optional<std::string> {
                     if (recordings == "full") throw std::runtime_error("the disk is full");
+                    if (recordings.empty() && !begins) return std::nullopt;
                     recordings += begins ? "begin " : "end ";
-                    return std::string(begins ? "a.mcap" : "");
+                    return "a.mcap";
                   }}};
   msg::GroundTruth truth;
 
@@ -37,10 +40,12 @@ struct ControlledRun {
                       const std::string& refusal = "") {
     return api.respond({method, path, {}, body, refusal}).value_or(WebResponse{404, "", ""});
   }
-  std::string phase(const WebResponse& answer) {
+  /// The state of an order; `answer` is the one to the request that gave the order.
+  Json state(const WebResponse& answer) {
     const auto order = std::to_string(parse_json(answer.body).at("order").get<int>());
-    return parse_json(request("GET", "/api/orders/" + order).body).at("phase");
+    return parse_json(request("GET", "/api/orders/" + order).body);
   }
+  std::string phase(const WebResponse& answer) { return state(answer).at("phase"); }
   double x_m(std::size_t index) const { return truth.robots()[index].x_m(); }
 };
 
@@ -88,11 +93,92 @@ TEST_CASE("HTTP requests set zones, remove zones and cause faults") {
   CHECK(run.x_m(1) > 2.02);
   CHECK(run.request("POST", "/api/bookmark", R"({"text": "here"})").status == 200);
   CHECK(run.bookmarks == "here");
-  CHECK(parse_json(run.request("POST", "/api/recording/start").body).at("file") == "a.mcap");
-  CHECK(run.request("POST", "/api/recording/stop").status == 200);
+}
+
+TEST_CASE("an HTTP request starts or stops a recording, and the answer names what is or was recorded") {
+  ControlledRun run;
+  const WebResponse nothing = run.request("POST", "/api/recording/stop");
+  CHECK(nothing.status == 409);
+  CHECK(parse_json(nothing.body).at("error") == "nothing is being recorded");
+  for (const char* what : {"start", "stop"})
+    CHECK(parse_json(run.request("POST", std::string("/api/recording/") + what).body).at("file") == "a.mcap");
   CHECK(run.recordings == "begin end ");
   run.recordings = "full";
   CHECK(parse_json(run.request("POST", "/api/recording/start").body).at("error") == "the disk is full");
+}
+
+TEST_CASE("the state of a refused or blocked order gives the reason") {
+  ControlledRun run;
+  const WebResponse nobody = run.request("POST", "/api/robots/9/order", R"({"goals": [[0, 0]]})");
+  const WebResponse outside = run.request("POST", "/api/robots/3/order", R"({"goals": [[100, 0]]})");
+  CHECK_FALSE(run.state(nobody).contains("reason"));
+  (void)run.request("POST", "/api/zones/1", R"({"corners": [[1, 2]], "radius_m": 0.5})");
+  run.system.run_for(1s);
+  const WebResponse blocked = run.request("POST", "/api/robots/4/order", R"({"goals": [[1, 2]]})");
+  run.system.run_for(2s);
+  CHECK(run.state(nobody) == Json{{"order", run.state(nobody).at("order")},
+                                  {"robot", 9},
+                                  {"phase", "refused"},
+                                  {"goal_index", 0},
+                                  {"reason", "the scenario has no such robot"}});
+  CHECK(run.phase(outside) == "refused");
+  CHECK(run.state(outside).at("reason") == "a goal is outside the field");
+  CHECK(run.phase(blocked) == "blocked");
+  CHECK_THAT(run.state(blocked).at("reason").get<std::string>(), StartsWith("zone 1 covers its goal"));
+}
+
+TEST_CASE("an order to all robots names no number") {
+  ControlledRun run;
+  CHECK(run.state(run.request("POST", "/api/hold")).at("robot") == "all");
+  CHECK(run.state(run.request("POST", "/api/resume")).at("robot") == "all");
+  CHECK(run.state(run.request("POST", "/api/robots/3/hold")).at("robot") == 3);
+}
+
+/// The text between backticks that follows `begin` in a line; empty if there is none.
+std::string quoted_after(const std::string& line, const std::string& begin) {
+  const std::size_t found = line.find(begin + '`');
+  if (found == std::string::npos) return {};
+  const std::size_t at = found + begin.size() + 1;
+  return line.substr(at, line.find('`', at) - at);
+}
+
+std::set<std::string> split_list(const std::string& text) {
+  std::set<std::string> words;
+  std::size_t at = 0;
+  for (std::size_t comma = 0; comma != std::string::npos; at = comma + 2) {
+    comma = text.find(", ", at);
+    words.insert(text.substr(at, comma == std::string::npos ? comma : comma - at));
+  }
+  return words;
+}
+
+TEST_CASE("every request with a body that the README shows is accepted, and it shows every fault") {
+  ControlledRun run;
+  std::ifstream readme(SIDESTEP_SOURCE_DIR "/deploy/view/README.md");
+  int requests = 0;
+  std::set<std::string> faults;
+  for (std::string line; std::getline(readme, line);) {
+    std::string path = "/api/robots/4/fault", body;
+    if (line.starts_with("| `POST /api/")) {
+      path = quoted_after(line, "| ").substr(5);
+      body = quoted_after(line, "body ");
+      if (body.empty()) continue;
+      ++requests;
+    } else if (line.starts_with(R"(| `{"kind")")) {
+      body = quoted_after(line, "| ");
+      faults.insert(parse_json(body).at("kind").get<std::string>());
+    } else {
+      continue;
+    }
+    CAPTURE(line, path, body);
+    CHECK(run.request("POST", path, body).status == 200);
+  }
+  CHECK(requests == 4);
+  const std::string error =
+      parse_json(run.request("POST", "/api/robots/4/fault", R"({"kind": "?"})").body).at("error");
+  const std::string begin = "kind: expected one of: ";
+  REQUIRE(error.starts_with(begin));
+  CHECK(faults == split_list(error.substr(begin.size())));
 }
 
 TEST_CASE("requests without the token are refused and have no effect") {

@@ -43,6 +43,7 @@ TEST_CASE("a monitor can record several intervals of a run") {
     system.run_for(1s);
     recorder.stop();
     recorder.stop();
+    CHECK(recorder.file() == folder.file(name));
     PlaybackBus playback(folder.file(name));
     std::string events;
     std::map<RobotId, std::uint64_t> feedbacks;
