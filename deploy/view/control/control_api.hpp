@@ -34,7 +34,8 @@ struct ControlHooks {
 /// | GET /api/orders/17 | none; the state of an order, with the reason if it is refused or blocked |
 ///
 /// Orders are sent as the operator, and answered by {"order": 17}. Kinds of faults: push (vx_mps, vy_mps),
-/// slip (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m), reboot, switch off, switch on.
+/// slip (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m, heading_rad), reboot, switch
+/// off, switch on. Headings (0) and seconds (1) may be omitted.
 class ControlApi {
  public:
   ControlApi(Bus& bus, ControlHooks hooks);

@@ -21,7 +21,8 @@ class ViewerTime {
   void play(Time from, double speed, Time clock) {
     mode_ = Mode::kPlaying, shown_ = from, speed_ = speed, started_ = clock;
   }
-  /// The moment to show. Playing stops at the end of the history that it moves towards. Precondition: the history is not empty.
+  /// The moment to show. Playing stops at the end of the history that it moves towards. Precondition: the
+  /// history is not empty.
   Time update(const History& history, Time clock);
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/view/monitor/event_watch.hpp"
 
+#include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::event_watch_test {
@@ -98,6 +99,21 @@ TEST_CASE("changes of robots, agents, orders and coordinators are events, but re
   order.block_reason(msg::BlockReason::BLOCK_NONE);
   w.hear(order);
   CHECK(w.kinds() == "off reference hold restart epoch blocked free ");
+}
+
+TEST_CASE("a refused order is an event with the reason, and an accepted or replaced one is none") {
+  Watched w;
+  msg::OrderAnswer answer;
+  answer.client(static_cast<std::uint32_t>(Sender::kOperator));
+  for (const msg::OrderResult result :
+       {msg::OrderResult::RESULT_REMEMBERED, msg::OrderResult::RESULT_REPLACED,
+        msg::OrderResult::RESULT_OUTSIDE_FIELD, msg::OrderResult::RESULT_UNKNOWN_ROBOT}) {
+    answer.result(result);
+    w.hear(answer);
+  }
+  REQUIRE(w.kinds() == "order order ");
+  CHECK(w.log.since(0)[0].text == "an order from operator was refused: a goal is outside the field");
+  CHECK(w.log.since(0)[1].text == "an order from operator was refused: the scenario has no such robot");
 }
 
 TEST_CASE("impossible values in messages do no harm") {
