@@ -133,7 +133,7 @@ ProcessGroup::ProcessGroup(const std::string& log_path) : log_path_(log_path) {
 
 ProcessGroup::~ProcessGroup() {
   try {
-    terminate(Milliseconds{0});
+    terminate_all(Milliseconds{0});
   } catch (const std::exception& error) {
     std::fprintf(stderr, "cannot end all processes: %s\n", error.what());
   }
@@ -333,7 +333,7 @@ void ProcessGroup::ask_to_end(Child& child) {
     kill(child.pid, SIGTERM);
 }
 
-void ProcessGroup::end_all(Milliseconds timeout, const std::function<bool(const Child&)>& should_end) {
+void ProcessGroup::end_all(Milliseconds timeout, const Selection& should_end) {
   Milliseconds rest_time{0};
   for (const auto& child : children_) {
     if (!should_end(*child)) continue;
@@ -341,29 +341,45 @@ void ProcessGroup::end_all(Milliseconds timeout, const std::function<bool(const 
     rest_time = std::max(rest_time, child->spec.rest_time);
   }
   const SteadyTime until = steady_clock::now() + timeout + rest_time;
-  const auto is_left = [&](const auto& child) { return child->is_running && should_end(*child); };
-  while (std::ranges::any_of(children_, is_left) && steady_clock::now() < until)
+  while (has_running(should_end) && steady_clock::now() < until)
     poll(std::chrono::ceil<Milliseconds>(until - steady_clock::now()));
 }
 
 std::vector<std::string> ProcessGroup::terminate(Milliseconds timeout) {
+  return terminate(timeout, [](const Child& child) { return !child.spec.outlasts_run; });
+}
+
+std::vector<std::string> ProcessGroup::terminate_all(Milliseconds timeout) {
+  return terminate(timeout, [](const Child&) { return true; });
+}
+
+std::vector<std::string> ProcessGroup::terminate(Milliseconds timeout, const Selection& should_end) {
   is_terminating_ = true;
-  end_all(timeout, drives_robots);
-  end_all(timeout, [](const Child&) { return true; });
+  end_all(timeout, [&](const Child& child) { return should_end(child) && drives_robots(child); });
+  end_all(timeout, should_end);
   std::vector<std::string> killed;
   for (const auto& child : children_) {
-    if (!child->is_running) continue;
+    if (!child->is_running || !should_end(*child)) continue;
     killed.push_back(child->spec.name);
     kill(child->pid, SIGKILL);
   }
-  while (running() > 0) poll(Milliseconds{1000});
+  while (has_running(should_end)) poll(Milliseconds{1000});
   is_terminating_ = false;
   return killed;
 }
 
 std::size_t ProcessGroup::running() const {
-  return static_cast<std::size_t>(
-      std::count_if(children_.begin(), children_.end(), [](const auto& child) { return child->is_running; }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      children_, [](const auto& child) { return child->is_running && !child->spec.outlasts_run; }));
+}
+
+bool ProcessGroup::has_running(const Selection& selection) const {
+  return std::ranges::any_of(children_,
+                             [&](const auto& child) { return child->is_running && selection(*child); });
+}
+
+bool ProcessGroup::has_outlasting() const {
+  return has_running([](const Child& child) { return child.spec.outlasts_run; });
 }
 
 std::vector<std::string> ProcessGroup::last_lines(const std::string& name) const {

@@ -38,8 +38,13 @@ class ProcessGroup : public Processes {
   /// Like poll(), but also returns as soon as one of these descriptors is readable.
   std::vector<ChildEvent> poll(Milliseconds timeout, std::span<const int> descriptors);
   std::vector<std::string> terminate(Milliseconds timeout) override;
+  /// Like terminate(), but also ends the children that outlast the run.
+  std::vector<std::string> terminate_all(Milliseconds timeout);
 
+  /// The number of running children, except those that outlast the run.
   std::size_t running() const;
+  /// Whether a child that outlasts the run is running.
+  bool has_outlasting() const;
   std::map<std::string, ProcessUse> resource_use() const override { return resource_use_; }
   std::vector<std::string> last_lines(const std::string& name) const override;
   void log(const std::string& line) override;
@@ -57,8 +62,12 @@ class ProcessGroup : public Processes {
   void start_due(std::vector<ChildEvent>& events);
   static bool drives_robots(const Child& child);
   void ask_to_end(Child& child);
+  using Selection = std::function<bool(const Child&)>;
+  bool has_running(const Selection& selection) const;
   /// Asks children to end, and waits for them up to the timeout.
-  void end_all(Milliseconds timeout, const std::function<bool(const Child&)>& should_end);
+  void end_all(Milliseconds timeout, const Selection& should_end);
+  /// See terminate().
+  std::vector<std::string> terminate(Milliseconds timeout, const Selection& should_end);
 
   std::string log_path_;
   std::FILE* log_;

@@ -88,13 +88,19 @@ std::optional<Json> receive_message(int socket) {
 }
 
 Json to_json(const ChildSpec& spec) {
-  return {{"name", spec.name},   {"argv", spec.argv},         {"restart", spec.restart},
-          {"input", spec.input}, {"niceness", spec.niceness}, {"rest_time_ms", spec.rest_time.count()}};
+  return {{"name", spec.name},
+          {"argv", spec.argv},
+          {"restart", spec.restart},
+          {"input", spec.input},
+          {"niceness", spec.niceness},
+          {"rest_time_ms", spec.rest_time.count()},
+          {"outlasts_run", spec.outlasts_run}};
 }
 
 ChildSpec child_spec(const Json& json) {
   ChildSpec spec{json.at("name"), json.at("argv"), json.at("restart"), json.at("input"), json.at("niceness")};
   spec.rest_time = std::chrono::milliseconds(json.at("rest_time_ms").get<std::int64_t>());
+  spec.outlasts_run = json.at("outlasts_run");
   return spec;
 }
 
@@ -297,6 +303,15 @@ bool is_readable(int descriptor) {
   return ::poll(&entry, 1, 0) == 1;
 }
 
+/// Ends the other processes. Then waits while those that outlast the run are running, until `stop` is
+/// readable.
+void keep_outlasting(ProcessGroup& group, const std::function<void()>& on_outlasting, int stop) {
+  (void)group.terminate(kTerminationTimeout);
+  if (!group.has_outlasting() || is_readable(stop)) return;
+  if (on_outlasting) on_outlasting();
+  while (group.has_outlasting() && !is_readable(stop)) (void)group.poll(200ms, std::array{stop});
+}
+
 }  // namespace
 
 int keep_processes(ProcessGroup& group, const DirectorWork& work) {
@@ -341,7 +356,10 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     }
     std::string reason;
     code = end_of(director, reason);
-    if (code) break;
+    if (code) {
+      keep_outlasting(group, work.on_outlasting, stop);
+      break;
+    }
     group.log("the director of the run died: " + reason);
     print_to(stderr, "the process that directs the run died: {}\n", reason);
     deaths.push_back(reason);
@@ -354,7 +372,7 @@ int keep_processes(ProcessGroup& group, const DirectorWork& work) {
     work.on_director_lost(reason);
     code = kExitFailure;
   }
-  (void)group.terminate(kTerminationTimeout);
+  (void)group.terminate_all(kTerminationTimeout);
   close(stop);
   return *code;
 }

@@ -22,6 +22,8 @@ struct DirectorWork {
   /// A director that has not ended this long after it was asked to end is killed. If a signal has stopped the
   /// director, Ctrl-C takes effect only then.
   std::chrono::milliseconds shutdown_timeout{30'000};
+  /// Called in this process when the director has ended and processes that outlast the run remain.
+  std::function<void()> on_outlasting{};
 };
 
 /// Runs the work in a separate process, the director, which uses the network. This process does not use the
@@ -30,6 +32,9 @@ struct DirectorWork {
 /// the remaining processes are also ended. SIGINT and SIGTERM are passed on to the director. A director that
 /// does not end in time, or within 15 s of the end of its processes, is killed. If this process dies, the
 /// director is asked to end, and finds that all processes have ended.
+///
+/// Processes that outlast the run (ChildSpec::outlasts_run) continue after a director has ended with an exit
+/// code, until they end themselves, or SIGINT or SIGTERM arrives, possibly before the director's end.
 ///
 /// Returns the exit code of the director, or 1 if the director was lost. Call it before this process starts
 /// threads. Throws std::runtime_error if no process can be created.

@@ -22,6 +22,8 @@ struct ChildSpec {
   /// For a process that drives robots: the maximum time for robots to come to rest when it is asked to end.
   /// Such a process ends before all processes that do not drive robots, whose rest_time is 0.
   std::chrono::milliseconds rest_time{0};
+  /// terminate() spares it, so that it outlasts the run; see keep_processes().
+  bool outlasts_run = false;
 };
 
 /// A child was restarted or died.
@@ -55,7 +57,7 @@ class Processes {
   virtual std::vector<ChildEvent> poll(Milliseconds timeout) = 0;
   /// Asks all children to end, those that drive robots before the others. Kills those that have not ended
   /// after the timeout plus their rest time, and waits for all to end. Returns the names of the killed
-  /// children.
+  /// children. Children that outlast the run continue.
   virtual std::vector<std::string> terminate(Milliseconds timeout) = 0;
 
   /// Resource use of all children that have ended, by name. For a child on another host, the resource use of

@@ -207,6 +207,28 @@ TEST_CASE("terminating ends children by SIGTERM, then by SIGKILL, and restarts n
   CHECK(group.poll(0ms).empty());
 }
 
+TEST_CASE("terminating spares a child that outlasts the run, but not at the end of the group") {
+  pid_t page = 0;
+  {
+    ProcessGroup group(log_path());
+    ChildSpec spec = shell("page", "exec sleep 1000");
+    spec.outlasts_run = true;
+    page = group.start(spec);
+    group.start(shell("agent", "exec sleep 1000"));
+    CHECK(group.running() == 1);
+    CHECK(group.terminate(kDeadline).empty());
+    CHECK(group.running() == 0);
+    CHECK(group.has_outlasting());
+    CHECK(kill(page, 0) == 0);
+    SECTION("when all are terminated") {
+      CHECK(group.terminate_all(kDeadline).empty());
+      CHECK_FALSE(group.has_outlasting());
+    }
+    SECTION("when the group ends") {}
+  }
+  CHECK(kill(page, 0) == -1);
+}
+
 TEST_CASE("a restarted child reads its input again, and terminating closes a child's stdin") {
   ProcessGroup group(log_path());
   const std::string text(100'000, 'x');

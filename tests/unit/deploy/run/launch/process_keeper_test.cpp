@@ -50,6 +50,7 @@ struct Fixture {
   int keep(std::function<int(Processes&, const Deaths&)> run) {
     DirectorWork work{std::move(run), [this](const std::string& reason) { lost = reason; }};
     if (shutdown_timeout) work.shutdown_timeout = *shutdown_timeout;
+    work.on_outlasting = on_outlasting;
     return keep_processes(group, work);
   }
 
@@ -57,6 +58,7 @@ struct Fixture {
   ProcessGroup group{folder.file("log")};
   std::string lost;
   std::optional<std::chrono::milliseconds> shutdown_timeout;  // of directors; nullopt: default
+  std::function<void()> on_outlasting;
 };
 
 }  // namespace
@@ -247,6 +249,57 @@ TEST_CASE("when the keeping process is killed, robots come to rest and the direc
   }
   CHECK(f.text("report") == "written");
   CHECK(f.text("rest") == "rest\n");
+}
+
+/// A process that outlasts the run.
+ChildSpec page(const std::string& script) {
+  ChildSpec spec = shell("page", script);
+  spec.outlasts_run = true;
+  return spec;
+}
+
+TEST_CASE("a process that outlasts the run continues after the director's end until the user interrupts") {
+  Fixture f;
+  const bool ends_others = GENERATE(true, false);
+  CAPTURE(ends_others);
+  const auto lives = [&](const std::string& process) { return is_alive(std::stoi(f.text(process))); };
+  int calls = 0;
+  f.on_outlasting = [&] {
+    ++calls;
+    CHECK(lives("page"));
+    CHECK_FALSE(lives("agent"));
+    kill(getpid(), SIGINT);
+  };
+  const int code = f.keep([&](Processes& processes, const Deaths&) {
+    write_file(f.file("page"), std::to_string(processes.start(page("exec sleep 1000"))));
+    write_file(f.file("agent"), std::to_string(processes.start(shell("agent", "exec sleep 1000"))));
+    if (ends_others) (void)processes.terminate(5s);
+    return 3;
+  });
+  CHECK(code == 3);
+  CHECK(calls == 1);
+  CHECK_FALSE(lives("page"));
+}
+
+TEST_CASE("a process that outlasts the run is not kept if it ends, or if the user has interrupted the run") {
+  Fixture f;
+  int calls = 0;
+  f.on_outlasting = [&] { ++calls; };
+  CHECK(f.keep([](Processes& processes, const Deaths&) {
+    (void)processes.start(page("sleep 1"));
+    return 5;
+  }) == 5);
+  CHECK(calls == 1);
+  const pid_t self = getpid();
+  CHECK(f.keep([&](Processes& processes, const Deaths&) {
+    obey_sigterm();
+    (void)processes.start({"other page", {"/bin/sh", "-c", "exec sleep 1000"}, false, {}, 0, {}, true});
+    kill(self, SIGINT);
+    wait_for([] { return is_asked_to_end != 0; });
+    return 6;
+  }) == 6);
+  CHECK(calls == 1);
+  CHECK_FALSE(f.group.has_outlasting());
 }
 
 TEST_CASE("robots come to rest before other processes are asked to end") {
