@@ -14,6 +14,7 @@
 #include "tests/needs_root.hpp"
 #include "tests/sanitized.hpp"
 #include "tests/small_disk.hpp"
+#include "tests/taken_port.hpp"
 #include "tests/test_domain.hpp"
 
 namespace sidestep::arguments {
@@ -79,11 +80,13 @@ class Runner {
             {"keys", keys},
             {"magic", write("magic.mcap", "\x89MCAP0\r\n")},
             {"long", std::string(5000, 'x')},
+            {"port", port_.number()},
             {"domain", std::to_string(domain_.number())}};
   }
 
   TemporaryFolder folder_;
   TestDomain domain_;
+  TakenPort port_;
   Placeholders placeholders_;
   std::vector<Section> table_;
   std::size_t rows_ = 0;

@@ -3,6 +3,7 @@
 // processes.
 #include <arpa/inet.h>
 #include <atomic>
+#include <csignal>
 #include <cstring>
 #include <fmt/format.h>
 #include <netinet/in.h>
@@ -16,6 +17,7 @@
 #include "tests/catch.hpp"
 #include "tests/faults/monitored_run.hpp"
 #include "tests/faults/process_usage.hpp"
+#include "tests/taken_port.hpp"
 #include "tests/unit/deploy/view/server/web_client.hpp"
 
 namespace sidestep::monitor_load_test {
@@ -118,25 +120,84 @@ class CountingViewer {
   std::thread thread_;
 };
 
-TEST_CASE("a run serves its page to the browser, and continues without the monitor") {
-  // This port is free, because the monitor that used it has just ended.
-  std::uint16_t port = 0;
-  {
-    LaunchedRun first(kWaitingRobots);
-    port = MonitorProcess(first).port();
-  }
-  LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port), "--seconds", "4"});
+/// A port that is free, because the monitor that used it has just ended.
+std::uint16_t free_port() {
+  LaunchedRun first(kWaitingRobots);
+  return MonitorProcess(first).port();
+}
+
+TEST_CASE("a run serves its page to the browser, and with --close until it is over") {
+  const std::uint16_t port = free_port();
+  LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port), "--close", "--seconds", "4"});
   REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  CHECK(run.printed(fmt::format("monitor: http://127.0.0.1:{}/\n", port)));
   CHECK(parse_json(http_request(port, "GET", "/api/state").body).at("robots").size() == 3);
   CHECK(http_request(port, "GET", "/").body.find("<title>Sidestep monitor</title>") != std::string::npos);
   CHECK(run.wait_for_end() == "exit code 0");
-  // If the port is taken, the run reports that and continues.
-  LaunchedRun holder(kWaitingRobots);
-  const MonitorProcess taken(holder);
-  LaunchedRun other(kWaitingRobots, {fmt::format("--monitor={}", taken.port()), "--seconds", "2"});
-  CHECK(other.wait_for_end() == "exit code 0");
-  CHECK(other.printed("the monitor ended: exit code 1"));
-  CHECK(other.printed("Address already in use"));
+  CHECK(http_request(port, "GET", "/").status == 0);
+}
+
+TEST_CASE("the page of a run stays until Ctrl-C, as a recording of what was, and frees the domain") {
+  const std::uint16_t port = free_port();
+  LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port), "--control", "--seconds", "3"});
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  const std::string begin = fmt::format("monitor: http://127.0.0.1:{}/#token=", port);
+  REQUIRE(run.printed(begin));
+  const std::string token = run.output().substr(run.output().find(begin) + begin.size(), 32);
+  CHECK_FALSE(run.logged(token));
+  const std::map<std::string, std::string> rights{{"Authorization", "Bearer " + token}};
+  CHECK(http_request(port, "POST", "/api/hold", rights).status == 200);
+  REQUIRE(run.wait_until([&] {
+    return run.printed(fmt::format("the monitor shows the run until Ctrl-C: http://127.0.0.1:{}/", port));
+  }));
+  CHECK(run.report().is_object());
+  for (const auto& [name, pid] : run.children()) {
+    CAPTURE(name);
+    CHECK(is_running(pid) == (name == "monitor"));
+  }
+  const Json scene = parse_json(http_request(port, "GET", "/api/scene").body);
+  CHECK(scene.at("is_recording") == true);
+  CHECK(scene.at("can_command") == false);
+  CHECK(http_request(port, "POST", "/api/hold", rights).status == 409);
+  const Json state = parse_json(http_request(port, "GET", "/api/state").body);
+  CHECK(state.at("promise").at("state") == "kept");
+  // The same domain can be used again, and the page does not show the other run.
+  run.start("second", "sidestep",
+            {"run", run.scenario_file(), "--domain", run.dds_arguments()[1], "--seconds", "3", "--report",
+             run.scenario_file() + ".json"});
+  REQUIRE(run.wait_until([&] { return run.exit_reason("second").has_value(); }));
+  CHECK(*run.exit_reason("second") == "exit code 0");
+  CHECK(parse_json(http_request(port, "GET", "/api/state").body).at("at_s") == state.at("at_s"));
+  REQUIRE(kill(run.pid(), SIGINT) == 0);
+  CHECK(run.wait_for_end() == "exit code 0");
+  CHECK(http_request(port, "GET", "/").status == 0);
+}
+
+TEST_CASE("Ctrl-C ends a run and its page, and a run continues without its monitor") {
+  const std::uint16_t port = free_port();
+  LaunchedRun run(kWaitingRobots, {fmt::format("--monitor={}", port)});
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  SECTION("the user interrupts") {
+    REQUIRE(kill(run.pid(), SIGINT) == 0);
+    CHECK(run.wait_for_end() == "exit code 0");
+    CHECK_FALSE(run.printed("until Ctrl-C"));
+  }
+  SECTION("the monitor dies") {
+    REQUIRE(kill(run.pid_of("monitor"), SIGKILL) == 0);
+    CHECK(run.wait_until([&] { return run.printed("the monitor ended: signal 9 (SIGKILL)"); }));
+    CHECK(run.command({"hold", "all", "--domain", run.dds_arguments()[1]}) == "exit code 0");
+    REQUIRE(kill(run.pid(), SIGINT) == 0);
+    CHECK(run.wait_for_end() == "exit code 0");
+  }
+}
+
+TEST_CASE("a run whose port is taken is refused before anything starts") {
+  const TakenPort port;
+  LaunchedRun run(kWaitingRobots, {"--monitor=" + port.number()});
+  CHECK(run.wait_for_end() == "exit code 2");
+  CHECK(run.printed("uses port " + port.number()));
+  CHECK_FALSE(run.printed("monitor: http"));
+  CHECK_FALSE(run.printed("started"));
 }
 
 /// Measures the load of a monitor while three viewers watch 22 robots.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/run/launch/launcher.hpp"
 
+#include <algorithm>
+#include <csignal>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
@@ -11,9 +13,11 @@
 #include "common/process/stop_signals.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/senders.hpp"
+#include "deploy/run/launch/monitor_process.hpp"
 #include "deploy/run/launch/process_command.hpp"
 #include "deploy/run/launch/process_group.hpp"
 #include "deploy/run/launch/process_keys.hpp"
+#include "deploy/view/launcher_input.hpp"
 
 namespace sidestep {
 namespace {
@@ -27,7 +31,6 @@ constexpr Duration kSettlingTime = 500ms;   // time after all arrivals, for the 
 constexpr Duration kStuckTimeout = 2s;      // minimum time since the last death
 constexpr auto kTerminationTimeout = 3000ms;
 constexpr std::size_t kShownLines = 8;
-constexpr const char* kMonitor = "monitor";
 
 /// Time in which robots that get no more commands come to rest: a second for the longest acceleration of a
 /// version and the latency of bases, and then the braking.
@@ -89,6 +92,7 @@ Report Launcher::run() {
   } catch (const std::exception& error) {
     abort_reason_ = error.what();
   }
+  if (options_.monitor_port) end_monitored_run();
   Report report = metrics_.report();
   for (const std::string& name : children_.terminate(kTerminationTimeout))
     print(name + " did not stop in time and was killed", LogLevel::kWarning);
@@ -125,7 +129,8 @@ void Launcher::work() {
         network_->bridge(), options_.dds.domain, options_.dds.interface,
         options_.dds.peers.empty() ? "" : " --peers ", fmt::join(options_.dds.peers, ",")));
   }
-  if (options_.monitor_port) start_monitor();
+  // Before all others, so that they do not start if the page cannot be shown.
+  if (options_.monitor_port && before_.deaths.empty()) start_monitor();
   start_core();
   while (!check_end()) {
     start_due_agents();
@@ -201,22 +206,32 @@ void Launcher::start_twin(RobotId robot, const std::string& name) {
 }
 
 void Launcher::start_monitor() {
-  std::vector<std::string> argv{sibling_program_path("sidestep"),
-                                "monitor",
-                                options_.scenario_file,
-                                "--port",
-                                *options_.monitor_port,
-                                "--domain",
-                                std::to_string(options_.dds.domain),
-                                "--interface",
-                                options_.dds.interface};
-  if (!options_.dds.peers.empty())
-    argv.insert(argv.end(), {"--peers", fmt::format("{}", fmt::join(options_.dds.peers, ","))});
-  if (!options_.dds.keys.empty())
-    argv.insert(argv.end(), {"--keys", key_folder_of(options_.dds.keys, {Role::kViewer})});
-  if (options_.dds.insecure) argv.emplace_back("--insecure");
-  children_.start({kMonitor, argv, false});
-  print(fmt::format("monitor: http://127.0.0.1:{}/", *options_.monitor_port));
+  const pid_t pid = children_.start(monitor_child(options_));
+  print(fmt::format("started {} as pid {}", kMonitorProcess, pid));
+  const auto is_listening = [&] {
+    return std::ranges::any_of(children_.last_lines(kMonitorProcess),
+                               [](const std::string& line) { return line.starts_with("monitor: http"); });
+  };
+  for (const Time deadline = bus_.now() + kStartupTimeout; !is_listening();) {
+    bus_.run_until(bus_.now() + kPollPeriod);
+    if (is_interrupted_) return;
+    for (const ChildEvent& event : children_.poll(0ms)) {
+      print_last_lines(event.name);
+      throw std::runtime_error(fmt::format("the {} ended: {}", event.name, event.reason));
+    }
+    if (bus_.now() > deadline)
+      throw std::runtime_error(
+          fmt::format("the monitor does not listen {} s after its start", to_seconds(kStartupTimeout)));
+  }
+  // Not in the log, because other users may read that, and the address may have the token.
+  if (!options_.is_quiet) display_.print("monitor: " + monitor_url(options_));
+}
+
+void Launcher::end_monitored_run() {
+  if (is_ready_)
+    children_.add_input(kMonitorProcess, std::string(LauncherInput::kRunIsOver) + "\n");
+  else
+    (void)children_.send_signal(kMonitorProcess, SIGTERM);  // there is nothing to see
 }
 
 void Launcher::start_core() {
@@ -253,10 +268,10 @@ void Launcher::send_revoked_keys() try {
 }
 
 void Launcher::handle(const ChildEvent& event) {
-  if (event.name == kMonitor) {
+  if (event.name == kMonitorProcess) {
     // The run does not need the monitor.
     print(fmt::format("the monitor ended: {}", event.reason), LogLevel::kWarning);
-    return print_last_lines(kMonitor);
+    return print_last_lines(kMonitorProcess);
   }
   if (event.kind == ChildEvent::Kind::kStarted) {
     print(fmt::format("started {} again as pid {}", event.name, event.pid));

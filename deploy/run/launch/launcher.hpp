@@ -83,8 +83,11 @@ class Launcher {
   void send_revoked_keys();
   Time next_poll();
   void handle(const ChildEvent& event);
-  /// Starts the process that shows the run in the browser.
+  /// Starts the process that shows the run in the browser. Returns when its page can be opened, or the user
+  /// has interrupted. Throws std::runtime_error if the process ends instead.
   void start_monitor();
+  /// Tells that process that the run is over, or ends it if the run has not been ready.
+  void end_monitored_run();
   /// Runs until the run is over.
   void work();
   void print_last_lines(const std::string& process);

@@ -19,10 +19,12 @@
 #include "deploy/audit/metrics/progress.hpp"
 #include "deploy/run/launch/hosts/run_hosts.hpp"
 #include "deploy/run/launch/launcher.hpp"
+#include "deploy/run/launch/monitor_process.hpp"
 #include "deploy/run/launch/other_run.hpp"
 #include "deploy/run/launch/process_keeper.hpp"
 #include "deploy/run/launch/process_keys.hpp"
 #include "deploy/run/launch/separate_process.hpp"
+#include "deploy/view/server/access.hpp"
 
 namespace sidestep {
 
@@ -97,6 +99,11 @@ int run(const RunOptions& given) {
       {{"the log", log_path}, {"--report", report_path}, {"--record", options.recording_file}});
   require_keys(options, scenario);
   require_outputs(options, report_path, log_path);
+  if (options.monitor_port) {
+    if (options.has_control) options.monitor_token = random_token();
+    (void)monitor_child(options);
+    require_free_port(*options.monitor_port);
+  }
   if (const int exit_code = check_domain(options.dds); exit_code != 0) return exit_code;
   const TemporaryFolder robot_memory;  // starts empty with each run
   options.floor.memory_folder = robot_memory.path();
@@ -140,6 +147,9 @@ int run(const RunOptions& given) {
     report.abort_reason = "the process that directs the run died: " + reason;
     print_verdict(report);
     (void)finish(report);
+  };
+  work.on_outlasting = [&] {
+    print_to(stdout, "the monitor shows the run until Ctrl-C: {}\n", monitor_url(options));
   };
   return keep_processes(group, work);
 }

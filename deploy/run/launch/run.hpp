@@ -20,7 +20,10 @@ struct RunOptions {
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
   std::optional<std::string> monitor_port;  ///< port of a page that shows the run; nullopt: no page
-  std::string domain = "0";                 ///< for run(): replaces dds.domain; "auto": a free domain
+  bool has_control = false;                 ///< the page may give orders and cause faults
+  bool closes_page = false;   ///< the page ends with the run; otherwise it stays until the user interrupts
+  std::string monitor_token;  ///< set by run() if the page may command; see AccessSettings::token
+  std::string domain = "0";   ///< for run(): replaces dds.domain; "auto": a free domain
   /// dds.keys, if set, is a folder with the keys of all identities; each process gets its own keys.
   DdsSettings dds;
   FloorOptions floor;
@@ -35,7 +38,8 @@ struct RunOptions {
 /// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed
 /// or the user interrupts, stops them, and writes the report. If the scenario gives no robot a goal, clients
 /// give the orders. The run then lasts until the user interrupts, RunOptions::seconds have passed or, with
-/// `until_idle`, all robots have finished their orders; no robot needs to arrive. Returns the exit code: 0
+/// `until_idle`, all robots have finished their orders; no robot needs to arrive. If a page shows the run,
+/// this returns only when the user interrupts, unless RunOptions::closes_page. Returns the exit code: 0
 /// only if all robots arrived without contact and the auditor found no violation; kExitNotJudged if nothing
 /// went wrong but the audit covered too little. Throws ConfigError, and std::runtime_error if a process
 /// cannot be started or a file cannot be written.

@@ -30,7 +30,14 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .required();
   command.add_option("--record", options->recording_file, "record all messages to this file");
   command.add_optional_value("--monitor", options->monitor_port, "8080",
-                             "show the run in the browser, on this port of this machine [8080]");
+                             "show the run in the browser, on this port of this machine [8080]; the page "
+                             "stays when the run is over, until Ctrl-C");
+  command
+      .add_flag("--control", options->has_control,
+                "viewers with the printed link may give orders and cause faults")
+      .needs(command.option("--monitor"));
+  command.add_flag("--close", options->closes_page, "the page ends with the run")
+      .needs(command.option("--monitor"));
   command.add_option("--report", options->report_file, "report file [reports/<scenario>-<time>.json]");
   command.add_option("--seed", options->floor.seed, "random seed of the simulator's noise")
       .check(non_negative())
