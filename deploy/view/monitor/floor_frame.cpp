@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <vector>
 
 #include "deploy/view/monitor/unix_time.hpp"
@@ -143,6 +145,20 @@ void add_detections(Rows& rows, const msg::DetectionFrame& frame) {
   }
 }
 
+constexpr std::size_t kRobotRow = kRobotColumns.size() + kVersions.size() * kVersionColumns.size();
+
+/// The index of a column in a robot's row.
+consteval std::size_t robot_column(std::string_view name) {
+  return static_cast<std::size_t>(std::ranges::find(kRobotColumns, name) - kRobotColumns.begin());
+}
+
+template <typename Value>
+Value read(const std::string& bytes, std::size_t offset) {
+  Value value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
 template <typename Value>
 void append(std::string& bytes, const Value& value) {
   const auto* begin = reinterpret_cast<const char*>(&value);
@@ -152,7 +168,7 @@ void append(std::string& bytes, const Value& value) {
 }  // namespace
 
 std::string encode_frame(const FloorState& floor, Time now) {
-  Rows robots(kRobotColumns.size() + kVersions.size() * kVersionColumns.size());
+  Rows robots(kRobotRow);
   Rows ledger(kLedgerColumns.size() + kVersionColumns.size());
   Rows obstacles(kObstacleColumns.size()), balls(kBallColumns.size());
   Rows detections(kDetectionColumns.size()), beams(kBeamColumns.size());
@@ -190,6 +206,24 @@ std::string encode_frame(const FloorState& floor, Time now) {
   for (const Rows* rows : sections)
     bytes.append(reinterpret_cast<const char*>(rows->values().data()), rows->values().size() * sizeof(float));
   return bytes;
+}
+
+std::vector<RobotPlace> places_in(const std::string& frame) {
+  static_assert(kSections[0] == std::string_view("robots"));
+  constexpr std::size_t kRows = sizeof(double) + sizeof(std::uint32_t);
+  std::vector<RobotPlace> places;
+  const auto rows = read<std::uint32_t>(frame, kRows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::size_t begin =
+        kRows + kSections.size() * sizeof(std::uint32_t) + row * kRobotRow * sizeof(float);
+    const auto cell = [&](std::size_t column) { return read<float>(frame, begin + column * sizeof(float)); };
+    for (const std::size_t x : {robot_column("true_x"), robot_column("seen_x"), robot_column("x")}) {
+      if (std::isnan(cell(x))) continue;
+      places.push_back({static_cast<RobotId>(cell(0)), {cell(x), cell(x + 1)}});
+      break;
+    }
+  }
+  return places;
 }
 
 nlohmann::ordered_json frame_layout() {

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "common/time/time.hpp"
 #include "deploy/inspect/floor/floor_state.hpp"
+#include "deploy/view/monitor/closest_pair.hpp"
 
 namespace sidestep {
 
@@ -22,6 +24,10 @@ namespace sidestep {
 ///
 /// frame_layout() names the sections and the columns of their rows. Unknown values are NaN.
 [[nodiscard]] std::string encode_frame(const FloorState& floor, Time now);
+
+/// The robots of a frame whose positions are known: from ground truth, else from vision, else from the
+/// robots' own estimates.
+[[nodiscard]] std::vector<RobotPlace> places_in(const std::string& frame);
 
 /// {"sections": [{"name": "robots", "columns": ["id", …]}, …], "flags": ["off_reference", …]}. The flags are
 /// the bits of the column "flags", starting with the lowest.

@@ -15,6 +15,7 @@
 #include "deploy/view/monitor/inspected_message.hpp"
 #include "deploy/view/monitor/panels.hpp"
 #include "deploy/view/monitor/scene.hpp"
+#include "deploy/view/monitor/trails.hpp"
 #include "deploy/view/monitor/unix_time.hpp"
 #include "deploy/view/server/viewer_json.hpp"
 
@@ -58,11 +59,27 @@ std::optional<double> number_in(const Json& json, const char* key) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
+/// Seconds since 1970 as a time; nullopt if they are out of range.
+std::optional<Time> time_at(double at_s) {
+  if (!(std::abs(at_s) <= 9e9)) return std::nullopt;
+  return time_from_ns(std::llround(at_s * 1e9));
+}
+
 /// The member `at_s` as a time; nullopt if it is missing or out of range.
 std::optional<Time> time_in(const Json& json) {
   const std::optional<double> at_s = number_in(json, "at_s");
-  if (!at_s || std::abs(*at_s) > 9e9) return std::nullopt;
-  return time_from_ns(std::llround(*at_s * 1e9));
+  return at_s ? time_at(*at_s) : std::nullopt;
+}
+
+/// The query's `at_s` as a time; nullopt if it is missing, no number, or out of range.
+std::optional<Time> time_in(const std::map<std::string, std::string>& query) {
+  const auto given = query.find("at_s");
+  if (given == query.end()) return std::nullopt;
+  const std::string& text = given->second;
+  double at_s = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), at_s);
+  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
+  return time_at(at_s);
 }
 
 }  // namespace
@@ -357,6 +374,12 @@ std::optional<WebResponse> Monitor::respond(const WebRequest& request) {
   if (request.path == "/api/scene") return WebResponse{200, "application/json", text_of(scene())};
   if (request.path == "/api/map" && settings_.scenario && settings_.scenario->map)
     return WebResponse{200, "application/octet-stream", map_bits(settings_.scenario->map->cells())};
+  if (request.path == "/api/trails") {
+    const std::optional<Time> at = time_in(request.query);
+    if (at) return WebResponse{200, "application/json", text_of(trails_json(history_, *at))};
+    return WebResponse{400, "application/json",
+                       text_of({{"error", "at_s: expected seconds since 1970, e.g. ?at_s=1795630117.8"}})};
+  }
   if (request.path == "/api/events") {
     std::uint64_t since = 0;
     const auto given = request.query.find("since");

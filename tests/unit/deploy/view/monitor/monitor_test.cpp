@@ -319,6 +319,49 @@ TEST_CASE("invalid messages from viewers are rejected") {
     CHECK_FALSE(run.send(bad));
 }
 
+TEST_CASE("the trails before any moment of the history are where the robots were") {
+  MonitoredRun run;
+  std::map<std::int64_t, msg::GroundTruth> truths;
+  call_periodically(run.bus, 100ms, [&] { truths[to_ns(run.bus.now())] = run.truth; });
+  run.system.run_for(12s);
+  const auto trails_at = [&](double at_s) {
+    return parse_json(
+               run.monitor.respond({"GET", "/api/trails", {{"at_s", std::to_string(at_s)}}, "", ""})->body)
+        .at("robots");
+  };
+  const double end_s = run.viewer.time_s();
+  for (const double at_s : {end_s, end_s - 4, end_s - 100, end_s + 100}) {
+    const Json trails = trails_at(at_s);
+    REQUIRE(trails.size() == run.scenario.robots.size());
+    const double last_s = std::clamp(at_s, end_s - 12, end_s);
+    for (const Json& trail : trails) {
+      double previous_s = 0;
+      for (const Json& point : trail.at("points")) {
+        const double point_s = point[0];
+        CHECK(point_s > previous_s);
+        CHECK(point_s >= last_s - 5.1);
+        CHECK(point_s <= last_s + 0.1);
+        previous_s = point_s;
+        const auto truth = truths.lower_bound(std::llround(point_s * 1e9));
+        if (truth == truths.begin() || truth == truths.end()) continue;
+        for (const msg::TrueRobotState& robot : truth->second.robots())
+          if (robot.robot() == trail.at("id"))
+            CHECK(std::hypot(robot.x_m() - point[1].get<double>(), robot.y_m() - point[2].get<double>()) <
+                  0.3);
+      }
+    }
+  }
+  CHECK(trails_at(end_s)[0].at("points").size() >= 45);
+  for (const char* bad : {"", "x", "1e300", "nan", "1 "})
+    CHECK(run.monitor.respond({"GET", "/api/trails", {{"at_s", bad}}, "", ""})->status == 400);
+  CHECK(run.monitor.respond({"GET", "/api/trails", {}, "", ""})->status == 400);
+}
+
+TEST_CASE("before the first frame there are no trails") {
+  MonitoredRun run;
+  CHECK(run.monitor.respond({"GET", "/api/trails", {{"at_s", "1"}}, "", ""})->body == R"({"robots":[]})");
+}
+
 TEST_CASE("the state, the events and the scene are available over HTTP") {
   MonitoredRun run;
   run.system.run_for(6s);
