@@ -11,12 +11,13 @@ export class Cameras {
     this.isShown = isShown;
     /** @type {HTMLImageElement[]} */
     this.images = [];
+    this.hint = create("p", {class: "hint"}, "No camera image has been received yet.");
   }
 
   /** @param {number} count */
   start(count) {
     this.images = Array.from({length: count}, (_, i) => create("img", {class: "camera", alt: `Image of camera ${i}`}));
-    this.node.replaceChildren(...this.images);
+    this.node.replaceChildren(this.hint, ...this.images);
     setInterval(() => this.update(), kPeriod_ms);
   }
 
@@ -27,6 +28,7 @@ export class Cameras {
       if (!response || !response.ok) continue;
       URL.revokeObjectURL(image.src);
       image.src = URL.createObjectURL(await response.blob());
+      this.hint.hidden = true;
     }
   }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields by which the selected robot could plan: a navigation function, a band, a local grid. The monitor computes them.
+import {palette} from "./theme.js";
 
 const kPeriod_ms = 500;
 
@@ -68,7 +69,7 @@ const kLocalColours = [[0, 0, 0, 0], [0, 158, 115, 60], [213, 94, 0, 200]];
 export function drawNavigation(c, view) {
   if (!fields.data || !fields.data.navigation) return;
   drawGrid(c, fields.data.navigation, navigationColour);
-  c.strokeStyle = "#ffffff";
+  c.strokeStyle = palette.text;
   c.lineWidth = 1.5 * view.pixel;
   c.beginPath();
   (fields.data.path || []).forEach((/** @type {number[]} */ p, /** @type {number} */ i) => (i === 0 ? c.moveTo(p[0], p[1]) : c.lineTo(p[0], p[1])));
@@ -78,7 +79,7 @@ export function drawNavigation(c, view) {
 /** @param {CanvasRenderingContext2D} c @param {import("./shapes.js").View} view */
 export function drawBand(c, view) {
   if (!fields.data || !fields.data.band) return;
-  c.strokeStyle = "#f0e442";
+  c.strokeStyle = palette.yellow;
   c.lineWidth = view.pixel;
   c.beginPath();
   for (const [x, y, radius] of fields.data.band) {

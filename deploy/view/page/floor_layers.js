@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All layers except those of robots.
-import {addCircle, addPolygon, kGreen, kGrey, kRed, shared} from "./shapes.js";
+import {addCircle, addPolygon, shared} from "./shapes.js";
+import {palette} from "./theme.js";
 
 /** @typedef {import("./shapes.js").View} View */
 
@@ -13,6 +14,8 @@ export function onMapLoaded(callback) {
   mapLoaded = callback;
 }
 
+// Blocked cells of the map, legible in both themes.
+const kMapColour = [118, 130, 141, 255];
 /** @type {Map<any, HTMLCanvasElement>} */
 const maps = new Map();
 
@@ -35,7 +38,7 @@ function pictureOf(map) {
     for (let row = 0; row < map.rows; ++row)
       for (let column = 0; column < map.columns; ++column)
         if (bits[row * stride + (column >> 3)] & (1 << (column & 7)))
-          image.data.set([139, 150, 161, 255], 4 * ((map.rows - 1 - row) * map.columns + column));
+          image.data.set(kMapColour, 4 * ((map.rows - 1 - row) * map.columns + column));
     c.putImageData(image, 0, 0);
     mapLoaded();
   });
@@ -45,7 +48,7 @@ function pictureOf(map) {
 /** @param {CanvasRenderingContext2D} c @param {View} view */
 export function drawField(c, view) {
   const {length_m, width_m} = view.scene.field;
-  c.strokeStyle = kGrey;
+  c.strokeStyle = palette.grey;
   c.lineWidth = 2 * view.pixel;
   c.strokeRect(-length_m / 2, -width_m / 2, length_m, width_m);
 }
@@ -66,7 +69,7 @@ export function drawObstacles(c, view) {
     if (shape.centre) addCircle(path, shape.centre[0], shape.centre[1], shape.radius_m);
     else addPolygon(path, shape.corners);
   }
-  c.fillStyle = c.strokeStyle = kGrey;
+  c.fillStyle = c.strokeStyle = palette.grey;
   c.lineWidth = 2 * view.pixel;
   c.fill(path);
   c.stroke(path);
@@ -78,7 +81,7 @@ export function drawZones(c, view) {
     const path = new Path2D();
     addPolygon(path, zone.corners);
     const isSlow = zone.speed_limit_mps !== undefined;
-    c.fillStyle = c.strokeStyle = isSlow ? "#e69f0033" : "#d55e0044";
+    c.fillStyle = c.strokeStyle = isSlow ? `${palette.orange}33` : `${palette.red}44`;
     c.lineJoin = "round";
     c.lineWidth = 2 * Math.max(zone.radius_m, view.pixel);
     c.fill(path);
@@ -102,9 +105,9 @@ export function drawMovingObstacles(c, view) {
     bodies.moveTo(x, y);
     bodies.lineTo(x + v[at + columns.vx], y + v[at + columns.vy]);
   }
-  c.fillStyle = "#d55e0055";
+  c.fillStyle = `${palette.red}55`;
   c.fill(bodies);
-  c.strokeStyle = kRed;
+  c.strokeStyle = palette.red;
   c.lineWidth = view.pixel;
   c.stroke(bodies);
   c.setLineDash([4 * view.pixel, 4 * view.pixel]);
@@ -117,8 +120,11 @@ export function drawBall(c, view) {
   const {values: v, rows, stride} = view.frame.sections.balls;
   const path = new Path2D();
   for (let i = 0; i < rows; ++i) addCircle(path, v[i * stride], v[i * stride + 1], Math.max(0.022, 3 * view.pixel));
-  c.fillStyle = "#ff8c1a";
+  c.fillStyle = "#ff8c1a";  // as balls of the league are, in both themes
   c.fill(path);
+  c.strokeStyle = palette.edge;
+  c.lineWidth = view.pixel;
+  c.stroke(path);
 }
 
 /**
@@ -137,7 +143,7 @@ export function drawDetections(c, view) {
     path.moveTo(x, y - size);
     path.lineTo(x, y + size);
   }
-  c.strokeStyle = "#ffffff";
+  c.strokeStyle = palette.text;
   c.lineWidth = view.pixel;
   c.stroke(path);
 }
@@ -148,6 +154,38 @@ export function drawScans(c, view) {
   const path = new Path2D();
   const size = 1.5 * view.pixel;
   for (let i = 0; i < rows; ++i) path.rect(v[i * stride + 1] - size, v[i * stride + 2] - size, 2 * size, 2 * size);
-  c.fillStyle = kGreen;
+  c.fillStyle = palette.green;
   c.fill(path);
+}
+
+/**
+ * The longest of 1, 2, 5, 10, … metres (or parts of a metre) that takes at most so much of the screen.
+ * @param {number} pixel metres per pixel @param {number} most_px
+ */
+export function scaleLength_m(pixel, most_px) {
+  const most_m = most_px * pixel;
+  const power = 10 ** Math.floor(Math.log10(most_m));
+  return power * (most_m >= 5 * power ? 5 : most_m >= 2 * power ? 2 : 1);
+}
+
+/** @param {CanvasRenderingContext2D} c @param {View} view */
+export function drawScale(c, view) {
+  const {ratio, canvas} = view.floor;
+  const length_m = scaleLength_m(view.pixel, 140);
+  const width = length_m / view.pixel, x = canvas.clientWidth - 14 - width, y = canvas.clientHeight - 14;
+  c.save();
+  c.setTransform(ratio, 0, 0, ratio, 0, 0);
+  c.strokeStyle = c.fillStyle = palette.dim;
+  c.lineWidth = 1.5;
+  c.beginPath();
+  c.moveTo(x, y - 5);
+  c.lineTo(x, y);
+  c.lineTo(x + width, y);
+  c.lineTo(x + width, y - 5);
+  c.stroke();
+  c.font = "12px system-ui, sans-serif";
+  c.textAlign = "right";
+  c.textBaseline = "bottom";
+  c.fillText(length_m < 1 ? `${Math.round(length_m * 1000)} mm` : `${length_m} m`, x + width - 4, y - 2);
+  c.restore();
 }

@@ -25,6 +25,14 @@ export function timeOfDay(seconds) {
   return new Date(seconds * 1000).toISOString().slice(11, 23);
 }
 
+/**
+ * Changes a text only if it differs, because each change costs a layout.
+ * @param {any} node @param {string} text
+ */
+export function setText(node, text) {
+  if (node.textContent !== text) node.textContent = text;
+}
+
 /** @param {string} id @returns {any} */
 export const element = (id) => document.getElementById(id);
 

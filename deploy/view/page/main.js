@@ -3,70 +3,94 @@
 import {Cameras} from "./cameras.js";
 import {Connection} from "./connection.js";
 import {Controls} from "./controls.js";
+import {coordinatorPanel, coordinatorTable, epochTable, updateCoordinators} from "./coordinator_panel.js";
+import {Dock} from "./dock.js";
+import {eventTable, updateEvents} from "./event_panel.js";
 import {watchFields} from "./fields.js";
 import {Floor} from "./floor.js";
-import {create, element} from "./format.js";
-import {Frame, Layout} from "./frame.js";
 import {onMapLoaded} from "./floor_layers.js";
+import {element, setText} from "./format.js";
+import {Frame, Layout} from "./frame.js";
+import {floorHint} from "./hint.js";
+import {startKeys} from "./keys.js";
+import {drawn} from "./labels.js";
+import {updateLamp, updateWhole} from "./lamp.js";
+import {buildLayerMenu} from "./layer_menu.js";
 import {layers} from "./layers.js";
-import {coordinatorPanel, eventPanel, onSeek, robotTable, Tabs, topicPanel, updateCoordinators, updateEvents, updateLamp,
-        updateNetwork, updateRobots, updateTopics, updateWhole} from "./panels.js";
+import {startMenus} from "./menu.js";
 import {Inspector} from "./plots.js";
+import {robotTable, updateRobots} from "./robot_panel.js";
 import {shared} from "./shapes.js";
+import {startSplitter} from "./splitter.js";
+import {changeTheme, onThemeChange, startTheme} from "./theme.js";
 import {Timeline} from "./timeline.js";
+import {topicPanel, topicTable, updateNetwork, updateTopics} from "./topic_panel.js";
+import {fetchTrails} from "./trail_source.js";
+import {onTrailsNeeded, trails} from "./trails.js";
 
 const link = new URLSearchParams(location.hash.slice(1));
 const token = link.get("token") || "";
-
-/** State for tests and for debugging. */
-const monitor = {frames: 0, script_ms: /** @type {number[]} */ ([]), panels: /** @type {any} */ (null),
-                 scene: /** @type {any} */ (null), frame: /** @type {any} */ (null), events: /** @type {any[]} */ ([]),
-                 event_received_ms: /** @type {number[]} */ ([]), connection: "connecting"};
-/** @type {any} */ (window).monitor = monitor;
+startTheme();
+startMenus();
+startSplitter();
 
 const send = (/** @type {object} */ message) => connection.send(message);
 const floor = new Floor(layers);
 const timeline = new Timeline(send);
 const inspector = new Inspector(send);
 const controls = new Controls(token);
-const tabs = new Tabs();
-const cameras = new Cameras(() => tabs.shown === "cameras" && monitor.connection === "connected");
+const dock = new Dock();
+const cameras = new Cameras(() => dock.isShown("cameras") && monitor.connection === "connected");
+
+/** State for tests and for debugging. */
+const monitor = {frames: 0, script_ms: /** @type {number[]} */ ([]), panels: /** @type {any} */ (null),
+                 whole: /** @type {any} */ (null), scene: /** @type {any} */ (null), frame: /** @type {any} */ (null),
+                 events: /** @type {any[]} */ ([]), event_received_ms: /** @type {number[]} */ ([]), connection: "connecting",
+                 floor, timeline, trails, drawn};
+/** @type {any} */ (window).monitor = monitor;
 /** @type {Layout | null} */
 let layout = null;
 
-tabs.add("robots", "Robots", robotTable.node);
-tabs.add("events", "Events", eventPanel);
-tabs.add("coordinators", "Coordinators", coordinatorPanel);
-tabs.add("topics", "Topics", topicPanel);
-tabs.add("inspect", "Messages and plots", inspector.node);
+dock.add("robots", "Robots", robotTable.node, [robotTable.menu]);
+dock.add("events", "Events", eventTable.node);
+dock.add("coordinators", "Coordinators", coordinatorPanel, [coordinatorTable.menu]);
+dock.add("topics", "Topics", topicPanel, [topicTable.menu]);
+dock.add("inspect", "Messages and plots", inspector.node);
 
-// Requested only while the tab is shown, because discovery costs the run's processes some work.
+// Requested only while the panel is shown, because discovery costs the run's processes some work.
 setInterval(async () => {
-  if (tabs.shown !== "topics" || !monitor.scene || monitor.scene.is_recording || monitor.connection !== "connected") return;
+  if (!dock.isShown("topics") || !monitor.scene || monitor.scene.is_recording || monitor.connection !== "connected") return;
   const response = await fetch("/api/network").catch(() => null);
   if (response && response.ok) updateNetwork(await response.json());
 }, 2000);
 
 const fieldLayers = layers.filter((layer) => ["navigation", "local", "band"].includes(layer.id));
-watchFields(() => (timeline.mode === "live" && fieldLayers.some((layer) => layer.on) ? floor.selected : -1),
-            () => (floor.isStale = true));
+const wantsField = () => fieldLayers.some((layer) => layer.on);
+const redraw = () => (floor.isStale = true);
+watchFields(() => (timeline.mode === "live" && !monitor.scene?.is_recording && wantsField() ? floor.selected : -1), redraw);
+onMapLoaded(redraw);
+onThemeChange(() => {
+  redraw();
+  timeline.draw();
+  inspector.plot.draw();
+});
+onTrailsNeeded((time) => fetchTrails(time, redraw));
 
 /** @param {number} robot */
 function select(robot) {
   floor.selected = robot;
   controls.select(robot);
-  floor.isStale = true;
+  redraw();
   if (monitor.panels) updateRobots(monitor.panels, monitor.scene, robot);
+  robotTable.reveal(robot);
 }
 floor.onSelect = select;
 floor.onDrag = (/** @type {number} */ robot, /** @type {number} */ x, /** @type {number} */ y) => {
-  if (!monitor.scene.can_command) return;
   select(robot);
-  controls.post(`/api/robots/${robot}/order`, {goals: [[x, y]]});
+  controls.go(robot, x, y);
 };
 robotTable.onClick = select;
-onMapLoaded(() => (floor.isStale = true));
-onSeek((at_s) => timeline.seek(at_s));
+eventTable.onClick = epochTable.onClick = (/** @type {number} */ at_s) => timeline.seek(at_s);
 
 /** @param {any} scene */
 function useScene(scene) {
@@ -75,18 +99,20 @@ function useScene(scene) {
   layout = new Layout(scene.layout);
   scene.layout = layout;
   scene.teams = new Map(scene.robots.map((/** @type {any} */ robot) => [robot.id, robot.team]));
+  const canCommand = floor.canCommand = scene.can_command && token !== "";
   element("title").textContent = scene.name ? `Sidestep: ${scene.name}` : "Sidestep";
-  element("live").textContent = scene.is_recording ? "End" : "Live";
-  timeline.isRecording = scene.is_recording;
+  timeline.set({isRecording: scene.is_recording});
   inspector.setChannels(scene.channels);
-  if (scene.can_command && isFirst) tabs.add("control", "Control", controls.node);
+  if (scene.can_command && isFirst) dock.add("control", "Control", controls.node);
+  controls.allow(canCommand, scene.is_recording);
   if (isFirst && scene.cameras > 0 && !scene.is_recording) {
-    tabs.add("cameras", "Cameras", cameras.node);
+    dock.add("cameras", "Cameras", cameras.node);
     cameras.start(scene.cameras);
   }
-  element("bookmark").hidden = element("record").hidden = !scene.can_command;
-  if (isFirst) floor.fit();
+  element("bookmark").hidden = element("record").hidden = !canCommand;
+  if (isFirst) floor.fitFloor();
   if (inspector.channel.value) inspector.choose();
+  showVerdicts();
   const at_s = Number(link.get("t"));
   if (isFirst && at_s > 0) timeline.seek(at_s);
 }
@@ -95,6 +121,12 @@ function useEvents() {
   timeline.events = monitor.events;
   updateEvents(monitor.events);
   timeline.draw();
+}
+
+function showVerdicts() {
+  const isRecording = Boolean(monitor.scene?.is_recording);
+  if (monitor.panels) updateLamp(monitor.panels.promise, isRecording);
+  updateWhole(monitor.whole, isRecording, timeline.moment.progress);
 }
 
 /** @param {any} message */
@@ -113,15 +145,17 @@ function onMessage(message) {
       monitor.panels = message;
       shared.zones = message.zones;
       shared.goals = new Map(message.robots.map((/** @type {any} */ robot) => [robot.id, robot.goals]));
-      updateLamp(message.promise);
+      showVerdicts();
       updateRobots(message, monitor.scene, floor.selected);
       updateCoordinators(message);
       updateTopics(message);
       return;
     case "whole":
-      return updateWhole(message, monitor.scene);
+      monitor.whole = message;
+      return showVerdicts();
     case "time":
-      return timeline.update(message);
+      timeline.update(message);
+      return showVerdicts();
     case "messages":
       return inspector.update(message);
   }
@@ -134,14 +168,26 @@ const connection = new Connection(
       monitor.frame = floor.frame = new Frame(buffer, layout);
       ++monitor.frames;
       floor.isStale = true;
+      // Without a scenario, only the robots tell where the floor is.
+      if (!monitor.scene.is_known && floor.fitted && floor.hasOutsiders()) floor.fitRobots();
     },
     (state) => {
       monitor.connection = state;
-      timeline.isConnected = state === "connected";
-      if (timeline.shown_s > 0) timeline.show(timeline.shown_s);
+      timeline.set({isConnected: state === "connected"});
       element("connection").textContent = state === "lost" ? "connection lost, trying again" : "connected";
       element("connection").dataset.state = state;
     });
+
+function showHint() {
+  const {first_grant_s, shown_s, mode} = timeline.moment;
+  const text = floorHint({
+    connection: monitor.connection, hasScene: monitor.scene !== null, isRecording: Boolean(monitor.scene?.is_recording), mode,
+    robots: floor.places().filter((place) => Number.isFinite(place.x)).length, wantsField: wantsField(), selected: floor.selected,
+    beforeFirstGrant: first_grant_s !== null && shown_s < first_grant_s});
+  setText(element("floor-hint"), text);
+  element("floor-hint").hidden = text === "";
+}
+setInterval(showHint, 300);
 
 function draw() {
   requestAnimationFrame(draw);
@@ -154,22 +200,24 @@ function draw() {
 }
 requestAnimationFrame(draw);
 
+const kBreaches = ["contact", "crash", "violation", "firmware"];
 element("lamp").addEventListener("click", () => {
-  const breach = monitor.events.find((event) => event.severity === "error" && ["contact", "crash", "violation", "firmware"].includes(event.kind));
-  const at_s = breach ? breach.at_s : monitor.panels && monitor.panels.promise.smallest && monitor.panels.promise.smallest.at_s;
+  const breach = monitor.events.find((event) => event.severity === "error" && kBreaches.includes(event.kind));
+  const at_s = breach ? breach.at_s : monitor.panels?.promise.smallest?.at_s;
   if (at_s) timeline.seek(at_s);
 });
 
 function bookmark() {
-  if (monitor.scene.can_command) controls.post("/api/bookmark", {text: `at ${element("clock").textContent}`});
+  if (floor.canCommand) controls.post("/api/bookmark", {text: `at ${element("clock").textContent}`}, "Bookmark");
 }
 async function record() {
   const button = element("record");
   const begins = button.getAttribute("aria-pressed") !== "true";
-  const answer = await controls.post(`/api/recording/${begins ? "start" : "stop"}`);
+  const answer = await controls.post(`/api/recording/${begins ? "start" : "stop"}`, undefined, "Recording");
   if (!answer) return;
   button.setAttribute("aria-pressed", String(begins));
   button.textContent = begins ? "Stop recording" : "Record";
+  if (answer.file) button.title = `${begins ? "Records into" : "Has recorded"} ${answer.file}`;
 }
 function copyLink() {
   const hash = new URLSearchParams(link);
@@ -177,19 +225,16 @@ function copyLink() {
   history.replaceState(null, "", `#${hash}`);
   if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
 }
-function changeTheme() {
-  const root = document.documentElement;
-  root.dataset.theme = root.dataset.theme === "light" ? "dark" : "light";
-}
-element("bookmark").addEventListener("click", bookmark);
-element("record").addEventListener("click", record);
-element("link").addEventListener("click", copyLink);
-element("theme").addEventListener("click", changeTheme);
-if (matchMedia("(prefers-color-scheme: light)").matches) changeTheme();
+// The planning page leads back with the same right to command.
+if (token) element("planning-link").hash = `token=${token}`;
 
-/** @type {[string, string, () => void][]} */
-const keys = [
-  [" ", "pause or resume", () => timeline.toggle()],
+for (const [id, act] of /** @type {[string, () => void][]} */ ([
+       ["bookmark", bookmark], ["record", record], ["link", copyLink], ["theme", changeTheme],
+       ["fit-floor", () => floor.fitFloor()], ["fit-robots", () => floor.fitRobots()]]))
+  element(id).addEventListener("click", act);
+
+startKeys([
+  [" ", "play or pause", () => timeline.toggle()],
   [",", "one frame back", () => timeline.step(-1)],
   [".", "one frame forward", () => timeline.step(1)],
   ["[", "previous event", () => timeline.toEvent(-1)],
@@ -197,33 +242,14 @@ const keys = [
   ["l", "the newest moment", () => timeline.live()],
   ["b", "bookmark", bookmark],
   ["c", "copy a link to this moment", copyLink],
-  ["f", "fit the field", () => floor.fit()],
+  ["f", "show the whole floor", () => floor.fitFloor()],
+  ["z", "show all robots, as large as possible", () => floor.fitRobots()],
+  ["+", "zoom in", () => floor.zoom(1.25)],
+  ["-", "zoom out", () => floor.zoom(0.8)],
+  ["k", "the menu of layers", () => (element("layer-list").open = !element("layer-list").open)],
+  ["p", "open or close the side", () => dock.toggleSide()],
   ["t", "dark or light", changeTheme],
-  ["h", "hold all robots", () => monitor.scene.can_command && controls.post("/api/hold")],
+  ["h", "hold all robots", () => floor.canCommand && controls.holdAll()],
   ["?", "all keys", () => element("help").showModal()],
-];
-
-for (const layer of layers) {
-  const box = create("input", {type: "checkbox", id: `layer-${layer.id}`});
-  box.checked = layer.on;
-  const set = (/** @type {boolean} */ on) => {
-    layer.on = box.checked = on;
-    floor.isStale = true;
-  };
-  box.addEventListener("change", () => set(box.checked));
-  element("layers").append(create("label", {}, box, ` ${layer.name} `, create("kbd", {}, layer.key.toUpperCase())));
-  keys.push([layer.key, `layer: ${layer.name}`, () => set(!layer.on)]);
-}
-for (const [key, what] of keys)
-  element("keys").append(create("dt", {}, create("kbd", {}, key === " " ? "space" : key.toUpperCase())), create("dd", {}, what));
-element("help-button").addEventListener("click", () => element("help").showModal());
-
-addEventListener("keydown", (event) => {
-  const target = /** @type {HTMLElement} */ (event.target);
-  if (event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT", "TEXTAREA"].includes(target.tagName)) return;
-  if (event.key === " " && target.tagName === "BUTTON") return;
-  const found = keys.find(([key]) => key === event.key.toLowerCase());
-  if (!found) return;
-  event.preventDefault();
-  found[2]();
-});
+  ...buildLayerMenu(redraw),
+]);

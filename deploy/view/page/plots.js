@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The messages of one channel, and plots of their numbers over time.
 import {create, number} from "./format.js";
+import {palette} from "./theme.js";
 
-const kColours = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#d55e00"];
+const kColours = ["sky", "orange", "green", "purple", "yellow", "red"];
+const kNoChannel = "Choose a channel to see its messages, and one of its numbers to plot it over time.";
+const kNoMessage = "No message in the 30 s before this moment.";
 const kSpan_s = 30;
 const kMaxPoints = 6000;
 
@@ -46,22 +49,27 @@ export class Plot {
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
     if (!width) return;
     this.canvas.width = width;
-    this.canvas.height = height;
+    this.canvas.height = height;  // also clears it
     const c = this.canvas.getContext("2d");
     let end = -Infinity, low = Infinity, high = -Infinity;
     for (const {t} of this.series.values()) end = Math.max(end, t[t.length - 1] ?? -Infinity);
     for (const {t, y} of this.series.values())
       for (let i = 0; i < t.length; ++i)
         if (t[i] >= end - kSpan_s && Number.isFinite(y[i])) [low, high] = [Math.min(low, y[i]), Math.max(high, y[i])];
-    if (!(high >= low)) return;
+    if (!(high >= low)) {
+      c.font = "12px system-ui, sans-serif";
+      c.fillStyle = palette.dim;
+      c.fillText("Nothing is plotted yet: choose a number.", 8, 20);
+      return;
+    }
     if (high === low) [low, high] = [low - 1, high + 1];
-    c.font = "11px sans-serif";
-    c.fillStyle = "#8b96a1";
-    c.fillText(number(high, 3), 2, 11);
+    c.font = "12px system-ui, sans-serif";
+    c.fillStyle = palette.dim;
+    c.fillText(number(high, 3), 2, 12);
     c.fillText(number(low, 3), 2, height - 3);
     let index = 0;
     for (const [name, {t, y}] of this.series) {
-      const colour = kColours[index % kColours.length];
+      const colour = palette[kColours[index % kColours.length]];
       const least = new Float64Array(width).fill(Infinity), greatest = new Float64Array(width).fill(-Infinity);
       for (let i = 0; i < t.length; ++i) {
         const x = Math.floor((width - 1) * (1 - (end - t[i]) / kSpan_s));
@@ -79,7 +87,7 @@ export class Plot {
         begun = true;
       }
       c.stroke();
-      c.fillText(`${name}: ${number(y[y.length - 1], 4)}`, 70, 12 + 12 * index);
+      c.fillText(`${name}: ${number(y[y.length - 1], 4)}`, 80, 12 + 14 * index);
       ++index;
     }
   }
@@ -93,6 +101,7 @@ export class Inspector {
     this.channel = create("select", {id: "inspected", "aria-label": "Channel"});
     this.field = create("select", {id: "plotted", "aria-label": "Number to plot"});
     this.text = create("pre", {id: "inspected-message", tabindex: "0"});
+    this.hint = create("p", {class: "hint"}, kNoChannel);
     this.plot = new Plot();
     this.received = 0;
     /** @type {Set<string>} */
@@ -101,7 +110,7 @@ export class Inspector {
     this.fields = new Set();
     const clear = create("button", {}, "Clear plot");
     this.node = create("div", {}, create("div", {class: "buttons"}, create("label", {}, "Channel ", this.channel),
-                       create("label", {}, "Plot ", this.field), clear), this.plot.canvas, this.text);
+                       create("label", {}, "Plot ", this.field), clear), this.plot.canvas, this.hint, this.text);
     this.channel.addEventListener("change", () => this.choose());
     this.field.addEventListener("change", () => {
       if (this.field.value) this.plotted.add(this.field.value);
@@ -110,7 +119,15 @@ export class Inspector {
     clear.addEventListener("click", () => {
       this.plotted.clear();
       this.plot.series.clear();
+      this.plot.draw();
     });
+    new ResizeObserver(() => this.plot.draw()).observe(this.plot.canvas);
+  }
+
+  /** @param {string} text */
+  showHint(text) {
+    this.hint.textContent = text;
+    this.hint.hidden = !text;
   }
 
   /** @param {string[]} channels */
@@ -124,6 +141,7 @@ export class Inspector {
     this.fields.clear();
     this.field.replaceChildren(create("option", {value: ""}, "add a number"));
     this.text.textContent = "";
+    this.showHint(this.channel.value ? kNoMessage : kNoChannel);
     this.send({op: "inspect", channel: this.channel.value || null});
   }
 
@@ -143,7 +161,8 @@ export class Inspector {
       }
     }
     const last = batch.messages[batch.messages.length - 1];
-    this.text.textContent = last ? JSON.stringify(last.message, null, 1) : "no message in the 30 s before this moment";
+    this.text.textContent = last ? JSON.stringify(last.message, null, 1) : "";
+    this.showHint(last ? "" : kNoMessage);
     this.plot.draw();
   }
 }

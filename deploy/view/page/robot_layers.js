@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers of robots and of their motions.
-import {placeOf} from "./floor.js";
 import {addVersion} from "./frame.js";
-import {addCircle, eachRobot, kGreen, kOrange, kPurple, kRed, kSky, kYellow, shared} from "./shapes.js";
+import {addCircle, addCross, eachRobot, placeOf, shared} from "./shapes.js";
+import {palette} from "./theme.js";
 
 /** @typedef {import("./shapes.js").View} View */
-
-const kMaxLabels = 120;
-const kTrail_s = 5;
 
 const kSpanEnd = {x: 0, y: 0};
 
@@ -59,9 +56,9 @@ export function drawBraked(c, view) {
   const column = view.scene.layout.columns.robots.executing_start;
   const end = {x: 0, y: 0};
   eachRobot(view, (v, at) => {
-    if (addVersion(path, v, at + column, end)) addCircle(ghosts, end.x, end.y, view.scene.radius_m);
+    if (addVersion(path, v, at + column, end)) addCircle(ghosts, end.x, end.y, view.mark_m);
   });
-  c.strokeStyle = kGreen;
+  c.strokeStyle = palette.green;
   c.lineWidth = 1.5 * view.pixel;
   c.setLineDash([3 * view.pixel, 3 * view.pixel]);
   c.stroke(ghosts);
@@ -71,18 +68,19 @@ export function drawBraked(c, view) {
 /** @param {CanvasRenderingContext2D} c @param {View} view */
 export function drawRobots(c, view) {
   const paths = {blue: new Path2D(), yellow: new Path2D(), off: new Path2D(), headings: new Path2D(),
-                 denied: new Path2D(), selected: new Path2D()};
-  const r = view.scene.radius_m;
+                 denied: new Path2D(), sizes: new Path2D()};
+  const r = view.mark_m;
   const flags = view.scene.layout.flags;
   eachRobot(view, (v, at, columns) => {
     const place = placeOf(v, at, columns);
     if (Number.isNaN(place.x)) return;
-    const id = v[at], state = v[at + columns.flags];
-    const isYellow = view.scene.teams.get(id) === "yellow";
+    const state = v[at + columns.flags];
+    const isYellow = view.scene.teams.get(v[at]) === "yellow";
     addCircle(isYellow ? paths.yellow : paths.blue, place.x, place.y, r);
+    // A mark that is much larger than its robot shows the true size, too.
+    if (r > 1.3 * view.scene.radius_m) addCircle(paths.sizes, place.x, place.y, view.scene.radius_m);
     if (state & (flags.off_reference | flags.lifted)) addCircle(paths.off, place.x, place.y, 1.25 * r);
     if (!Number.isNaN(v[at + columns.denied])) addCircle(paths.denied, place.x, place.y, 1.12 * r);
-    if (id === view.selected) addCircle(paths.selected, place.x, place.y, 1.5 * r);
     // The front of blue robots is a line, that of yellow ones an arrow, so that teams also differ in shape.
     const dx = Math.cos(place.heading) * r, dy = Math.sin(place.heading) * r;
     if (isYellow) {
@@ -94,49 +92,56 @@ export function drawRobots(c, view) {
       paths.headings.lineTo(place.x + dx, place.y + dy);
     }
   });
-  c.fillStyle = kSky;
+  c.fillStyle = palette["team-blue"];
   c.fill(paths.blue);
-  c.fillStyle = kYellow;
+  c.fillStyle = palette["team-yellow"];
   c.fill(paths.yellow);
+  c.strokeStyle = palette.edge;
+  c.lineWidth = view.pixel;
+  c.stroke(paths.blue);
+  c.stroke(paths.yellow);
+  c.stroke(paths.sizes);
   c.lineWidth = 1.5 * view.pixel;
-  c.strokeStyle = "#10151a";
   c.stroke(paths.headings);
   c.lineWidth = 2 * view.pixel;
-  c.strokeStyle = kOrange;
+  c.strokeStyle = palette.orange;
   c.stroke(paths.denied);
-  c.strokeStyle = kRed;
+  c.strokeStyle = palette.red;
   c.stroke(paths.off);
-  c.strokeStyle = "#ffffff";
-  c.stroke(paths.selected);
+}
+
+/**
+ * A ring around the selected robot, with four ticks: no other mark has these. Light on dark ground, dark on light.
+ * @param {CanvasRenderingContext2D} c @param {View} view
+ */
+export function drawSelection(c, view) {
+  if (view.selected < 0) return;
+  const path = new Path2D();
+  const r = view.mark_m + 5 * view.pixel, tick = 6 * view.pixel;
+  eachRobot(view, (v, at, columns) => {
+    if (v[at] !== view.selected) return;
+    const {x, y} = placeOf(v, at, columns);
+    addCircle(path, x, y, r);
+    for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) {
+      path.moveTo(x + r * dx, y + r * dy);
+      path.lineTo(x + (r + tick) * dx, y + (r + tick) * dy);
+    }
+  });
+  c.strokeStyle = palette.ground;
+  c.lineWidth = 5 * view.pixel;
+  c.stroke(path);
+  c.strokeStyle = palette.text;
+  c.lineWidth = 2.5 * view.pixel;
+  c.stroke(path);
 }
 
 /** @param {CanvasRenderingContext2D} c @param {View} view @param {string[]} names @param {string} colour */
 export function drawOutlines(c, view, names, colour) {
   const path = new Path2D();
-  eachRobot(view, (v, at, columns) => addCircle(path, v[at + columns[names[0]]], v[at + columns[names[1]]], view.scene.radius_m));
+  eachRobot(view, (v, at, columns) => addCircle(path, v[at + columns[names[0]]], v[at + columns[names[1]]], view.mark_m));
   c.strokeStyle = colour;
   c.lineWidth = 1.2 * view.pixel;
   c.stroke(path);
-}
-
-/** @param {CanvasRenderingContext2D} c @param {View} view */
-export function drawLabels(c, view) {
-  if (view.frame.sections.robots.rows > kMaxLabels && view.scene.radius_m < 12 * view.pixel) return;
-  c.save();
-  c.fillStyle = "#10151a";
-  c.textAlign = "center";
-  c.textBaseline = "middle";
-  const size = Math.max(view.scene.radius_m, 5 * view.pixel);
-  c.font = "10px sans-serif";
-  const {a, d, e, f} = c.getTransform();
-  const s = a * size / 9;
-  eachRobot(view, (v, at, columns) => {
-    const place = placeOf(v, at, columns);
-    if (Number.isNaN(place.x)) return;
-    c.setTransform(s, 0, 0, s, e + a * place.x, f + d * place.y);
-    c.fillText(String(v[at]), 0, 0);
-  });
-  c.restore();
 }
 
 /** @param {CanvasRenderingContext2D} c @param {View} view */
@@ -146,10 +151,7 @@ export function drawGoals(c, view) {
   eachRobot(view, (v, at, columns) => {
     const x = v[at + columns.goal_x], y = v[at + columns.goal_y];
     if (Number.isNaN(x)) return;
-    goals.moveTo(x - size, y - size);
-    goals.lineTo(x + size, y + size);
-    goals.moveTo(x - size, y + size);
-    goals.lineTo(x + size, y - size);
+    addCross(goals, x, y, size);
     const place = placeOf(v, at, columns);
     const nearestX = v[at + columns.nearest_x], nearestY = v[at + columns.nearest_y];
     if (!Number.isNaN(nearestX)) {
@@ -161,7 +163,7 @@ export function drawGoals(c, view) {
     lines.moveTo(place.x, place.y);
     for (const [gx, gy] of shared.goals.get(v[at]) || [[x, y]]) lines.lineTo(gx, gy);
   });
-  c.strokeStyle = kPurple;
+  c.strokeStyle = palette.purple;
   c.lineWidth = 1.5 * view.pixel;
   c.stroke(goals);
   c.setLineDash([6 * view.pixel, 4 * view.pixel]);
@@ -183,7 +185,7 @@ export function drawIntents(c, view) {
     path.lineTo(x, y);
     path.lineTo(v[at + columns.goal_x], v[at + columns.goal_y]);
   });
-  c.strokeStyle = "#cc79a766";
+  c.strokeStyle = `${palette.purple}88`;
   c.lineWidth = view.pixel;
   c.stroke(path);
 }
@@ -217,9 +219,9 @@ export function drawConflicts(c, view) {
     path.lineTo(to.x - head * Math.cos(angle + 0.4), to.y - head * Math.sin(angle + 0.4));
   }
   c.lineWidth = 2 * view.pixel;
-  c.strokeStyle = kOrange;
+  c.strokeStyle = palette.orange;
   c.stroke(lines);
-  c.strokeStyle = kRed;
+  c.strokeStyle = palette.red;
   c.stroke(circles);
 }
 
@@ -232,36 +234,7 @@ export function drawLedger(c, view) {
   const path = new Path2D();
   const column = view.scene.layout.columns.ledger.version_start;
   for (let i = 0; i < rows; ++i) addVersion(path, values, i * stride + column, kSpanEnd);
-  c.strokeStyle = "#f0e44288";
+  c.strokeStyle = `${palette.yellow}88`;
   c.lineWidth = 3 * view.pixel;
-  c.stroke(path);
-}
-
-/**
- * Positions in the last seconds, by robot.
- * @type {Map<number, {time: number, x: number, y: number}[]>}
- */
-const trails = new Map();
-let trailTime = 0;
-
-/** @param {CanvasRenderingContext2D} c @param {View} view */
-export function drawTrails(c, view) {
-  const time = view.frame.time;
-  if (time < trailTime || time > trailTime + 1) trails.clear();
-  const isNew = time > trailTime + 0.05 || trails.size === 0;
-  if (isNew) trailTime = time;
-  const path = new Path2D();
-  eachRobot(view, (v, at, columns) => {
-    const place = placeOf(v, at, columns);
-    if (Number.isNaN(place.x)) return;
-    let trail = trails.get(v[at]);
-    if (!trail) trails.set(v[at], (trail = []));
-    if (isNew) trail.push({time, x: place.x, y: place.y});
-    while (trail.length > 0 && trail[0].time < time - kTrail_s) trail.shift();
-    trail.forEach((p, i) => (i === 0 ? path.moveTo(p.x, p.y) : path.lineTo(p.x, p.y)));
-    path.lineTo(place.x, place.y);
-  });
-  c.strokeStyle = "#56b4e966";
-  c.lineWidth = 1.5 * view.pixel;
   c.stroke(path);
 }

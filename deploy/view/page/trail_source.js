@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Asks the monitor where robots were before a moment that was not shown yet.
+import {trails} from "./trails.js";
+
+let isAsking = false;
+/**
+ * The last moment that was wanted while another answer was on its way.
+ * @type {number | null}
+ */
+let next = null;
+
+/** @param {number} time @param {() => void} onChange */
+export async function fetchTrails(time, onChange) {
+  if (isAsking) {
+    next = time;
+    return;
+  }
+  isAsking = true;
+  const response = await fetch(`/api/trails?at_s=${time}`).catch(() => null);
+  if (response && response.ok) {
+    trails.addAll(await response.json());
+    onChange();
+  }
+  isAsking = false;
+  if (next === null) return;
+  const wanted = next;
+  next = null;
+  fetchTrails(wanted, onChange);
+}
