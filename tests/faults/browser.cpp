@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <fstream>
+#include <iterator>
 #include <netinet/in.h>
 #include <signal.h>
 #include <stdexcept>
@@ -89,6 +90,25 @@ Json Browser::call(const std::string& method, const std::string& path, const Jso
 }
 
 void Browser::open(const std::string& url) { call("POST", "/url", {{"url", url}}); }
+
+void Browser::resize(int width_px, int height_px) {
+  call("POST", "/goog/cdp/execute",
+       {{"cmd", "Emulation.setDeviceMetricsOverride"},
+        {"params",
+         {{"width", width_px}, {"height", height_px}, {"deviceScaleFactor", 1}, {"mobile", false}}}});
+}
+
+void Browser::prefer(const std::string& theme) {
+  const Json preference{{"name", "prefers-color-scheme"}, {"value", theme}};
+  call("POST", "/goog/cdp/execute",
+       {{"cmd", "Emulation.setEmulatedMedia"}, {"params", {{"features", Json::array({preference})}}}});
+}
+
+void Browser::load_script(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw std::runtime_error("cannot read " + path);
+  run({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+}
 
 Json Browser::run(const std::string& script) {
   return call("POST", "/execute/sync", {{"script", script}, {"args", Json::array()}});

@@ -22,6 +22,12 @@ class Browser {
   Browser& operator=(const Browser&) = delete;
 
   void open(const std::string& url);
+  /// Gives the page this many pixels, from now on.
+  void resize(int width_px, int height_px);
+  /// Lets the system prefer "dark" or "light" pages, from now on.
+  void prefer(const std::string& theme);
+  /// Runs a file of JavaScript in the page; what it defines stays until the next page is opened.
+  void load_script(const std::string& path);
   /// The value of a JavaScript function body, e.g. "return document.title".
   nlohmann::json run(const std::string& script);
   /// The text of the element with this id.

@@ -294,4 +294,5 @@ export function panelsOf(robots, changes = {}) {
           coordinators: [], epochs: [], zones: [], topics: [], ...changes};
 }
 
-export const timeOf = (changes = {}) => ({type: "time", mode: "live", speed: 1, begin_s: 100, end_s: 110, first_grant_s: 101, progress: 1, ...changes});
+export const timeOf = (changes = {}) => ({type: "time", mode: "live", speed: 1, begin_s: 100, end_s: 110, first_grant_s: 101, progress: 1,
+                                           ...changes});

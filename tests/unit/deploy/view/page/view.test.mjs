@@ -145,7 +145,9 @@ test("the scale is a round length that fits", () => {
 });
 
 test("numbers of 64 bits, which are texts, can be plotted; other texts cannot", () => {
-  const found = numbersOf({epoch: "9223372036854775807", name: "vision", digits: "17", header: {stamp_ns: "-1795630117800000000"}, is_on: true, list: [1.5]}, "", new Map());
+  const message = {epoch: "9223372036854775807", name: "vision", digits: "17", header: {stamp_ns: "-1795630117800000000"}, is_on: true,
+                   list: [1.5]};
+  const found = numbersOf(message, "", new Map());
   assert.deepEqual([...found.keys()], ["epoch", "header.stamp_ns", "is_on", "list.0"]);
   assert.equal(found.get("header.stamp_ns"), -1795630117800000000);
 });
