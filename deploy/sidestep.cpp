@@ -8,6 +8,7 @@
 #include "common/file/console.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/version/version.hpp"
 #include "deploy/audit/audit_command.hpp"
 #include "deploy/inspect/record/bag_command.hpp"
 #include "deploy/inspect/record/record_command.hpp"
@@ -55,7 +56,7 @@ int main(int argc, char** argv) {
   CommandLine command_line("Distributed multi-robot navigation without collisions.", "sidestep");
   const CliCommand app = command_line.root();
   app.require_subcommand();
-  app.add_version("Fast DDS " + fast_dds_version());
+  app.add_version(version_text(fast_dds_version()));
   std::function<int()> action;
   add_run_command(app, action);
   add_simulate_command(app, action);

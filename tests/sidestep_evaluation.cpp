@@ -3,6 +3,7 @@
 
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/version/version.hpp"
 #include "tests/bench/planning/bench_command.hpp"
 #include "tests/study/study_command.hpp"
 
@@ -11,6 +12,7 @@ int main(int argc, char** argv) {
   CommandLine command_line("Studies and benchmarks of Sidestep.", "sidestep");
   const CliCommand app = command_line.root();
   app.require_subcommand();
+  app.add_version(version_text(fast_dds_version()));
   std::function<int()> action;
   add_bench_command(app, action);
   add_study_command(app, action);

@@ -12,6 +12,7 @@
 #include "common/client/order_states.hpp"
 #include "common/client/robot_table.hpp"
 #include "common/messaging/dds/bus.hpp"
+#include "common/version/version.hpp"
 
 namespace sidestep::client {
 namespace {
@@ -36,6 +37,8 @@ ClientId id_of(const Settings& settings) {
 }
 
 }  // namespace
+
+const char* version() { return kVersion; }
 
 struct Client::Impl {
   using Send = std::function<OrderHandle(OrderClient&)>;

@@ -14,6 +14,9 @@
 /// only the standard library.
 namespace sidestep::client {
 
+/// The version of this library, for example "0.1.0"; programs and package of Sidestep have the same.
+[[gnu::visibility("default")]] const char* version();
+
 struct Settings {
   std::string name;          ///< the client's name; clients with different names have separate holds
   bool is_operator = false;  ///< the client's orders take precedence, and its resume ends all holds

@@ -13,6 +13,7 @@
 #include "common/process/log_option.hpp"
 #include "common/process/process_identity.hpp"
 #include "common/process/process_run.hpp"
+#include "common/version/version.hpp"
 
 namespace sidestep {
 namespace {
@@ -73,7 +74,7 @@ int run_and_report_errors(const std::string& name, const std::function<int()>& w
 int run_process(int argc, char** argv, const Program& program) {
   CommandLine command_line(program.description, program.name);
   const CliCommand app = command_line.root();
-  app.add_version("Fast DDS " + fast_dds_version());
+  app.add_version(version_text(fast_dds_version()));
   std::string scenario_file;
   DdsSettings dds;
   LogLevel log_level = LogLevel::kInfo;

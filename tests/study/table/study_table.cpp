@@ -9,7 +9,7 @@
 #include "common/file/write_file.hpp"
 #include "common/terminal/redrawn_text.hpp"
 #include "common/terminal/terminal.hpp"
-#include "deploy/trial/simulate/campaign/build_commit.hpp"
+#include "common/version/version.hpp"
 
 namespace sidestep {
 

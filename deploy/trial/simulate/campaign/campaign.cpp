@@ -15,7 +15,7 @@
 #include "common/file/write_file.hpp"
 #include "common/terminal/redrawn_text.hpp"
 #include "common/terminal/terminal.hpp"
-#include "deploy/trial/simulate/campaign/build_commit.hpp"
+#include "common/version/version.hpp"
 #include "deploy/trial/simulate/campaign/campaign_summary.hpp"
 #include "deploy/trial/simulate/campaign/results_file.hpp"
 #include "deploy/trial/simulate/campaign/trial.hpp"

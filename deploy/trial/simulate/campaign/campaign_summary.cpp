@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/json/json_text.hpp"
-#include "deploy/trial/simulate/campaign/build_commit.hpp"
+#include "common/version/version.hpp"
 #include "deploy/trial/simulate/campaign/trial_result.hpp"
 
 namespace sidestep {

@@ -11,6 +11,7 @@
 
 #include "common/messaging/dds/bus.hpp"
 #include "common/messaging/order_codec.hpp"
+#include "common/version/version.hpp"
 #include "tests/catch.hpp"
 #include "tests/test_domain.hpp"
 
@@ -81,6 +82,8 @@ class FakeCoordinator {
   std::atomic<std::uint32_t> last_sender_{0};
   std::thread thread_;
 };
+
+TEST_CASE("the library has the version of the programs") { CHECK(std::string(version()) == kVersion); }
 
 TEST_CASE("a client repeats an order until a coordinator answers") {
   const TestDomain domain;

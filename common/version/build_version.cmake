@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes the source file OUTPUT with the commit of the build; does not touch it if the commit is unchanged.
+# Writes the source file OUTPUT with VERSION and the commit of the build; does not touch it if both are unchanged.
 set(commit "unknown")
 find_package(Git QUIET)
 if(GIT_FOUND)
@@ -16,10 +16,11 @@ if(GIT_FOUND)
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 // SPDX-License-Identifier: Apache-2.0
-#include "deploy/trial/simulate/campaign/build_commit.hpp"
+#include "common/version/version.hpp"
 
 namespace sidestep {
 
+const char* const kVersion = "@VERSION@";
 const char* const kBuildCommit = "@commit@";
 
 }  // namespace sidestep
