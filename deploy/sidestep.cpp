@@ -34,15 +34,17 @@
 
 namespace {
 
+bool is_evaluation(std::string_view command) { return command == "study" || command == "bench"; }
+
 /// Replaces this process with the program for studies and benchmarks, which needs more libraries.
-int exec_evaluation(char** argv) {
+int exec_evaluation(const char* const* argv) {
   const std::string program = sidestep::sibling_program_path("sidestep-evaluation");
   if (!std::filesystem::exists(program)) {
     sidestep::print_to(stderr, "sidestep: {} does not exist; `deploy/build --development` builds it\n",
                        program);
     return sidestep::kExitFailure;
   }
-  execv(program.c_str(), argv);
+  execv(program.c_str(), const_cast<char* const*>(argv));
   sidestep::print_to(stderr, "sidestep: cannot start {}\n", program);
   return sidestep::kExitFailure;
 }
@@ -51,8 +53,11 @@ int exec_evaluation(char** argv) {
 
 int main(int argc, char** argv) {
   using namespace sidestep;
-  const std::string_view first = argc > 1 ? argv[1] : "";
-  if (first == "study" || first == "bench") return exec_evaluation(argv);
+  if (argc > 1 && is_evaluation(argv[1])) return exec_evaluation(argv);
+  if (argc == 3 && std::string_view(argv[1]) == "help" && is_evaluation(argv[2])) {
+    const char* const arguments[] = {argv[0], argv[2], "--help", nullptr};
+    return exec_evaluation(arguments);
+  }
   CommandLine command_line("Distributed multi-robot navigation without collisions.", "sidestep");
   const CliCommand app = command_line.root();
   app.require_subcommand();
@@ -79,7 +84,11 @@ int main(int argc, char** argv) {
   add_plan_command(app, action);
   add_frame_command(app, action);
   add_pattern_command(app, action);
-  app.add_footer("Also `sidestep study` and `sidestep bench`, after `deploy/build --development`.");
+  command_line.add_help_command();
+  app.add_footer(
+      "`sidestep help COMMAND` shows the options of a command. Also `sidestep study` and `sidestep bench`, "
+      "after "
+      "`deploy/build --development`.");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   return run_and_report_errors("sidestep", action);
 }

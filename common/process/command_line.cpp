@@ -3,256 +3,22 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <csignal>
-#include <cstdint>
 #include <fmt/format.h>
-#include <limits>
-#include <string_view>
-#include <type_traits>
+#include <fmt/ranges.h>
 #include <utility>
 
 #include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
-#include "common/yaml/plus_sign.hpp"
+#include "common/process/help/app_info.hpp"
+#include "common/process/help/completion.hpp"
+#include "common/process/help/help_text.hpp"
+#include "common/process/help/man_page.hpp"
+#include "common/process/number_text.hpp"
+#include "common/process/similar_name.hpp"
+#include "common/version/version.hpp"
 
 namespace sidestep {
-namespace {
-
-ValueCheck from_library(const CLI::Validator& validator) {
-  return {validator.get_description(), [validator](const std::string& text) { return validator(text); }};
-}
-
-/// Quotes a value for a message, and truncates long values.
-std::string in_quotes(const std::string& text) {
-  constexpr std::size_t kMaxLength = 60;
-  return fmt::format("\"{}\"", text.size() > kMaxLength ? text.substr(0, kMaxLength) + "..." : text);
-}
-
-/// Parses a number in decimal notation that is the whole text. A leading "+" is allowed; NaN and infinity are
-/// not.
-template <typename Number>
-std::optional<Number> parsed(std::string_view text) {
-  text = without_plus(text);
-  Number number{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  if constexpr (std::is_floating_point_v<Number>) {
-    if (!std::isfinite(number)) return std::nullopt;
-  }
-  return number;
-}
-
-/// The type of a single value of an option.
-template <typename Value>
-struct Element {
-  using Type = Value;
-};
-template <typename Value>
-struct Element<std::optional<Value>> {
-  using Type = Value;
-};
-template <typename Value>
-struct Element<std::vector<Value>> {
-  using Type = Value;
-};
-
-/// Prevents misreadings by the CLI library: it reads 010 as 8, a number that is too large as the maximum, and
-/// an empty text as a missing value. Such texts are refused or rewritten in the form that the library reads
-/// correctly.
-template <typename Number>
-std::string normalise_number(std::string& text) {
-  const auto number = parsed<Number>(text);
-  if (number && std::is_floating_point_v<Number>) {
-    if (text.starts_with('+')) text.erase(0, 1);
-    return "";
-  }
-  if (number) {
-    text = std::to_string(*number);
-    return "";
-  }
-  if constexpr (std::is_floating_point_v<Number>) return "expected a finite number, got " + in_quotes(text);
-  return fmt::format("expected a whole number from {} to {}, got {}", std::numeric_limits<Number>::min(),
-                     std::numeric_limits<Number>::max(), in_quotes(text));
-}
-
-template <typename Type>
-CLI::Validator type_check() {
-  if constexpr (std::is_arithmetic_v<Type>) {
-    return CLI::Validator([](std::string& text) { return normalise_number<Type>(text); }, "");
-  } else {
-    // Refuses empty values, so that a script's unset variable does not count as a missing option.
-    return CLI::Validator(
-        [](std::string& text) { return text.empty() ? "expected some text, got \"\"" : ""; }, "");
-  }
-}
-
-/// Wraps a callback: its UsageError becomes the library's exception, prefixed with the option's name if any.
-template <typename Callback>
-auto translated(const std::string& option, Callback callback) {
-  return [option, callback = std::move(callback)](const auto&... arguments) {
-    try {
-      callback(arguments...);
-    } catch (const UsageError& error) {
-      throw option.empty() ? CLI::ValidationError(error.what()) : CLI::ValidationError(option, error.what());
-    }
-  };
-}
-
-}  // namespace
-
-ValueCheck in_range(double min, double max) {
-  const std::string description = fmt::format("in [{:.10g}, {:.10g}]", min, max);
-  const auto problem = [=](const std::string& text) {
-    const auto number = parsed<double>(text);
-    if (number && *number >= min && *number <= max) return std::string();
-    return fmt::format("expected a number {}, got {}", description, in_quotes(text));
-  };
-  return {description, problem, ValueCheck::Limits{min, max}};
-}
-
-ValueCheck in_whole_range(std::int64_t min, std::int64_t max) {
-  const std::string description = fmt::format("in [{}, {}]", min, max);
-  return {description, [=](const std::string& text) {
-            const auto number = parsed<std::int64_t>(text);
-            if (number && *number >= min && *number <= max) return std::string();
-            return fmt::format("expected a whole number {}, got {}", description, in_quotes(text));
-          }};
-}
-
-ValueCheck positive() {
-  return {"POSITIVE", [](const std::string& text) {
-            const auto number = parsed<double>(text);
-            if (number && *number >= 1e-9 && *number <= 1e9) return std::string();
-            return "expected a number from 1e-9 to 1e9, got " + in_quotes(text);
-          }};
-}
-
-ValueCheck non_negative() {
-  return {"NONNEGATIVE", [](const std::string& text) {
-            const auto number = parsed<double>(text);
-            return number && *number < 0 ? "expected at least 0, got " + in_quotes(text) : std::string();
-          }};
-}
-
-ValueCheck one_of(std::vector<std::string> values) { return from_library(CLI::IsMember(std::move(values))); }
-
-Option Option::required() const {
-  option_->required();
-  return *this;
-}
-
-// Inserted before the type check, because its message names the limits.
-Option Option::check(const ValueCheck& check) const {
-  ValueCheck used = check;
-  if (is_whole_ && check.limits)
-    used = in_whole_range(static_cast<std::int64_t>(check.limits->min),
-                          static_cast<std::int64_t>(check.limits->max));
-  option_->transform(CLI::Validator([problem = used.problem](std::string& text) { return problem(text); },
-                                    used.description));
-  return *this;
-}
-
-Option Option::check(std::function<std::string(const std::string&)> problem) const {
-  return check(ValueCheck{"", std::move(problem)});
-}
-
-Option Option::show_default() const {
-  option_->capture_default_str();
-  return *this;
-}
-
-Option Option::show_default(const std::string& text) const {
-  option_->default_str(text);
-  return *this;
-}
-
-Option Option::comma_separated(std::optional<int> count) const {
-  option_->delimiter(',');
-  if (count)
-    option_->expected(*count);
-  else
-    option_->allow_extra_args(false);
-  return *this;
-}
-
-Option Option::needs(const Option& other) const {
-  option_->needs(other.option_);
-  return *this;
-}
-
-Option Option::excludes(const Option& other) const {
-  option_->excludes(other.option_);
-  return *this;
-}
-
-bool Option::is_given() const { return option_->count() > 0; }
-
-CliCommand CliCommand::add_subcommand(const std::string& name, const std::string& description) const {
-  return CliCommand(*app_->add_subcommand(name, description));
-}
-
-void CliCommand::require_subcommand() const { app_->require_subcommand(1); }
-
-void CliCommand::add_footer(const std::string& text) const { app_->footer(text); }
-
-void CliCommand::add_version(const std::string& text) const { app_->set_version_flag("--version", text); }
-
-template <typename Value>
-Option CliCommand::add_option(const std::string& name, Value& value, const std::string& description) const {
-  CLI::Option& option = *app_->add_option(name, value, description);
-  option.transform(type_check<typename Element<Value>::Type>());
-  return Option(option, std::is_integral_v<typename Element<Value>::Type>);
-}
-
-template Option CliCommand::add_option(const std::string&, std::string&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, double&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, int&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::uint32_t&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::uint64_t&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::optional<std::string>&,
-                                       const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::optional<double>&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::optional<int>&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::optional<std::uint32_t>&,
-                                       const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::vector<std::string>&,
-                                       const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::vector<double>&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::vector<int>&, const std::string&) const;
-template Option CliCommand::add_option(const std::string&, std::vector<std::uint32_t>&,
-                                       const std::string&) const;
-
-Option CliCommand::add_flag(const std::string& name, bool& value, const std::string& description) const {
-  return Option(*app_->add_flag(name, value, description));
-}
-
-Option CliCommand::add_option(const std::string& name, std::function<void(const std::string&)> take,
-                              const std::string& description) const {
-  return Option(
-      *app_->add_option_function<std::string>(name, translated(name, std::move(take)), description));
-}
-
-Option CliCommand::add_optional_value(const std::string& name, std::optional<std::string>& value,
-                                      const std::string& default_value,
-                                      const std::string& description) const {
-  const auto take = [&value, default_value](const std::vector<std::string>& given) {
-    const bool is_left_out = given.empty() || given.front().empty();
-    value = is_left_out ? default_value : given.front();
-  };
-  CLI::Option* option = app_->add_option_function<std::vector<std::string>>(
-      name, take, description + " [" + default_value + "]");
-  option->expected(0, 1);
-  return Option(*option);
-}
-
-Option CliCommand::option(const std::string& name) const { return Option(*app_->get_option(name)); }
-
-void CliCommand::on_parsed(std::function<void()> callback) const {
-  app_->callback(translated("", std::move(callback)));
-}
 
 CommandLine::CommandLine(const std::string& description, const std::string& program_name)
     : app_(std::make_unique<CLI::App>(description, program_name)) {
@@ -260,25 +26,56 @@ CommandLine::CommandLine(const std::string& description, const std::string& prog
   reopen_standard_streams();
   // Writing beyond the limit of a file's size then fails like writing to a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
+  app_->set_help_flag("-h,--help", "print this help");
+  const std::function<void(const std::string&)> print = [this](const std::string& form) {
+    form_ = form;
+    throw CLI::CallForHelp();
+  };
+  root()
+      .add_option("--help-as", print,
+                  "print this help as a man page, or as a script with which a shell completes commands")
+      .check(one_of({"man", "bash", "zsh", "fish"}));
+  app_->formatter_fn([](const CLI::App* app, const std::string& path, CLI::AppFormatMode) {
+    return help_text(command_info(*app, path), help_width());
+  });
 }
 
 CommandLine::~CommandLine() = default;
 
 namespace {
 
-/// Names the word found where a command is expected; the library would only say that a command is missing.
-std::optional<CLI::ParseError> unknown_command(const CLI::App& root) {
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+/// Says what is wrong with a word where a command is expected, and what it may stand for.
+std::string unknown_command(const std::string& word, const CLI::App& app, const CommandInfo& program) {
+  std::vector<std::string> names, elsewhere;
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  for_each_command(program, [&](const CommandInfo& command) {
+    if (command.name() == word) elsewhere.push_back("`" + command.path + "`");
+  });
+  std::string hint = did_you_mean(word, names);
+  if (hint.empty() && !elsewhere.empty())
+    hint = fmt::format("; did you mean {}?", fmt::join(elsewhere, " or "));
+  if (hint.empty()) hint = fmt::format(", expected one of: {}", fmt::join(names, ", "));
+  return fmt::format("{} is not a command{}", in_quotes(word), hint);
+}
+
+/// Names the word found where a command is expected, because the library would only say that a command is
+/// missing, and what a mistyped word may stand for.
+std::string clear_message(const CLI::ParseError& error, const CLI::App& root, const CommandInfo& program) {
   const CLI::App* app = &root;
   while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
-  const std::vector<std::string> rest = app->remaining();
-  if (app->get_require_subcommand_min() == 0 || rest.empty() || rest.front().starts_with("-"))
-    return std::nullopt;
+  const std::vector<std::string> rest = app->remaining(), all_rest = root.remaining(true);
+  if (app->get_require_subcommand_min() > 0 && !rest.empty() && !rest.front().starts_with("-"))
+    return unknown_command(rest.front(), *app, program);
+  const auto option = std::ranges::find_if(all_rest, [](const auto& word) { return word.starts_with("--"); });
+  if (error.get_name() != "ExtrasError" || option == all_rest.end()) return error.what();
   std::vector<std::string> names;
-  for (const CLI::App* command : app->get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  return CLI::ParseError(fmt::format("{} is not a command, expected one of: {}", in_quotes(rest.front()),
-                                     fmt::join(names, ", ")),
-                         CLI::ExitCodes::ExtrasError);
+  for (const OptionInfo& known : command_info(*app, "").options)
+    names.insert(names.end(), known.names.begin(), known.names.end());
+  return error.what() + did_you_mean(option->substr(0, option->find('=')), names);
 }
 
 }  // namespace
@@ -294,22 +91,59 @@ std::vector<std::string> CommandLine::reversed(std::vector<std::string> argument
   return arguments;
 }
 
+void CommandLine::add_help_command() {
+  help_command_ = app_->add_subcommand("help", "Shows the help of a command");
+  CliCommand(*help_command_)
+      .add_option("COMMAND", help_words_, "command, and the one below it if there is any, e.g. topic echo");
+}
+
+CommandInfo CommandLine::info() const { return command_info(*app_, app_->get_name()); }
+
+std::string CommandLine::help(const std::vector<std::string>& words) const {
+  const CLI::App* app = app_.get();
+  std::string path = app->get_name();
+  for (const std::string& word : words) {
+    const auto commands = commands_of(*app);
+    const auto found = std::ranges::find_if(commands, [&](const auto* c) { return c->get_name() == word; });
+    if (found == commands.end()) throw UsageError(unknown_command(word, *app, info()));
+    app = *found;
+    path += " " + word;
+  }
+  return help_text(command_info(*app, path), help_width());
+}
+
+std::string CommandLine::help_as(const std::string& form) const {
+  if (form == "man") return man_page(info(), kVersion);
+  if (form == "bash") return bash_completion(info());
+  return form == "zsh" ? zsh_completion(info()) : fish_completion(info());
+}
+
 std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
+  const auto refuse = [this](const std::string& problem) {
+    (void)app_->exit(CLI::ParseError(problem, CLI::ExitCodes::ExtrasError));
+    return kExitUsage;
+  };
   try {
     app_->parse(reversed({argv + 1, argv + argc}));
+    if (!help_command_ || !help_command_->parsed()) return std::nullopt;
+    print_to(stdout, "{}", help(help_words_));
+    return 0;
+  } catch (const CLI::Success& done) {
+    if (form_.empty()) return app_->exit(done);
+    print_to(stdout, "{}", help_as(form_));
+    return 0;
   } catch (const CLI::ParseError& error) {
-    const auto problem = unknown_command(*app_);
-    return app_->exit(problem ? *problem : error) == 0 ? 0 : kExitUsage;
+    return refuse(clear_message(error, *app_, info()));
+  } catch (const UsageError& error) {
+    return refuse(error.what());
   }
-  return std::nullopt;
 }
 
 void CommandLine::parse(std::vector<std::string> arguments) {
   try {
     app_->parse(reversed(std::move(arguments)));
   } catch (const CLI::ParseError& error) {
-    if (const auto problem = unknown_command(*app_)) throw UsageError(problem->what());
-    throw UsageError(error.what());
+    throw UsageError(clear_message(error, *app_, info()));
   }
 }
 

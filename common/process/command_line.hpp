@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "common/process/help/command_info.hpp"
+#include "common/process/value_check.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -21,23 +24,6 @@ class UsageError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;
 };
-
-/// A condition on the text of an option's value.
-struct ValueCheck {
-  std::string description;                                 ///< for --help, e.g. "POSITIVE"
-  std::function<std::string(const std::string&)> problem;  ///< returns why a value is invalid; empty if valid
-  struct Limits {
-    double min, max;
-  };
-  std::optional<Limits> limits{};  ///< set by in_range()
-};
-/// For options with whole numbers, Option::check() uses in_whole_range() instead of this check.
-[[nodiscard]] ValueCheck in_range(double min, double max);
-[[nodiscard]] ValueCheck in_whole_range(std::int64_t min, std::int64_t max);
-/// From 1e-9 to 1e9: positive, and usable as a duration in seconds or as a rate per second.
-[[nodiscard]] ValueCheck positive();
-[[nodiscard]] ValueCheck non_negative();
-[[nodiscard]] ValueCheck one_of(std::vector<std::string> values);
 
 /// Handle of one option, valid during the lifetime of its command line.
 class Option {
@@ -101,15 +87,29 @@ class CommandLine {
 
   CliCommand root() const { return CliCommand(*app_); }
 
-  /// Parses the program's arguments. Returns an exit code if the program should end: 0 after printing --help,
-  /// or kExitUsage after reporting wrong usage on stderr. Otherwise returns nullopt.
+  /// Adds the command `help [COMMAND]`, which prints what --help prints.
+  void add_help_command();
+
+  /// Parses the program's arguments. Returns an exit code if the program should end: 0 after printing help or
+  /// the version, or kExitUsage after reporting wrong usage on stderr. Otherwise returns nullopt.
   [[nodiscard]] std::optional<int> parse(int argc, const char* const* argv);
   /// Parses the arguments after the program's name. Throws UsageError.
   void parse(std::vector<std::string> arguments);
 
+  /// The program with all its options and commands.
+  [[nodiscard]] CommandInfo info() const;
+  /// The help of a command, e.g. {"topic", "echo"}; of the program if there is no word. Throws UsageError if
+  /// there is no such command.
+  [[nodiscard]] std::string help(const std::vector<std::string>& words) const;
+  /// The help in another form: "man", or "bash", "zsh" or "fish" for the completion of a shell.
+  [[nodiscard]] std::string help_as(const std::string& form) const;
+
  private:
   static std::vector<std::string> reversed(std::vector<std::string> arguments);
   std::unique_ptr<CLI::App> app_;
+  std::string form_;                     ///< value of --help-as
+  CLI::App* help_command_ = nullptr;     ///< null: the program has no command `help`
+  std::vector<std::string> help_words_;  ///< the arguments of `help`
 };
 
 }  // namespace sidestep

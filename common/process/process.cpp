@@ -43,9 +43,7 @@ Incarnation next_incarnation(Incarnation previous, Time now) {
 }
 
 void add_dds_options(const CliCommand& app, DdsSettings& settings) {
-  app.add_option("--domain", settings.domain, "DDS domain, 0 .. 232")
-      .check(in_range(0, kMaxDomain))
-      .show_default();
+  app.add_option("--domain", settings.domain, "DDS domain").check(in_range(0, kMaxDomain)).show_default();
   add_dds_options_but_domain(app, settings);
 }
 

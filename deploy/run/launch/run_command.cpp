@@ -30,8 +30,8 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .required();
   command.add_option("--record", options->recording_file, "record all messages to this file");
   command.add_optional_value("--monitor", options->monitor_port, "8080",
-                             "show the run in the browser, on this port of this machine [8080]; the page "
-                             "stays when the run is over, until Ctrl-C");
+                             "show the run in the browser, on this port of this machine; the page stays when "
+                             "the run is over, until Ctrl-C");
   command
       .add_flag("--control", options->has_control,
                 "viewers with the printed link may give orders and cause faults")

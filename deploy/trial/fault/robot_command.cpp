@@ -87,7 +87,7 @@ void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
     command.add_option(name, pair, description).required().comma_separated(2).check(in_range(-max, max));
   };
   const ValueCheck angle{
-      "in [-6.28, 6.28]", [](const std::string& text) {
+      "-6.28 to 6.28", [](const std::string& text) {
         const bool is_number = in_range(-1e9, 1e9).problem(text).empty();
         return is_number ? heading_problem(std::stod(text))
                          : fmt::format("expected a heading of -6.28 to 6.28 radians, got \"{}\"", text);

@@ -109,7 +109,7 @@ void add_test_command(const CliCommand& root, std::function<int()>& action) {
   seeds.excludes(seed);
   const Option dds = command.add_flag("--dds", options->is_over_dds,
                                       "run over DDS, with one process for each part of the system");
-  command.add_option("--domain", options->domain, "DDS domain, 0 .. 232 [one that is free]")
+  command.add_option("--domain", options->domain, "DDS domain [one that is free]")
       .check(in_range(0, kMaxDomain))
       .needs(dds);
   const Option interface =

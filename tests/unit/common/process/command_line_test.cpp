@@ -94,19 +94,22 @@ TEST_CASE("a rejected value is reported with its option") {
 
 TEST_CASE("a rejected value is reported with the permitted values") {
   const auto [arguments, expected] = GENERATE(table<std::vector<std::string>, std::string>({
-      {{"--speed", "5.1"}, "--speed: expected a number in [0, 5], got \"5.1\""},
-      {{"--speed", "fast"}, "--speed: expected a number in [0, 5], got \"fast\""},
-      {{"--speed", "0x1"}, "--speed: expected a number in [0, 5], got \"0x1\""},
-      {{"--speed", ""}, "--speed: expected a number in [0, 5], got \"\""},
-      {{"--count", "0"}, "--count: expected a number from 1e-9 to 1e9, got \"0\""},
-      {{"--count", "1.5"}, "--count: expected a whole number from -2147483648 to 2147483647, got \"1.5\""},
-      {{"--port", "1.5"}, "--port: expected a whole number in [0, 65535], got \"1.5\""},
-      {{"--port", "65536"}, "--port: expected a whole number in [0, 65535], got \"65536\""},
-      {{"--robots", "1,-2"}, "--robots: expected a whole number from 0 to 4294967295, got \"-2\""},
+      {{"--speed", "5.1"}, "--speed: expected a number from 0 to 5, got \"5.1\""},
+      {{"--speed", "fast"}, "--speed: expected a number from 0 to 5, got \"fast\""},
+      {{"--speed", "0x1"}, "--speed: expected a number from 0 to 5, got \"0x1\""},
+      {{"--speed", ""}, "--speed: expected a number from 0 to 5, got \"\""},
+      {{"--count", "0"}, "--count: expected a number greater than 0, got \"0\""},
+      {{"--count", "1.5"}, "--count: expected a whole number, got \"1.5\""},
+      {{"--count", "2e9"}, "--count: expected at most 1000000000, got \"2e9\""},
+      {{"--port", "1.5"}, "--port: expected a whole number from 0 to 65535, got \"1.5\""},
+      {{"--port", "65536"}, "--port: expected a whole number from 0 to 65535, got \"65536\""},
+      {{"--robots", "1,-2"}, "--robots: expected at least 0, got \"-2\""},
       {{"--position", "1,inf"}, "--position: expected a finite number, got \"inf\""},
+      {{"--mode", "medium"}, "--mode: expected one of fast, slow, got \"medium\""},
+      {{"--mode", "fsat"}, "--mode: expected one of fast, slow, got \"fsat\"; did you mean fast?"},
       {{"--folder", ""}, "--folder: expected some text, got \"\""},
       {{"--seed", "99999999999999999999"},
-       "--seed: expected a whole number from 0 to 18446744073709551615, got \"99999999999999999999\""},
+       "--seed: expected at most 18446744073709551615, got \"99999999999999999999\""},
   }));
   CAPTURE(arguments);
   Fixture f;
@@ -130,16 +133,81 @@ TEST_CASE("a number is decimal, even with a leading zero or plus") {
   CHECK_FALSE(Fixture().error_of({"--count", "0x10"}).empty());
 }
 
-TEST_CASE("an unknown command is named, and the commands are listed") {
-  CommandLine line("A program under test.", "sidestep-test");
-  line.root().require_subcommand();
-  const CliCommand outer = line.root().add_subcommand("outer", "Has commands");
-  line.root().add_subcommand("other", "Has none");
-  outer.require_subcommand();
-  outer.add_subcommand("inner", "Works");
-  CHECK_THROWS_WITH(line.parse({"oter"}), "\"oter\" is not a command, expected one of: outer, other");
-  CHECK_THROWS_WITH(line.parse({"outer", "iner"}), "\"iner\" is not a command, expected one of: inner");
-  CHECK_THROWS_WITH(line.parse({"outer"}), ContainsSubstring("subcommand is required"));
+/// A program with commands.
+struct Commands {
+  CommandLine line{"A program under test.", "sidestep-test"};
+  double speed_mps = 2;
+  std::string file;
+
+  Commands() {
+    line.root().require_subcommand();
+    const CliCommand outer = line.root().add_subcommand("outer", "Has commands");
+    line.root().add_subcommand("other", "Has none").add_option("--speed", speed_mps, "how fast");
+    outer.require_subcommand();
+    outer.add_subcommand("inner", "Works").add_option("FILE", file, "what to read").required();
+    line.add_help_command();
+  }
+  int exit_code(std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), "sidestep-test");
+    return line.parse(static_cast<int>(arguments.size()), arguments.data()).value_or(-1);
+  }
+};
+
+TEST_CASE("an unknown command is named with the commands that are meant, or with all") {
+  const auto [words, message] = GENERATE(table<std::vector<std::string>, std::string>({
+      {{"othr"}, "\"othr\" is not a command; did you mean other?"},
+      {{"OUTER"}, "\"OUTER\" is not a command; did you mean outer?"},
+      {{"out"}, "\"out\" is not a command; did you mean outer?"},
+      {{"oter"}, "\"oter\" is not a command; did you mean outer or other?"},
+      {{"outer", "iner"}, "\"iner\" is not a command; did you mean inner?"},
+      {{"inner"}, "\"inner\" is not a command; did you mean `sidestep-test outer inner`?"},
+      {{"explode"}, "\"explode\" is not a command, expected one of: outer, other, help"},
+      {{"outer", "explode"}, "\"explode\" is not a command, expected one of: inner"},
+  }));
+  CHECK_THROWS_WITH(Commands().line.parse(words), message);
+}
+
+TEST_CASE("a command is required where there are commands") {
+  CHECK_THROWS_WITH(Commands().line.parse({"outer"}), ContainsSubstring("subcommand is required"));
+}
+
+TEST_CASE("an unknown option is named with the option that is meant") {
+  CHECK_THROWS_WITH(Commands().line.parse({"other", "--sped=3"}),
+                    ContainsSubstring("--sped=3") && EndsWith("; did you mean --speed?"));
+  CHECK_THROWS_WITH(Commands().line.parse({"other", "--nonsense"}), EndsWith("--nonsense"));
+}
+
+TEST_CASE("the help command prints the help of the program or of a command") {
+  CHECK(Commands().line.help({}).starts_with(
+      "A program under test.\nUsage: sidestep-test [OPTIONS] COMMAND\n"));
+  CHECK(Commands().line.help({"outer"}).starts_with(
+      "Has commands\nUsage: sidestep-test outer [OPTIONS] COMMAND\n"));
+  CHECK_THAT(Commands().line.help({"outer", "inner"}),
+             StartsWith("Works\nUsage: sidestep-test outer inner [OPTIONS] FILE\n"));
+  CHECK_THROWS_WITH(Commands().line.help({"outer", "iner"}),
+                    "\"iner\" is not a command; did you mean inner?");
+  CHECK(Commands().exit_code({"help"}) == 0);
+  CHECK(Commands().exit_code({"help", "outer", "inner"}) == 0);
+  CHECK(Commands().exit_code({"help", "othr"}) == kExitUsage);
+}
+
+TEST_CASE("help in other forms needs no required option") {
+  const std::string form = GENERATE("man", "bash", "zsh", "fish");
+  CHECK(Commands().exit_code({"--help-as", form.c_str()}) == 0);
+  CHECK_THAT(Commands().line.help_as(form), ContainsSubstring("sidestep") && ContainsSubstring("inner"));
+}
+
+TEST_CASE("help and messages about options have no numbers longer than a clock's") {
+  Commands f;
+  std::uint64_t seed = 0;
+  double seconds = 0;
+  f.line.root().add_option("--seed", seed).check(non_negative());
+  f.line.root().add_option("--seconds", seconds).check(positive());
+  const std::string text = f.line.help({});
+  CHECK_THAT(text, ContainsSubstring("at least 0") && ContainsSubstring("greater than 0"));
+  CHECK(text.find("00000") == std::string::npos);
+  CHECK_THROWS_WITH(f.line.parse({"--seconds", "-3", "other"}),
+                    "--seconds: expected a number greater than 0, got \"-3\"");
 }
 
 TEST_CASE("a positive number is rejected if it is too large or too small for a duration") {
