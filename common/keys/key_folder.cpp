@@ -98,10 +98,14 @@ std::string key_folder_of(const std::string& store, const Identity& identity) {
     const auto other = parse_identity(name.replace(5, 1, " "));
     if (other && other->first <= identity.first && other->last >= identity.last) return entry.path().string();
   }
+  // A scenario does not name the clients of its runs.
+  const std::string remedy =
+      identity.role == Role::kClient
+          ? fmt::format("`sidestep keys issue {} --keys {}` makes them", to_text(identity), store)
+          : fmt::format("`sidestep keys issue --scenario FILE --keys {}` makes all keys that a run needs",
+                        store);
   throw std::invalid_argument(
-      fmt::format("--keys: {} has no keys of {}; `sidestep keys issue --scenario FILE --keys {}` makes all "
-                  "keys that a run needs",
-                  enclaves, to_text(identity), store));
+      fmt::format("--keys: {} has no keys of {}; {}", enclaves, to_text(identity), remedy));
 }
 
 std::string own_key_folder(const std::string& path, const Identity& identity) {

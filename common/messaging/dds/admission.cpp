@@ -102,8 +102,7 @@ struct Admission::Announced {
   std::span<const std::uint8_t> start, signature, certificate;
 
   static std::optional<Announced> parse(std::span<const std::uint8_t> bytes) {
-    if (bytes.size() < kMark.size() || !std::ranges::equal(kMark, bytes.first(kMark.size())))
-      return std::nullopt;
+    if (!announces_keys(bytes)) return std::nullopt;
     bytes = bytes.subspan(kMark.size());
     const auto version = read_part(bytes), start = version ? read_part(bytes) : std::nullopt,
                signature = start ? read_part(bytes) : std::nullopt;
@@ -122,6 +121,10 @@ std::vector<std::uint8_t> credentials(const Certificate& certificate, const Priv
   const std::vector<std::uint8_t> der = certificate.der();
   result.insert(result.end(), der.begin(), der.end());
   return result;
+}
+
+bool announces_keys(std::span<const std::uint8_t> user_data) {
+  return user_data.size() >= kMark.size() && std::ranges::equal(kMark, user_data.first(kMark.size()));
 }
 
 Admission::Admission(Identity self, Certificate authority, std::string version)

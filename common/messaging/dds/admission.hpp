@@ -23,6 +23,9 @@ namespace sidestep {
 std::vector<std::uint8_t> credentials(const Certificate& certificate, const PrivateKey& key,
                                       const std::string& version, const ParticipantId& id, Time started);
 
+/// Whether a participant's user data has the form of credentials(): it has keys, genuine or not.
+[[nodiscard]] bool announces_keys(std::span<const std::uint8_t> user_data);
+
 /// Decides which participants a process with keys listens to, and stores their identities.
 ///
 /// Fast DDS authenticates participants, but does not report their identities, stores every participant's

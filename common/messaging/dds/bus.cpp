@@ -97,6 +97,8 @@ void DdsBus::add_drops(DropCounters& drops) const {
 
 bool DdsBus::has_keys() const { return impl_->session->participant.identity() != nullptr; }
 
+bool DdsBus::meets_keys() const { return impl_->session->participant.meets_keys(); }
+
 bool DdsBus::may_write(const TopicInfo& topic, std::uint32_t robot) const {
   const Identity* const identity = impl_->session->participant.identity();
   return !identity || sidestep::may_write(*identity, topic, robot);

@@ -87,6 +87,9 @@ class DdsBus : public Bus {
   void impair(const LinkQuality& quality, std::uint64_t seed);
 
   bool has_keys() const;
+  /// Whether this process has no keys, but a participant of the domain has, which therefore ignores it. This
+  /// is also logged.
+  bool meets_keys() const;
   bool may_write(const TopicInfo& topic, std::uint32_t robot) const override;
   bool may_read(const TopicInfo& topic, std::uint32_t robot) const override;
 

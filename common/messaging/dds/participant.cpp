@@ -189,6 +189,14 @@ void warn_of_expiry(const KeyFolder& keys) {
     });
 }
 
+void warn_of_keys() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    log(LogLevel::kWarning,
+        "a run with keys is here, and ignores this process, which has none: --keys FOLDER");
+  });
+}
+
 std::runtime_error failure(const std::string& entity, const std::string& channel) {
   return std::runtime_error(fmt::format("DDS failed to create the {} of topic '{}'", entity, channel));
 }
@@ -212,6 +220,12 @@ DdsParticipant::DdsParticipant(const DdsSettings& settings, fast_dds::DiscoveryL
     };
   } else if (!settings.is_local_bus) {
     require_safe_network(settings);
+    // Participants for images may share a listener that is already in use.
+    if (!listener_->on_announcement) {
+      listener_->on_announcement = [meets_keys = meets_keys_](std::span<const std::uint8_t> user_data) {
+        if (announces_keys(user_data) && !meets_keys->exchange(true)) warn_of_keys();
+      };
+    }
   }
   log_library();
   if (settings.faults) impairment_ = std::make_shared<Impairment>();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
@@ -49,6 +50,8 @@ class DdsParticipant {
   ParticipantFilter* filter() const { return filter_.get(); }
   /// The identity whose keys this process has; nullptr if it has none.
   const Identity* identity() const { return keys_ ? &keys_->identity : nullptr; }
+  /// See DdsBus::meets_keys(). Thread-safe.
+  bool meets_keys() const { return *meets_keys_; }
 
  private:
   void require_permission(const std::string& channel, bool writes) const;
@@ -58,6 +61,7 @@ class DdsParticipant {
   fast_dds::DiscoveryListener* listener_;
   std::shared_ptr<TransportCounts> counts_ = std::make_shared<TransportCounts>();
   const bool keeps_all_;
+  std::shared_ptr<std::atomic<bool>> meets_keys_ = std::make_shared<std::atomic<bool>>(false);
   std::optional<KeyFolder> keys_;
   std::shared_ptr<ParticipantFilter> filter_;
   std::shared_ptr<Impairment> impairment_;  ///< null without DdsSettings::faults

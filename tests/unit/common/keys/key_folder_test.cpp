@@ -208,6 +208,9 @@ TEST_CASE("a process picks its own keys from a folder that holds keys of several
   CHECK(own("robot 4") == keys.folder() + "/enclaves/robot-0-10");
   CHECK(own("robot 2-7") == keys.folder() + "/enclaves/robot-0-10");
   CHECK_THROWS_WITH(own("robot 9-11"), ContainsSubstring("has no keys of robot 9-11"));
+  CHECK_THROWS_WITH(
+      own("client bob"),
+      EndsWith(fmt::format("`sidestep keys issue client bob --keys {}` makes them", keys.folder())));
   CHECK_THROWS_WITH(own("agent 4"), ContainsSubstring("sidestep keys issue"));
   // A path to the folder of one identity selects that identity.
   CHECK(own_key_folder(keys.folder_of("vision"), {Role::kViewer}) == keys.folder_of("vision"));

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
 #include <functional>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -27,6 +29,10 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   /// listener is used.
   std::function<void(const rtps::GuidPrefix_t&, bool is_genuine)> on_authentication;
 
+  /// Called with the user data of a participant that was discovered or has changed. Set it before the
+  /// listener is used.
+  std::function<void(std::span<const std::uint8_t> user_data)> on_announcement;
+
   void onParticipantAuthentication(dds::DomainParticipant*,
                                    rtps::ParticipantAuthenticationInfo&& info) final {
     if (on_authentication)
@@ -37,6 +43,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
     const bool has_gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
                           info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
     on_participant(info.info.m_guid.guidPrefix, info.info.m_participantName.to_string(), has_gone);
+    const auto& user_data = info.info.m_userData.data_vec();
+    if (on_announcement && !has_gone) on_announcement({user_data.data(), user_data.size()});
   }
   void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) final {
     using Info = rtps::WriterDiscoveryInfo;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <fastdds/rtps/builtin/data/ParticipantBuiltinTopicData.hpp>
 #include <fastdds/rtps/builtin/data/PublicationBuiltinTopicData.hpp>
 #include <fastdds/rtps/builtin/data/SubscriptionBuiltinTopicData.hpp>
@@ -8,6 +9,7 @@
 #include <fastdds/rtps/reader/ReaderDiscoveryStatus.hpp>
 #include <fastdds/rtps/writer/WriterDiscoveryStatus.hpp>
 #include <functional>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -30,6 +32,10 @@ class DiscoveryListener : public dds::DomainParticipantListener {
   /// listener is used.
   std::function<void(const rtps::GuidPrefix_t&, bool is_genuine)> on_authentication;
 
+  /// Called with the user data of a participant that was discovered or has changed. Set it before the
+  /// listener is used.
+  std::function<void(std::span<const std::uint8_t> user_data)> on_announcement;
+
   void onParticipantAuthentication(dds::DomainParticipant*,
                                    rtps::ParticipantAuthenticationInfo&& info) final {
     if (on_authentication)
@@ -41,6 +47,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
     const bool has_gone = status == rtps::ParticipantDiscoveryStatus::REMOVED_PARTICIPANT ||
                           status == rtps::ParticipantDiscoveryStatus::DROPPED_PARTICIPANT;
     on_participant(info.guid.guidPrefix, info.participant_name.to_string(), has_gone);
+    const auto& user_data = info.user_data.data_vec();
+    if (on_announcement && !has_gone) on_announcement({user_data.data(), user_data.size()});
   }
   void on_data_writer_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryStatus status,
                                 const rtps::PublicationBuiltinTopicData& info, bool&) final {

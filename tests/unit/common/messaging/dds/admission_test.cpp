@@ -64,6 +64,15 @@ struct Fixture {
   Admission admission{identity("coordinator 0"), authority.certificate(), kVersion};
 };
 
+TEST_CASE("only user data in the form of credentials announces keys") {
+  const std::vector<std::uint8_t> marked{'S', 'k', 'y', '2', 5}, other{'S', 'k', 'y', '1', 5},
+      cut{'S', 'k', 'y'};
+  CHECK(announces_keys(marked));
+  CHECK_FALSE(announces_keys(other));
+  CHECK_FALSE(announces_keys(cut));
+  CHECK_FALSE(announces_keys({}));
+}
+
 TEST_CASE("a participant with a valid certificate is admitted and identified") {
   Fixture f;
   const Certificate agent = f.issue("agent 3");

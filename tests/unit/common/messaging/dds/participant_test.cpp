@@ -79,6 +79,15 @@ TEST_CASE("keys that do not cover the domain are refused with the reason") {
   CHECK_NOTHROW(DdsParticipant(settings, nullptr));
 }
 
+TEST_CASE("a process without keys notices that a run with keys is in its domain") {
+  const TestKeys keys({"agent", "3"});
+  DdsBus without(test_settings("without"));
+  CHECK_FALSE(without.meets_keys());
+  DdsBus with(settings_with(keys));
+  CHECK(run_until([&] { return without.meets_keys(); }, without, with));
+  CHECK_FALSE(with.meets_keys());
+}
+
 /// Sets the time zone of this process.
 class TimeZone {
  public:

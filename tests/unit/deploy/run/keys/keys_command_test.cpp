@@ -76,7 +76,7 @@ TEST_CASE("an error about wrong usage states the mistake") {
   for (const char* days : {"-1", "0", "nan"})
     CHECK_THAT(run({"keys", "issue", "vision", "--days", days, "--keys", keys}), ContainsSubstring("--days"));
   CHECK_THAT(run({"keys", "init", temporary.file("other"), "--days", "0"}),
-             ContainsSubstring("--days: expected a number in [1, 36500]"));
+             ContainsSubstring("--days: expected a number from 1 to 36500"));
   CHECK_FALSE(fs::exists(temporary.file("other")));
   CHECK_FALSE(run({"keys"}).empty());
 }
