@@ -221,7 +221,16 @@ void OrderClient::on_memory(const msg::OrderMemory& memory) {
   if (page->index == 0) round = {};
   if (page->index != round.next_page) return;
   for (const RememberedOrder& order : page->orders) round.book.merge(order);
-  if (++round.next_page == page->count) compare(page->process, round.book);
+  if (++round.next_page != page->count) return;
+  zones_[page->process] = round.book.zones();
+  compare(page->process, round.book);
+}
+
+std::optional<std::vector<Order>> OrderClient::remembered_zones() const {
+  if (zones_.empty()) return std::nullopt;
+  std::vector<Order> all;
+  for (const auto& [coordinator, zones] : zones_) all.insert(all.end(), zones.begin(), zones.end());
+  return all;
 }
 
 bool OrderClient::count_lacking_memory(const SentOrder& sent, std::uint32_t coordinator) {

@@ -138,12 +138,12 @@ TEST_CASE("without keys, an order from any process on the network moves a robot"
 TEST_CASE("a command without keys says that a run with keys is here") {
   KeyedRun keyed;
   LaunchedRun& run = keyed.run;
-  CHECK_FALSE(run.logged("a run with keys is here"));
+  CHECK_FALSE(run.printed("a run with keys is here"));
   std::vector<std::string> arguments{"status", "--once"};
   const auto dds = run.dds_arguments();
   arguments.insert(arguments.end(), dds.begin(), dds.end());
   CHECK(run.command(arguments) == "exit code 1");
-  CHECK(run.logged("a run with keys is here, and ignores this process, which has none: --keys FOLDER"));
+  CHECK(run.printed("a run with keys is here, and ignores this process, which has none: --keys FOLDER"));
 }
 
 TEST_CASE("with keys, a process without valid keys is refused and logged, and moves no robot", "[slow]") {

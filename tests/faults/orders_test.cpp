@@ -114,7 +114,7 @@ TEST_CASE(
 TEST_CASE(
     "robots held from the command line stay held until they are resumed, although the coordinator is "
     "killed") {
-  LaunchedRun run(shuttles(20, "restart: [coordinator]\n"), {"--seconds", "18"});
+  LaunchedRun run(shuttles(20, "restart: [coordinator]\n"), {"--seconds", "28"});
   const auto command = [&](std::vector<std::string> arguments) {
     for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
     return run.command(arguments);
@@ -139,6 +139,12 @@ TEST_CASE(
   CHECK(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
   CHECK(command({"go", "9", "0,0"}) == "exit code 1");
   CHECK(run.printed("go 9: refused, the scenario has no such robot"));
+  CHECK(command({"go", "0", "0,0", "--wait", "--timeout", "0.5"}) == "exit code 1");
+  CHECK(run.printed("after 0.5 s: go 0: "));
+  CHECK(command({"zone", "7", "--remove"}) == "exit code 1");
+  CHECK(run.printed("remove zone 7: refused, the operator has no zone 7; there are no zones"));
+  CHECK(command({"zone", "7", "9,9", "--radius", "0.1"}) == "exit code 0");
+  CHECK(command({"zone", "7", "--remove"}) == "exit code 0");
   CHECK(run.wait_for_end() == "exit code 1");  // no robot has visited all its goals
   CHECK(run.report()["contacts"] == 0);
   CHECK(run.report()["audit"]["violations"] == 0);

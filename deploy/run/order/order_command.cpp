@@ -5,6 +5,7 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -20,80 +21,15 @@
 #include "common/terminal/terminal.hpp"
 #include "common/yaml/yaml_document.hpp"
 #include "deploy/run/order/goal_text.hpp"
+#include "deploy/run/order/order_session.hpp"
 #include "deploy/run/order/order_text.hpp"
 #include "deploy/run/order/zone_text.hpp"
 
 namespace sidestep {
 namespace {
 
-// Discovery takes up to half a second, and so does a takeover.
-constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
 constexpr Duration kTablePeriod = std::chrono::milliseconds(200);
 constexpr Duration kOnceDuration = std::chrono::milliseconds(1500);
-
-struct OrderOptions {
-  DdsSettings dds;
-  std::string client;  ///< empty: acts as the operator
-  RobotId robot = 0;
-  std::vector<std::string> goals;
-  std::string file;
-  double speed_limit_mps = 0, tolerance_m = 0;
-  std::uint32_t zone = 0;
-  std::vector<std::string> corners;
-  double radius_m = 0;
-  bool removes = false;
-  bool waits = false;
-  bool once = false;
-};
-
-ClientId client_of(const OrderOptions& options) {
-  return options.client.empty() ? static_cast<ClientId>(Sender::kOperator) : client_id(options.client);
-}
-
-/// Settings with the client's identity, because a client sends with its own keys.
-DdsSettings dds_of(const OrderOptions& options) {
-  DdsSettings dds = options.dds;
-  if (!options.client.empty()) dds.identity = {Role::kClient, 0, 0, options.client};
-  return dds;
-}
-
-/// Sends orders by `send`, and prints what happens to them until they are accepted or, with `waits`, over.
-int give_orders(const OrderOptions& options,
-                const std::function<std::vector<OrderHandle>(OrderClient&)>& send) {
-  DdsBus bus(dds_of(options));
-  const StopSignals stop_signals([&bus] { bus.stop(); });
-  OrderClient client(bus, client_of(options));
-  std::vector<OrderHandle> handles;
-  const auto all = [&](auto condition) {
-    return std::ranges::all_of(handles, [&](OrderHandle handle) { return condition(*client.find(handle)); });
-  };
-  const auto is_answered = [](const SentOrder& sent) { return sent.phase != OrderPhase::kSent; };
-  const auto is_over = [](const SentOrder& sent) { return is_final(sent.phase); };
-  client.on_change([&](const SentOrder& sent) {
-    fmt::print("{}\n", to_line(sent));
-    if (options.waits ? all(is_over) : all(is_answered)) bus.stop();
-  });
-  bool is_coordinator_heard = false;
-  bus.subscribe(topics::kCoordinator, [&](const msg::CoordinatorState& state) {
-    is_coordinator_heard |= state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING;
-  });
-  handles = send(client);
-  bus.run_until(bus.now() + kAnswerTimeout);
-  if (!all(is_answered)) {
-    fmt::print(stderr, "sidestep: {}\n",
-               is_coordinator_heard
-                   ? "the order may take effect, but is not confirmed: the coordinator waits for an agent "
-                     "that remembers "
-                     "the order (for a hold: the agent of a held robot). Check that such an agent is running"
-                   : "no active coordinator answers on this domain and interface");
-    return kExitFailure;
-  }
-  if (options.waits && !all(is_over)) bus.run();
-  const auto is_good = [&](const SentOrder& sent) {
-    return options.waits ? sent.phase == OrderPhase::kArrived : sent.phase != OrderPhase::kRefused;
-  };
-  return all(is_good) ? 0 : kExitFailure;
-}
 
 GoalLists goals_of(const OrderOptions& options) {
   if (!options.file.empty())
@@ -117,11 +53,10 @@ int go(const OrderOptions& options) {
       if (options.tolerance_m > 0) goal.tolerance_m = options.tolerance_m;
     }
   }
-  return give_orders(options, [&](OrderClient& client) {
-    std::vector<OrderHandle> handles;
-    for (const auto& [robot, goals] : lists) handles.push_back(client.go(robot, goals));
-    return handles;
-  });
+  OrderSession session(options);
+  std::vector<OrderHandle> handles;
+  for (const auto& [robot, goals] : lists) handles.push_back(session.client().go(robot, goals));
+  return session.finish(handles);
 }
 
 int show_status(const OrderOptions& options) {
@@ -172,7 +107,10 @@ void add_go(const CliCommand& root, std::function<int()>& action) {
       .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));
   command.add_option("--tolerance", options->tolerance_m, "distance from a goal that counts as arrival, m")
       .check(in_range(kMinTolerance_m, kMaxTolerance_m));
-  command.add_flag("--wait", options->waits, "wait until all robots have arrived");
+  const auto wait = command.add_flag("--wait", options->waits, "wait until all robots have arrived");
+  command.add_option("--timeout", options->timeout_s, "give up waiting after this time, s [never]")
+      .check(positive())
+      .needs(wait);
   command.on_parsed([=, &action] {
     if (file.is_given() == robot.is_given()) throw UsageError("expected either ROBOT and GOAL, or --file");
     if (robot.is_given() && !goals.is_given()) throw UsageError("GOAL is missing: expected X,Y[,HEADING]");
@@ -197,17 +135,20 @@ void add_simple(const CliCommand& root, std::function<int()>& action, const char
   command.on_parsed([=, &action] {
     if (!allows_all && options->robot == kAllRobots) throw UsageError("expected one robot");
     action = [=] {
-      return give_orders(*options,
-                         [=](OrderClient& client) { return std::vector{(client.*send)(options->robot)}; });
+      OrderSession session(*options);
+      return session.finish({(session.client().*send)(options->robot)});
     };
   });
 }
 
 int zone(const OrderOptions& options) {
-  return give_orders(options, [&](OrderClient& client) {
-    if (options.removes) return std::vector{client.remove_zone(options.zone)};
-    return std::vector{client.zone(options.zone, zone_of(options))};
-  });
+  OrderSession session(options);
+  if (!options.removes) return session.finish({session.client().zone(options.zone, zone_of(options))});
+  if (const auto others = session.zones_without(options.zone)) {
+    fmt::print("{}\n", unknown_zone_text(options.zone, client_of(options), *others));
+    return kExitFailure;
+  }
+  return session.finish({session.client().remove_zone(options.zone)});
 }
 
 void add_zone(const CliCommand& root, std::function<int()>& action) {

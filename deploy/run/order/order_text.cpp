@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/run/order/order_text.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+#include <string_view>
 
 #include "common/messaging/blockage_text.hpp"
 #include "common/messaging/refusal_text.hpp"
@@ -37,20 +41,6 @@ std::string order_name(const Order& order) {
   return order.robot == kAllRobots ? fmt::format("{} all", name) : fmt::format("{} {}", name, order.robot);
 }
 
-std::string client_name(ClientId client) {
-  switch (rank_of(client)) {
-    case Rank::kOperator:
-      return "operator";
-    case Rank::kReferee:
-      return "referee";
-    case Rank::kScenario:
-      return "scenario";
-    case Rank::kClient:
-      break;
-  }
-  return std::to_string(client);
-}
-
 std::string state_text(const OrderReport& report) {
   static constexpr const char* kStates[] = {"accepted", "driving", "driving", "arrived", "left"};
   if (report.is_held) return "held";
@@ -65,6 +55,30 @@ std::string remaining_text(const OrderReport& report) {
 
 }  // namespace
 
+std::string client_text(ClientId client) {
+  switch (rank_of(client)) {
+    case Rank::kOperator:
+      return "operator";
+    case Rank::kReferee:
+      return "referee";
+    case Rank::kScenario:
+      return "scenario";
+    case Rank::kClient:
+      break;
+  }
+  return fmt::format("client {}", client);
+}
+
+std::string unknown_zone_text(std::uint32_t number, ClientId client, const std::vector<Order>& zones) {
+  const auto owner = [](ClientId id) {
+    return rank_of(id) == Rank::kClient ? client_text(id) : "the " + client_text(id);
+  };
+  std::set<std::string> known;
+  for (const Order& zone : zones) known.insert(fmt::format("{} of {}", zone.zone_number, owner(zone.client)));
+  return fmt::format("remove zone {}: refused, {} has no zone {}; {}", number, owner(client), number,
+                     known.empty() ? "there are no zones" : fmt::format("zones: {}", fmt::join(known, ", ")));
+}
+
 std::string to_line(const SentOrder& sent) {
   std::string line = fmt::format("{}: {}", order_name(sent.order), phase_text(sent.phase));
   if (sent.phase == OrderPhase::kRefused) line += fmt::format(", {}", refusal_text(sent.refusal));
@@ -75,13 +89,18 @@ std::string to_line(const SentOrder& sent) {
 }
 
 std::string to_table(const std::map<RobotId, OrderReport>& reports) {
-  std::string table = fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", "robot", "state", "ordered by",
+  constexpr const char* kHeading = "ordered by";
+  const auto owner = [](const OrderReport& report) {
+    return report.number != 0 ? client_text(report.client) : std::string("-");
+  };
+  std::size_t width = std::string_view(kHeading).size();
+  for (const auto& [robot, report] : reports) width = std::max(width, owner(report).size());
+  std::string table = fmt::format("{:>5}  {:<9} {:<{}} {:>4} {:>6}  {}\n", "robot", "state", kHeading, width,
                                   "goal", "left s", "why");
   for (const auto& [robot, report] : reports) {
     const bool has_order = report.number != 0;
-    table += fmt::format("{:>5}  {:<9} {:<10} {:>4} {:>6}  {}\n", robot, state_text(report),
-                         has_order ? client_name(report.client) : "-",
-                         has_order ? std::to_string(report.progress.goal_index + 1) : "-",
+    table += fmt::format("{:>5}  {:<9} {:<{}} {:>4} {:>6}  {}\n", robot, state_text(report), owner(report),
+                         width, has_order ? std::to_string(report.progress.goal_index + 1) : "-",
                          remaining_text(report), report.blockage ? to_text(*report.blockage) : "");
   }
   return table;

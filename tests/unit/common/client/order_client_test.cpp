@@ -76,6 +76,28 @@ TEST_CASE("a zone order applies to all robots and is complete when a coordinator
   CHECK(system.book.zones().size() == 1);
 }
 
+TEST_CASE("a client knows the zones that any coordinator remembers once it has heard a whole memory") {
+  System system;
+  CHECK_FALSE(system.client.remembered_zones());
+  system.tell_memory();
+  REQUIRE(system.client.remembered_zones());
+  CHECK(system.client.remembered_zones()->empty());
+  OrderBook other;
+  Order zone{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient + 1, 5};
+  zone.zone_number = 7;
+  zone.zone = disc(1);
+  (void)other.merge({zone});
+  system.tell_memory(kCoordinator + 1, other);
+  REQUIRE(system.client.remembered_zones()->size() == 1);
+  CHECK(system.client.remembered_zones()->front().zone_number == 7);
+  CHECK(system.client.remembered_zones()->front().client == kClient + 1);
+  zone.kind = msg::OrderKind::ORDER_REMOVE_ZONE;
+  zone.number = 6;
+  (void)other.merge({zone});
+  system.tell_memory(kCoordinator + 1, other);
+  CHECK(system.client.remembered_zones()->empty());
+}
+
 TEST_CASE("a zone is not reported as replaced if its own client moves it") {
   System system;
   for (int i = 0; i < 100; ++i) {

@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/run/order/order_command.hpp"
 
+#include <chrono>
+
 #include "tests/catch.hpp"
+#include "tests/test_domain.hpp"
 
 namespace sidestep::order_command_test {
+
+/// The exit code of a command that is carried out.
+int exit_code(const std::vector<std::string>& arguments) {
+  CommandLine command_line("test", "sidestep");
+  std::function<int()> action;
+  add_order_commands(command_line.root(), action);
+  command_line.parse(arguments);
+  return action();
+}
 
 /// The error for these arguments; empty if they are accepted.
 std::string usage_error(const std::vector<std::string>& arguments) {
@@ -26,6 +38,11 @@ TEST_CASE("an invalid order on the command line is rejected before anything is s
   CHECK(usage_error({"resume", "3", "--client", "dispatcher"}).empty());
   CHECK(usage_error({"cancel", "3"}).empty());
   CHECK(usage_error({"status", "--once"}).empty());
+  CHECK(usage_error({"go", "3", "1,2", "--wait", "--timeout", "10"}).empty());
+  CHECK_THAT(usage_error({"go", "3", "1,2", "--timeout", "10"}),
+             ContainsSubstring("--timeout requires --wait"));
+  CHECK_THAT(usage_error({"go", "3", "1,2", "--wait", "--timeout", "0"}),
+             ContainsSubstring("--timeout: expected a number greater than 0"));
   CHECK_THAT(usage_error({"go", "3"}), ContainsSubstring("GOAL is missing"));
   CHECK_THAT(usage_error({"go"}), ContainsSubstring("--file"));
   CHECK_THAT(usage_error({"go", "3", "1,2", "--file", "x"}), ContainsSubstring("either"));
@@ -38,6 +55,14 @@ TEST_CASE("an invalid order on the command line is rejected before anything is s
   std::vector<std::string> many{"go", "3"};
   many.resize(70, "1,2");
   CHECK_THAT(usage_error(many), ContainsSubstring("at most 64"));
+}
+
+TEST_CASE("a wait with a time limit ends then with exit code 1, even if nobody answers") {
+  const TestDomain domain;
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK(exit_code({"go", "3", "1,2", "--wait", "--timeout", "0.3", "--domain",
+                   std::to_string(domain.number())}) == 1);
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(4));
 }
 
 TEST_CASE("an invalid zone on the command line is rejected before anything is sent") {

@@ -17,4 +17,31 @@ TEST_CASE("an order is described by its robot and a zone by its number") {
   CHECK(line(msg::OrderKind::ORDER_REMOVE_ZONE, kAllRobots) == "remove zone 7: accepted");
 }
 
+TEST_CASE("a zone that is not there cannot be removed, and the zones that are there are named") {
+  constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
+  CHECK(unknown_zone_text(7, kOperator, {}) ==
+        "remove zone 7: refused, the operator has no zone 7; there are no zones");
+  const auto zone = [](ClientId client, std::uint32_t number) {
+    Order order{msg::OrderKind::ORDER_ZONE, kAllRobots, client, 1};
+    order.zone_number = number;
+    return order;
+  };
+  // Two coordinators list the same zone.
+  CHECK(
+      unknown_zone_text(7, 2'000'000, {zone(kOperator, 1), zone(2'000'001, 7), zone(kOperator, 1)}) ==
+      "remove zone 7: refused, client 2000000 has no zone 7; zones: 1 of the operator, 7 of client 2000001");
+}
+
+TEST_CASE("the table names who has ordered a robot, and a robot without an order has none") {
+  std::map<RobotId, OrderReport> reports;
+  reports[0] = {0, static_cast<ClientId>(Sender::kOperator), 5, {msg::OrderState::ORDER_ARRIVED, 1}};
+  reports[1] = {1, 4'000'000'000, 6, {msg::OrderState::ORDER_DRIVING, 0}};
+  reports[2] = {2, 0, 0, {}};
+  CHECK(to_table(reports) ==
+        "robot  state     ordered by        goal left s  why\n"
+        "    0  arrived   operator             2      -  \n"
+        "    1  driving   client 4000000000    1      -  \n"
+        "    2  no order  -                    -      -  \n");
+}
+
 }  // namespace sidestep::order_text_test

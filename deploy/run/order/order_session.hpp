@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/client/order_client.hpp"
+#include "common/messaging/dds/bus.hpp"
+#include "common/process/stop_signals.hpp"
+
+namespace sidestep {
+
+/// The options of the commands that give orders.
+struct OrderOptions {
+  DdsSettings dds;
+  std::string client;  ///< empty: acts as the operator
+  RobotId robot = 0;
+  std::vector<std::string> goals;
+  std::string file;
+  double speed_limit_mps = 0, tolerance_m = 0;
+  std::uint32_t zone = 0;
+  std::vector<std::string> corners;
+  double radius_m = 0;
+  bool removes = false;
+  bool waits = false;
+  std::optional<double> timeout_s;  ///< nullopt: waits for any time
+  bool once = false;
+};
+
+/// The client in whose name the command acts.
+[[nodiscard]] ClientId client_of(const OrderOptions& options);
+/// Settings with the client's identity, because a client sends with its own keys.
+[[nodiscard]] DdsSettings dds_of(const OrderOptions& options);
+
+/// Sends the orders of a command, and prints what becomes of them.
+class OrderSession {
+ public:
+  /// The options must outlive this object. Throws as DdsBus does.
+  explicit OrderSession(const OrderOptions& options);
+
+  OrderClient& client() { return client_; }
+
+  /// Waits until these orders are accepted or, with `waits`, over. Returns the exit code.
+  int finish(const std::vector<OrderHandle>& handles);
+
+  /// Listens until a coordinator's memory lists this zone of the client; then, or if no coordinator tells its
+  /// memory, returns nullopt. Otherwise returns the zones in force.
+  std::optional<std::vector<Order>> zones_without(std::uint32_t number);
+
+ private:
+  template <typename Condition>
+  bool are_all(Condition condition) const;
+  /// Says which orders are not over, and that they stay in force.
+  void print_timeout() const;
+  std::string unconfirmed_text() const;
+
+  const OrderOptions& options_;
+  DdsBus bus_;
+  StopSignals stop_signals_;
+  OrderClient client_;
+  std::vector<OrderHandle> handles_;
+  bool is_coordinator_heard_ = false;
+};
+
+}  // namespace sidestep
