@@ -37,4 +37,11 @@ void require_separate_outputs(const std::vector<NamedPath>& inputs, const std::v
   }
 }
 
+void require_new_output(const NamedPath& output, bool may_overwrite) {
+  std::error_code error;
+  if (may_overwrite || !fs::is_regular_file(output.path, error) || fs::file_size(output.path, error) == 0)
+    return;
+  throw UsageError(fmt::format("{}: {} exists; --force overwrites it", output.name, output.path));
+}
+
 }  // namespace sidestep

@@ -16,4 +16,7 @@ struct NamedPath {
 /// overwrite. Devices such as /dev/null may be named more than once.
 void require_separate_outputs(const std::vector<NamedPath>& inputs, const std::vector<NamedPath>& outputs);
 
+/// Throws UsageError if the output is a file with contents, unless `may_overwrite`, which --force sets.
+void require_new_output(const NamedPath& output, bool may_overwrite);
+
 }  // namespace sidestep

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/config/scenario_loader.hpp"
 #include "common/file/console.hpp"
@@ -13,6 +14,7 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/audit/auditor.hpp"
+#include "deploy/inspect/record/mcap/mcap_reader.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
 
 namespace sidestep {
@@ -109,16 +111,24 @@ void add_audit_command(const CliCommand& root, std::function<int()>& action) {
   options->dds.identity = {Role::kJudge};
   const CliCommand audit = root.add_subcommand(
       "audit", "Checks a running system, or a recording, for violations of the safety rules");
-  const Option scenario = audit.add_option("SCENARIO", options->scenario_file,
-                                           "scenario file [with --recording: the scenario in the recording]");
+  const Option scenario = audit.add_option("FILE", options->scenario_file,
+                                           "scenario of the running system, or a recording (MCAP) to check "
+                                           "instead [with --recording: the scenario "
+                                           "in the recording]");
   audit.add_option("--recording", options->recording_file,
-                   "check this recording instead of a running system");
+                   "check this recording; FILE, if given, is a scenario to use instead of the recorded one");
   audit.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   audit.add_flag("--json", options->is_json, "print violations as JSON, one per line");
   add_dds_options(audit, options->dds);
   audit.on_parsed([options, scenario, &action] {
     if (options->recording_file.empty() && !scenario.is_given())
-      throw UsageError("SCENARIO or --recording is required");
+      throw UsageError("FILE is required: a scenario, or a recording");
+    if (is_mcap_file(options->scenario_file)) {
+      if (!options->recording_file.empty())
+        throw UsageError(fmt::format("FILE: expected a scenario beside --recording, but {} is a recording",
+                                     options->scenario_file));
+      std::swap(options->recording_file, options->scenario_file);
+    }
     action = [options] {
       // The verdict is printed even if the reader of the violations disappears.
       std::signal(SIGPIPE, SIG_IGN);

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -183,16 +184,46 @@ std::string to_text(const BagInfo& info) {
   return text;
 }
 
+namespace {
+
+/// Whether a message belongs to the part. `begin_ns`: when the first message of the file was logged.
+bool is_in(const BagCut& cut, const McapReader& reader, const McapMessage& message, std::uint64_t begin_ns) {
+  const double at_s = (static_cast<double>(message.logged_ns) - static_cast<double>(begin_ns)) * 1e-9;
+  return at_s >= cut.from_s && at_s <= cut.to_s && is_chosen(cut.topics, reader.channel(message).topic);
+}
+
+/// Throws std::invalid_argument that says what the file has if nothing of it would be left.
+void require_message(const std::string& path, const BagCut& cut) {
+  McapReader reader(path);
+  std::optional<std::uint64_t> begin_ns;
+  std::uint64_t messages = 0, end_ns = 0;
+  std::set<std::string> topics;
+  for (McapRecord record = reader.next(); !is_end(record); record = reader.next()) {
+    const auto* message = std::get_if<McapMessage>(&record);
+    if (message == nullptr) continue;
+    if (!begin_ns) begin_ns = message->logged_ns;
+    if (is_in(cut, reader, *message, *begin_ns)) return;
+    end_ns = std::max(end_ns, message->logged_ns);
+    topics.insert(reader.channel(*message).topic);
+    ++messages;
+  }
+  if (messages == 0) throw std::invalid_argument(path + ": the recording has no messages");
+  throw std::invalid_argument(fmt::format(
+      "no message is left, so nothing is written: {} has {} messages in {:.3f} s, of the topics {}", path,
+      messages, static_cast<double>(end_ns - *begin_ns) * 1e-9, fmt::join(topics, ", ")));
+}
+
+}  // namespace
+
 std::string cut_bag(const std::string& path, const BagCut& cut, const std::string& out) {
+  require_message(path, cut);
   McapReader reader(path);
   Copier copier(out);
   std::optional<std::uint64_t> begin_ns;
   for (McapRecord record = reader.next(); !is_end(record) && !copier.has_failed(); record = reader.next()) {
     if (const auto* message = std::get_if<McapMessage>(&record)) {
       if (!begin_ns) begin_ns = message->logged_ns;
-      const double at_s = (static_cast<double>(message->logged_ns) - static_cast<double>(*begin_ns)) * 1e-9;
-      if (at_s >= cut.from_s && at_s <= cut.to_s && is_chosen(cut.topics, reader.channel(*message).topic))
-        copier.copy(reader, *message);
+      if (is_in(cut, reader, *message, *begin_ns)) copier.copy(reader, *message);
     } else if (const auto* attachment = std::get_if<McapAttachment>(&record)) {
       copier.copy(*attachment);
     } else if (auto* metadata = std::get_if<McapMetadata>(&record)) {

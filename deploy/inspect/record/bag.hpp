@@ -39,7 +39,8 @@ struct BagCut {
 };
 
 /// Copies a part of a file's messages, and everything that is not a message, to another file. Returns a
-/// description of damage to the file, or an empty text; everything before the damage is used.
+/// description of damage to the file, or an empty text; everything before the damage is used. Throws
+/// std::invalid_argument, and writes nothing, if that part has no message.
 std::string cut_bag(const std::string& path, const BagCut& cut, const std::string& out);
 
 /// Merges files in the order of the reception times of their messages. Throws std::invalid_argument if they

@@ -2,6 +2,7 @@
 #include "deploy/inspect/record/mcap/mcap_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -25,6 +26,14 @@ bool is_for_chunks(Kind kind) {
 }
 
 }  // namespace
+
+bool is_mcap_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  std::array<std::uint8_t, kMcapMagic.size()> bytes{};
+  return file && std::fread(bytes.data(), 1, bytes.size(), file.get()) == bytes.size() && bytes == kMcapMagic;
+}
 
 McapReader::McapReader(const std::string& path) {
   try {

@@ -15,6 +15,9 @@ namespace sidestep {
 /// A record that McapReader returns; std::monostate at the end of the file.
 using McapRecord = std::variant<std::monostate, McapMessage, McapAttachment, McapMetadata>;
 
+/// Whether a file begins as MCAP files do. False also if it cannot be read.
+[[nodiscard]] bool is_mcap_file(const std::string& path);
+
 /// Reads an MCAP file from its beginning to its end. Its contents are not trusted. If the file is truncated,
 /// all complete records before the cut are returned, including those in a truncated chunk.
 class McapReader {

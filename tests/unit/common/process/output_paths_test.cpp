@@ -33,4 +33,18 @@ TEST_CASE("an output file that is also an input or another output is rejected un
   CHECK_THROWS_AS(check(report, folder.file("folder/report.json")), UsageError);
 }
 
+TEST_CASE("a file with contents is overwritten only on request") {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.mcap");
+  CHECK_NOTHROW(require_new_output({"--out", file}, false));
+  write_file(file, "");
+  CHECK_NOTHROW(require_new_output({"--out", file}, false));
+  write_file(file, "contents");
+  CHECK_THROWS_WITH(require_new_output({"--out", file}, false),
+                    "--out: " + file + " exists; --force overwrites it");
+  CHECK_NOTHROW(require_new_output({"--out", file}, true));
+  CHECK_NOTHROW(require_new_output({"--out", "/dev/null"}, false));
+  CHECK_NOTHROW(require_new_output({"--out", folder.path()}, false));
+}
+
 }  // namespace sidestep::output_paths_test

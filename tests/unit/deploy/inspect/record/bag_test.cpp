@@ -90,6 +90,25 @@ TEST_CASE("bag cut keeps the chosen interval and topics and marks the result as 
   CHECK(bag_info(folder.file("c.mcap")).channels.size() == 2);
 }
 
+TEST_CASE("bag cut that would leave no message says what the recording has, and writes nothing") {
+  const TemporaryFolder folder;
+  record(folder.file("a.mcap"), 1000, 2000);
+  const std::string out = folder.file("b.mcap");
+  const auto [cut, is_refused] =
+      GENERATE(table<BagCut, bool>({{{5, 9, {}}, true},
+                                    {{0.001, 0.002, {}}, true},
+                                    {{0, INFINITY, {"nothing"}}, true},
+                                    {{0, INFINITY, {"nothing", "truth"}}, false}}));
+  if (is_refused) {
+    CHECK_THROWS_WITH(cut_bag(folder.file("a.mcap"), cut, out),
+                      "no message is left, so nothing is written: " + folder.file("a.mcap") +
+                          " has 303 messages in 1.000 s, of the topics feedback/0, feedback/1, truth");
+  } else {
+    CHECK(cut_bag(folder.file("a.mcap"), cut, out) == "");
+  }
+  CHECK(std::filesystem::exists(out) != is_refused);
+}
+
 TEST_CASE("bag merge orders messages by their time of reception") {
   const TemporaryFolder folder;
   record(folder.file("a.mcap"), 1000, 1100);
