@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <atomic>
 #include <fmt/core.h>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "common/file/console.hpp"
 #include "common/messaging/dds/listener.hpp"
 #include "common/process/output_reader.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "deploy/inspect/record/bag.hpp"
 #include "deploy/inspect/record/playback_bus.hpp"
 #include "deploy/inspect/topic/describe.hpp"
 #include "deploy/inspect/topic/idl/idl_decoder.hpp"
 #include "deploy/inspect/topic/idl/idl_parser.hpp"
+#include "deploy/inspect/topic/silence.hpp"
 #include "deploy/inspect/topic/topic_channel.hpp"
 #include "deploy/inspect/topic/topic_tools.hpp"
 #include "deploy/inspect/topic/topic_writer.hpp"
@@ -34,6 +38,13 @@ int echo_recording(const TopicOptions& options, MessagePrinter& printer) {
   if (!print_channel(bus, options.topic, printer, [&bus] { bus.stop(); })) return kExitFailure;
   const PlaybackResult result = bus.play();
   print_damage(options.recording_file, result.damage);
+  if (printer.printed() == 0) {
+    std::vector<std::string> channels;
+    for (const auto& [channel, content] : bag_info(options.recording_file).channels)
+      channels.push_back(channel);
+    fmt::print(stderr, "{}\n",
+               silence_text(options.topic, options.recording_file, channels, printer.added()));
+  }
   return printer.printed() > 0 && result.damage.empty() ? 0 : kExitFailure;
 }
 
@@ -72,6 +83,16 @@ int echo_foreign(const TopicOptions& options, MessagePrinter& printer) {
   return is_decodable ? 0 : kExitFailure;
 }
 
+/// Says why nothing was printed, which takes the time of discovery. Printing goes on in the meantime.
+void explain_silence(DdsBus& bus, const TopicOptions& options, const MessagePrinter& printer,
+                     const std::atomic<bool>& is_stopped) {
+  const DdsListener listener(options.dds);
+  bus.run_until(bus.now() + from_seconds(options.discovery_s));
+  if (printer.printed() == 0 && !is_stopped)
+    fmt::print(stderr, "{}; waiting\n",
+               silence_text(options.topic, options.dds.domain, listener.endpoints(), printer.added()));
+}
+
 }  // namespace
 
 int echo_topic(const TopicOptions& options) {
@@ -79,9 +100,16 @@ int echo_topic(const TopicOptions& options) {
   if (!options.recording_file.empty()) return echo_recording(options, printer);
   if (!options.idl_file.empty()) return echo_foreign(options, printer);
   DdsBus bus(options.dds);
-  const StopSignals stop_signals([&bus] { bus.stop(); });
+  std::atomic<bool> is_stopped = false;
+  const StopSignals stop_signals([&] {
+    is_stopped = true;
+    bus.stop();
+  });
   if (!print_channel(bus, options.topic, printer, [&bus] { bus.stop(); })) return kExitFailure;
   stop_without_reader(bus);
+  bus.run_until(bus.now() + from_seconds(options.discovery_s));
+  if (printer.printed() == 0 && !is_stopped && !is_output_abandoned())
+    explain_silence(bus, options, printer, is_stopped);
   bus.run();
   return 0;
 }

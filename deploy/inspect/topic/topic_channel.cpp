@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/inspect/topic/topic_channel.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <vector>
+
+#include "common/process/similar_name.hpp"
 
 namespace sidestep {
 
 void print_unknown_topic(const std::string& channel) {
-  std::string known;
+  std::vector<std::string> known;
   for (const TopicInfo& topic : all_topics())
-    known += std::string(known.empty() ? "" : " ") + topic.name + (topic.per_robot ? "/ROBOT" : "");
-  fmt::print(stderr, "unknown topic '{}', expected one of: {}\n", channel, known);
+    known.push_back(std::string(topic.name) + (topic.per_robot ? "/ROBOT" : ""));
+  fmt::print(stderr, "unknown topic '{}'{}, expected one of: {}; another program's topic needs --idl\n",
+             channel, did_you_mean(channel, known), fmt::join(known, " "));
 }
 
 void print_damage(const std::string& recording_file, const std::string& damage) {

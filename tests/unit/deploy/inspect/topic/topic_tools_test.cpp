@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "deploy/inspect/topic/topic_tools.hpp"
+
 #include <atomic>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -395,6 +397,38 @@ TEST_CASE("topic echo of an unknown topic lists the known ones") {
     CHECK(outcome.exit_code == kExitFailure);
     CHECK_THAT(outcome.err, ContainsSubstring("unknown topic") && ContainsSubstring("verdict/ROBOT"));
   }
+}
+
+TEST_CASE("topic echo of a mistyped topic names the one that is meant") {
+  CHECK_THAT(topic({"echo", "wrold"}).err, ContainsSubstring("unknown topic 'wrold'; did you mean world?"));
+  CHECK_THAT(topic({"echo", "verdict"}).err, ContainsSubstring("; did you mean verdict/ROBOT?"));
+}
+
+TEST_CASE("topic echo of a topic that nobody writes says so, and prints it once somebody does") {
+  TopicOptions options;
+  options.dds = test_settings("sidestep-topic");
+  options.topic = "feedback/9";
+  options.discovery_s = 0.2;
+  options.printer.count = 1;
+  CaptureStdout out;
+  const CaptureStderr err;
+  std::atomic<int> exit_code = -1;
+  std::thread thread([&] { exit_code = echo_topic(options); });
+  DdsBus bus(test_settings("simulator"));
+  CHECK(run_until([&] { return err.text().find("writes 'feedback/9' so far") != std::string::npos; }, bus));
+  auto writer = bus.advertise(topics::kFeedback, 9);
+  msg::Feedback feedback;
+  feedback.robot(9);
+  feedback.header().sender(9);
+  CHECK(run_until(
+      [&] {
+        writer.publish(feedback, bus.now());
+        return exit_code >= 0;
+      },
+      bus));
+  thread.join();
+  CHECK(exit_code == 0);
+  CHECK_THAT(out.finish(), StartsWith("{"));
 }
 
 TEST_CASE("usage errors of sidestep topic exit with code 2") {

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "deploy/inspect/topic/silence.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <set>
+
+namespace sidestep {
+namespace {
+
+std::string filtered_text(const std::string& topic, std::uint64_t received) {
+  return fmt::format("none of the {} messages of '{}' passes --filter", received, topic);
+}
+
+std::string or_none(const std::set<std::string>& names) {
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, " "));
+}
+
+}  // namespace
+
+std::string silence_text(const std::string& topic, int domain,
+                         const std::vector<DiscoveredEndpoint>& endpoints, std::uint64_t received) {
+  if (received > 0) return filtered_text(topic, received) + " so far";
+  std::set<std::string> topics, writers;
+  for (const DiscoveredEndpoint& endpoint : endpoints) {
+    if (!endpoint.is_writer) continue;
+    topics.insert(endpoint.topic);
+    if (endpoint.topic == topic) writers.insert(endpoint.participant);
+  }
+  if (writers.empty())
+    return fmt::format("no process in domain {} writes '{}' so far; topics that have a writer: {}", domain,
+                       topic, or_none(topics));
+  return fmt::format("'{}' has a writer in domain {} ({}), but no message so far", topic, domain,
+                     fmt::join(writers, ", "));
+}
+
+std::string silence_text(const std::string& topic, const std::string& recording,
+                         const std::vector<std::string>& channels, std::uint64_t received) {
+  if (received > 0) return fmt::format("{}: {}", recording, filtered_text(topic, received));
+  return fmt::format("{}: no message of '{}'; topics in this recording: {}", recording, topic,
+                     or_none({channels.begin(), channels.end()}));
+}
+
+}  // namespace sidestep
