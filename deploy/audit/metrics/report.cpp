@@ -122,6 +122,15 @@ std::string to_text(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.3f} {}", *value, unit) : "none";
 }
 
+/// How many robots have arrived, of those that have a goal.
+std::string arrived_text(const Report& report) {
+  const int with_goal = report.robots - report.without_goal;
+  if (report.without_goal == 0) return fmt::format("{} of {} robots arrived", report.arrived, report.robots);
+  if (with_goal == 0) return fmt::format("{} robots without a goal", report.robots);
+  return fmt::format("{} of {} robots arrived and {} had no goal", report.arrived, with_goal,
+                     report.without_goal);
+}
+
 /// Drops that only faulty, third-party or hostile processes cause, in one line; empty if there are none.
 std::string unusual_text(const Report& report) {
   std::string text;
@@ -170,13 +179,14 @@ std::string Report::failure_reason() const {
   if (!recording_failure.empty()) add("recording: " + recording_failure);
   if (const auto unexcused = unexcused_contacts(); unexcused > 0) add(fmt::format("{} contacts", unexcused));
   if (const auto crashes_moving = unexcused_crashes(); crashes_moving > 0)
-    add(fmt::format("{} crashes of moving robots", crashes_moving));
+    add(fmt::format("{} crashes of moving robots with opponents or people", crashes_moving));
   if (firmware_violations > 0) add(fmt::format("{} firmware violations", firmware_violations));
   if (audit && audit->violations > 0) {
     add(fmt::format("{} audit violations, the first of rule {}", audit->violations,
                     rule_info_of(audit->first.front().rule).name));
   }
-  if (must_arrive && arrived < robots) add(fmt::format("{} of {} arrived", arrived, robots));
+  if (const int with_goal = robots - without_goal; must_arrive && arrived < with_goal)
+    add(fmt::format("{} of {} arrived", arrived, with_goal));
   return reason;
 }
 
@@ -190,6 +200,7 @@ std::string to_json(const Report& r) {
   json["failure"] = has_passed ? Json(nullptr) : Json(reason_of(r));
   json["robots"] = r.robots;
   json["arrived"] = r.arrived;
+  json["without_goal"] = r.without_goal;
   json["contacts"] = r.contacts;
   json["penetration_m_s"] = rounded(r.penetration_m_s);
   json["min_clearance_m"] = rounded(r.min_clearance_m);
@@ -269,12 +280,12 @@ std::string summary(const Report& r) {
   const double missed =
       r.cycles > 0 ? 100.0 * static_cast<double>(r.missed_cycles) / static_cast<double>(r.cycles) : 0;
   std::string text = fmt::format(
-      "{} of {} robots arrived, {} contacts, minimum clearance {}\n"
+      "{}, {} contacts between robots or with obstacles, minimum clearance {}\n"
       "makespan {}, mean arrival {} ({} times the straight-line time), {} route changes per second\n"
       "{} proposals, {} granted, {} denied; {:.2f} % of cycles missed; {} firmware violations\n"
       "negotiation p50 {:.0f} us, p99 {:.0f} us; planning p50 {:.0f} us, p99 {:.0f} us; safety search p50 "
       "{:.0f} us, p99 {:.0f} us\n",
-      r.arrived, r.robots, r.contacts, to_text(r.min_clearance_m, "m"), to_text(r.makespan_s, "s"),
+      arrived_text(r), r.contacts, to_text(r.min_clearance_m, "m"), to_text(r.makespan_s, "s"),
       to_text(r.mean_arrival_s, "s"),
       r.straight_line_time_ratio ? fmt::format("{:.2f}", *r.straight_line_time_ratio) : "?",
       r.route_changes_per_s ? fmt::format("{:.1f}", *r.route_changes_per_s) : "?", r.proposals, r.grants,
@@ -282,9 +293,9 @@ std::string summary(const Report& r) {
       us(r.plan, 0.5), us(r.plan, 0.99), us(r.search, 0.5), us(r.search, 0.99));
   if (r.crashes > 0) {
     text += fmt::format(
-        "{} crashes with opponents, {} of them while the robot moved; maximum closing speed {:.2f} m/s, "
+        "{} crashes: contacts of a robot with an opponent or a person, {} of them while the robot moved; "
         "maximum "
-        "robot share {:.2f} m/s\n",
+        "closing speed {:.2f} m/s, maximum robot share {:.2f} m/s\n",
         r.crashes, r.crashes_while_moving, r.max_crash_speed_mps, r.max_robot_crash_speed_mps);
   }
   constexpr std::size_t kShownRobots = 10;

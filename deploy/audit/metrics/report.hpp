@@ -45,6 +45,7 @@ struct Report {
       recording_failure;  ///< why the recording lacks messages; empty: it is complete, or there is none
   int robots = 0;
   int arrived = 0;
+  int without_goal = 0;     ///< number of robots with nothing to arrive at
   bool must_arrive = true;  ///< whether the run passes only if all robots arrive
   std::uint64_t contacts = 0;
   double penetration_m_s = 0;

@@ -90,7 +90,14 @@ double RunMetrics::distance_to_go_m(const RobotRecord& robot) const {
   return (robot.spec->goals.back().position_m - robot.position_m).norm();
 }
 
-bool RunMetrics::has_arrived(const RobotRecord& robot) const {
+bool RunMetrics::is_without_goal(const RobotRecord& robot) const {
+  if (!robot.spec->goals.empty()) return false;
+  const msg::AgentStatus* const status = robot.status();
+  return !status || (status->agent_state() != msg::AgentState::AGENT_DRIVING &&
+                     status->agent_state() != msg::AgentState::AGENT_ARRIVED);
+}
+
+bool RunMetrics::is_done(const RobotRecord& robot) const {
   if (!robot.settled_since || !robot.status()) return false;
   const msg::AgentState state = robot.status()->agent_state();
   return state == msg::AgentState::AGENT_ARRIVED ||
@@ -294,11 +301,18 @@ int RunMetrics::arrived() const {
                                         [this](const RobotRecord& robot) { return has_arrived(robot); }));
 }
 
+int RunMetrics::without_goal() const {
+  return static_cast<int>(std::count_if(robots_.begin(), robots_.end(),
+                                        [this](const RobotRecord& robot) { return is_without_goal(robot); }));
+}
+
 bool RunMetrics::awaits_orders() const {
   return std::ranges::all_of(robots_, [](const RobotRecord& robot) { return robot.spec->goals.empty(); });
 }
 
-bool RunMetrics::all_arrived() const { return arrived() == static_cast<int>(robots_.size()); }
+bool RunMetrics::all_arrived() const {
+  return std::ranges::all_of(robots_, [this](const RobotRecord& robot) { return is_done(robot); });
+}
 
 bool RunMetrics::all_at_rest() const {
   return std::all_of(robots_.begin(), robots_.end(),

@@ -27,7 +27,9 @@ struct RobotProgress {
   Team team = Team::kBlue;
   std::optional<msg::AgentState> agent_state;  ///< nullopt: no status received yet
   bool arrived = false;
-  double distance_to_go_m = 0;  ///< distance to the last goal, according to ground truth or vision
+  bool is_without_goal = false;  ///< nothing to arrive at: no goal in the scenario, and no order under way
+  bool is_done = false;          ///< at rest, and arrived or without a goal
+  double distance_to_go_m = 0;   ///< distance to the last goal, according to ground truth or vision
   double speed_mps = 0;
   std::uint64_t grants = 0;
   std::uint64_t denials = 0;
@@ -68,10 +70,12 @@ class RunMetrics {
   bool awaits_orders() const;
   /// Whether any robot has received a drive order from a client since the start.
   bool has_received_orders() const { return has_received_orders_; }
-  /// Whether all robots have arrived. A robot without a goal in the scenario has arrived if it has finished
-  /// its orders and is at rest.
+  /// Whether all robots have arrived, except those without a goal, which need to be at rest. A robot without
+  /// a goal in the scenario has arrived if it has finished its orders.
   bool all_arrived() const;
   int arrived() const;
+  /// Number of robots that have no goal in the scenario, and no order.
+  int without_goal() const;
   /// Whether all robots are at rest, according to ground truth or vision.
   bool all_at_rest() const;
   /// Robots whose agents have not sent a status.
@@ -130,7 +134,9 @@ class RunMetrics {
   void place(RobotRecord& robot, const Vec2& position_m, double speed_mps, const SettledLimits& limits,
              Time at);
   void record_epoch(const msg::CoordinatorState& state);
-  bool has_arrived(const RobotRecord& robot) const;
+  bool is_done(const RobotRecord& robot) const;
+  bool is_without_goal(const RobotRecord& robot) const;
+  bool has_arrived(const RobotRecord& robot) const { return is_done(robot) && !is_without_goal(robot); }
   /// Why a robot has not arrived, as a clause.
   std::string reason_not_arrived(const RobotRecord& robot) const;
   double distance_to_go_m(const RobotRecord& robot) const;

@@ -36,6 +36,8 @@ std::vector<RobotProgress> RunMetrics::progress() const {
     row.team = robot.spec->team;
     if (robot.status()) row.agent_state = robot.status()->agent_state();
     row.arrived = has_arrived(robot);
+    row.is_without_goal = is_without_goal(robot);
+    row.is_done = is_done(robot);
     row.distance_to_go_m = distance_to_go_m(robot);
     row.speed_mps = robot.speed_mps;
     row.grants = sum(robot.incarnations, &msg::AgentStatus::grants);
@@ -97,6 +99,7 @@ std::string RunMetrics::reason_not_arrived(const RobotRecord& robot) const {
 
 void RunMetrics::add_arrivals(Report& report) const {
   report.arrived = arrived();
+  report.without_goal = without_goal();
   double latest_s = 0, total_s = 0, ratio_sum = 0;
   int ratios = 0;
   for (const RobotRecord& robot : robots_) {
@@ -113,7 +116,8 @@ void RunMetrics::add_arrivals(Report& report) const {
     }
   }
   if (report.arrived > 0 && granting_since_) report.mean_arrival_s = total_s / report.arrived;
-  if (report.arrived == report.robots && granting_since_) report.makespan_s = latest_s;
+  if (report.arrived > 0 && report.arrived == report.robots - report.without_goal && granting_since_)
+    report.makespan_s = latest_s;
   if (ratios > 0) report.straight_line_time_ratio = ratio_sum / ratios;
 }
 

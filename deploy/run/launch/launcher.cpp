@@ -370,7 +370,7 @@ bool Launcher::is_stuck(Time now) const {
       are_all_coordinators_dead())
     return true;
   for (const RobotProgress& row : metrics_.progress()) {
-    if (!row.arrived && !dead_.count(agent_process(row.robot))) return false;
+    if (!row.is_done && !dead_.count(agent_process(row.robot))) return false;
   }
   return true;
 }

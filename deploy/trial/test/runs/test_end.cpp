@@ -40,7 +40,7 @@ TestEnd::TestEnd(const FaultTest& test)
 
 bool TestEnd::update(double at_s, const std::vector<RobotProgress>& progress) {
   const bool have_arrived = std::ranges::all_of(progress, [this](const RobotProgress& row) {
-    return row.arrived || std::ranges::find(arriving_, row.robot) == arriving_.end();
+    return row.is_done || std::ranges::find(arriving_, row.robot) == arriving_.end();
   });
   arrived_since_s_ = have_arrived ? arrived_since_s_.value_or(at_s) : std::optional<double>();
   if (at_s >= std::max(limit_s_, decided_s_)) return true;

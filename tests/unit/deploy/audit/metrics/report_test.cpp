@@ -44,6 +44,7 @@ TEST_CASE("a report's JSON has the keys that readers rely on in a stable order")
                                          "failure",
                                          "robots",
                                          "arrived",
+                                         "without_goal",
                                          "contacts",
                                          "penetration_m_s",
                                          "min_clearance_m",
@@ -141,6 +142,21 @@ TEST_CASE("the failure reason lists all failures in one line and is empty withou
   CHECK_THAT(summary(good), EndsWith("passed\n"));
 }
 
+TEST_CASE("a robot without a goal has not arrived, and fails no run") {
+  Report report = example();
+  CHECK_THAT(summary(report),
+             StartsWith("1 of 2 robots arrived, 0 contacts between robots or with obstacles, "));
+  report.without_goal = 1;
+  CHECK(report.failure_reason().empty());
+  CHECK_THAT(summary(report), StartsWith("1 of 1 robots arrived and 1 had no goal, "));
+  CHECK(parse_json(to_json(report))["without_goal"] == 1);
+  report.arrived = 0;
+  CHECK(report.failure_reason() == "0 of 1 arrived");
+  report.without_goal = 2;
+  CHECK(report.failure_reason().empty());
+  CHECK_THAT(summary(report), StartsWith("2 robots without a goal, "));
+}
+
 TEST_CASE("writing a report creates its folder or fails with the reason") {
   const auto folder = std::filesystem::temp_directory_path() / ("report-" + std::to_string(getpid()));
   const std::string path = (folder / "deep" / "r.json").string();
@@ -163,11 +179,12 @@ TEST_CASE("a crash of a moving robot fails a run, but a crash of a robot at rest
   report.crashes = 3;
   report.max_crash_speed_mps = 1.5;
   CHECK(report.failure_reason().empty());
-  CHECK_THAT(summary(report),
-             ContainsSubstring("3 crashes with opponents, 0 of them while the robot moved; maximum closing "
-                               "speed 1.50 m/s"));
+  CHECK_THAT(
+      summary(report),
+      ContainsSubstring("3 crashes: contacts of a robot with an opponent or a person, 0 of them while the "
+                        "robot moved; maximum closing speed 1.50 m/s"));
   report.crashes_while_moving = 1;
-  CHECK(report.failure_reason() == "1 crashes of moving robots");
+  CHECK(report.failure_reason() == "1 crashes of moving robots with opponents or people");
 }
 
 TEST_CASE("audit violations fail a run and are included in its report") {

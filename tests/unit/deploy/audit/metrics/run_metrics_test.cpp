@@ -132,6 +132,49 @@ TEST_CASE("a robot that leaves its goal has not arrived") {
   CHECK(metrics.arrived() == 0);
 }
 
+TEST_CASE("a robot without a goal has not arrived until it has carried out an order") {
+  const Scenario scenario = parse_scenario(
+      "robots:\n- {id: 3, start_m: [0, 0], goals_m: [[1, 0]]}\n- {id: 7, start_m: [0, 1]}\n", "mixed.yaml");
+  constexpr auto kWithoutOrder = msg::AgentState::AGENT_WITHOUT_ORDER;
+  RunMetrics metrics(scenario);
+  metrics.on_coordinator(state(1, 0, kGranting));
+  metrics.on_truth(truth(1, 1, {body(3, 1, 0), body(7, 0, 1)}));
+  metrics.on_status(status(3, 1, kArrived));
+  CHECK_FALSE(metrics.all_arrived());  // nothing is known of robot 7
+  metrics.on_status(status(7, 1, kWithoutOrder));
+  CHECK(metrics.arrived() == 1);
+  CHECK(metrics.without_goal() == 1);
+  CHECK(metrics.all_arrived());
+  CHECK_FALSE(metrics.progress()[1].arrived);
+  CHECK(metrics.progress()[1].is_done);
+  const Report idle = metrics.report();
+  CHECK(idle.failure_reason().empty());
+  CHECK(idle.arrival_s.at(3) == Approx(1));
+  CHECK_FALSE(idle.arrival_s.at(7));
+  CHECK(idle.mean_arrival_s == Approx(1));
+  CHECK(idle.makespan_s == Approx(1));
+
+  metrics.on_status(status(7, 2, kDriving));
+  CHECK(metrics.without_goal() == 0);
+  CHECK_FALSE(metrics.all_arrived());
+  metrics.on_status(status(7, 3, kArrived));
+  CHECK(metrics.arrived() == 2);
+  CHECK(metrics.report().arrival_s.at(7));
+}
+
+TEST_CASE("a run in which no robot has a goal has no arrivals") {
+  const Scenario scenario = parse_scenario("robots:\n- {id: 3, start_m: [0, 0]}\n", "idle.yaml");
+  RunMetrics metrics(scenario);
+  metrics.on_coordinator(state(1, 0, kGranting));
+  metrics.on_truth(truth(1, 1, {body(3, 0, 0)}));
+  metrics.on_status(status(3, 1, msg::AgentState::AGENT_WITHOUT_ORDER));
+  CHECK(metrics.all_arrived());
+  CHECK(metrics.report().arrived == 0);
+  CHECK(metrics.report().without_goal == 1);
+  CHECK_FALSE(metrics.report().makespan_s);
+  CHECK_FALSE(metrics.report().mean_arrival_s);
+}
+
 TEST_CASE("the straight-line time agrees with slow integration") {
   for (const double goal_m : {0.01, 0.5, 1.06, 1.07, 3.0, 12.0}) {
     CAPTURE(goal_m);

@@ -101,7 +101,7 @@ TEST_CASE("a summary does not depend on the order of the results") {
   CHECK(forwards.failed() == 1);
   CHECK_THAT(
       forwards.text(),
-      ContainsSubstring("2 contacts, 2 audit violations") &&
+      ContainsSubstring("2 contacts between robots or with obstacles, 2 audit violations") &&
           ContainsSubstring("1 trials are not judged by the audit, because a process accepted a second "
                             "simulator; it reported 7 violations there"));
   CHECK_THAT(forwards.text(), ContainsSubstring("20 seeds, 1 failed") &&

@@ -23,7 +23,7 @@ double end_s(const std::string& keys, const std::set<RobotId>& arriving) {
     std::vector<RobotProgress> progress(2);
     for (const RobotId robot : {1u, 2u}) {
       progress[robot - 1].robot = robot;
-      progress[robot - 1].arrived = at_s >= 5 && arriving.contains(robot);
+      progress[robot - 1].is_done = at_s >= 5 && arriving.contains(robot);
     }
     if (end.update(at_s, progress)) return at_s;
   }
