@@ -45,6 +45,7 @@ void Assignment::on_page(std::shared_ptr<const OrderPage> page) {
 OrderReport Assignment::report() const {
   OrderReport report{robot_, client_, number_, progress_};
   report.is_held = is_held_;
+  report.client_name = client_name_;
   return report;
 }
 
@@ -88,6 +89,7 @@ void Assignment::choose() {
 void Assignment::take(const RememberedOrder& order) {
   goals_ = order.order.goals.empty() ? scenario_goals_ : order.order.goals;
   client_ = order.order.client;
+  client_name_ = order.order.client_name;
   number_ = order.order.number;
   progress_ = order.progress;
   ++revision_;
@@ -104,6 +106,7 @@ void Assignment::report_progress() {
 void Assignment::drop() {
   goals_.clear();
   client_ = 0;
+  client_name_ = {};
   number_ = 0;
   progress_ = {};
   ++revision_;

@@ -89,6 +89,7 @@ class Assignment {
   bool is_held_ = false;
   // The order that the robot carries out, or the last order that it has carried out.
   ClientId client_ = 0;
+  ClientName client_name_{};
   OrderNumber number_ = 0;
   std::vector<Goal> goals_;
   OrderProgress progress_;

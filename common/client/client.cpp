@@ -36,6 +36,8 @@ ClientId id_of(const Settings& settings) {
   return settings.is_operator ? static_cast<ClientId>(Sender::kOperator) : client_id(settings.name);
 }
 
+std::string name_of(const Settings& settings) { return settings.is_operator ? "" : settings.name; }
+
 }  // namespace
 
 const char* version() { return kVersion; }
@@ -44,7 +46,7 @@ struct Client::Impl {
   using Send = std::function<OrderHandle(OrderClient&)>;
 
   explicit Impl(const Settings& settings)
-      : bus(dds_settings(settings)), orders(bus, id_of(settings)), table(id_of(settings)) {
+      : bus(dds_settings(settings)), orders(bus, id_of(settings), name_of(settings)), table(id_of(settings)) {
     orders.on_change([this](const SentOrder& sent) { on_change(sent); });
     bus.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& status) {
       const std::lock_guard lock(mutex);

@@ -54,8 +54,8 @@ bool is_closed(const SentOrder& sent) {
 
 }  // namespace
 
-OrderClient::OrderClient(Bus& bus, ClientId client)
-    : bus_(bus), client_(client), writer_(bus.advertise(topics::kOrder)) {
+OrderClient::OrderClient(Bus& bus, ClientId client, std::string_view name)
+    : bus_(bus), client_(client), name_(client_name(name)), writer_(bus.advertise(topics::kOrder)) {
   bus_.subscribe(topics::kOrderAnswer, [this](const msg::OrderAnswer& answer) { on_answer(answer); });
   bus_.subscribe(topics::kOrderStatus, [this](const msg::OrderStatus& status) { on_status(status); });
   bus_.subscribe(topics::kOrderMemory, [this](const msg::OrderMemory& memory) { on_memory(memory); });
@@ -110,6 +110,7 @@ OrderHandle OrderClient::send(Order order) {
   replace_earlier(order);
   newest_ = std::max(newest_ + 1, static_cast<OrderNumber>(to_ns(bus_.now())));
   order.client = client_;
+  order.client_name = name_;
   order.number = newest_;
   publish(order);
   by_number_[newest_] = ++last_handle_;

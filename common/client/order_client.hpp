@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/messaging/bus.hpp"
@@ -50,7 +51,8 @@ struct SentOrder {
 /// never moves an order behind a later one of this client, nor a resume behind a later hold by any client.
 class OrderClient {
  public:
-  OrderClient(Bus& bus, ClientId client);
+  /// Orders carry the name, for people. It is empty, or the one from which the client's id is made.
+  OrderClient(Bus& bus, ClientId client, std::string_view name = {});
   OrderClient(const OrderClient&) = delete;
   OrderClient& operator=(const OrderClient&) = delete;
 
@@ -112,6 +114,7 @@ class OrderClient {
 
   Bus& bus_;
   const ClientId client_;
+  const ClientName name_;
   OrderNumber newest_ = 0;
   OrderHandle last_handle_ = 0;
   std::map<OrderHandle, SentOrder> sent_;

@@ -7,12 +7,11 @@
 #include <fmt/format.h>
 
 #include "common/motion/version.hpp"
+#include "common/protocol/client_name.hpp"
 #include "common/protocol/senders.hpp"
 
 namespace sidestep {
 namespace {
-
-constexpr std::size_t kMaxClientName = 32;
 
 struct RoleWord {
   Role role;
@@ -54,11 +53,8 @@ bool parse_numbers(std::string_view text, Identity& identity) {
 }
 
 bool is_client_name(std::string_view text) {
-  const auto is_plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-  };
-  return !text.empty() && text.size() <= kMaxClientName && text.front() != '-' &&
-         std::ranges::all_of(text, is_plain);
+  return !text.empty() && text.size() <= msg::MAX_CLIENT_NAME && text.front() != '-' &&
+         std::ranges::all_of(text, is_name_character);
 }
 
 }  // namespace

@@ -84,12 +84,13 @@ std::optional<Order> decode(RobotId robot, ClientId client, const msg::OrderTerm
   const auto is_valid_pose = [](const msg::OrderPose& pose) { return is_valid(pose); };
   const bool is_known_kind = is_enumerator(terms.order_kind(), msg::OrderKind::ORDER_REMOVE_ZONE);
   if (!is_known_kind || !fits(terms.order_kind(), robot) || terms.order_number() == 0 ||
-      !is_plausible(terms.order_number(), now) || !is_valid(terms, poses.size()) ||
-      !std::ranges::all_of(poses, is_valid_pose))
+      !is_name_of(terms.client_name(), client) || !is_plausible(terms.order_number(), now) ||
+      !is_valid(terms, poses.size()) || !std::ranges::all_of(poses, is_valid_pose))
     return std::nullopt;
   Order order{terms.order_kind(), robot, client, terms.order_number()};
   if (order.kind == msg::OrderKind::ORDER_GO)
     std::ranges::transform(poses, std::back_inserter(order.goals), [](const auto& p) { return decode(p); });
+  order.client_name = terms.client_name();
   order.zone_number = terms.zone();
   if (order.kind == msg::OrderKind::ORDER_ZONE) {
     for (const msg::OrderPose& corner : poses) order.zone.corners_m.emplace_back(corner.x_m(), corner.y_m());
@@ -106,6 +107,7 @@ msg::OrderTerms encode_terms(const Order& order) {
   terms.zone(order.zone_number);
   terms.zone_radius_m(order.zone.radius_m);
   terms.zone_speed_limit_mps(order.zone.speed_limit_mps.value_or(0));
+  terms.client_name(order.client_name);
   return terms;
 }
 
@@ -185,6 +187,7 @@ std::optional<OrderReport> decode(const msg::OrderStatus& message) {
                         is_enumerator(message.block_reason(), msg::BlockReason::BLOCK_OCCLUDED_CORNER) &&
                         is_on_floor(message.blocker_x_m(), message.blocker_y_m()) &&
                         is_on_floor(message.nearest_x_m(), message.nearest_y_m()) &&
+                        is_name_of(message.client_name(), message.client()) &&
                         message.remaining_s() <= kMaxRemaining_s;
   const bool is_blocked = message.order_state() == msg::OrderState::ORDER_BLOCKED;
   if (!is_valid || (is_blocked && message.block_reason() == msg::BlockReason::BLOCK_NONE))
@@ -202,6 +205,7 @@ std::optional<OrderReport> decode(const msg::OrderStatus& message) {
                                {message.nearest_x_m(), message.nearest_y_m()}};
   }
   if (message.remaining_s() >= 0) report.remaining_s = message.remaining_s();
+  report.client_name = message.client_name();
   return report;
 }
 
@@ -223,6 +227,7 @@ msg::OrderStatus encode(const OrderReport& report) {
     message.nearest_y_m(report.blockage->nearest_m.y());
   }
   message.remaining_s(std::min(report.remaining_s.value_or(-1), kMaxRemaining_s));
+  message.client_name(report.client_name);
   return message;
 }
 

@@ -42,6 +42,7 @@ struct OrderReport {
   bool is_held = false;
   std::optional<Blockage> blockage{};  ///< set if the goal cannot be reached now
   std::optional<double> remaining_s{};
+  ClientName client_name{};
 };
 
 /// Decodes an untrusted order. Returns nullopt if the sender may not send this order, if the kind is unknown,

@@ -7,6 +7,7 @@
 
 #include "common/motion/goal.hpp"
 #include "common/motion/version.hpp"
+#include "common/protocol/client_name.hpp"
 #include "common/protocol/senders.hpp"
 #include "idl/order.hpp"
 
@@ -52,6 +53,7 @@ struct Order {
   std::vector<Goal> goals{};  ///< goals of ORDER_GO; empty: the scenario's goals
   std::uint32_t zone_number = 0;
   Zone zone{};  ///< zone of ORDER_ZONE
+  ClientName client_name{};
 };
 
 /// A robot's progress with a drive order.

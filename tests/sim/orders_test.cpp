@@ -42,6 +42,20 @@ TEST_CASE("robots without goals wait for orders, and drive through the ordered p
   run.require_safe();
 }
 
+TEST_CASE("an agent reports the name of the client whose order its robot carries out") {
+  OrderedSystem run(waiting_robots(2), 1);
+  SimBus bus(run.system.network());
+  OrderClient client(bus, client_id("kitchen"), "kitchen");
+  run.system.run_for(seconds(2));
+  client.go(0, {{{0, 0}}});
+  const auto name = [&] {
+    const auto report = client.reports().find(0);
+    return report == client.reports().end() ? std::string() : to_text(report->second.client_name);
+  };
+  CHECK(run.run_until(seconds(5), [&] { return name() == "kitchen"; }));
+  run.require_safe();
+}
+
 TEST_CASE(
     "twenty-two robots that are held at full speed come to rest within the braking time and three cycles") {
   const double loss = GENERATE(0.0, 0.05);

@@ -145,7 +145,8 @@ int zone(const OrderOptions& options) {
   OrderSession session(options);
   if (!options.removes) return session.finish({session.client().zone(options.zone, zone_of(options))});
   if (const auto others = session.zones_without(options.zone)) {
-    fmt::print("{}\n", unknown_zone_text(options.zone, client_of(options), *others));
+    fmt::print("{}\n",
+               unknown_zone_text(options.zone, client_of(options), client_name(options.client), *others));
     return kExitFailure;
   }
   return session.finish({session.client().remove_zone(options.zone)});

@@ -37,7 +37,7 @@ OrderSession::OrderSession(const OrderOptions& options)
     : options_(options),
       bus_(dds_of(options)),
       stop_signals_([this] { bus_.stop(); }),
-      client_(bus_, client_of(options)) {
+      client_(bus_, client_of(options), options.client) {
   client_.on_change([this](const SentOrder& sent) {
     fmt::print("{}\n", to_line(sent));
     if (are_all(options_.waits ? is_over : is_answered)) bus_.stop();

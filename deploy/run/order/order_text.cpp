@@ -55,7 +55,7 @@ std::string remaining_text(const OrderReport& report) {
 
 }  // namespace
 
-std::string client_text(ClientId client) {
+std::string client_text(ClientId client, const ClientName& name) {
   switch (rank_of(client)) {
     case Rank::kOperator:
       return "operator";
@@ -66,16 +66,19 @@ std::string client_text(ClientId client) {
     case Rank::kClient:
       break;
   }
-  return fmt::format("client {}", client);
+  const std::string text = to_text(name);
+  return "client " + (text.empty() ? std::to_string(client) : text);
 }
 
-std::string unknown_zone_text(std::uint32_t number, ClientId client, const std::vector<Order>& zones) {
-  const auto owner = [](ClientId id) {
-    return rank_of(id) == Rank::kClient ? client_text(id) : "the " + client_text(id);
+std::string unknown_zone_text(std::uint32_t number, ClientId client, const ClientName& name,
+                              const std::vector<Order>& zones) {
+  const auto owner = [](ClientId id, const ClientName& of) {
+    return (rank_of(id) == Rank::kClient ? "" : "the ") + client_text(id, of);
   };
   std::set<std::string> known;
-  for (const Order& zone : zones) known.insert(fmt::format("{} of {}", zone.zone_number, owner(zone.client)));
-  return fmt::format("remove zone {}: refused, {} has no zone {}; {}", number, owner(client), number,
+  for (const Order& zone : zones)
+    known.insert(fmt::format("{} of {}", zone.zone_number, owner(zone.client, zone.client_name)));
+  return fmt::format("remove zone {}: refused, {} has no zone {}; {}", number, owner(client, name), number,
                      known.empty() ? "there are no zones" : fmt::format("zones: {}", fmt::join(known, ", ")));
 }
 
@@ -91,7 +94,7 @@ std::string to_line(const SentOrder& sent) {
 std::string to_table(const std::map<RobotId, OrderReport>& reports) {
   constexpr const char* kHeading = "ordered by";
   const auto owner = [](const OrderReport& report) {
-    return report.number != 0 ? client_text(report.client) : std::string("-");
+    return report.number != 0 ? client_text(report.client, report.client_name) : std::string("-");
   };
   std::size_t width = std::string_view(kHeading).size();
   for (const auto& [robot, report] : reports) width = std::max(width, owner(report).size());

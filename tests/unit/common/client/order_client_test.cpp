@@ -76,6 +76,17 @@ TEST_CASE("a zone order applies to all robots and is complete when a coordinator
   CHECK(system.book.zones().size() == 1);
 }
 
+TEST_CASE("the orders of a client carry its name") {
+  System system;
+  OrderClient kitchen(system.client_bus, client_id("kitchen"), "kitchen");
+  kitchen.hold(3);
+  system.client.hold(4);
+  system.run_for(100ms);
+  REQUIRE(system.received.size() == 2);
+  CHECK(to_text(system.received[0].client_name) == "kitchen");
+  CHECK(to_text(system.received[1].client_name).empty());
+}
+
 TEST_CASE("a client knows the zones that any coordinator remembers once it has heard a whole memory") {
   System system;
   CHECK_FALSE(system.client.remembered_zones());

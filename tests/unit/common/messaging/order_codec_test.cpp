@@ -45,6 +45,55 @@ TEST_CASE("orders survive encoding and decoding") {
   CHECK(area->zone.speed_limit_mps == 1.5);
 }
 
+TEST_CASE("orders and reports carry the name of their client") {
+  Order order = go();
+  order.client = client_id("kitchen-2");
+  order.client_name = client_name("kitchen-2");
+  const auto decoded = decode(encode(order), kNow);
+  REQUIRE(decoded);
+  CHECK(to_text(decoded->client_name) == "kitchen-2");
+  OrderReport report{3, order.client, 5};
+  report.client_name = order.client_name;
+  msg::OrderStatus status = encode(report);
+  status.header().sender(3);
+  REQUIRE(decode(status));
+  CHECK(to_text(decode(status)->client_name) == "kitchen-2");
+}
+
+TEST_CASE("a name that is not the client's, or that no terminal should print, is refused") {
+  Order order = go();
+  order.client = client_id("kitchen");
+  const auto is_accepted = [&](const ClientName& name) {
+    OrderReport report{3, order.client, 5};
+    report.client_name = order.client_name = name;
+    msg::OrderStatus status = encode(report);
+    status.header().sender(3);
+    const bool is_order_accepted = decode(encode(order), kNow).has_value();
+    CHECK(decode(status).has_value() == is_order_accepted);
+    return is_order_accepted;
+  };
+  CHECK(is_accepted(client_name("kitchen")));
+  CHECK(is_accepted({}));
+  CHECK_FALSE(is_accepted(client_name("hall")));
+  ClientName after_the_end = client_name("kitchen");
+  after_the_end.back() = 'x';
+  CHECK_FALSE(is_accepted(after_the_end));
+  order.client = client_id("\x1b[2J");
+  ClientName hostile{};
+  std::ranges::copy(std::string_view("\x1b[2J"), hostile.begin());
+  CHECK_FALSE(is_accepted(hostile));
+}
+
+TEST_CASE("a client whose name does not fit has none") {
+  CHECK(to_text(client_name("kitchen")) == "kitchen");
+  CHECK(to_text(client_name(std::string(msg::MAX_CLIENT_NAME, 'x'))) ==
+        std::string(msg::MAX_CLIENT_NAME, 'x'));
+  CHECK(client_name(std::string(msg::MAX_CLIENT_NAME + 1, 'x')) == ClientName{});
+  CHECK(client_name("two words") == ClientName{});
+  CHECK(client_name("k\xc3\xbc"
+                    "che") == ClientName{});
+}
+
 TEST_CASE("orders from senders who may not give them or with a value out of range are refused") {
   const auto is_refused = [](msg::Order message, auto spoil) {
     REQUIRE(decode(message, kNow));

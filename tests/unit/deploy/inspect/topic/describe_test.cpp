@@ -11,6 +11,7 @@
 
 #include "common/json/json_text.hpp"
 #include "common/messaging/histogram_codec.hpp"
+#include "common/protocol/client_name.hpp"
 #include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/drop_reasons.hpp"
 #include "common/protocol/reason_text.hpp"
@@ -151,6 +152,14 @@ TEST_CASE("a description has the message's members in IDL order with the generat
             R"("x_m":0.1,"y_m":0.2,"vx_mps":0.3,"vy_mps":0.4,"heading_rad":0.5,"tracking_error_m":0.6,)"
             R"("position_error_rms_m":0.7,"odometry_scale_stddev":0.8,"has_moved":true,"activated":13,)"
             R"("lead_ns":14})");
+}
+
+TEST_CASE("a client's name is described as text") {
+  msg::Order order;
+  order.terms().client_name(client_name("kitchen"));
+  CHECK(describe(topics::kOrder, &order)["terms"]["client_name"] == "kitchen");
+  msg::OrderStatus status;
+  CHECK(describe(topics::kOrderStatus, &status)["client_name"] == "");
 }
 
 TEST_CASE("a description has the used elements of arrays and all elements of sequences") {
