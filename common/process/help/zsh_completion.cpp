@@ -8,7 +8,7 @@ namespace sidestep {
 namespace {
 
 /// The text as part of an argument of _arguments, where brackets and colons have a meaning.
-std::string escaped(const std::string& text) {
+std::string escaped_for_arguments(const std::string& text) {
   std::string result;
   for (const char c : text) {
     if (c == ':' || c == '[' || c == ']' || c == '\\') result += '\\';
@@ -28,21 +28,22 @@ std::string option_argument(const OptionInfo& option) {
   const bool is_flag = option.value.empty();
   const std::string value = is_flag ? ""
                                     : fmt::format("{}{}:{}", option.is_value_optional ? "::" : ":",
-                                                  escaped(option.value), value_action(option));
+                                                  escaped_for_arguments(option.value), value_action(option));
   std::string text;
   for (const std::string& name : option.names) {
     const std::string assigned = is_flag ? name : name + (option.is_value_optional ? "=-" : "=");
     text += fmt::format(" \\\n    {}",
                         in_single_quotes(fmt::format("{}{}[{}]{}", option.is_list ? "*" : "", assigned,
-                                                     escaped(option.description), value)));
+                                                     escaped_for_arguments(option.description), value)));
   }
   return text;
 }
 
 std::string positional_argument(const OptionInfo& positional) {
-  return fmt::format(" \\\n    {}", in_single_quotes(fmt::format("{}:{}:{}", positional.is_list ? "*" : "",
-                                                                 escaped(positional.names.front()),
-                                                                 value_action(positional))));
+  return fmt::format(" \\\n    {}",
+                     in_single_quotes(fmt::format("{}:{}:{}", positional.is_list ? "*" : "",
+                                                  escaped_for_arguments(positional.names.front()),
+                                                  value_action(positional))));
 }
 
 /// The function that completes one command.
