@@ -43,7 +43,7 @@ int echo_recording(const TopicOptions& options, MessagePrinter& printer) {
     for (const auto& [channel, content] : bag_info(options.recording_file).channels)
       channels.push_back(channel);
     fmt::print(stderr, "{}\n",
-               silence_text(options.topic, options.recording_file, channels, printer.added()));
+               silence_text(options.topic, options.recording_file, channels, printer.received()));
   }
   return printer.printed() > 0 && result.damage.empty() ? 0 : kExitFailure;
 }
@@ -90,7 +90,7 @@ void explain_silence(DdsBus& bus, const TopicOptions& options, const MessagePrin
   bus.run_until(bus.now() + from_seconds(options.discovery_s));
   if (printer.printed() == 0 && !is_stopped)
     fmt::print(stderr, "{}; waiting\n",
-               silence_text(options.topic, options.dds.domain, listener.endpoints(), printer.added()));
+               silence_text(options.topic, options.dds.domain, listener.endpoints(), printer.received()));
 }
 
 }  // namespace

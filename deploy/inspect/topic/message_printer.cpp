@@ -87,7 +87,7 @@ bool MessagePrinter::is_wanted(const Json& message) const {
 }
 
 void MessagePrinter::print_if_wanted(const Json& message) {
-  ++added_;
+  ++received_;
   if (is_done() || !is_wanted(message)) return;
   if (settings_.is_csv) {
     CsvLine line;

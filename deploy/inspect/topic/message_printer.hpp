@@ -37,15 +37,15 @@ class MessagePrinter {
   void print_if_wanted(const nlohmann::ordered_json& message);
   bool is_done() const { return settings_.count > 0 && printed_ == settings_.count; }
   std::uint64_t printed() const { return printed_; }
-  /// Number of messages that were added, wanted or not.
-  std::uint64_t added() const { return added_; }
+  /// Number of messages so far, wanted or not.
+  std::uint64_t received() const { return received_; }
 
  private:
   [[nodiscard]] bool is_wanted(const nlohmann::ordered_json& message) const;
 
   MessagePrinterSettings settings_;
   std::function<void(const std::string&)> print_;
-  std::uint64_t printed_ = 0, added_ = 0;
+  std::uint64_t printed_ = 0, received_ = 0;
 };
 
 }  // namespace sidestep
