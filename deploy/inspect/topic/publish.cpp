@@ -8,10 +8,12 @@
 #include "common/messaging/dds/listener.hpp"
 #include "common/messaging/dds/raw_publisher.hpp"
 #include "common/messaging/message_schema.hpp"
+#include "common/messaging/operator_header.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/inspect/topic/idl/idl_encoder.hpp"
 #include "deploy/inspect/topic/idl/idl_parser.hpp"
+#include "deploy/inspect/topic/omitted_header.hpp"
 #include "deploy/inspect/topic/topic_channel.hpp"
 #include "deploy/inspect/topic/topic_tools.hpp"
 
@@ -21,21 +23,31 @@ namespace {
 constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
 constexpr Duration kStep = std::chrono::milliseconds(10);
 
-struct EncodedMessage {
+/// The message that the user gives, its type and its key.
+struct GivenMessage {
   IdlTypePtr type;
-  std::vector<std::uint8_t> bytes;
+  nlohmann::ordered_json json;
   CdrKey key;
+
+  std::vector<std::uint8_t> encoded(const msg::Header& header) const {
+    return encode_by_idl(*type, with_header(*type, json, header));
+  }
 };
 
-/// Encodes a message. Throws std::invalid_argument if the type is unknown or the message does not fit it.
-EncodedMessage encode_message(const TopicOptions& options, const IdlTypes& types, const std::string& name,
-                              const nlohmann::ordered_json& json) {
+/// Throws std::invalid_argument if the type is unknown, the message does not fit it, or all processes would
+/// refuse it.
+GivenMessage checked_message(const TopicOptions& options, const IdlTypes& types, const std::string& name,
+                             const nlohmann::ordered_json& json) {
   const auto type = types.find(name);
   if (type == types.end())
     throw std::invalid_argument(
         fmt::format("there is no type {} in {}", name,
                     options.idl_file.empty() ? "Sidestep's IDL; see --idl" : options.idl_file));
-  return {type->second, encode_by_idl(*type->second, json), key_by_idl(*type->second, json)};
+  GivenMessage message{type->second, json, key_by_idl(*type->second, json)};
+  (void)message.encoded({});
+  if (const std::string problem = sender_problem(*message.type, json, options.topic); !problem.empty())
+    throw std::invalid_argument(problem);
+  return message;
 }
 
 /// The name of a topic's type, if the user gives it or the topic is Sidestep's; nullopt otherwise.
@@ -61,15 +73,15 @@ int publish_topic(const TopicOptions& options) {
   if (json.is_discarded()) throw std::invalid_argument("MESSAGE: is not valid JSON");
   const IdlTypes types = options.idl_file.empty() ? parse_idl(kIdlText, "idl") : load_idl(options.idl_file);
   std::optional<std::string> name = known_type_name(options);
-  std::optional<EncodedMessage> message;
+  std::optional<GivenMessage> message;
   // Where possible, errors in the message are reported before the network is touched.
-  if (name) message = encode_message(options, types, *name, json);
+  if (name) message = checked_message(options, types, *name, json);
   DdsListener listener(options.dds);
   const StopSignals stop_signals([&listener] { listener.stop(); });
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
   if (!message) {
     name = announced_type_name(options, listener);
-    message = encode_message(options, types, *name, json);
+    message = checked_message(options, types, *name, json);
   }
   DdsRawPublisher publisher(options.dds, options.topic, *name, is_keyed(*message->type));
   const Time deadline = listener.now() + kAnswerTimeout;
@@ -80,9 +92,10 @@ int publish_topic(const TopicOptions& options) {
     return kExitFailure;
   }
   const std::uint64_t count = std::max<std::uint64_t>(options.printer.count, 1);
+  const Time begun = listener.now();
   for (std::uint64_t i = 0; i < count && !listener.stopped(); ++i) {
     if (i > 0) listener.run_until(listener.now() + from_seconds(1 / options.rate_hz));
-    publisher.write(message->bytes, message->key);
+    publisher.write(message->encoded(operator_header(begun, i + 1, listener.now())), message->key);
   }
   if (!publisher.wait_until_acknowledged(kAnswerTimeout)) {
     fmt::print(stderr, "not all readers have acknowledged\n");

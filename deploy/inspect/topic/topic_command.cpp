@@ -85,7 +85,9 @@ void add_topic_command(const CliCommand& root, std::function<int()>& action) {
   const CliCommand pub =
       topic.add_subcommand("pub", "Publishes a message, given as JSON, to a topic of any type");
   pub.add_option("TOPIC", options->topic, "topic name, e.g. order").required();
-  pub.add_option("MESSAGE", options->message, "JSON with the members of the type's IDL; omitted ones are 0")
+  pub.add_option("MESSAGE", options->message,
+                 "JSON with the members of the type's IDL; omitted ones are 0, and those of the header "
+                 "the operator's")
       .required();
   pub.add_option("--count", options->printer.count, "number of messages [1]").check(positive());
   pub.add_option("--rate", options->rate_hz, "messages per second").check(positive()).show_default();

@@ -9,7 +9,7 @@
 
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/presence.hpp"
-#include "common/protocol/senders.hpp"
+#include "common/messaging/operator_header.hpp"
 
 namespace sidestep {
 namespace {
@@ -65,13 +65,8 @@ void wait_until_acknowledged(OperatorChannel& channel) {
 }
 
 msg::Header operator_header() {
-  msg::Header header;
   const Time now = EventLoop::now();
-  header.sender(static_cast<std::uint32_t>(Sender::kOperator));
-  header.incarnation(static_cast<std::uint64_t>(to_ns(now)));
-  header.message_number(1);
-  header.stamp_ns(to_ns(now));
-  return header;
+  return operator_header(now, 1, now);
 }
 
 }  // namespace sidestep

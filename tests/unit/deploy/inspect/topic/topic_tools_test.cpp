@@ -361,6 +361,14 @@ TEST_CASE("topic pub publishes messages of our topics") {
   CHECK(received[0].robot() == 3);
   CHECK(received[0].disturbance_kind() == msg::DisturbanceKind::DISTURBANCE_SLIP);
   CHECK(received[0].grip() == 0.25);
+  const msg::Header &first = received[0].header(), &second = received[1].header();
+  CHECK(first.sender() == static_cast<std::uint32_t>(Sender::kOperator));
+  CHECK(first.message_number() == 1);
+  CHECK(second.message_number() == 2);
+  CHECK(first.incarnation() == second.incarnation());
+  CHECK(first.stamp_ns() >= static_cast<std::int64_t>(first.incarnation()));
+  CHECK(second.stamp_ns() > first.stamp_ns());
+  CHECK(std::chrono::abs(bus.now() - time_from_ns(second.stamp_ns())) < std::chrono::seconds(30));
 }
 
 TEST_CASE("topic pub reports errors in a message and topics without a reader") {
@@ -368,6 +376,8 @@ TEST_CASE("topic pub reports errors in a message and topics without a reader") {
   CHECK_THROWS_WITH(topic({"pub", "disturbance", R"({"robot": -1})"}),
                     ContainsSubstring("robot: expected a whole number"));
   CHECK_THROWS_WITH(topic({"pub", "nothing", "{}"}), ContainsSubstring("give its type with --type"));
+  CHECK_THROWS_WITH(topic({"pub", "verdict/3", R"({"robot": 3})"}),
+                    ContainsSubstring("header.sender: is missing"));
   const Outcome outcome = topic({"pub", "disturbance", "{}"});
   CHECK(outcome.exit_code == kExitFailure);
   CHECK(outcome.err == "topic 'disturbance' has no matching reader\n");
