@@ -163,6 +163,9 @@ inline constexpr Topic<msg::Counters> kCounters{
 inline constexpr Topic<msg::Disturbance> kDisturbance{
     {"disturbance", Role::kOperator, Role::kAgent | Role::kSimulator | Role::kRobot | kWatchers, Qos::kEvent,
      false, false, message_type<msg::Disturbance>("sidestep::msg::Disturbance")}};
+inline constexpr Topic<msg::DisturbanceAnswer> kDisturbanceAnswer{
+    {"disturbance_answer", Role::kSimulator, kWatchers, Qos::kEvent, false, false,
+     message_type<msg::DisturbanceAnswer>("sidestep::msg::DisturbanceAnswer")}};
 inline constexpr Topic<msg::NetworkFault> kNetworkFault{
     {"network_fault", Role::kOperator, kSystemRoles | kWatchers, Qos::kEvent, false, false,
      message_type<msg::NetworkFault>("sidestep::msg::NetworkFault")}};
@@ -207,6 +210,7 @@ void for_each_topic(Visitor visit) {
   visit(topics::kAgentOrders);
   visit(topics::kOrderStatus);
   visit(topics::kDisturbance);
+  visit(topics::kDisturbanceAnswer);
   visit(topics::kNetworkFault);
   visit(topics::kTruth);
   visit(topics::kRules);

@@ -7,6 +7,9 @@
 
 namespace sidestep {
 
+/// Largest change of velocity by a push, in each direction.
+inline constexpr double kMaxPush_mps = 10;
+
 /// External disturbance of one robot; see Disturbance in idl/disturbance.idl. Each kind uses only some of the
 /// fields.
 struct RobotDisturbance {

@@ -7,7 +7,6 @@
 namespace sidestep {
 namespace {
 
-constexpr double kMaxPush_mps = 10;
 constexpr double kMaxAngle_rad = 100;
 constexpr double kMaxVisionOffset_m = 10;
 constexpr Duration kMaxDuration = std::chrono::hours(1);

@@ -37,6 +37,7 @@ SimulatorNode::SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation inc
       cameras_(scenario, bus.now(), Rng(seed + 1).bits()),
       radio_rng_(Rng(seed + 2).bits()),
       detections_(bus.advertise(topics::kDetections)),
+      disturbance_answers_(bus, incarnation),
       truth_(bus.advertise(topics::kTruth)),
       truth_due_(bus.now()),
       counters_(bus, static_cast<std::uint32_t>(Sender::kSimulator), incarnation,
@@ -118,19 +119,28 @@ void SimulatorNode::on_command(std::size_t robot, const msg::Command& message) {
 }
 
 void SimulatorNode::on_disturbance(const msg::Disturbance& message) {
+  if (disturbance_answers_.repeat(message)) return;
   const Time now = clock();
   advance(now);
+  disturbance_answers_.answer(message, apply(message, now));
+}
+
+msg::DisturbanceResult SimulatorNode::apply(const msg::Disturbance& message, Time now) {
   const auto robot = robot_index_.find(message.robot());
   const auto disturbance = decode(message, field_, radius_m_);
-  if (robot == robot_index_.end() || !disturbance || !world_.disturb(robot->second, *disturbance, now)) {
-    drops_.count(DropReason::kRefusedDisturbance,
-                 robot == robot_index_.end() ? std::nullopt : std::optional(robot->first));
-    event_logger_.on_refused_disturbance(message.robot());
-    return;
+  const bool is_known = robot != robot_index_.end();
+  if (!is_known || !disturbance || !world_.disturb(robot->second, *disturbance, now)) {
+    const auto result = !is_known      ? msg::DisturbanceResult::FAULT_UNKNOWN_ROBOT
+                        : !disturbance ? msg::DisturbanceResult::FAULT_INVALID
+                                       : world_.check_disturbance(robot->second, *disturbance);
+    drops_.count(DropReason::kRefusedDisturbance, is_known ? std::optional(robot->first) : std::nullopt);
+    event_logger_.on_refused_disturbance(message.robot(), result);
+    return result;
   }
   event_logger_.on_disturbance(*disturbance);
   publish_pending_reports(now);
   watch_start(robot->second, now);
+  return msg::DisturbanceResult::FAULT_APPLIED;
 }
 
 void SimulatorNode::count_drops(DropCounters& drops) const {

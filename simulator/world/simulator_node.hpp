@@ -12,15 +12,17 @@
 #include "common/messaging/counter_publisher.hpp"
 #include "common/random/rng.hpp"
 #include "simulator/world/cameras.hpp"
+#include "simulator/world/disturbance_answers.hpp"
 #include "simulator/world/lasers.hpp"
 #include "simulator/world/world.hpp"
 #include "simulator/world/world_event_logger.hpp"
 
 namespace sidestep {
 
-/// The simulator on a bus. It receives commands over a lossy radio and disturbances, advances the world to
-/// the bus's time, and publishes robots' reports, ground truth for metrics and audit, and detections unless
-/// the scenario asks for images. The bus must make no callback after the node's destruction.
+/// The simulator on a bus. It receives commands over a lossy radio and disturbances, which it answers,
+/// advances the world to the bus's time, and publishes robots' reports, ground truth for metrics and audit,
+/// and detections unless the scenario asks for images. The bus must make no callback after the node's
+/// destruction.
 class SimulatorNode {
  public:
   SimulatorNode(Bus& bus, const Scenario& scenario, Incarnation incarnation, std::uint64_t seed);
@@ -67,6 +69,8 @@ class SimulatorNode {
   void advance(Time now);
   void on_command(std::size_t robot, const msg::Command& message);
   void on_disturbance(const msg::Disturbance& message);
+  /// Applies a disturbance, unless it is invalid or the robot's state does not allow it.
+  msg::DisturbanceResult apply(const msg::Disturbance& message, Time now);
   void watch_start(std::size_t robot, Time now);
   void on_start(std::size_t robot);
   void publish_robot_report(std::size_t robot, Time now);
@@ -104,6 +108,7 @@ class SimulatorNode {
   std::vector<PendingFrame> frames_;
   std::function<void(const msg::DetectionFrame&)> detection_listener_;
   std::function<void(std::uint32_t, Time)> capture_listener_;
+  DisturbanceAnswers disturbance_answers_;
   Writer<msg::GroundTruth> truth_;
   msg::GroundTruth truth_message_;
   Time truth_due_;

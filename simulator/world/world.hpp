@@ -39,6 +39,9 @@ class World {
   /// Applies a disturbance. Returns false if the robot's state does not allow it. Precondition: the fields
   /// that its kind uses are in range (disturbance_codec.hpp).
   [[nodiscard]] bool disturb(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  /// Whether the robot's state allows the disturbance (FAULT_APPLIED), or why it does not.
+  [[nodiscard]] msg::DisturbanceResult check_disturbance(std::size_t robot,
+                                                         const RobotDisturbance& disturbance) const;
 
   /// Delivers a command to a robot. Precondition: time() <= now < time() + kPhysicsStep.
   void on_command(std::size_t robot, const Command& command, Time now);
@@ -127,7 +130,9 @@ class World {
   void switch_on(std::size_t robot, Time now);
   void set_clock(std::size_t robot, Duration offset, Time now);
   void start_seen_beside(std::size_t robot, const RobotDisturbance& disturbance, Time now);
-  bool start_seen_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
+  /// The index of the other robot of a confusion by cameras; nullopt if they cannot be confused now.
+  std::optional<std::size_t> confusable_with(std::size_t robot, const RobotDisturbance& disturbance) const;
+  void start_seen_as(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void start_seen_frozen(std::size_t robot, const RobotDisturbance& disturbance, Time now);
   void end(const ActiveDisturbance& disturbance);
   /// Whether cameras have shown the robot at a wrong place, with no fix at its true place since then.

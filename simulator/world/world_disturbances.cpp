@@ -12,12 +12,12 @@ constexpr double kPlaceTolerance_m = 0.005;
 }  // namespace
 
 bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+  if (check_disturbance(index, disturbance) != msg::DisturbanceResult::FAULT_APPLIED) return false;
   Robot& robot = robots_[index];
   Body& body = bodies_[index];
   const auto kind = disturbance.kind;
   switch (kind) {
     case msg::DisturbanceKind::DISTURBANCE_PUSH:
-      if (!body.is_on_floor()) return false;
       body.push(disturbance.push_mps);
       record_disturbance(index, now);
       return true;
@@ -35,11 +35,9 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       lift(index, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_PLACE:
-      if (body.is_on_floor()) return false;
       start_disturbance({index, kind, Time::max(), disturbance.place_m, disturbance.heading_rad});
       return true;
     case msg::DisturbanceKind::DISTURBANCE_REBOOT:
-      if (!robot.is_powered) return false;
       if (!body.is_on_floor()) {
         lift(index, now);
       } else {
@@ -49,7 +47,6 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       record_disturbance(index, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_FORGET_POSE:
-      if (!robot.is_powered || !body.is_on_floor()) return false;
       switch_versions(index, robot_time(index, now));
       robot.firmware.forget_pose(robot_time(index, now));
       robot.monitor.rebooted();
@@ -59,22 +56,20 @@ bool World::disturb(std::size_t index, const RobotDisturbance& disturbance, Time
       set_clock(index, disturbance.clock_offset, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_OFF:
-      if (!robot.is_powered) return false;
       switch_off(index, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_SWITCH_ON:
-      if (robot.is_powered) return false;
       switch_on(index, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_CARRY:
-      if (!body.is_on_floor()) return false;
       carry(index, disturbance, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_SEEN_BESIDE:
       start_seen_beside(index, disturbance, now);
       return true;
     case msg::DisturbanceKind::DISTURBANCE_SEEN_AS:
-      return start_seen_as(index, disturbance, now);
+      start_seen_as(index, disturbance, now);
+      return true;
     case msg::DisturbanceKind::DISTURBANCE_SEEN_FROZEN:
       start_seen_frozen(index, disturbance, now);
       return true;
@@ -142,17 +137,12 @@ void World::start_seen_beside(std::size_t index, const RobotDisturbance& disturb
   start_disturbance({index, disturbance.kind, now + disturbance.duration, disturbance.place_m, 0});
 }
 
-bool World::start_seen_as(std::size_t index, const RobotDisturbance& disturbance, Time now) {
-  const auto other = std::ranges::find(robots_, disturbance.other_robot, &Robot::id);
-  if (other == robots_.end()) return false;
-  const auto other_index = static_cast<std::size_t>(other - robots_.begin());
-  if (other_index == index || vision_faults_[index].shown_as || vision_faults_[other_index].shown_as)
-    return false;
+void World::start_seen_as(std::size_t index, const RobotDisturbance& disturbance, Time now) {
+  const std::size_t other_index = confusable_with(index, disturbance).value();
   vision_faults_[index].shown_as = other_index;
   vision_faults_[other_index].shown_as = index;
   for (const std::size_t confused : {index, other_index})
     start_disturbance({confused, disturbance.kind, now + disturbance.duration, Vec2(0, 0), 0});
-  return true;
 }
 
 void World::start_seen_frozen(std::size_t index, const RobotDisturbance& disturbance, Time now) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/messaging/disturbance_answer.hpp"
 #include "common/protocol/disturbance_text.hpp"
 #include "common/robot/own_stop_text.hpp"
 
@@ -41,10 +42,9 @@ void WorldEventLogger::on_disturbance(const RobotDisturbance& disturbance) const
                  to_text(disturbance.kind));
 }
 
-void WorldEventLogger::on_refused_disturbance(RobotId robot) const {
-  events_.report(LogLevel::kWarning, robot,
-                 "refused a disturbance of robot {}: it is invalid, or the robot's state does not allow it",
-                 robot);
+void WorldEventLogger::on_refused_disturbance(RobotId robot, msg::DisturbanceResult result) const {
+  events_.report(LogLevel::kWarning, robot, "refused a disturbance of robot {}: {}", robot,
+                 refusal_text(robot, result));
 }
 
 }  // namespace sidestep

@@ -18,7 +18,7 @@ class WorldEventLogger {
   void update();
   /// Reports that a disturbance has been applied.
   void on_disturbance(const RobotDisturbance& disturbance) const;
-  void on_refused_disturbance(RobotId robot) const;
+  void on_refused_disturbance(RobotId robot, msg::DisturbanceResult result) const;
 
  private:
   void report_contact(const ContactPair& pair) const;

@@ -12,8 +12,8 @@ namespace {
 
 using Kind = msg::DisturbanceKind;
 
-// The ranges of the options of `sidestep fault`, or narrower ones where the simulator accepts less.
-constexpr Range kPush_mps{-10, 10};
+// The ranges of the options of `sidestep fault`.
+constexpr Range kPush_mps{-kMaxPush_mps, kMaxPush_mps};
 constexpr Range kVisionError_m{-10, 10};
 constexpr Range kOffset_ms{-1e6, 1e6};
 constexpr Range kPlace_m{-1000, 1000};
