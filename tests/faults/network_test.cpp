@@ -65,6 +65,13 @@ TEST_CASE("a network fault or push that cannot be applied is refused with a reas
   CHECK(run.command(fault(run, {"push", "77", "--velocity", "0.1,0"})) == "exit code 1");
   CHECK(run.printed("no robot 77 in this run"));
   CHECK(run.command(fault(run, {"push", "3"})) == "exit code 2");
+  CHECK(run.command(fault(run, {"push", "3", "--velocity", "10.1,0"})) == "exit code 2");
+  CHECK(run.command(fault(run, {"place", "3", "--at", "0.5,2.0"})) == "exit code 1");
+  CHECK(run.printed("the simulator refuses the fault: robot 3 is on the floor"));
+  CHECK(run.command(fault(run, {"switch-on", "3"})) == "exit code 1");
+  CHECK(run.printed("the simulator refuses the fault: robot 3 is switched on"));
+  CHECK(run.command(fault(run, {"carry", "3", "--to", "900,0"})) == "exit code 1");
+  CHECK(run.printed("a value is out of range, or the place is outside the field"));
   CHECK(run.max_speed_mps() > 0);
 }
 

@@ -4,12 +4,18 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "common/client/disturbance_client.hpp"
+#include "common/messaging/dds/bus.hpp"
+#include "common/messaging/disturbance_answer.hpp"
 #include "common/motion/version.hpp"
 #include "common/process/command_line.hpp"
 #include "common/process/process.hpp"
+#include "common/protocol/robot_disturbance.hpp"
 #include "common/yaml/heading.hpp"
 #include "deploy/trial/fault/operator_messages.hpp"
 
@@ -32,7 +38,6 @@ struct RobotOptions {
 msg::Disturbance disturbance_from(const RobotOptions& options, Kind kind) {
   msg::Disturbance disturbance;
   disturbance.robot(options.robot);
-  disturbance.header(operator_header());
   disturbance.disturbance_kind(kind);
   if (!options.velocity_mps.empty()) {
     disturbance.vx_mps(options.velocity_mps[0]);
@@ -50,16 +55,30 @@ msg::Disturbance disturbance_from(const RobotOptions& options, Kind kind) {
 }
 
 int disturb(const RobotOptions& options, Kind kind) {
+  // The simulator must have found this process's reader before it answers.
+  DdsSettings answers = options.dds;
+  answers.is_operator = true;
+  DdsBus bus(answers);
   OperatorChannel channel(options.dds, topics::kDisturbance);
+  DisturbanceClient client(bus, channel.writer());
   wait_for_subscriber(channel, "sidestep-simulator");
   wait_for_writer(channel, channel_name(topics::kFeedback, options.robot),
                   fmt::format("no robot {} in this run", options.robot));
   // The robot's agent must request the rest version at this position.
   if (kind == Kind::DISTURBANCE_PLACE) wait_for_subscriber(channel, fmt::format("agent-{}", options.robot));
-  const msg::Disturbance disturbance = disturbance_from(options, kind);
-  channel.writer().write(&disturbance);
+  std::optional<msg::DisturbanceResult> answer;
+  client.send(disturbance_from(options, kind), [&](const std::optional<msg::DisturbanceResult>& result) {
+    answer = result;
+    bus.stop();
+  });
+  bus.run();
+  if (!answer)
+    throw std::runtime_error("the simulator does not answer, so the fault may or may not have been applied");
+  if (*answer != msg::DisturbanceResult::FAULT_APPLIED)
+    throw std::runtime_error("the simulator refuses the fault: " + refusal_text(options.robot, *answer));
   wait_until_acknowledged(channel);
-  fmt::print("applied by the simulator\n");
+  fmt::print("applied by the simulator{}\n",
+             kind == Kind::DISTURBANCE_PLACE ? ", which puts the robot down once the place is granted" : "");
   return 0;
 }
 
@@ -94,7 +113,7 @@ void add_robot_commands(const CliCommand& fault, std::function<int()>& action) {
       }};
 
   const CliCommand push = add("push", "Changes a robot's velocity instantly", Kind::DISTURBANCE_PUSH);
-  add_pair(push, "--velocity", options->velocity_mps, 20, "velocity change X,Y in m/s");
+  add_pair(push, "--velocity", options->velocity_mps, kMaxPush_mps, "velocity change X,Y in m/s");
   const CliCommand slip = add("slip", "Reduces the grip of a robot's wheels", Kind::DISTURBANCE_SLIP);
   slip.add_option("--grip", options->grip, "share of the commanded acceleration that takes effect")
       .required()
