@@ -54,6 +54,8 @@ TEST_CASE("all robots stop while the coordinator is cut off, and continue when t
 
 TEST_CASE("a network fault or push that cannot be applied is refused with a reason") {
   LaunchedRun run(shuttles(20, ""));
+  // A monitor and a recorder read the faults too.
+  run.bus().observe<msg::NetworkFault>(topics::kNetworkFault, 0, [](const msg::NetworkFault&) {});
   REQUIRE(run.wait_until([&] { return run.max_speed_mps() > 0.5; }));
   CHECK(run.command(fault(run, {"network", "--target", "all", "--cut"})) == "exit code 1");
   CHECK(run.printed("no process on this domain and interface accepts these faults"));

@@ -51,11 +51,10 @@ int apply(const NetworkOptions& options) {
   OperatorChannel channel(options.dds, topics::kNetworkFault);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
-  wait_for_subscriber(channel, target->participant);
+  const std::vector<std::string> impaired =
+      wait_for_targets(channel, target->participant, "; start the run with --faults");
   send(channel, fault);
-  fmt::print("applied to {}\n", target->participant.empty()
-                                    ? fmt::format("{}", fmt::join(channel.subscribers(), ", "))
-                                    : target->participant);
+  fmt::print("applied to {}\n", fmt::join(impaired, ", "));
   if (!options.seconds) return 0;
   std::fflush(stdout);
   loop.run_until(EventLoop::now() + from_seconds(*options.seconds));
@@ -67,7 +66,8 @@ int apply(const NetworkOptions& options) {
 /// The reason why the combination of options is invalid; empty if it is valid.
 std::string usage_error(const NetworkOptions& options) {
   if (!parse_fault_target(options.target))
-    return "--target: expected all, 'agent N', coordinator, 'coordinator N', vision or simulator, got '" +
+    return "--target: expected all, 'agent N', coordinator, 'coordinator N', vision, simulator or robots, "
+           "got '" +
            options.target + "'";
   const bool is_empty = link_quality_from(fault_from(options, 0)) == kUnimpairedLink;
   if (options.is_clear != is_empty)
@@ -89,8 +89,9 @@ void add_network_command(const CliCommand& fault, std::function<int()>& action) 
   const CliCommand command = fault.add_subcommand(
       "network", "Loses, delays and duplicates messages at processes started with --faults");
   command
-      .add_option("--target", options->target,
-                  "receiving process: all, 'agent 3', coordinator, 'coordinator 1', vision, simulator")
+      .add_option(
+          "--target", options->target,
+          "receiving process: all, 'agent 3', coordinator, 'coordinator 1', vision, simulator, robots")
       .required();
   command.add_option("--loss", options->loss, "loss probability").check(in_range(0.0, 1.0));
   command.add_option("--burst", options->burst, "mean number of consecutive losses")

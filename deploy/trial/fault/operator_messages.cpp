@@ -10,6 +10,7 @@
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/messaging/dds/presence.hpp"
 #include "common/messaging/operator_header.hpp"
+#include "deploy/trial/fault/fault_target.hpp"
 
 namespace sidestep {
 namespace {
@@ -34,23 +35,24 @@ bool wait_until(Condition condition) {
 
 }  // namespace
 
-void wait_for_subscriber(OperatorChannel& channel, const std::string& participant) {
-  std::vector<std::string> subscribers;
+std::vector<std::string> wait_for_targets(OperatorChannel& channel, const std::string& participant,
+                                          const std::string& remedy) {
+  std::vector<std::string> found;
   Time changed_at = EventLoop::now();
-  const bool is_found = wait_until([&] {
-    if (const auto now = channel.subscribers(); now != subscribers) {
-      subscribers = now;
+  const bool is_complete = wait_until([&] {
+    if (const auto now = without_observers(channel.subscribers()); now != found) {
+      found = now;
       changed_at = EventLoop::now();
     }
-    if (participant.empty())
-      return !subscribers.empty() && EventLoop::now() - changed_at > kDiscoverySettling;
-    return std::find(subscribers.begin(), subscribers.end(), participant) != subscribers.end();
+    if (participant.empty()) return !found.empty() && EventLoop::now() - changed_at > kDiscoverySettling;
+    return std::ranges::find(found, participant) != found.end();
   });
-  if (is_found || (participant.empty() && !subscribers.empty())) return;
-  throw std::runtime_error(
-      fmt::format("{} on this domain and interface accepts these faults{}",
-                  participant.empty() ? "no process" : "no " + participant,
-                  subscribers.empty() ? "" : fmt::format(", only {}", fmt::join(subscribers, ", "))));
+  if (participant.empty() && !found.empty()) return found;
+  if (is_complete) return {participant};
+  throw std::runtime_error(fmt::format("{} on this domain and interface accepts these faults{}{}",
+                                       participant.empty() ? "no process" : "no " + participant,
+                                       found.empty() ? "" : fmt::format(", only {}", fmt::join(found, ", ")),
+                                       remedy));
 }
 
 void wait_for_writer(OperatorChannel& channel, const std::string& topic, const std::string& error) {

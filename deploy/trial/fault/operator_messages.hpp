@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/messaging/dds/operator_channel.hpp"
 #include "idl/header.hpp"
@@ -9,8 +10,10 @@
 namespace sidestep {
 
 /// Waits until this participant subscribes to the channel. If the name is empty, waits until there are
-/// subscribers and no new ones appear. On timeout throws std::runtime_error that names the subscribers found.
-void wait_for_subscriber(OperatorChannel& channel, const std::string& participant);
+/// processes that apply faults and no new ones appear. Returns the processes that will apply a fault. On
+/// timeout throws std::runtime_error that names the processes found and ends with `remedy`.
+std::vector<std::string> wait_for_targets(OperatorChannel& channel, const std::string& participant,
+                                          const std::string& remedy = "");
 /// Waits until the topic has a writer. On timeout throws std::runtime_error with this message.
 void wait_for_writer(OperatorChannel& channel, const std::string& topic, const std::string& error);
 /// Waits until all subscribers have acknowledged every message. On timeout throws std::runtime_error.

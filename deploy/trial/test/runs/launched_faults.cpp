@@ -18,7 +18,7 @@ namespace sidestep {
 namespace {
 
 void require_subscriber(const OperatorChannel& channel, const std::string& participant) {
-  const auto subscribers = channel.subscribers();
+  const auto subscribers = without_observers(channel.subscribers());
   if (subscribers.empty() ||
       (!participant.empty() && std::ranges::find(subscribers, participant) == subscribers.end()))
     throw std::runtime_error((participant.empty() ? "no process" : participant) +

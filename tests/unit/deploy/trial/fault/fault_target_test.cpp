@@ -18,10 +18,28 @@ TEST_CASE("fault targets have the same names as in reports, and other names are 
   CHECK(parse_fault_target("coordinator 1")->participant == "coordinator-1");
   CHECK(number("vision") == 20000);
   CHECK(number("simulator") == 30000);
+  CHECK(number("robots") == 35000);
+  CHECK(parse_fault_target("robots")->participant == "robots");
   for (const char* text : {"", "agent", "agent ", "agent 1024", "agent -1", "agent 3 4", "agent 3x",
                            "robot 3", "coordinator 8", "vision 1", "everybody"}) {
     INFO(text);
     CHECK_FALSE(parse_fault_target(text));
+  }
+}
+
+TEST_CASE("observers that read faults do not apply them") {
+  const std::vector<std::string> processes{
+      "agent-0",          "agent-1023",         "coordinator-1",  "robots", "sidestep-coordinator",
+      "sidestep-referee", "sidestep-simulator", "sidestep-vision"};
+  std::vector<std::string> subscribers = processes;
+  for (const char* observer : {"sidestep-monitor", "sidestep-record", "sidestep-run", "sidestep-test",
+                               "sidestep-topic", "sidestep-audit", "sidestep-graph", "agent", ""})
+    subscribers.emplace_back(observer);
+  CHECK(without_observers(subscribers) == processes);
+  CHECK(without_observers({"sidestep-monitor"}).empty());
+  for (const char* target : {"agent 3", "coordinator", "coordinator 1", "vision", "simulator", "robots"}) {
+    const std::string participant = parse_fault_target(target)->participant;
+    CHECK(without_observers({participant}) == std::vector{participant});
   }
 }
 
