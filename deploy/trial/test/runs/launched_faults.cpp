@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <csignal>
 #include <fmt/format.h>
+#include <iterator>
 #include <stdexcept>
 
 #include "common/protocol/process_names.hpp"
@@ -12,7 +13,6 @@
 #include "deploy/trial/fault/operator_messages.hpp"
 #include "deploy/trial/simulate/system/system_processes.hpp"
 #include "deploy/trial/test/runs/active_coordinator.hpp"
-#include "simulator/world/disturbance_codec.hpp"
 
 namespace sidestep {
 namespace {
@@ -40,7 +40,10 @@ LaunchedFaults::LaunchedFaults(const FaultTest& test, const RunHosts& hosts, con
   for (const PlannedFault& fault : test.faults) require_possible(fault);
   DdsSettings settings = dds;
   settings.participant = "sidestep-fault";
-  if (has_fault<RobotDisturbance>(test)) disturbances_.emplace(settings, topics::kDisturbance);
+  if (has_fault<RobotDisturbance>(test)) {
+    disturbance_channel_.emplace(settings, topics::kDisturbance);
+    disturbances_.emplace(launcher.bus(), disturbance_channel_->writer());
+  }
   if (has_fault<ImpairmentFault>(test)) network_faults_.emplace(settings, topics::kNetworkFault);
   if (has_fault<AbsenceFault>(test)) absences_.emplace(settings, topics::kAttestation);
   if (has_fault<Partition>(test)) partitions_.emplace(test, hosts);
@@ -83,6 +86,12 @@ void LaunchedFaults::end(std::size_t fault) {
   for (const std::string& process : paused_[fault]) (void)launcher_.send_signal(process, SIGCONT);
 }
 
+std::vector<FaultProblem> LaunchedFaults::problems() const {
+  std::vector<FaultProblem> all = disturbances_ ? disturbances_->problems() : std::vector<FaultProblem>();
+  std::ranges::copy(attestations_.problems(), std::back_inserter(all));
+  return all;
+}
+
 void LaunchedFaults::send_signal(const std::string& process, int signal) {
   if (!launcher_.send_signal(process, signal)) throw std::runtime_error(process + " is not running");
 }
@@ -116,14 +125,12 @@ void LaunchedFaults::apply(const ImpairmentFault& fault, std::size_t index) {
   impair(fault.target, fault.quality, index + 1);
 }
 
-void LaunchedFaults::apply(const RobotDisturbance& fault, std::size_t) {
-  require_subscriber(*disturbances_, "sidestep-simulator");
+void LaunchedFaults::apply(const RobotDisturbance& fault, std::size_t index) {
+  require_subscriber(*disturbance_channel_, "sidestep-simulator");
   // The robot's agent must request the rest version at this position.
   if (fault.kind == msg::DisturbanceKind::DISTURBANCE_PLACE)
-    require_subscriber(*disturbances_, fmt::format("agent-{}", fault.robot));
-  msg::Disturbance message = encode(fault);
-  message.header(operator_header());
-  disturbances_->writer().write(&message);
+    require_subscriber(*disturbance_channel_, fmt::format("agent-{}", fault.robot));
+  disturbances_->begin(fault, test_.faults[index]);
 }
 
 void LaunchedFaults::apply(const TwinFault& fault, std::size_t) {

@@ -12,6 +12,7 @@
 #include "deploy/trial/test/plan/fault_test.hpp"
 #include "deploy/trial/test/runs/absence_attestations.hpp"
 #include "deploy/trial/test/runs/host_partitions.hpp"
+#include "deploy/trial/test/runs/robot_disturbances.hpp"
 
 namespace sidestep {
 
@@ -28,7 +29,7 @@ class LaunchedFaults {
   void end(std::size_t fault);
   /// Repeats attestations. Call it at least a few times a second.
   void update() { attestations_.update(launcher_.bus().now()); }
-  std::vector<FaultProblem> problems() const { return attestations_.problems(); }
+  std::vector<FaultProblem> problems() const;
 
  private:
   void require_local(const std::string& process, const std::string& text) const;
@@ -50,7 +51,8 @@ class LaunchedFaults {
   Launcher& launcher_;
   const RunObserver& observer_;
   // Set only if the test needs them.
-  std::optional<OperatorChannel> disturbances_, network_faults_, absences_;
+  std::optional<OperatorChannel> disturbance_channel_, network_faults_, absences_;
+  std::optional<RobotDisturbances> disturbances_;
   std::optional<HostPartitions> partitions_;
   AbsenceAttestations attestations_;
   std::map<std::size_t, ProcessNames> paused_;  // indexed by fault

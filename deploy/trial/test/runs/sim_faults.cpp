@@ -2,6 +2,7 @@
 #include "deploy/trial/test/runs/sim_faults.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "common/config/scenario_loader.hpp"
@@ -41,6 +42,8 @@ SimFaults::SimFaults(const FaultTest& test, SimSystem& system, Bus& bus, const R
       system_(system),
       observer_(observer),
       links_(system, impaired(test.scenario.network, kUnimpairedLink)),
+      disturbance_writer_(bus.relay(topics::kDisturbance, topics::kDisturbance.name)),
+      disturbances_(bus, *disturbance_writer_),
       attestation_writer_(bus.advertise(topics::kAttestation)),
       attestations_(observer, [this](msg::AbsenceAttestation& attestation) {
         attestation.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
@@ -57,6 +60,12 @@ void SimFaults::end(std::size_t fault) {
   if (const auto* partition = std::get_if<Partition>(&action)) links_.end(*partition);
   if (const auto* impairment = std::get_if<ImpairmentFault>(&action))
     impair(impairment->target, kUnimpairedLink);
+}
+
+std::vector<FaultProblem> SimFaults::problems() const {
+  std::vector<FaultProblem> all = disturbances_.problems();
+  std::ranges::copy(attestations_.problems(), std::back_inserter(all));
+  return all;
 }
 
 Time SimFaults::next() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -9,7 +10,7 @@
 #include "deploy/trial/test/judgement/run_observer.hpp"
 #include "deploy/trial/test/plan/fault_test.hpp"
 #include "deploy/trial/test/runs/absence_attestations.hpp"
-#include "simulator/world/disturbance_codec.hpp"
+#include "deploy/trial/test/runs/robot_disturbances.hpp"
 
 namespace sidestep {
 
@@ -26,7 +27,7 @@ class SimFaults {
   /// Restarts killed processes if the scenario says so, and repeats attestations. Call it at least a few
   /// times a second.
   void update();
-  std::vector<FaultProblem> problems() const { return attestations_.problems(); }
+  std::vector<FaultProblem> problems() const;
 
  private:
   void apply(const Kill& fault, const PlannedFault&);
@@ -34,7 +35,9 @@ class SimFaults {
   void apply(const Pause& fault, const PlannedFault& planned);
   void apply(const Partition& fault, const PlannedFault&) { links_.begin(fault); }
   void apply(const ImpairmentFault& fault, const PlannedFault&) { impair(fault.target, fault.quality); }
-  void apply(const RobotDisturbance& fault, const PlannedFault&) { system_.disturb(encode(fault)); }
+  void apply(const RobotDisturbance& fault, const PlannedFault& planned) {
+    disturbances_.begin(fault, planned);
+  }
   void apply(const TwinFault& fault, const PlannedFault&);
   void apply(const AbsenceFault& fault, const PlannedFault&);
   /// Replaces the impairment of a process, or of "all".
@@ -52,6 +55,8 @@ class SimFaults {
   const RunObserver& observer_;
   SimLinkFaults links_;
   std::set<std::string> impaired_;  // names of impaired processes
+  std::unique_ptr<RawWriter> disturbance_writer_;
+  RobotDisturbances disturbances_;
   Writer<msg::AbsenceAttestation> attestation_writer_;
   AbsenceAttestations attestations_;
   std::map<std::string, Time> restarts_;      // when to restart killed processes

@@ -118,6 +118,19 @@ TEST_CASE("faults that cannot be applied fail the test with the reason") {
         "at 2.000 s: could not attest the absence of robot 2: the coordinator does not wait for the robot");
 }
 
+TEST_CASE("disturbances that the simulator refuses fail the test with the reason") {
+  const TestResult result = result_of(
+      "faults:\n  - {at_s: 1, place: 1, at_m: [0, -1]}\n  - {at_s: 1.5, switch_on: 2}\n"
+      "  - {at_s: 2, lift: 2}\n  - {at_s: 2.5, push: 2, velocity_mps: [0, 1]}\nexpect: [{no_contact: "
+      "all}]\n");
+  const std::vector<std::string> failures = result.failures();
+  CAPTURE(failures);
+  REQUIRE(failures.size() == 3);
+  CHECK_THAT(failures[0], StartsWith("at 1.000 s: could not place") && EndsWith(": robot 1 is on the floor"));
+  CHECK_THAT(failures[1], StartsWith("at 1.500 s: could not switch") && EndsWith(": robot 2 is switched on"));
+  CHECK_THAT(failures[2], StartsWith("at 2.500 s: could not push") && EndsWith(": robot 2 is off the floor"));
+}
+
 TEST_CASE("without ground truth nothing is judged") {
   const TestResult result = result_of(
       "faults: [{at_s: 1, kill: simulator}]\nexpect: [{no_contact: all}, {at_rest: all, within_s: 2}]\n");
