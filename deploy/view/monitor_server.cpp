@@ -47,7 +47,10 @@ MonitorServer::MonitorServer(const AccessSettings& access, Monitor& monitor, con
                [this](WebSocket& socket, const std::string& message, bool is_binary) {
                  return on_message(socket, message, is_binary);
                },
-               [this](WebSocket& socket) { remove(socket); }}) {
+               [this](WebSocket& socket) { remove(socket); },
+               [this](const WebRequest& request, const WebReply& reply) {
+                 return parts_.control && parts_.control->respond(request, reply);
+               }}) {
   monitor_.on_any_message([this](const AnyMessage& message) { record(message); });
 }
 
@@ -123,8 +126,6 @@ WebResponse MonitorServer::respond(const WebRequest& request) {
     return {200, "application/json", parts_.network->json()};
   if (auto response = camera_image(request)) return *response;
   if (auto response = fields(request)) return *response;
-  if (parts_.control)
-    if (auto response = parts_.control->respond(request)) return *response;
   if (request.method != "GET" && !request.command_refusal.empty())
     return api_error(401, request.command_refusal);
   if (request.method != "GET" && is_over_) return api_error(409, "the run is over");

@@ -10,10 +10,12 @@
 
 #include "common/json/json_text.hpp"
 #include "common/messaging/blockage_text.hpp"
+#include "common/messaging/disturbance_answer.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/refusal_text.hpp"
 #include "common/messaging/version_codec.hpp"
 #include "common/protocol/disturbance_text.hpp"
+#include "common/protocol/robot_disturbance.hpp"
 #include "common/yaml/heading.hpp"
 #include "deploy/view/server/viewer_json.hpp"
 
@@ -134,8 +136,8 @@ msg::Disturbance disturbance_from(RobotId robot, const Json& body) {
   msg::Disturbance disturbance;
   disturbance.robot(robot);
   disturbance.disturbance_kind(*kind);
-  disturbance.vx_mps(number_in(body, "vx_mps", -20, 20, required(is_push)));
-  disturbance.vy_mps(number_in(body, "vy_mps", -20, 20, required(is_push)));
+  disturbance.vx_mps(number_in(body, "vx_mps", -kMaxPush_mps, kMaxPush_mps, required(is_push)));
+  disturbance.vy_mps(number_in(body, "vy_mps", -kMaxPush_mps, kMaxPush_mps, required(is_push)));
   disturbance.grip(number_in(body, "grip", 0, 1, required(*kind == Kind::DISTURBANCE_SLIP)));
   disturbance.x_m(number_in(body, "x_m", -1000, 1000, required(is_place)));
   disturbance.y_m(number_in(body, "y_m", -1000, 1000, required(is_place)));
@@ -155,33 +157,50 @@ std::string reason_of(const SentOrder& sent) {
   return sent.phase == OrderPhase::kBlocked && sent.blockage ? to_text(*sent.blockage) : std::string();
 }
 
+WebResponse fault_response(RobotId robot, const std::optional<msg::DisturbanceResult>& result) {
+  if (!result)
+    return error_response(504,
+                          "the simulator does not answer, so the fault may or may not have been applied");
+  if (*result == msg::DisturbanceResult::FAULT_APPLIED) return json_response(200, Json::object());
+  const unsigned status = *result == msg::DisturbanceResult::FAULT_UNKNOWN_ROBOT ? 404
+                          : *result == msg::DisturbanceResult::FAULT_INVALID     ? 400
+                                                                                 : 409;
+  return error_response(status, refusal_text(robot, *result));
+}
+
 WebResponse accepted(OrderHandle handle) { return json_response(200, {{"order", handle}}); }
 
 }  // namespace
 
 ControlApi::ControlApi(Bus& bus, ControlHooks hooks)
-    : bus_(bus),
-      hooks_(std::move(hooks)),
+    : hooks_(std::move(hooks)),
       client_(bus, static_cast<ClientId>(Sender::kOperator)),
-      disturbances_(bus.advertise(topics::kDisturbance)) {}
+      disturbance_writer_(bus.relay(topics::kDisturbance, topics::kDisturbance.name)),
+      disturbances_(bus, *disturbance_writer_) {}
 
-std::optional<WebResponse> ControlApi::respond(const WebRequest& request) {
+bool ControlApi::respond(const WebRequest& request, const WebReply& reply) {
   const std::vector<std::string> path = parts_of(request.path);
-  if (path.empty()) return std::nullopt;
+  if (path.empty()) return false;
   if (request.method == "GET") {
-    if (path.size() != 2 || path[0] != "orders") return std::nullopt;
+    if (path.size() != 2 || path[0] != "orders") return false;
     const auto handle = parse_number<OrderHandle>(path[1]);
-    return handle ? order_state(*handle) : error_response(404, "expected the number of an order");
+    reply(handle ? order_state(*handle) : error_response(404, "expected the number of an order"));
+    return true;
   }
-  if (!request.command_refusal.empty()) return error_response(401, request.command_refusal);
+  if (!request.command_refusal.empty()) {
+    reply(error_response(401, request.command_refusal));
+    return true;
+  }
   try {
-    return command(request, path);
+    if (const auto response = command(request, path, reply)) reply(*response);
   } catch (const BodyError& error) {
-    return error_response(400, error.what());
+    reply(error_response(400, error.what()));
   }
+  return true;
 }
 
-WebResponse ControlApi::command(const WebRequest& request, std::span<const std::string> path) {
+std::optional<WebResponse> ControlApi::command(const WebRequest& request, std::span<const std::string> path,
+                                               const WebReply& reply) {
   if (path.size() == 2 && path[0] == "zones")
     if (const auto number = parse_number<std::uint32_t>(path[1])) return command_zone(*number, request);
   if (request.method != "POST") return error_response(405, "expected POST");
@@ -198,7 +217,9 @@ WebResponse ControlApi::command(const WebRequest& request, std::span<const std::
   if (path.size() == 3 && path[0] == "robots") {
     const auto robot = parse_number<RobotId>(path[1]);
     if (!robot || *robot >= kMaxRobots) return error_response(404, "there is no robot " + path[1]);
-    return command_robot(*robot, path[2], request.body);
+    if (path[2] != "fault") return command_robot(*robot, path[2], request.body);
+    disturb(*robot, request.body, reply);
+    return std::nullopt;
   }
   return error_response(404, "there is no " + request.path);
 }
@@ -217,7 +238,6 @@ WebResponse ControlApi::command_robot(RobotId robot, const std::string& what, co
   if (what == "cancel") return accepted(client_.cancel(robot));
   if (what == "hold") return accepted(client_.hold(robot));
   if (what == "resume") return accepted(client_.resume(robot));
-  if (what == "fault") return disturb(robot, body);
   if (what != "order") return error_response(404, "robots have no " + what);
   const Json json = parse_body(body);
   require_known_keys(json, {"goals"});
@@ -244,12 +264,11 @@ WebResponse ControlApi::command_zone(std::uint32_t number, const WebRequest& req
   return accepted(client_.zone(number, std::move(zone)));
 }
 
-WebResponse ControlApi::disturb(RobotId robot, const std::string& body) {
-  msg::Disturbance disturbance = disturbance_from(robot, parse_body(body));
-  disturbance.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
-  disturbance.header().incarnation(static_cast<std::uint64_t>(to_ns(bus_.now())));
-  disturbances_.publish(disturbance, bus_.now());
-  return json_response(200, Json::object());
+void ControlApi::disturb(RobotId robot, const std::string& body, const WebReply& reply) {
+  disturbances_.send(disturbance_from(robot, parse_body(body)),
+                     [robot, reply](const std::optional<msg::DisturbanceResult>& result) {
+                       reply(fault_response(robot, result));
+                     });
 }
 
 WebResponse ControlApi::order_state(OrderHandle handle) const {

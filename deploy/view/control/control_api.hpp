@@ -2,9 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "common/client/disturbance_client.hpp"
 #include "common/client/order_client.hpp"
 #include "common/messaging/bus.hpp"
 #include "deploy/view/server/web_server.hpp"
@@ -35,26 +38,30 @@ struct ControlHooks {
 ///
 /// Orders are sent as the operator, and answered by {"order": 17}. Kinds of faults: push (vx_mps, vy_mps),
 /// slip (grip, seconds), block (heading_rad, seconds), lift, place (x_m, y_m, heading_rad), reboot, switch
-/// off, switch on. Headings (0) and seconds (1) may be omitted.
+/// off, switch on. Headings (0) and seconds (1) may be omitted. A fault is answered when the simulator has
+/// applied it, with status 200, or refused it, with status 4xx.
 class ControlApi {
  public:
   ControlApi(Bus& bus, ControlHooks hooks);
 
-  /// nullopt if there is no such path. Requests that may not give commands are refused with status 401.
-  std::optional<WebResponse> respond(const WebRequest& request);
+  /// Replies at once or later. Returns false, and does not reply, if there is no such path. Requests that may
+  /// not give commands are refused with status 401.
+  [[nodiscard]] bool respond(const WebRequest& request, const WebReply& reply);
 
  private:
-  WebResponse command(const WebRequest& request, std::span<const std::string> path);
+  /// nullopt: the reply is sent later.
+  std::optional<WebResponse> command(const WebRequest& request, std::span<const std::string> path,
+                                     const WebReply& reply);
   WebResponse command_robot(RobotId robot, const std::string& what, const std::string& body);
   WebResponse command_zone(std::uint32_t number, const WebRequest& request);
   WebResponse record(bool begins);
-  WebResponse disturb(RobotId robot, const std::string& body);
+  void disturb(RobotId robot, const std::string& body, const WebReply& reply);
   WebResponse order_state(OrderHandle handle) const;
 
-  Bus& bus_;
   ControlHooks hooks_;
   OrderClient client_;
-  Writer<msg::Disturbance> disturbances_;
+  std::unique_ptr<RawWriter> disturbance_writer_;
+  DisturbanceClient disturbances_;
 };
 
 }  // namespace sidestep

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/messaging/blockage_text.hpp"
+#include "common/messaging/disturbance_answer.hpp"
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/refusal_text.hpp"
@@ -191,6 +192,17 @@ void EventWatch::on(const msg::Disturbance& disturbance, Time now) {
   add(Severity::kWarning, "disturbance",
       fmt::format("{} is disturbed: {}", who(disturbance.robot()), to_text(disturbance.disturbance_kind())),
       now, robots_of(disturbance.robot()));
+}
+
+void EventWatch::on(const msg::DisturbanceAnswer& answer, Time now) {
+  if (answer.result() == msg::DisturbanceResult::FAULT_APPLIED ||
+      !is_enumerator(answer.result(), msg::DisturbanceResult::FAULT_NOT_CONFUSABLE) ||
+      !external_event_limit_.admit(now))
+    return;
+  add(Severity::kWarning, "disturbance",
+      fmt::format("a disturbance of {} was refused: {}", who(answer.robot()),
+                  refusal_text(answer.robot(), answer.result())),
+      now, robots_of(answer.robot()));
 }
 
 void EventWatch::on(const msg::NetworkFault& fault, Time now) {

@@ -30,6 +30,7 @@ class EventWatch {
   void on(const msg::Order& order, Time now);
   void on(const msg::OrderAnswer& answer, Time now);
   void on(const msg::Disturbance& disturbance, Time now);
+  void on(const msg::DisturbanceAnswer& answer, Time now);
   void on(const msg::NetworkFault& fault, Time now);
   void on(const msg::AbsenceAttestation& attestation, Time now);
   void on_violation(const Violation& violation);

@@ -7,7 +7,9 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <fmt/format.h>
+#include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -48,6 +50,7 @@ struct Server {
   WebHandlers handlers;
   std::size_t connections = 0;
   bool is_stopped = false;
+  std::set<std::shared_ptr<void>> waiting;  ///< sessions whose request is kept for a later response
 };
 
 class SocketSession : public WebSocket, public std::enable_shared_from_this<SocketSession> {
@@ -191,17 +194,38 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const bool must_close = !request.keep_alive();
     const std::optional<Url> url = parse_target(view(request.target()));
     if (!url) return answer({400, "text/plain", "the path is not valid\n"}, must_close);
-    answer(response_to({std::string(view(request.method_string())), url->path, url->query, request.body(),
-                        command_refusal(server_.access, source)}),
-           must_close);
+    const WebRequest parsed{std::string(view(request.method_string())), url->path, url->query, request.body(),
+                            command_refusal(server_.access, source)};
+    if (!is_kept_for_later(parsed, must_close)) answer(response_to(parsed), must_close);
+  }
+
+  bool is_kept_for_later(const WebRequest& request, bool must_close) {
+    if (!server_.handlers.respond_later) return false;
+    const WebReply reply = [session = weak_from_this(), must_close](WebResponse response) {
+      const auto self = session.lock();
+      if (self && self->server_.waiting.erase(self) > 0) self->answer(std::move(response), must_close);
+    };
+    server_.waiting.insert(shared_from_this());
+    try {
+      if (server_.handlers.respond_later(request, reply)) return true;
+    } catch (const std::exception& error) {
+      reply(failure(error));
+      return true;
+    }
+    server_.waiting.erase(shared_from_this());
+    return false;
   }
 
   WebResponse response_to(const WebRequest& request) {
     try {
       return server_.handlers.respond(request);
     } catch (const std::exception& error) {
-      return {500, "text/plain", std::string("this request cannot be answered: ") + error.what() + "\n"};
+      return failure(error);
     }
+  }
+
+  static WebResponse failure(const std::exception& error) {
+    return {500, "text/plain", std::string("this request cannot be answered: ") + error.what() + "\n"};
   }
 
   void answer(WebResponse response, bool must_close) {
@@ -262,7 +286,10 @@ struct WebServer::Impl {
     });
   }
 
-  ~Impl() { server.is_stopped = true; }
+  ~Impl() {
+    server.is_stopped = true;
+    server.waiting.clear();  // while their sockets' context still exists
+  }
 };
 
 WebServer::WebServer(const AccessSettings& access, std::vector<std::string> protocols, WebHandlers handlers)

@@ -36,14 +36,22 @@ class WebSocket {
   virtual void send_event(WebMessage message) = 0;
 };
 
+/// Sends the response to a request, to be called once, in the thread that polls the server. Has no effect if
+/// the server no longer exists.
+using WebReply = std::function<void(WebResponse)>;
+
 /// Callbacks of a server. All calls come from the thread that polls it.
 struct WebHandlers {
+  /// Responds to requests that respond_later leaves to it.
   std::function<WebResponse(const WebRequest&)> respond;
   /// `protocol` is the one that the viewer and the server agreed on.
   std::function<void(WebSocket&, const std::string& protocol)> on_open;
   /// A message from the viewer. Returns false if it is invalid; the viewer is then disconnected.
   std::function<bool(WebSocket&, const std::string& message, bool is_binary)> on_message;
   std::function<void(WebSocket&)> on_close;
+  /// Keeps a request whose response may take a while, and replies at once or later. Returns false if it
+  /// leaves the request to `respond`. Empty: it leaves all requests to `respond`.
+  std::function<bool(const WebRequest&, const WebReply&)> respond_later{};
 };
 
 /// A web server for a few viewers: HTTP and web sockets. Requests from other origins, and messages larger

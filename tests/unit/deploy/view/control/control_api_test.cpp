@@ -38,7 +38,12 @@ struct ControlledRun {
   }
   WebResponse request(const std::string& method, const std::string& path, const std::string& body = "",
                       const std::string& refusal = "") {
-    return api.respond({method, path, {}, body, refusal}).value_or(WebResponse{404, "", ""});
+    std::optional<WebResponse> response;
+    if (!api.respond({method, path, {}, body, refusal},
+                     [&response](WebResponse given) { response = std::move(given); }))
+      return {404, "", ""};
+    for (int i = 0; i < 100 && !response; ++i) system.run_for(100ms);
+    return response.value();
   }
   /// The state of an order; `answer` is the one to the request that gave the order.
   Json state(const WebResponse& answer) {
@@ -181,6 +186,29 @@ TEST_CASE("every request with a body that the README shows is accepted, and it s
   CHECK(faults == split_list(error.substr(begin.size())));
 }
 
+TEST_CASE("faults that the simulator refuses are answered with the reason and a status of 4xx") {
+  ControlledRun run;
+  const auto check_fault = [&](const char* path, const char* body, unsigned status, const char* reason) {
+    CAPTURE(body);
+    const WebResponse answer = run.request("POST", path, body);
+    CHECK(answer.status == status);
+    CHECK(parse_json(answer.body).value("error", "") == reason);
+  };
+  check_fault("/api/robots/4/fault", R"({"kind": "place", "x_m": 0.5, "y_m": 2})", 409,
+              "robot 4 is on the floor");
+  check_fault("/api/robots/4/fault", R"({"kind": "switch on"})", 409, "robot 4 is switched on");
+  check_fault("/api/robots/9/fault", R"({"kind": "lift"})", 404, "no robot 9 in this run");
+  check_fault("/api/robots/4/fault", R"({"kind": "lift"})", 200, "");
+  check_fault("/api/robots/4/fault", R"({"kind": "place", "x_m": 500, "y_m": 2})", 400,
+              "a value is out of range, or the place is outside the field");
+  check_fault("/api/robots/4/fault", R"({"kind": "push", "vx_mps": 1, "vy_mps": 0})", 409,
+              "robot 4 is off the floor");
+  check_fault("/api/robots/4/fault", R"({"kind": "place", "x_m": 0.5, "y_m": 2})", 200, "");
+  run.system.kill("simulator");
+  check_fault("/api/robots/4/fault", R"({"kind": "reboot"})", 504,
+              "the simulator does not answer, so the fault may or may not have been applied");
+}
+
 TEST_CASE("requests without the token are refused and have no effect") {
   ControlledRun run;
   for (const char* path :
@@ -221,6 +249,8 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   CHECK(error("/api/robots/3/dance", "{}") == "robots have no dance");
   CHECK(error("/api/robots/3/fault", R"({"kind": "melt"})").starts_with("kind: expected one of: push, slip"));
   CHECK(error("/api/robots/3/fault", R"({"kind": "push"})") == "vx_mps: is missing");
+  CHECK(error("/api/robots/3/fault", R"({"kind": "push", "vx_mps": 10.1, "vy_mps": 0})") ==
+        "vx_mps: expected a number from -10 to 10, got 10.1");
   CHECK(error("/api/zones/1", R"({"corners": [[0, 0]], "radius": 1})") == "radius: is unknown");
   CHECK(error("/api/robots/3/order", R"({"goals": [[0, 0]], "speed_limit": 1})") ==
         "speed_limit: is unknown");
@@ -230,7 +260,8 @@ TEST_CASE("invalid request bodies and paths are rejected with the reason") {
   CHECK(run.request("PUT", "/api/hold").status == 405);
   CHECK(run.request("GET", "/api/orders/77").status == 404);
   CHECK(run.request("GET", "/api/orders/x").status == 404);
-  CHECK_FALSE(run.api.respond({"GET", "/api/hold", {}, "", ""}));
+  CHECK_FALSE(run.api.respond({"GET", "/api/hold", {}, "", ""},
+                              [](const WebResponse&) { FAIL_CHECK("an unknown path was answered"); }));
 }
 
 }  // namespace sidestep::control_api_test

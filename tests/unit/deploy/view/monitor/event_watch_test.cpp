@@ -116,6 +116,19 @@ TEST_CASE("a refused order is an event with the reason, and an accepted or repla
   CHECK(w.log.since(0)[1].text == "an order from operator was refused: the scenario has no such robot");
 }
 
+TEST_CASE("a disturbance that the simulator refuses causes an event with the reason") {
+  Watched w;
+  msg::DisturbanceAnswer answer;
+  answer.robot(5);
+  answer.result(msg::DisturbanceResult::FAULT_APPLIED);
+  w.hear(answer);
+  CHECK(w.log.count() == 0);
+  answer.result(msg::DisturbanceResult::FAULT_ON_FLOOR);
+  w.hear(answer);
+  CHECK(w.kinds() == "disturbance ");
+  CHECK(w.log.since(0)[0].text == "a disturbance of robot 5 was refused: robot 5 is on the floor");
+}
+
 TEST_CASE("impossible values in messages do no harm") {
   Watched w;
   msg::Feedback feedback;
@@ -131,6 +144,9 @@ TEST_CASE("impossible values in messages do no harm") {
   msg::Disturbance disturbance;
   disturbance.disturbance_kind(static_cast<msg::DisturbanceKind>(99));
   w.hear(disturbance);
+  msg::DisturbanceAnswer refused;
+  refused.result(static_cast<msg::DisturbanceResult>(99));
+  w.hear(refused);
   msg::CoordinatorState coordinator;
   coordinator.coordinator_mode(static_cast<msg::CoordinatorMode>(99));
   coordinator.role_reason(static_cast<msg::RoleReason>(99));

@@ -27,6 +27,15 @@ class TestServer {
           200, "text/plain",
           request.method + " " + request.path + " " + request.body + " " + request.command_refusal};
     };
+    handlers.respond_later = [this](const WebRequest& request, const WebReply& reply) {
+      if (request.path == "/at-once") reply({202, "text/plain", "at once"});
+      if (request.path == "/throw-later") throw std::runtime_error("no reason");
+      if (request.path == "/later") {
+        replies.push_back(reply);
+        ++kept;
+      }
+      return request.path == "/at-once" || request.path == "/later";
+    };
     handlers.on_open = [this](WebSocket& socket, const std::string& protocol) {
       sockets.insert(&socket);
       protocols.insert(protocol);
@@ -48,6 +57,13 @@ class TestServer {
     thread = std::thread([this] {
       while (!is_over) {
         server->run_for(2ms);
+        if (replies_now) {
+          for (const WebReply& reply : replies) {
+            reply({409, "text/plain", "late"});
+            reply({200, "text/plain", "again"});
+          }
+          replies.clear();
+        }
         if (on_tick)
           for (WebSocket* socket : std::set<WebSocket*>(sockets)) {
             is_sending = true;
@@ -56,6 +72,7 @@ class TestServer {
           }
       }
       server.reset();
+      for (const WebReply& reply : replies) reply({200, "text/plain", "too late"});
     });
   }
   ~TestServer() {
@@ -69,7 +86,9 @@ class TestServer {
   std::set<std::string> protocols;
   std::atomic<int> opened = 0, closed = 0, closed_while_sending = 0;
   bool is_sending = false;
-  std::atomic<bool> is_over = false;
+  std::vector<WebReply> replies;  ///< used only in the server's thread
+  std::atomic<int> kept = 0;
+  std::atomic<bool> is_over = false, replies_now = false;
 
  private:
   mutable std::uint16_t port_ = 0;
@@ -113,6 +132,30 @@ TEST_CASE("a web server answers requests and refuses other hosts, other origins 
   CHECK(http_request(server.port(), "GET", "/%zz").status == 400);
   CHECK(http_request(server.port(), "POST", "/", {}, std::string(WebServer::kMaxRequestBytes + 1, 'x'))
             .status == 413);
+}
+
+TEST_CASE("a web server sends a response when it is ready, and answers other requests meanwhile") {
+  TestServer server;
+  CHECK(http_request(server.port(), "GET", "/at-once").body == "at once");
+  CHECK(http_request(server.port(), "GET", "/throw-later").status == 500);
+  HttpAnswer late;
+  std::thread client([&] { late = http_request(server.port(), "POST", "/later"); });
+  CHECK(wait_until([&] { return server.kept == 1; }));
+  CHECK(http_request(server.port(), "GET", "/").status == 200);
+  server.replies_now = true;
+  client.join();
+  CHECK(late.status == 409);
+  CHECK(late.body == "late");
+}
+
+TEST_CASE("a web server may end while requests wait for their responses") {
+  std::thread client;
+  {
+    TestServer server;
+    client = std::thread([port = server.port()] { (void)http_request(port, "POST", "/later"); });
+    CHECK(wait_until([&] { return server.kept == 1; }));
+  }
+  client.join();
 }
 
 TEST_CASE("a web server survives requests that are not HTTP") {
