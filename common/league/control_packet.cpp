@@ -102,8 +102,8 @@ RobotTeleport read(const wire::control::TeleportRobot& from, PacketValidator& va
   teleport.team = from.id().team() == kYellow ? Team::kYellow : Team::kBlue;
   validator.require(from.id().has_id(), DecodeError::kRobot);
   teleport.number = read_number(static_cast<std::uint32_t>(from.id().id()), validator);
-  if (from.has_x()) teleport.x_m = validator.within(from.x(), kMaxPosition_m);
-  if (from.has_y()) teleport.y_m = validator.within(from.y(), kMaxPosition_m);
+  if (from.has_x()) teleport.x_m = validator.within(from.x(), kMaxCoordinate_m);
+  if (from.has_y()) teleport.y_m = validator.within(from.y(), kMaxCoordinate_m);
   if (from.has_orientation())
     teleport.heading_rad = wrapped_rad(validator.within(from.orientation(), kMaxHeading_rad));
   teleport.velocity_mps = read_velocity(from.v_x(), from.v_y(), validator);
@@ -116,7 +116,7 @@ BallTeleport read(const wire::control::TeleportBall& from, PacketValidator& vali
   BallTeleport ball;
   if (from.has_x() && from.has_y())
     ball.position_m =
-        Vec2(validator.within(from.x(), kMaxPosition_m), validator.within(from.y(), kMaxPosition_m));
+        Vec2(validator.within(from.x(), kMaxCoordinate_m), validator.within(from.y(), kMaxCoordinate_m));
   if (from.has_vx() || from.has_vy()) ball.velocity_mps = read_velocity(from.vx(), from.vy(), validator);
   return ball;
 }

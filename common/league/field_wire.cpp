@@ -4,7 +4,6 @@
 namespace sidestep::league {
 namespace {
 
-constexpr double kMaxLength_m = 200;
 constexpr int kMaxMarkings = 256;
 constexpr std::uint32_t kMaxImageSide_px = 1 << 16;
 
@@ -12,7 +11,7 @@ std::int32_t in_mm(double length_m) { return static_cast<std::int32_t>(std::lrou
 float in_float_mm(double length_m) { return static_cast<float>(length_m * 1e3); }
 
 double length(double value_mm, PacketValidator& validator) {
-  return validator.within(value_mm * 1e-3, 0, kMaxLength_m);
+  return validator.within(value_mm * 1e-3, 0, kMaxCoordinate_m);
 }
 
 void write(const Vec2& point_m, wire::vision::Point& to) {
@@ -21,7 +20,8 @@ void write(const Vec2& point_m, wire::vision::Point& to) {
 }
 
 Vec2 read(const wire::vision::Point& from, PacketValidator& validator) {
-  return {validator.within(from.x() * 1e-3, kMaxLength_m), validator.within(from.y() * 1e-3, kMaxLength_m)};
+  return {validator.within(from.x() * 1e-3, kMaxCoordinate_m),
+          validator.within(from.y() * 1e-3, kMaxCoordinate_m)};
 }
 
 void write(const LineMarking& line, wire::vision::Line& to) {
@@ -133,8 +133,9 @@ void write(const CameraCalibration& camera, wire::vision::Calibration& to) {
 CameraCalibration read(const wire::vision::Calibration& from, PacketValidator& validator) {
   constexpr double kMaxFocalLength_px = 1e6, kMaxPrincipalPoint_px = 1e5, kMaxDistortion = 100;
   const auto position = [&](double x_mm, double y_mm, double z_mm) {
-    return Vec3(validator.within(x_mm * 1e-3, kMaxLength_m), validator.within(y_mm * 1e-3, kMaxLength_m),
-                validator.within(z_mm * 1e-3, kMaxLength_m));
+    return Vec3(validator.within(x_mm * 1e-3, kMaxCoordinate_m),
+                validator.within(y_mm * 1e-3, kMaxCoordinate_m),
+                validator.within(z_mm * 1e-3, kMaxCoordinate_m));
   };
   CameraCalibration camera;
   validator.require(from.camera_id() < kMaxCameras, DecodeError::kCamera);

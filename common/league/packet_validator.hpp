@@ -3,12 +3,12 @@
 
 #include <cmath>
 
+#include "common/geometry/coordinate_bound.hpp"
 #include "common/league/decode_error.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep::league {
 
-inline constexpr double kMaxPosition_m = 100;
 inline constexpr double kMaxHeading_rad =
     7;  // more than one turn in either direction, because senders use different ranges
 inline constexpr double kMaxTime_s = 8589934592.0;  // 2^33; fits into 64 bits as nanoseconds

@@ -91,8 +91,8 @@ Decoded<RefereePacket> decode_referee(std::span<const std::byte> bytes) {
   packet.commanded = validator.time(kSeconds * static_cast<double>(message.command_timestamp()));
   if (message.has_designated_position()) {
     const auto& point = message.designated_position();
-    packet.designated_position_m = Vec2(validator.within(kMetres * point.x(), kMaxPosition_m),
-                                        validator.within(kMetres * point.y(), kMaxPosition_m));
+    packet.designated_position_m = Vec2(validator.within(kMetres * point.x(), kMaxCoordinate_m),
+                                        validator.within(kMetres * point.y(), kMaxCoordinate_m));
   }
   if (!validator.is_valid()) return {{}, validator.error()};
   return {packet, DecodeError::kNone};

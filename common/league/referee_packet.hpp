@@ -57,7 +57,8 @@ struct RefereePacket {
 /// and in the ranges that decode_referee() accepts.
 std::vector<std::byte> encode(const RefereePacket& packet);
 
-/// Rejects a packet as a whole if its command is unknown, its position beyond 100 m, or a time beyond 2^33 s.
+/// Rejects a packet as a whole if its command is unknown, a coordinate beyond kMaxCoordinate_m, or a time
+/// beyond 2^33 s.
 Decoded<RefereePacket> decode_referee(std::span<const std::byte> bytes);
 
 }  // namespace sidestep::league

@@ -43,7 +43,7 @@ void write(const TrackedBall& ball, wire::tracked::Ball& to) {
 
 TrackedBall read(const wire::tracked::Ball& from, PacketValidator& validator) {
   TrackedBall ball;
-  ball.position_m = read(from.pos(), kMaxPosition_m, validator);
+  ball.position_m = read(from.pos(), kMaxCoordinate_m, validator);
   if (from.has_vel()) ball.velocity_mps = read(from.vel(), kMaxSpeed_mps, validator);
   if (from.has_visibility()) ball.visibility = validator.probability(from.visibility());
   return ball;
@@ -76,7 +76,7 @@ TrackedRobot read(const wire::tracked::Robot& from, PacketValidator& validator) 
   validator.require(from.robot_id().id() < kRobotNumbers, DecodeError::kRobot);
   robot.number = from.robot_id().id();
   robot.team = team_of(from.robot_id().team_color(), validator);
-  robot.position_m = read(from.pos(), kMaxPosition_m, validator);
+  robot.position_m = read(from.pos(), kMaxCoordinate_m, validator);
   robot.heading_rad = wrapped_rad(validator.within(from.orientation(), kMaxHeading_rad));
   if (from.has_vel()) robot.velocity_mps = read(from.vel(), kMaxSpeed_mps, validator);
   if (from.has_vel_angular())

@@ -50,8 +50,8 @@ struct TrackedPacket {
 /// decode_tracked() accepts.
 std::vector<std::byte> encode(const TrackedPacket& packet);
 
-/// Rejects a packet as a whole if any value in it is invalid: positions beyond 100 m, headings beyond 7 rad,
-/// speeds beyond 100 m/s or 1000 rad/s, visibilities outside 0 .. 1, times outside 0 .. 2^33 s.
+/// Rejects a packet as a whole if any value in it is invalid: coordinates beyond kMaxCoordinate_m, headings
+/// beyond 7 rad, speeds beyond 100 m/s or 1000 rad/s, visibilities outside 0 .. 1, times outside 0 .. 2^33 s.
 Decoded<TrackedPacket> decode_tracked(std::span<const std::byte> bytes);
 
 }  // namespace sidestep::league

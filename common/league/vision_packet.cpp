@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxBalls = 128;
 constexpr int kMaxRobotsPerTeam = 64;  // a camera may report one robot several times
 constexpr double kMaxPixel = 1e6;
-constexpr double kMaxRobotHeight_m = 2;
+constexpr double kMaxRobotHeight_m = 2, kMaxBallHeight_m = 100;
 
 float in_mm(double length_m) { return static_cast<float>(length_m * 1e3); }
 
@@ -31,9 +31,9 @@ DetectedBall read(const wire::vision::Ball& from, PacketValidator& validator) {
   DetectedBall ball;
   ball.confidence = validator.probability(from.confidence());
   if (from.has_area()) ball.area = from.area();
-  ball.position_m = {validator.within(from.x() * 1e-3, kMaxPosition_m),
-                     validator.within(from.y() * 1e-3, kMaxPosition_m)};
-  if (from.has_z()) ball.height_m = validator.within(from.z() * 1e-3, kMaxPosition_m);
+  ball.position_m = {validator.within(from.x() * 1e-3, kMaxCoordinate_m),
+                     validator.within(from.y() * 1e-3, kMaxCoordinate_m)};
+  if (from.has_z()) ball.height_m = validator.within(from.z() * 1e-3, kMaxBallHeight_m);
   ball.pixel = {validator.within(from.pixel_x(), kMaxPixel), validator.within(from.pixel_y(), kMaxPixel)};
   return ball;
 }
@@ -54,8 +54,8 @@ DetectedRobot read(const wire::vision::Robot& from, PacketValidator& validator) 
   robot.confidence = validator.probability(from.confidence());
   validator.require(!from.has_robot_id() || from.robot_id() < kRobotNumbers, DecodeError::kRobot);
   if (from.has_robot_id()) robot.number = from.robot_id();
-  robot.position_m = {validator.within(from.x() * 1e-3, kMaxPosition_m),
-                      validator.within(from.y() * 1e-3, kMaxPosition_m)};
+  robot.position_m = {validator.within(from.x() * 1e-3, kMaxCoordinate_m),
+                      validator.within(from.y() * 1e-3, kMaxCoordinate_m)};
   if (from.has_orientation()) {
     robot.heading_rad = wrapped_rad(validator.within(from.orientation(), kMaxHeading_rad));
   }

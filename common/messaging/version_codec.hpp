@@ -3,13 +3,12 @@
 
 #include <optional>
 
+#include "common/geometry/coordinate_bound.hpp"
 #include "common/motion/version.hpp"
 #include "idl/trajectory.hpp"
 
 namespace sidestep {
 
-/// Codecs refuse positions with larger coordinates: no floor is that large.
-inline constexpr double kMaxCoordinate_m = 1e4;
 /// Codecs refuse larger speeds: no robot is that fast.
 inline constexpr double kMaxSpeed_mps = 100;
 /// Codecs refuse versions with larger accelerations along an axis.

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "common/geometry/coordinate_bound.hpp"
 #include "common/league/log_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/unit/common/league/random_packets.hpp"
@@ -17,7 +18,7 @@ bool is_within(const Vec2& v, double bound) { return std::abs(v.x()) <= bound &&
 bool is_probability(double p) { return p >= 0 && p <= 1; }
 
 void check(const league::DetectedRobot& robot) {
-  SIDESTEP_REQUIRE(is_within(robot.position_m, 100.001));
+  SIDESTEP_REQUIRE(is_within(robot.position_m, kMaxCoordinate_m));
   SIDESTEP_REQUIRE(is_probability(robot.confidence));
   SIDESTEP_REQUIRE(!robot.number || *robot.number < league::kRobotNumbers);
   SIDESTEP_REQUIRE(!robot.heading_rad || std::abs(*robot.heading_rad) <= 3.1416);
@@ -35,7 +36,7 @@ bool try_vision(std::span<const std::byte> bytes) {
     for (const auto& robot : packet.detection->yellow) check(robot);
     for (const auto& robot : packet.detection->blue) check(robot);
     for (const auto& ball : packet.detection->balls) {
-      SIDESTEP_REQUIRE(is_within(ball.position_m, 100.001) && is_probability(ball.confidence));
+      SIDESTEP_REQUIRE(is_within(ball.position_m, kMaxCoordinate_m) && is_probability(ball.confidence));
     }
   }
   // An accepted packet must be accepted again after encoding, unless a time is at the end of its range.
@@ -58,7 +59,7 @@ bool try_tracked(std::span<const std::byte> bytes) {
   if (!decoded.packet) return false;
   if (decoded.packet->frame) {
     for (const auto& robot : decoded.packet->frame->robots) {
-      SIDESTEP_REQUIRE(is_within(robot.position_m, 100));
+      SIDESTEP_REQUIRE(is_within(robot.position_m, kMaxCoordinate_m));
       SIDESTEP_REQUIRE(robot.number < league::kRobotNumbers);
       SIDESTEP_REQUIRE(std::abs(robot.heading_rad) <= 3.1416);
     }
@@ -75,7 +76,8 @@ bool try_referee(std::span<const std::byte> bytes) {
   const league::RefereePacket& packet = *decoded.packet;
   SIDESTEP_REQUIRE(packet.sent >= Duration{0} && packet.commanded >= Duration{0});
   SIDESTEP_REQUIRE(!name_of(packet.command).empty());
-  SIDESTEP_REQUIRE(!packet.designated_position_m || is_within(*packet.designated_position_m, 100));
+  SIDESTEP_REQUIRE(!packet.designated_position_m ||
+                   is_within(*packet.designated_position_m, kMaxCoordinate_m));
   const auto again = league::decode_referee(encode(packet));
   SIDESTEP_REQUIRE(again.packet || again.error == league::DecodeError::kNumber);
   SIDESTEP_REQUIRE(!again.packet || again.packet->command == packet.command);
@@ -104,7 +106,7 @@ bool try_control(std::span<const std::byte> bytes) {
   if (!decoded.packet) return response.packet.has_value();
   for (const league::RobotTeleport& robot : decoded.packet->robots) {
     SIDESTEP_REQUIRE(robot.number < league::kRobotNumbers);
-    SIDESTEP_REQUIRE(std::abs(robot.x_m.value_or(0)) <= 100 &&
+    SIDESTEP_REQUIRE(std::abs(robot.x_m.value_or(0)) <= kMaxCoordinate_m &&
                      std::abs(robot.heading_rad.value_or(0)) <= 3.1416);
   }
   return true;

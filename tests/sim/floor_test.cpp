@@ -29,6 +29,20 @@ struct OffReference {
   std::optional<Time> first_at;
 };
 
+TEST_CASE("robots drive in the corners of the largest floor") {
+  Scenario scenario;
+  scenario.name = "large floor";
+  scenario.field = {1000, 1000};
+  RobotId id = 0;
+  for (const Vec2& corner : {Vec2(1, 1), Vec2(-1, 1), Vec2(-1, -1), Vec2(1, -1)})
+    scenario.robots.push_back({.id = id++, .start_m = 499.5 * corner, .goals = {{497.5 * corner}}});
+  SimSystem system(scenario, 1);
+  CHECK(system.run_until_arrived(system.begin() + std::chrono::seconds(15)));
+  const Report report = system.metrics().report();
+  CHECK(report.audit->verdict() == AuditVerdict::kPassed);
+  CHECK(report.contacts == 0);
+}
+
 TEST_CASE("in undisturbed runs no robot is ever off its reference") {
   const auto [name, seeds] = GENERATE(
       table<const char*, std::uint64_t>({{"crossing-noisy", 20}, {"circle-100", 1}, {"two-teams-22", 3}}));

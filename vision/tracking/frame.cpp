@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/coordinate_bound.hpp"
 #include "common/protocol/obstacle_bounds.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr double kMaxPosition_m = 100;
 constexpr double kMaxObstacle_m = 10;
 constexpr double kMaxHeading_rad = 7;  // a full turn either way: no sender exceeds it
 constexpr Duration kMaxAge{500'000'000};
@@ -20,17 +20,18 @@ bool is_probability(double value) { return value >= 0 && value <= 1; }
 bool is_completeness(double value) { return value >= 0 && value <= kCompleteEverywhere_m; }
 
 bool is_valid(const msg::RobotDetection& d) {
-  return d.robot() < kMaxRobots && is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) &&
-         is_within(d.heading_rad(), kMaxHeading_rad) && is_probability(d.confidence());
+  return d.robot() < kMaxRobots && is_within(d.x_m(), kMaxCoordinate_m) &&
+         is_within(d.y_m(), kMaxCoordinate_m) && is_within(d.heading_rad(), kMaxHeading_rad) &&
+         is_probability(d.confidence());
 }
 
 bool is_valid(const msg::BallDetection& d) {
-  return is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) &&
+  return is_within(d.x_m(), kMaxCoordinate_m) && is_within(d.y_m(), kMaxCoordinate_m) &&
          is_probability(d.confidence());
 }
 
 bool is_valid(const msg::ObstacleDetection& d) {
-  return is_within(d.x_m(), kMaxPosition_m) && is_within(d.y_m(), kMaxPosition_m) && d.radius_m() > 0 &&
+  return is_within(d.x_m(), kMaxCoordinate_m) && is_within(d.y_m(), kMaxCoordinate_m) && d.radius_m() > 0 &&
          d.radius_m() <= kMaxObstacle_m;
 }
 

@@ -56,8 +56,8 @@ class Frame {
   /// Number of detections in the message that were rejected; at least 1 for an unusable frame.
   std::uint64_t rejected() const { return rejected_; }
 
-  /// Copies the valid detections: timely frames, positions within 100 m, confidences in 0..1, robot numbers
-  /// below kMaxRobots, obstacle radii up to 10 m. Allocates nothing.
+  /// Copies the valid detections: timely frames, coordinates up to kMaxCoordinate_m, confidences in 0..1,
+  /// robot numbers below kMaxRobots, obstacle radii up to 10 m. Allocates nothing.
   void assign(const msg::DetectionFrame& message, Time now, Duration max_lead = kMaxFrameLead);
 
  private:

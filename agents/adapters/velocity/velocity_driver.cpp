@@ -9,9 +9,11 @@ namespace {
 // If a base's clock is off by more than this, it keeps a different time, for example simulated time. In that
 // case its odometry is timestamped on arrival.
 constexpr Duration kMaxClockError = std::chrono::seconds(1);
-constexpr double kMaxCoordinate_m = 1e6, kMaxNormError = 0.1;
+// Odometry counts from any origin, which need not be the field's.
+constexpr double kMaxOdometry_m = 1e6;
+constexpr double kMaxNormError = 0.1;
 
-bool is_coordinate(double x) { return std::abs(x) <= kMaxCoordinate_m; }
+bool is_coordinate(double x) { return std::abs(x) <= kMaxOdometry_m; }
 
 }  // namespace
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "common/geometry/coordinate_bound.hpp"
 #include "common/league/multicast.hpp"
-#include "common/league/packet_validator.hpp"
 #include "common/league/referee_packet.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/process/exit_code.hpp"
@@ -37,12 +37,12 @@ league::RefereeCommand parse_command(const std::string& text) {
   throw UsageError(fmt::format("\"{}\" is not a command of the referee: expected one of {}", text, names));
 }
 
-/// Parses a place within the league's coordinates. Throws UsageError.
+/// Parses a place within kMaxCoordinate_m. Throws UsageError.
 Vec2 parse_ball_place(const std::string& text) {
   const Vec2 place_m = parse_place(text, "place for the ball");
-  if (place_m.cwiseAbs().maxCoeff() <= league::kMaxPosition_m) return place_m;
-  throw UsageError(fmt::format("\"{}\": expected coordinates from {} to {} m", text, -league::kMaxPosition_m,
-                               league::kMaxPosition_m));
+  if (place_m.cwiseAbs().maxCoeff() <= kMaxCoordinate_m) return place_m;
+  throw UsageError(fmt::format("\"{}\": expected coordinates from {:g} to {:g} m", text, -kMaxCoordinate_m,
+                               kMaxCoordinate_m));
 }
 
 int play(PlayedReferee& referee) {

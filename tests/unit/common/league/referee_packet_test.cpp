@@ -81,7 +81,7 @@ TEST_CASE("an invalid referee packet is rejected with the reason") {
         DecodeError::kTime);
   CHECK(after([](P& p) { p.set_command_timestamp(8'589'934'593'000'000); }) == DecodeError::kTime);
   CHECK(after([&](P& p) { p.mutable_designated_position()->set_x(nan); }) == DecodeError::kNumber);
-  CHECK(after([](P& p) { p.mutable_designated_position()->set_y(-100'001); }) == DecodeError::kNumber);
+  CHECK(after([](P& p) { p.mutable_designated_position()->set_y(-10'000'001); }) == DecodeError::kNumber);
   CHECK(decode_referee({}).error == DecodeError::kEmpty);
   CHECK(decode_referee(std::vector<std::byte>(kMaxDatagramSize + 1)).error == DecodeError::kTooLong);
   for (std::size_t size = 0; size < bytes.size(); ++size) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/coordinate_bound.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
@@ -34,7 +35,7 @@ void check_invalid_detection_is_dropped(const msg::RobotDetection& bad) {
 TEST_CASE("a detection with a NaN or too large number is dropped and counted, and a valid one is kept") {
   const double bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-               -std::numeric_limits<double>::infinity(), 100.001, -1e300);
+               -std::numeric_limits<double>::infinity(), 1.001 * kMaxCoordinate_m, -1e300);
   CAPTURE(bad);
   msg::RobotDetection d = valid_robot();
   SECTION("x") { d.x_m(bad); }
@@ -57,13 +58,29 @@ TEST_CASE("invalid balls are dropped and counted, and valid balls are kept") {
   msg::DetectionFrame message = frame_message(0, kBegin);
   add_ball(message, {1, 1});
   add_ball(message, {std::nan(""), 1});
-  add_ball(message, {1, 101});
+  add_ball(message, {1, 1.001 * kMaxCoordinate_m});
   add_ball(message, {2, 2});
   message.balls()[3].confidence(2);
   Frame frame;
   frame.assign(message, kBegin);
   CHECK(frame.balls().size() == 1);
   CHECK(frame.rejected() == 3);
+}
+
+TEST_CASE("detections are kept at every place that other processes accept") {
+  const double x_m = GENERATE(-1, 1) * kMaxCoordinate_m, y_m = GENERATE(-1, 1) * kMaxCoordinate_m;
+  CAPTURE(x_m, y_m);
+  msg::DetectionFrame message = frame_message(0, kBegin);
+  add_robot(message, 3, {x_m, y_m}, 0.5);
+  add_ball(message, {x_m, y_m});
+  add_obstacle(message, {x_m, y_m});
+  Frame frame;
+  frame.assign(message, kBegin);
+  CHECK(frame.rejected() == 0);
+  REQUIRE(frame.robots().size() == 1);
+  CHECK(frame.robots()[0].position_m == Vec2(x_m, y_m));
+  CHECK(frame.balls().size() == 1);
+  CHECK(frame.obstacles().size() == 1);
 }
 
 TEST_CASE("a frame that is too old or from the future is rejected as a whole") {

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "common/geometry/coordinate_bound.hpp"
 #include "tests/catch.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
 
@@ -131,7 +132,7 @@ TEST_CASE("an invalid obstacle alone is dropped, but an invalid count drops the 
   add_obstacle(message, {1, 2});
   Frame frame;
   auto& d = message.obstacles()[0];
-  const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(), 1e300, -101.0);
+  const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(), 1e300, -1.001 * kMaxCoordinate_m);
   SECTION("x") { d.x_m(bad); }
   SECTION("y") { d.y_m(bad); }
   SECTION("radius") { d.radius_m(bad); }

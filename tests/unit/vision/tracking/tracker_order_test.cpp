@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/geometry/coordinate_bound.hpp"
 #include "tests/catch.hpp"
 #include "tests/counted_allocations.hpp"
 #include "tests/unit/vision/tracker_fixture.hpp"
@@ -116,7 +117,9 @@ TEST_CASE("the world state remains finite for frames with arbitrary numbers") {
   Rng rng(seed);
   TrackerFixture fixture(4);
   const auto number = [&rng](double usual) {
-    const double odd[] = {0, -0.0, 1e-310, 100, -100, 101, 1e308, INFINITY, -INFINITY, NAN};
+    const double odd[] = {
+        0,        -0.0,      1e-310, kMaxCoordinate_m, -kMaxCoordinate_m, 1.01 * kMaxCoordinate_m, 1e308,
+        INFINITY, -INFINITY, NAN};
     return rng.chance(0.1) ? odd[rng.below(10)] : usual * rng.normal();
   };
   for (int i = 0; i < 2000; ++i) {

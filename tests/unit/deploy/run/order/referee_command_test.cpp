@@ -27,7 +27,8 @@ TEST_CASE("an invalid referee command is rejected before anything is sent") {
       ContainsSubstring("\"PAUSE\" is not a command of the referee") && ContainsSubstring("HALT, STOP, "));
   CHECK_THAT(usage_error({"referee", "STOP", "--place", "1"}),
              ContainsSubstring("\"1\" is not a place for the ball, expected X,Y in metres"));
-  CHECK_THAT(usage_error({"referee", "STOP", "--place", "101,0"}), ContainsSubstring("from -100 to 100 m"));
+  CHECK_THAT(usage_error({"referee", "STOP", "--place", "10001,0"}),
+             ContainsSubstring("from -10000 to 10000 m"));
 }
 
 }  // namespace sidestep::referee_command_test
