@@ -62,7 +62,7 @@ TEST_CASE("a run finishes and writes its report even if its output is closed or 
 TEST_CASE("a simulation finishes and writes its report even if its output is closed or no longer read") {
   const TemporaryFolder folder;
   const std::string runs = GENERATE(as<std::string>(), kScenario + " --seconds 1",
-                                    "--faults none --seeds 1..40 --seconds 1 --jobs 2");
+                                    "--faults none --seeds 1..4 --seconds 12 --jobs 2");
   const std::string output = GENERATE("2>&1 | true", ">/dev/full 2>/dev/full", ">&- 2>&-");
   const ProgramRun run = run_in_shell("\"$0\" simulate " + runs + " --report r.json " + output, folder);
   CAPTURE(runs, output, run.errors);

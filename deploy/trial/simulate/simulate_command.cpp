@@ -2,6 +2,7 @@
 #include "deploy/trial/simulate/simulate_command.hpp"
 
 #include <csignal>
+#include <fmt/format.h>
 #include <memory>
 #include <string>
 
@@ -10,6 +11,7 @@
 #include "common/process/log_option.hpp"
 #include "common/process/output_paths.hpp"
 #include "deploy/trial/simulate/campaign/campaign.hpp"
+#include "deploy/trial/simulate/campaign/trial.hpp"
 #include "deploy/trial/simulate/seed_range.hpp"
 #include "deploy/trial/simulate/simulate.hpp"
 
@@ -27,6 +29,20 @@ void read_seeds(const std::string& text, CampaignOptions& campaign) {
   const SeedRange seeds = parse_seed_range(text);
   campaign.first_seed = seeds.first;
   campaign.last_seed = seeds.last;
+}
+
+/// Throws UsageError if healthy systems may fail trials of this duration.
+void check_duration(const Options& options) {
+  const bool has_faults = options.faults != "none";
+  const double min_s = to_seconds(min_trial_duration(has_faults));
+  const double seconds = options.run.seconds.value_or(min_s);
+  if (seconds >= min_s) return;
+  const std::string reason =
+      has_faults ? fmt::format("the last {:g} s have no faults, so that the system can recover",
+                               to_seconds(kFaultFreeEnd))
+                 : "robots need time to start";
+  throw UsageError(fmt::format("--seconds: expected at least {:g} with --faults {}, got {:g}: {}", min_s,
+                               options.faults, seconds, reason));
 }
 
 int run_seeds(Options& options) {
@@ -63,8 +79,10 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
   const Option seed =
       command.add_option("--seed", run.seed, "random seed").check(non_negative()).show_default();
   command
-      .add_option("--seconds", run.seconds,
-                  "time limit [the scenario's]; with --faults: duration of a run [60]")
+      .add_option(
+          "--seconds", run.seconds,
+          "time limit [the scenario's]; with --faults: duration of a run [60], at least 24 with random "
+          "faults, and 12 without")
       .check(positive());
   command.add_option("--planner", run.planner, "planner of all robots' paths [the scenario's]")
       .check(one_of(driving_planners()))
@@ -97,6 +115,7 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
   command.on_parsed([=, &action] {
     const bool has_faults = faults.is_given(), has_seeds = seeds.is_given();
     if (!has_faults && !scenario.is_given()) throw UsageError("SCENARIO is required");
+    if (has_faults) check_duration(*options);
     action = [=] {
       // The report is written even if the reader of the output disappears.
       std::signal(SIGPIPE, SIG_IGN);

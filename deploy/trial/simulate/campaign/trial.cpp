@@ -20,7 +20,6 @@
 namespace sidestep {
 namespace {
 
-constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
 // Time after the last fault within which all processes must work again.
 constexpr Duration kRecoveryTime = std::chrono::seconds(2);
 /// Longest time that a robot waits, for example after its own stop, unless it is stuck.

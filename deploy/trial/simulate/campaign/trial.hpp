@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -16,6 +17,15 @@
 
 namespace sidestep {
 
+/// The end of a trial has no faults for this long, so that the system can recover from them.
+inline constexpr Duration kFaultFreeEnd = std::chrono::seconds(12);
+
+/// The shortest trial in which a healthy system cannot fail: its robots have time to start, or to recover
+/// from faults, before they must drive. A trial with faults has them for as long again.
+constexpr Duration min_trial_duration(bool has_faults) {
+  return has_faults ? 2 * kFaultFreeEnd : kFaultFreeEnd;
+}
+
 /// One run of a campaign: a scenario, the faults that happen in it, and its duration.
 struct Trial {
   std::uint64_t seed = 1;
@@ -30,7 +40,7 @@ struct Trial {
 };
 
 /// Samples everything that the seed determines. If no scenario is given, samples the scene. If `has_faults`
-/// is false, samples no faults.
+/// is false, samples no faults. The faults of a trial shorter than min_trial_duration() end after half of it.
 [[nodiscard]] Trial sample_trial(std::uint64_t seed, Duration duration,
                                  const std::optional<Scenario>& scenario, bool has_faults = true);
 

@@ -62,6 +62,15 @@ TEST_CASE("a trial without a failure passes") {
   CHECK(judged.failures().empty());
 }
 
+TEST_CASE("the last twelve seconds of a trial that is long enough have no faults") {
+  const std::uint64_t seed = GENERATE(range(1u, 21u));
+  const Duration duration = GENERATE(min_trial_duration(true), 30s, 60s);
+  CAPTURE(seed, duration);
+  const Trial trial = sample_trial(seed, duration, std::nullopt);
+  CHECK(trial.plan.healed_at == duration - 12s);
+  for (const TimedFault& fault : trial.plan.faults) CHECK(fault.at <= duration - 12s);
+}
+
 TEST_CASE("a trial fails for each kind of failure and states the reason") {
   Judged judged;
   SECTION("there was a contact") {
