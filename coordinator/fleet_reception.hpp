@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "common/motion/version.hpp"
+#include "common/protocol/report_period.hpp"
 #include "common/time/time.hpp"
 
 namespace sidestep {
@@ -14,13 +16,14 @@ namespace sidestep {
 /// coordinator that does not hear them cannot serve them. All times are by the coordinator's clock.
 class FleetReception {
  public:
-  /// Number of periods without facts after which a robot counts as not heard.
-  static constexpr int kMissedReports = 5;
+  /// Number of cycles without facts after which a robot counts as not heard. If control cycles are short, it
+  /// is kMissedGaps of the longest gaps between facts.
+  static constexpr int kMissedReports = 5, kMissedGaps = 2;
   /// An agent counts as asking for a coordinator if it repeats its registration at least this often.
   static constexpr Duration kMaxRequestGap{350'000'000};
 
-  /// `report_period` is the period at which robots report facts.
-  explicit FleetReception(Duration report_period) : max_silence_(kMissedReports * report_period) {}
+  explicit FleetReception(Duration cycle)
+      : max_silence_(std::max(kMissedReports * cycle, kMissedGaps * max_report_gap(cycle))) {}
 
   /// Processes a report of the version that a robot executes. `is_granted` is false for an own stop, and if
   /// the robot executes nothing.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/robot_codec.hpp"
+#include "common/protocol/report_period.hpp"
 #include "common/protocol/senders.hpp"
 #include "common/robot/own_stop_text.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+static_assert(DrivenRobot::kPeriod <= kMaxReportDelay);
 // Version starts farther ahead than this get no timer; the control period handles them.
 constexpr Duration kMaxTimerAhead = milliseconds(200);
 

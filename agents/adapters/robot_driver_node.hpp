@@ -16,7 +16,8 @@
 namespace sidestep {
 
 /// Runs the robots that a driver moves: receives their commands, drives them, and publishes their reports at
-/// every change and at least once per cycle. The bus must make no callback after the node's destruction.
+/// every change, and otherwise at most max_report_gap() apart. The bus must make no callback after the node's
+/// destruction.
 class RobotDriverNode {
  public:
   /// Precondition: `robots` belong to the scenario. Throws the same exceptions as RobotMemory.

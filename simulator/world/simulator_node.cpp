@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/messaging/robot_codec.hpp"
+#include "common/protocol/report_period.hpp"
 #include "common/protocol/senders.hpp"
 #include "simulator/world/disturbance_codec.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr Duration kWakePeriod = milliseconds(4);
+static_assert(kWakePeriod <= kMaxReportDelay);
 constexpr Duration kTruthPeriod{16'666'667};
 // Maximum delay of this process that is simulated. After a longer delay all robots would have come to rest,
 // so the remaining time is skipped.

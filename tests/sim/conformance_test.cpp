@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "common/messaging/robot_codec.hpp"
+#include "common/protocol/report_period.hpp"
 #include "simulator/world/simulator_node.hpp"
 #include "tests/catch.hpp"
 #include "tests/sim/driven_floor.hpp"
@@ -172,6 +174,50 @@ TEST_CASE("a robot that acknowledges a new agent too late fails the check of pen
   const ConformanceReport report = examine(network, scenario);
   INFO("seed " << seed << "\n" << to_text(report));
   CHECK(failed(report) == std::vector<std::string>{"pending versions"});
+}
+
+/// Sends reports that obey every agent, one every `gap`, and does nothing else.
+class ReportingRobot {
+ public:
+  ReportingRobot(SimNetwork& network, Duration gap) : bus_(network), gap_(gap) {
+    report_.robot = report_.executing.robot = kRobot;
+    report_.executing.trajectory = Trajectory::resting(bus_.now(), {0, 0});
+    bus_.subscribe<msg::Command>(topics::kCommand, kRobot, [this](const msg::Command& command) {
+      report_.obeyed_incarnation = command.header().incarnation();
+      report_.obeyed_epoch = command.epoch();
+    });
+    report();
+  }
+
+ private:
+  void report() {
+    report_.valid_at = bus_.now();
+    msg::Feedback message = encode(report_);
+    writer_.publish(message, bus_.now());
+    bus_.at(bus_.now() + gap_, [this] { report(); });
+  }
+
+  SimBus bus_;
+  Duration gap_;
+  RobotReport report_;
+  Writer<msg::Feedback> writer_ = bus_.advertise(topics::kFeedback, kRobot);
+};
+
+TEST_CASE("a robot passes the check of reports if it reports as often as it must, at any control rate") {
+  Scenario scenario = lone_robot();
+  const int rate_hz = GENERATE(5, 30, 60, 100, 500);
+  scenario.cycle = from_seconds(1.0 / rate_hz);
+  const Duration lateness = GENERATE(0ms, 17ms);
+  SimNetwork network(1, kBegin, scenario.network);
+  ReportingRobot robot(network, max_report_gap(scenario.cycle) + lateness);
+  SimBus bus(network);
+  Conformance conformance(bus, scenario, kRobot, static_cast<Incarnation>(to_ns(network.now())));
+  network.run_until(network.now() + 4s);
+  REQUIRE_FALSE(conformance.report().rows.empty());
+  const ConformanceRow& row = conformance.report().rows.front();
+  CAPTURE(rate_hz, lateness, to_line(row));
+  CHECK(row.rule == "reports");
+  CHECK(row.conformity == (lateness == 0ms ? Conformity::kPassed : Conformity::kFailed));
 }
 
 TEST_CASE("a robot that sends no reports fails the check of reports, and no further checks are made") {

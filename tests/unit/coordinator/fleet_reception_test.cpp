@@ -24,6 +24,17 @@ TEST_CASE("a coordinator hears its robots while facts arrive from half of the re
   CHECK(reception.hears_robots(after_ms(10'200)));
 }
 
+TEST_CASE("a coordinator hears robots that report as rarely as they may, at any control rate") {
+  const Duration cycle = GENERATE(Duration{2'000'000}, kPeriod, Duration{200'000'000});
+  CAPTURE(cycle);
+  FleetReception reception(cycle);
+  const Time begin = after_ms(0);
+  for (int i = 0; i < 10; ++i) {
+    reception.on_robot_report(1, 5, false, begin + i * max_report_gap(cycle));
+    CHECK(reception.hears_robots(begin + (i + 1) * max_report_gap(cycle)));
+  }
+}
+
 TEST_CASE("a fleet counts as served while robots begin to execute granted versions") {
   FleetReception reception(kPeriod);
   const Duration lately = std::chrono::milliseconds(60);

@@ -7,6 +7,7 @@
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/motion/robot_model.hpp"
+#include "common/protocol/report_period.hpp"
 #include "tests/catch.hpp"
 #include "tests/log_events.hpp"
 
@@ -36,7 +37,8 @@ class IdleDriver : public Driver {
 
 /// Two robots at rest, and their agents.
 struct Scene {
-  Scene() {
+  explicit Scene(Duration cycle = Scenario{}.cycle) {
+    scenario.cycle = cycle;
     for (const RobotId id : {4u, 7u}) {
       RobotSpec robot;
       robot.id = id;
@@ -74,7 +76,7 @@ struct Scene {
 
 }  // namespace
 
-TEST_CASE("driven robots report at least once per cycle, and immediately when they obey a new agent") {
+TEST_CASE("driven robots report about once per cycle, and immediately when they obey a new agent") {
   Scene scene;
   for (int i = 0; i < 60; ++i) {
     scene.command(0, 100, 1);
@@ -95,6 +97,22 @@ TEST_CASE("driven robots report at least once per cycle, and immediately when th
   CHECK(time_from_ns(scene.robot_reports.front().header().stamp_ns()) - sent < 2ms);
   CHECK(scene.node->is_commanded());
   CHECK(scene.driver.periods > 100);
+}
+
+TEST_CASE("the reports of driven robots are at most as far apart as robots may report, at any control rate") {
+  const int rate_hz = GENERATE(5, 30, 60, 100, 500);
+  CAPTURE(rate_hz);
+  Scene scene(from_seconds(1.0 / rate_hz));
+  for (int i = 0; i < 60; ++i) {
+    scene.command(0, 100, 1);
+    scene.run(20ms);
+  }
+  scene.robot_reports.clear();
+  scene.run(3s);
+  REQUIRE(scene.robot_reports.size() > 10);
+  for (std::size_t i = 1; i < scene.robot_reports.size(); ++i)
+    CHECK(Duration{scene.robot_reports[i].valid_at_ns() - scene.robot_reports[i - 1].valid_at_ns()} <=
+          max_report_gap(scene.scenario.cycle));
 }
 
 TEST_CASE("odometry with a wrong timestamp is counted for its robot") {

@@ -8,6 +8,7 @@
 #include "common/messaging/robot_codec.hpp"
 #include "common/messaging/sim/bus.hpp"
 #include "common/messaging/version_codec.hpp"
+#include "common/protocol/report_period.hpp"
 #include "common/protocol/senders.hpp"
 #include "tests/catch.hpp"
 #include "tests/drops.hpp"
@@ -78,6 +79,22 @@ TEST_CASE("every idle robot reports about once per cycle, and not all robots at 
   }
   CHECK(scene.robot_reports.size() == 10);
   for (const auto& [time, count] : burst) CHECK(count <= 5);
+}
+
+TEST_CASE("the reports of idle robots are at most as far apart as robots may report, at any control rate") {
+  Scenario scenario = separated_robots(3);
+  const int rate_hz = GENERATE(5, 30, 60, 100, 500);
+  scenario.cycle = from_seconds(1.0 / rate_hz);
+  CAPTURE(rate_hz);
+  Scene scene(scenario);
+  scene.run(std::chrono::seconds(3));
+  CHECK(scene.robot_reports.size() == 3);
+  for (const auto& [robot, robot_reports] : scene.robot_reports) {
+    REQUIRE(robot_reports.size() > 10);
+    for (std::size_t i = 1; i < robot_reports.size(); ++i)
+      CHECK(Duration{robot_reports[i].valid_at_ns() - robot_reports[i - 1].valid_at_ns()} <=
+            max_report_gap(scenario.cycle));
+  }
 }
 
 TEST_CASE("a switch of version is reported immediately") {
