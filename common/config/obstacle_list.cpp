@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/obstacle_list.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "common/file/home_folder.hpp"
 #include "common/map/map_file.hpp"
+#include "common/yaml/yaml_schema.hpp"
 
 namespace sidestep {
 namespace {
@@ -31,14 +33,9 @@ double size_m(YamlMap& map, const std::string& key) {
   return value;
 }
 
-std::vector<Vec2> points(YamlMap& map, const std::string& key) {
-  std::vector<Vec2> found;
-  const YamlLocation location = map.location_of(key);
-  for (const YAML::Node& element : list_from(map.require(key), location, kMaxCorners)) {
-    const auto numbers = numbers_from(element, location.of(element, location.what), 2, 2, kPlace_m);
-    found.emplace_back(numbers[0], numbers[1]);
-  }
-  return found;
+std::vector<Vec2> points(YamlMap& map, const std::string& key, std::size_t min_count) {
+  (void)map.require(key);
+  return map.points(key, min_count, kMaxCorners, kPlace_m);
 }
 
 /// The rectangle around a straight piece of a wall. It extends beyond both ends by half the thickness, so
@@ -53,39 +50,64 @@ Shape wall_piece(const Vec2& from, const Vec2& to, double thickness_m) {
 }
 
 void read_wall(YamlMap& map, std::vector<Shape>& shapes) {
-  const std::vector<Vec2> path = points(map, "points_m");
+  const std::vector<Vec2> path = points(map, "points_m", 2);
   const double thickness_m = size_m(map, "thickness_m");
-  if (path.size() < 2) map.location_of("points_m").fail("expected at least two points");
   for (std::size_t i = 1; i < path.size(); ++i) {
     if (path[i] == path[i - 1]) map.location_of("points_m").fail("two successive points are identical");
     shapes.push_back(wall_piece(path[i - 1], path[i], thickness_m));
   }
 }
 
+void read_disc(YamlMap& map, std::vector<Shape>& shapes) {
+  shapes.push_back(Circle{point(map, "centre_m"), size_m(map, "radius_m")});
+}
+
+struct ObstacleKind {
+  const char* key;
+  void (*read)(YamlMap& map, std::vector<Shape>& shapes);
+};
+
+constexpr std::array kObstacleKinds{
+    ObstacleKind{"circle", read_disc},
+    ObstacleKind{"box",
+                 [](YamlMap& map, std::vector<Shape>& shapes) {
+                   shapes.push_back(Box{point(map, "min_m"), point(map, "max_m")});
+                 }},
+    ObstacleKind{"polygon",
+                 [](YamlMap& map, std::vector<Shape>& shapes) {
+                   shapes.push_back(ConvexPolygon{points(map, "corners_m", 3)});
+                 }},
+    ObstacleKind{"segment",
+                 [](YamlMap& map, std::vector<Shape>& shapes) {
+                   shapes.push_back(Segment{point(map, "from_m"), point(map, "to_m")});
+                 }},
+    ObstacleKind{"wall", read_wall}};
+
+/// Describes obstacles of each kind, and circles in their short form.
+void describe_obstacle(YamlMap& map, YamlSchema& schema) {
+  std::vector<Shape> ignored;
+  std::vector<std::string> keys;
+  for (const ObstacleKind& kind : kObstacleKinds) keys.push_back(kind.key);
+  keys.emplace_back("centre_m");
+  const std::string& key = schema.choose(keys);
+  const auto kind = std::ranges::find(kObstacleKinds, key, &ObstacleKind::key);
+  if (kind == kObstacleKinds.end()) return read_disc(map, ignored);
+  read_section(map, key, [&](YamlMap& inner) { kind->read(inner, ignored); });
+}
+
 void read_obstacle(YamlMap& map, std::vector<Shape>& shapes) {
+  if (YamlSchema* const schema = map.schema()) return describe_obstacle(map, *schema);
   const std::size_t before = shapes.size();
   int kinds = 0;
-  const auto read_kind = [&](const char* key, const auto& read) {
-    read_section(map, key, [&](YamlMap& inner) {
+  for (const ObstacleKind& kind : kObstacleKinds) {
+    read_section(map, kind.key, [&](YamlMap& inner) {
       ++kinds;
-      read(inner);
+      kind.read(inner, shapes);
     });
-  };
-  const auto read_circle = [&](YamlMap& inner) {
-    shapes.push_back(Circle{point(inner, "centre_m"), size_m(inner, "radius_m")});
-  };
-  read_kind("circle", read_circle);
-  read_kind("box", [&](YamlMap& inner) {
-    shapes.push_back(Box{point(inner, "min_m"), point(inner, "max_m")});
-  });
-  read_kind("polygon", [&](YamlMap& inner) { shapes.push_back(ConvexPolygon{points(inner, "corners_m")}); });
-  read_kind("segment", [&](YamlMap& inner) {
-    shapes.push_back(Segment{point(inner, "from_m"), point(inner, "to_m")});
-  });
-  read_kind("wall", [&](YamlMap& inner) { read_wall(inner, shapes); });
+  }
   if (kinds == 0 && (map.find("centre_m").IsDefined() || map.find("radius_m").IsDefined())) {
     ++kinds;
-    read_circle(map);
+    read_disc(map, shapes);
   }
   map.finish();
   if (kinds != 1) map.location().fail("expected one of circle, box, polygon, segment, wall");
@@ -133,16 +155,11 @@ std::string map_notice(const LoadedMap& map, const std::string& name, const std:
 
 std::vector<Shape> read_obstacles(YamlMap& map, std::size_t max_count) {
   std::vector<Shape> shapes;
-  const YAML::Node node = map.find("obstacles");
-  if (!node.IsDefined()) return shapes;
-  const YamlLocation location = map.location_of("obstacles");
-  const std::vector<YAML::Node> elements = list_from(node, location, max_count);
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    YamlMap inner(elements[i], location.of(elements[i], fmt::format("obstacles[{}]", i)));
-    read_obstacle(inner, shapes);
+  read_optional_list(map, "obstacles", 0, max_count, [&](YamlMap& obstacle) {
+    read_obstacle(obstacle, shapes);
     if (shapes.size() > kMaxPieces)
-      location.fail(fmt::format("the walls have more than {} pieces", kMaxPieces));
-  }
+      map.location_of("obstacles").fail(fmt::format("the walls have more than {} pieces", kMaxPieces));
+  });
   return shapes;
 }
 
@@ -151,22 +168,22 @@ std::string obstacle_text(const Shape& shape) {
 }
 
 std::shared_ptr<const FloorMap> read_floor_map(YamlMap& map, const OccupancyMap* cells) {
-  const YAML::Node node = map.find("map");
+  const auto name = map.text("map");
   const YamlLocation location = map.location_of("map");
   constexpr std::array<std::string_view, 2> kUnknown{"blocked", "free"};
   std::string unknown{kUnknown[0]};
   map.read("unknown", kUnknown, unknown);
-  if (!node.IsDefined() && map.find("unknown").IsDefined())
+  if (map.schema()) return nullptr;
+  if (!name && map.find("unknown").IsDefined())
     map.location_of("unknown").fail("expected only together with the key map");
-  if (!node.IsDefined()) return nullptr;
-  const std::string name = text_from(node, location);
-  if (name.empty()) location.fail("expected the path of a map's YAML file, got nothing");
-  const std::string path = (std::filesystem::path(location.file).parent_path() / expand_home(name)).string();
+  if (!name) return nullptr;
+  if (name->empty()) location.fail("expected the path of a map's YAML file, got nothing");
+  const std::string path = (std::filesystem::path(location.file).parent_path() / expand_home(*name)).string();
   try {
-    if (cells != nullptr) return std::make_shared<const FloorMap>(*cells, name);
+    if (cells != nullptr) return std::make_shared<const FloorMap>(*cells, *name);
     LoadedMap loaded = load_map(path, unknown == kUnknown[1] ? UnknownCells::kFree : UnknownCells::kBlocked);
-    const std::string notice = map_notice(loaded, name, unknown);
-    return std::make_shared<const FloorMap>(std::move(loaded.cells), name, notice);
+    const std::string notice = map_notice(loaded, *name, unknown);
+    return std::make_shared<const FloorMap>(std::move(loaded.cells), *name, notice);
   } catch (const std::exception& error) {
     location.fail(error.what());
   }

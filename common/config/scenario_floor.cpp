@@ -16,16 +16,10 @@ constexpr std::size_t kMaxWaypoints = 1000;
 
 OpponentSpec read_opponent(YamlMap& map, double max_speed_mps) {
   OpponentSpec opponent;
-  map.require("radius_m");
-  map.require("speed_mps");
+  for (const char* key : {"radius_m", "speed_mps", "path_m"}) (void)map.require(key);
   map.read("radius_m", {0.01, 5}, opponent.radius_m);
   map.read("speed_mps", kSpeed_mps, opponent.speed_mps);
-  const YamlLocation path = map.location_of("path_m");
-  for (const YAML::Node& point : list_from(map.require("path_m"), path, kMaxWaypoints)) {
-    const auto numbers = numbers_from(point, path.of(point, path.what), 2, 2, kCoordinate_m);
-    opponent.path_m.emplace_back(numbers[0], numbers[1]);
-  }
-  if (opponent.path_m.empty()) path.fail("expected at least one point");
+  opponent.path_m = map.points("path_m", 1, kMaxWaypoints, kCoordinate_m);
   map.finish();
   if (opponent.speed_mps > max_speed_mps) {
     map.location_of("speed_mps")
@@ -37,13 +31,9 @@ OpponentSpec read_opponent(YamlMap& map, double max_speed_mps) {
 
 void read_opponents(YamlMap& map, Scenario& scenario) {
   map.read("max_opponent_speed_mps", kSpeed_mps, scenario.max_opponent_speed_mps);
-  const YAML::Node node = map.find("opponents");
-  if (!node.IsDefined()) return;
-  const YamlLocation location = map.location_of("opponents");
-  for (const YAML::Node& element : list_from(node, location, kMaxOpponents)) {
-    YamlMap inner(element, location.of(element, fmt::format("opponents[{}]", scenario.opponents.size())));
-    scenario.opponents.push_back(read_opponent(inner, scenario.max_opponent_speed_mps));
-  }
+  read_optional_list(map, "opponents", 0, kMaxOpponents, [&](YamlMap& opponent) {
+    scenario.opponents.push_back(read_opponent(opponent, scenario.max_opponent_speed_mps));
+  });
 }
 
 void read_ball(YamlMap& map, Scenario& scenario) {

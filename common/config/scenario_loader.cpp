@@ -2,11 +2,13 @@
 #include "common/config/scenario_loader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
 #include <numbers>
 #include <stdexcept>
+#include <string_view>
 
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_floor.hpp"
@@ -24,6 +26,8 @@ namespace {
 constexpr const char* kExpected = "a scenario";
 constexpr Range kProbability{0, 1};
 constexpr std::size_t kMaxNameLength = 64;
+constexpr std::array<std::string_view, 2> kPixelFormats{"yuv422", "rgb"};
+constexpr std::array<std::string_view, 4> kRestartable{"agents", "coordinator", "vision", "robots"};
 
 /// Turns the text into a name for reports and their files. Allowed are letters and digits of any language,
 /// '-', '_' and '.', but no leading '.'. Every other character becomes '_', and text beyond kMaxNameLength is
@@ -44,13 +48,13 @@ std::string sanitised_name(const std::string& text) {
 }
 
 void read_name(YamlMap& map, const std::string& file, Scenario& scenario) {
-  const YAML::Node node = map.find("name");
-  if (!node.IsDefined()) {
+  const auto name = map.text("name");
+  if (!name) {
     const std::string stem = sanitised_name(std::filesystem::path(file).stem().string());
     scenario.name = stem.empty() ? "scenario" : stem;
     return;
   }
-  scenario.name = text_from(node, map.location_of("name"));
+  scenario.name = *name;
   if (scenario.name.empty() || sanitised_name(scenario.name) != scenario.name)
     map.location_of("name").fail(
         fmt::format("expected 1 to {} letters, digits, '-', '_' or '.', and no leading '.'", kMaxNameLength));
@@ -71,7 +75,7 @@ void read_field_and_limits(YamlMap& map, Scenario& scenario) {
   map.read("control_rate_hz", {5, 500}, control_rate_hz);
   if (control_rate_hz > 0) scenario.cycle = from_seconds(1 / control_rate_hz);
   map.read("goal_tolerance_m", {0.001, 1}, scenario.goal_tolerance_m);
-  map.read("time_limit_s", {0.1, 86400}, scenario.time_limit_s);
+  map.read("time_limit_s", {0.1, kMaxTimeLimit_s}, scenario.time_limit_s);
 }
 
 void read_budget(YamlMap& map, Scenario& scenario) {
@@ -91,13 +95,9 @@ void read_budget(YamlMap& map, Scenario& scenario) {
 void read_images(YamlMap& map, std::optional<ImageSpec>& images) {
   read_section(map, "images", [&](YamlMap& inner) {
     ImageSpec& spec = images.emplace();
-    if (const YAML::Node node = inner.find("format"); node.IsDefined()) {
-      const YamlLocation location = inner.location_of("format");
-      const std::string name = text_from(node, location);
-      const auto format = pixel_format_named(name);
-      if (!format) location.fail("expected yuv422 or rgb, got \"" + name.substr(0, 40) + "\"");
-      spec.format = *format;
-    }
+    std::string format{kPixelFormats.front()};
+    inner.read("format", kPixelFormats, format);
+    spec.format = *pixel_format_named(format);
     inner.read("width_px", {16, 4096}, spec.width_px);
     inner.read("height_px", {16, 4096}, spec.height_px);
     inner.read("camera_height_m", {1, 100}, spec.camera_height_m);
@@ -181,32 +181,17 @@ void read_network(YamlMap& map, NetworkSpec& network) {
 }
 
 void read_restart(YamlMap& map, RestartSpec& restart) {
-  const YAML::Node node = map.find("restart");
-  if (!node.IsDefined()) return;
-  const YamlLocation location = map.location_of("restart");
-  for (const YAML::Node& element : list_from(node, location, 16)) {
-    const YamlLocation element_location = location.of(element, "restart");
-    const std::string process = text_from(element, element_location);
-    if (process == "agents")
-      restart.agents = true;
-    else if (process == "coordinator")
-      restart.coordinator = true;
-    else if (process == "vision")
-      restart.vision = true;
-    else if (process == "robots")
-      restart.robots = true;
-    else
-      element_location.fail("expected agents, coordinator, vision or robots, got \"" + process.substr(0, 40) +
-                            "\"");
+  for (const std::string& process : map.names("restart", kRestartable, 16)) {
+    restart.agents |= process == "agents";
+    restart.coordinator |= process == "coordinator";
+    restart.vision |= process == "vision";
+    restart.robots |= process == "robots";
   }
 }
 
-}  // namespace
-
-Scenario parse_scenario(const std::string& text, const std::string& file_name,
-                        const OccupancyMap* map_cells) {
-  YamlMap map = document_map(text, file_name, kExpected);
-  Scenario scenario;
+/// Reads all keys but `faults` and `expect`. The name of the file is the default name of the scenario.
+void read_keys(YamlMap& map, const std::string& file_name, const OccupancyMap* map_cells,
+               Scenario& scenario) {
   read_name(map, file_name, scenario);
   read_field_and_limits(map, scenario);
   read_budget(map, scenario);
@@ -229,8 +214,22 @@ Scenario parse_scenario(const std::string& text, const std::string& file_name,
   map.find("streams");
   map.finish();
   read_robots(map, scenario);
+}
+
+}  // namespace
+
+Scenario parse_scenario(const std::string& text, const std::string& file_name,
+                        const OccupancyMap* map_cells) {
+  YamlMap map = document_map(text, file_name, kExpected);
+  Scenario scenario;
+  read_keys(map, file_name, map_cells, scenario);
   check_images(map, scenario);
   return scenario;
+}
+
+void describe_scenario(YamlMap& map) {
+  Scenario scenario;
+  read_keys(map, "", nullptr, scenario);
 }
 
 Scenario load_scenario(const std::string& path) {

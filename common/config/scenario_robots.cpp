@@ -2,12 +2,16 @@
 #include "common/config/scenario_robots.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <numbers>
+#include <string_view>
 
 #include "common/config/planner_names.hpp"
 #include "common/config/scenario_check.hpp"
+#include "common/yaml/yaml_schema.hpp"
 
 namespace sidestep {
 namespace {
@@ -22,53 +26,55 @@ struct PlacedRobot {
   RobotLines lines;
 };
 
-PlacedRobot read_robot(const YAML::Node& node, const YamlLocation& location) {
-  YamlMap map(node, location);
+constexpr std::array<std::string_view, 2> kTeams{"blue", "yellow"};
+
+void read_goals(YamlMap& map, PlacedRobot& placed) {
+  const YamlLocation location = map.location_of("goals_m");
+  const YAML::Node list = map.find("goals_m");
+  if (YamlSchema* const schema = map.schema()) {
+    const JsonSchema coordinate = number_schema(kCoordinate_m);
+    schema->add("goals_m",
+                list_schema(tuple_schema({coordinate, coordinate, heading_schema()}, 2), 1, kMaxGoals));
+  }
+  if (!list.IsDefined()) return;
+  for (const YAML::Node& element : list_from(list, location, kMaxGoals)) {
+    const YamlLocation goal_location = location.of(element, location.what);
+    const auto numbers = numbers_from(element, goal_location, 2, 3, kCoordinate_m);
+    Goal goal{{numbers[0], numbers[1]}, std::nullopt};
+    if (numbers.size() == 3) goal.heading_rad = heading_from(element[2], goal_location);
+    placed.robot.goals.push_back(goal);
+    placed.lines.goals.push_back(goal_location.line);
+  }
+  if (placed.robot.goals.empty()) location.fail("expected at least one goal");
+}
+
+PlacedRobot read_robot(YamlMap& map) {
   PlacedRobot placed;
   RobotSpec& robot = placed.robot;
-  placed.lines.start = location.line;
-  robot.id = static_cast<RobotId>(integer_from(map.require("id"), map.location_of("id"), kRobotId));
-  if (const YAML::Node team = map.find("team"); team.IsDefined()) {
-    const std::string name = text_from(team, map.location_of("team"));
-    if (name != "blue" && name != "yellow") map.location_of("team").fail("expected blue or yellow");
-    robot.team = name == "blue" ? Team::kBlue : Team::kYellow;
-  }
-  map.require("start_m");
+  (void)map.require("id");
+  robot.id = static_cast<RobotId>(map.integer("id", kRobotId).value_or(0));
+  std::string team{kTeams.front()};
+  map.read("team", kTeams, team);
+  robot.team = team == "blue" ? Team::kBlue : Team::kYellow;
+  (void)map.require("start_m");
   placed.lines.start = map.location_of("start_m").line;
   map.read("start_m", kCoordinate_m, robot.start_m);
   map.read_heading("heading_rad", robot.start_heading_rad);
   map.read_ms("clock_offset_ms", kClockOffset_ms, robot.clock_offset);
   map.read("absent", robot.is_absent);
   map.read("planner", kDrivingPlanners, robot.planner);
-
-  const YamlLocation goals = map.location_of("goals_m");
-  const YAML::Node goal_list = map.find("goals_m");
-  const auto elements =
-      goal_list.IsDefined() ? list_from(goal_list, goals, kMaxGoals) : std::vector<YAML::Node>();
-  for (const YAML::Node& element : elements) {
-    const YamlLocation goal_location = goals.of(element, goals.what);
-    const auto numbers = numbers_from(element, goal_location, 2, 3, kCoordinate_m);
-    Goal goal{{numbers[0], numbers[1]}, std::nullopt};
-    if (numbers.size() == 3) goal.heading_rad = heading_from(element[2], goal_location);
-    robot.goals.push_back(goal);
-    placed.lines.goals.push_back(goal_location.line);
-  }
-  if (goal_list.IsDefined() && robot.goals.empty()) goals.fail("expected at least one goal");
+  read_goals(map, placed);
   map.finish();
   return placed;
 }
 
 /// Places robots on a circle, given the chord between neighbours. Each faces its goal, which is the opposite
 /// point.
-void read_circle(YamlMap& map, std::vector<PlacedRobot>& robots) {
-  const YAML::Node node = map.find("circle");
-  if (!node.IsDefined()) return;
-  YamlMap circle(node, map.location_of("circle"));
+void read_circle(YamlMap& circle, std::vector<PlacedRobot>& robots) {
   int count = 0, first_id = 0;
   double spacing_m = 0;
   Vec2 centre_m{0, 0};
-  circle.require("count");
-  circle.require("spacing_m");
+  for (const char* key : {"count", "spacing_m"}) (void)circle.require(key);
   circle.read("first_id", kRobotId, first_id);
   circle.read("count", {2, static_cast<double>(kMaxRobots)}, count);
   circle.read("spacing_m", {0.01, 100}, spacing_m);
@@ -98,13 +104,10 @@ void read_circle(YamlMap& map, std::vector<PlacedRobot>& robots) {
 /// Places robots in a square grid, one per cell. In each row, pairs that drive along x alternate with pairs
 /// that drive along y; every other lane runs in the opposite direction. Goals lie on cells of the same kind
 /// as the starts, so no goal blocks another robot.
-void read_streams(YamlMap& map, std::vector<PlacedRobot>& robots) {
-  const YAML::Node node = map.find("streams");
-  if (!node.IsDefined()) return;
-  YamlMap streams(node, map.location_of("streams"));
+void read_streams(YamlMap& streams, std::vector<PlacedRobot>& robots) {
   int count = 0, lanes_crossed = 0;
   double spacing_m = 0;
-  for (const char* key : {"count", "spacing_m", "lanes_crossed"}) streams.require(key);
+  for (const char* key : {"count", "spacing_m", "lanes_crossed"}) (void)streams.require(key);
   streams.read("count", {2, static_cast<double>(kMaxRobots)}, count);
   streams.read("spacing_m", {0.01, 100}, spacing_m);
   streams.read("lanes_crossed", {4, 1000}, lanes_crossed);
@@ -135,18 +138,16 @@ void read_streams(YamlMap& map, std::vector<PlacedRobot>& robots) {
 
 void read_robots(YamlMap& map, Scenario& scenario) {
   std::vector<PlacedRobot> robots;
-  if (const YAML::Node node = map.find("robots"); node.IsDefined()) {
-    const YamlLocation location = map.location_of("robots");
-    if (node.IsSequence() && node.size() > kMaxRobots) {
-      location.fail(
-          fmt::format("more robots than ids: expected at most {}, got {}", kMaxRobots, node.size()));
-    }
-    for (const YAML::Node& element : list_from(node, location, kMaxRobots)) {
-      robots.push_back(read_robot(element, location.of(element, fmt::format("robots[{}]", robots.size()))));
-    }
+  if (const YAML::Node node = map.find("robots"); node.IsSequence() && node.size() > kMaxRobots) {
+    map.location_of("robots").fail(
+        fmt::format("more robots than ids: expected at most {}, got {}", kMaxRobots, node.size()));
   }
-  read_circle(map, robots);
-  read_streams(map, robots);
+  read_optional_list(map, "robots", 0, kMaxRobots,
+                     [&](YamlMap& robot) { robots.push_back(read_robot(robot)); });
+  read_section(map, "circle", [&](YamlMap& circle) { read_circle(circle, robots); });
+  read_section(map, "streams", [&](YamlMap& streams) { read_streams(streams, robots); });
+  if (YamlSchema* const schema = map.schema())
+    return schema->require_any(std::array<std::string, 3>{"robots", "circle", "streams"});
   if (robots.empty()) map.location().fail("no robots, expected a key \"robots\", \"circle\" or \"streams\"");
   std::stable_sort(robots.begin(), robots.end(),
                    [](const PlacedRobot& a, const PlacedRobot& b) { return a.robot.id < b.robot.id; });

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "common/yaml/heading.hpp"
 #include "common/yaml/plus_sign.hpp"
 #include "common/yaml/yaml_document.hpp"
+#include "common/yaml/yaml_schema.hpp"
 
 namespace sidestep {
 namespace {
@@ -45,6 +47,14 @@ bool parse_plain(const YAML::Node& node, Number& value) {
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
   return error == std::errc{} && stop == end;
+}
+
+std::string name_from(const YAML::Node& node, const YamlLocation& location,
+                      std::span<const std::string_view> names) {
+  const std::string name = text_from(node, location);
+  if (std::ranges::find(names, name) == names.end())
+    location.fail(fmt::format("expected one of {}, got \"{}\"", fmt::join(names, ", "), name.substr(0, 40)));
+  return name;
 }
 
 }  // namespace
@@ -131,6 +141,7 @@ YamlMap::YamlMap(const YAML::Node& node, YamlLocation location)
 }
 
 YAML::Node YamlMap::find(const std::string& key) {
+  if (schema_) schema_->mention(key);
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
   for (const auto& entry : node_) {
     if (entry.first.Scalar() == key) return entry.second;
@@ -140,6 +151,10 @@ YAML::Node YamlMap::find(const std::string& key) {
 
 YAML::Node YamlMap::require(const std::string& key) {
   const YAML::Node node = find(key);
+  if (schema_) {
+    schema_->require(key);
+    return node;
+  }
   if (!node.IsDefined()) location_.fail(fmt::format("key \"{}\" is missing", key));
   return node;
 }
@@ -155,16 +170,19 @@ YamlLocation YamlMap::location_of(const std::string& key) {
 }
 
 void YamlMap::read(const std::string& key, Range range, double& value) {
+  if (schema_) return schema_->add_number(key, range, value);
   const YAML::Node node = find(key);
   if (node.IsDefined()) value = number_from(node, location_of(key), range);
 }
 
 void YamlMap::read(const std::string& key, Range range, int& value) {
+  if (schema_) return schema_->add_integer(key, range, value);
   const YAML::Node node = find(key);
   if (node.IsDefined()) value = static_cast<int>(integer_from(node, location_of(key), range));
 }
 
 void YamlMap::read(const std::string& key, Range range, Vec2& value) {
+  if (schema_) return schema_->add_point(key, range, value);
   const YAML::Node node = find(key);
   if (!node.IsDefined()) return;
   const auto numbers = numbers_from(node, location_of(key), 2, 2, range);
@@ -172,16 +190,14 @@ void YamlMap::read(const std::string& key, Range range, Vec2& value) {
 }
 
 void YamlMap::read(const std::string& key, std::span<const std::string_view> names, std::string& value) {
+  if (schema_) return schema_->add_names(key, names, value);
   const YAML::Node node = find(key);
   if (!node.IsDefined()) return;
-  const YamlLocation location = location_of(key);
-  const std::string name = text_from(node, location);
-  if (std::ranges::find(names, name) == names.end())
-    location.fail(fmt::format("expected one of {}, got \"{}\"", fmt::join(names, ", "), name.substr(0, 40)));
-  value = name;
+  value = name_from(node, location_of(key), names);
 }
 
 void YamlMap::read(const std::string& key, bool& value) {
+  if (schema_) return schema_->add_flag(key, value);
   const YAML::Node node = find(key);
   if (!node.IsDefined()) return;
   const bool is_plain = node.IsScalar() && node.Tag() == "?";
@@ -192,16 +208,78 @@ void YamlMap::read(const std::string& key, bool& value) {
 }
 
 void YamlMap::read_heading(const std::string& key, double& value_rad) {
+  if (schema_) return schema_->add(key, heading_schema());
   const YAML::Node node = find(key);
   if (node.IsDefined()) value_rad = heading_from(node, location_of(key));
 }
 
 void YamlMap::read_ms(const std::string& key, Range range_ms, Duration& value) {
-  double milliseconds = to_seconds(value) * 1e3;
-  const YAML::Node node = find(key);
-  if (!node.IsDefined()) return;
+  double milliseconds = std::round(to_seconds(value) * 1e9) / 1e6;
+  if (schema_) return schema_->add_number(key, range_ms, milliseconds);
+  if (!find(key).IsDefined()) return;
   read(key, range_ms, milliseconds);
   value = from_seconds(milliseconds * 1e-3);
+}
+
+std::optional<double> YamlMap::number(const std::string& key, Range range) {
+  const YAML::Node node = find(key);
+  if (schema_) schema_->add(key, number_schema(range));
+  if (!node.IsDefined()) return std::nullopt;
+  return number_from(node, location_of(key), range);
+}
+
+std::optional<long> YamlMap::integer(const std::string& key, Range range) {
+  const YAML::Node node = find(key);
+  if (schema_) schema_->add(key, integer_schema(range));
+  if (!node.IsDefined()) return std::nullopt;
+  return integer_from(node, location_of(key), range);
+}
+
+std::optional<std::string> YamlMap::text(const std::string& key) {
+  const YAML::Node node = find(key);
+  if (schema_) schema_->add(key, text_schema());
+  if (!node.IsDefined()) return std::nullopt;
+  return text_from(node, location_of(key));
+}
+
+std::optional<std::vector<double>> YamlMap::numbers(const std::string& key, std::size_t min_count,
+                                                    std::size_t max_count, Range range) {
+  const YAML::Node node = find(key);
+  if (schema_) schema_->add(key, list_schema(number_schema(range), min_count, max_count));
+  if (!node.IsDefined()) return std::nullopt;
+  return numbers_from(node, location_of(key), min_count, max_count, range);
+}
+
+std::vector<Vec2> YamlMap::points(const std::string& key, std::size_t min_count, std::size_t max_count,
+                                  Range range) {
+  const YAML::Node node = find(key);
+  if (schema_) schema_->add(key, list_schema(list_schema(number_schema(range), 2, 2), min_count, max_count));
+  std::vector<Vec2> points;
+  if (!node.IsDefined()) return points;
+  const YamlLocation location = location_of(key);
+  for (const YAML::Node& element : list_from(node, location, max_count)) {
+    const auto numbers = numbers_from(element, location.of(element, location.what), 2, 2, range);
+    points.emplace_back(numbers[0], numbers[1]);
+  }
+  if (points.size() < min_count) {
+    location.fail(min_count == 1 ? "expected at least one point"
+                                 : fmt::format("expected at least {} points", min_count));
+  }
+  return points;
+}
+
+std::vector<std::string> YamlMap::names(const std::string& key, std::span<const std::string_view> names,
+                                        std::size_t max_count) {
+  const YAML::Node node = find(key);
+  if (schema_)
+    schema_->add(
+        key, list_schema(name_schema(std::vector<std::string>(names.begin(), names.end())), 0, max_count));
+  std::vector<std::string> found;
+  if (!node.IsDefined()) return found;
+  const YamlLocation location = location_of(key);
+  for (const YAML::Node& element : list_from(node, location, max_count))
+    found.push_back(name_from(element, location.of(element, location.what), names));
+  return found;
 }
 
 void YamlMap::finish() const {
@@ -211,6 +289,37 @@ void YamlMap::finish() const {
         .fail(fmt::format("unknown key \"{}\", expected one of: {}", entry.first.Scalar().substr(0, 40),
                           fmt::join(known_, ", ")));
   }
+}
+
+void read_optional_list(YamlMap& map, const std::string& key, std::size_t min_count, std::size_t max_count,
+                        const std::function<void(YamlMap&)>& read) {
+  if (YamlSchema* const schema = map.schema())
+    return schema->add_list_of_mappings(key, min_count, max_count, read);
+  const YAML::Node node = map.find(key);
+  if (!node.IsDefined()) return;
+  const YamlLocation location = map.location_of(key);
+  const std::vector<YAML::Node> elements = list_from(node, location, max_count);
+  if (elements.size() < min_count) location.fail("expected at least one element");
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    YamlMap inner(elements[i], location.of(elements[i], fmt::format("{}[{}]", location.what, i)));
+    read(inner);
+    inner.finish();
+  }
+}
+
+void read_list(YamlMap& map, const std::string& key, std::size_t max_count,
+               const std::function<void(YamlMap&)>& read) {
+  (void)map.require(key);
+  read_optional_list(map, key, 1, max_count, read);
+}
+
+void read_section(YamlMap& map, const std::string& key, const std::function<void(YamlMap&)>& read) {
+  if (YamlSchema* const schema = map.schema()) return schema->add_mapping(key, read);
+  const YAML::Node node = map.find(key);
+  if (!node.IsDefined()) return;
+  YamlMap inner(node, map.location_of(key));
+  read(inner);
+  inner.finish();
 }
 
 YamlMap document_map(const std::string& text, const std::string& file_name, const std::string& expected) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,8 +11,11 @@
 
 #include "common/geometry/vec2.hpp"
 #include "common/time/time.hpp"
+#include "common/yaml/range.hpp"
 
 namespace sidestep {
+
+class YamlSchema;
 
 /// A location in a YAML file, for error messages.
 struct YamlLocation {
@@ -22,11 +27,6 @@ struct YamlLocation {
   [[noreturn]] void fail(const std::string& why) const;
   /// The location of a node within this one. A node without a position in the text keeps this line.
   YamlLocation of(const YAML::Node& node, const std::string& name) const;
-};
-
-struct Range {
-  double low;
-  double high;
 };
 
 // Readers of a single node. They throw a ConfigError for `location` if the node has the wrong type or is out
@@ -48,9 +48,13 @@ std::vector<double> numbers_from(const YAML::Node& node, const YamlLocation& loc
 
 /// Reads a YAML mapping strictly. A reader leaves the value unchanged if the key is missing. finish() rejects
 /// all keys that were not read; the constructor rejects duplicate keys. All functions throw ConfigError.
+///
+/// A map that is made from a schema has no content: readers find no key, and record in the schema what they
+/// would accept. So the same code reads files and describes them for editors.
 class YamlMap {
  public:
   YamlMap(const YAML::Node& node, YamlLocation location);
+  explicit YamlMap(YamlSchema& schema) : schema_(&schema) {}
 
   void read(const std::string& key, Range range, double& value);
   void read(const std::string& key, Range range, int& value);
@@ -63,6 +67,18 @@ class YamlMap {
   void read_heading(const std::string& key, double& value_rad);
   /// Reads a duration in milliseconds, for keys that end in _ms.
   void read_ms(const std::string& key, Range range_ms, Duration& value);
+  /// A finite number, a whole number, text, or a list of min_count to max_count numbers; nullopt if the key
+  /// is missing.
+  std::optional<double> number(const std::string& key, Range range);
+  std::optional<long> integer(const std::string& key, Range range);
+  std::optional<std::string> text(const std::string& key);
+  std::optional<std::vector<double>> numbers(const std::string& key, std::size_t min_count,
+                                             std::size_t max_count, Range range);
+  /// A list of min_count to max_count points; empty if the key is missing.
+  std::vector<Vec2> points(const std::string& key, std::size_t min_count, std::size_t max_count, Range range);
+  /// A list of these names; empty if the key is missing.
+  std::vector<std::string> names(const std::string& key, std::span<const std::string_view> names,
+                                 std::size_t max_count);
   /// The value of a key; undefined if the key is missing.
   YAML::Node find(const std::string& key);
   /// The value of a required key.
@@ -72,10 +88,14 @@ class YamlMap {
   const YamlLocation& location() const { return location_; }
   void finish() const;
 
+  /// The schema that this map describes; null if it reads a file.
+  YamlSchema* schema() const { return schema_; }
+
  private:
   YAML::Node node_;
   YamlLocation location_;
   std::vector<std::string> known_;
+  YamlSchema* schema_ = nullptr;
 };
 
 /// The mapping at the root of a YAML text. `expected`, for example "a marker layout", and `file_name` appear
@@ -83,28 +103,16 @@ class YamlMap {
 [[nodiscard]] YamlMap document_map(const std::string& text, const std::string& file_name,
                                    const std::string& expected);
 
+/// Calls `read` for each mapping in the list under an optional key, which has min_count to max_count
+/// elements, and rejects unknown keys in it.
+void read_optional_list(YamlMap& map, const std::string& key, std::size_t min_count, std::size_t max_count,
+                        const std::function<void(YamlMap&)>& read);
 /// Calls `read` for each mapping in the list under a required key, which has 1 to max_count elements, and
 /// rejects unknown keys in it.
-template <typename Read>
-void read_list(YamlMap& map, const std::string& key, std::size_t max_count, Read read) {
-  const YamlLocation location = map.location_of(key);
-  const std::vector<YAML::Node> elements = list_from(map.require(key), location, max_count);
-  if (elements.empty()) location.fail("expected at least one element");
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    YamlMap inner(elements[i], location.of(elements[i], location.what + "[" + std::to_string(i) + "]"));
-    read(inner);
-    inner.finish();
-  }
-}
+void read_list(YamlMap& map, const std::string& key, std::size_t max_count,
+               const std::function<void(YamlMap&)>& read);
 
 /// Calls `read` for the mapping under an optional key, and rejects unknown keys in it.
-template <typename Read>
-void read_section(YamlMap& map, const std::string& key, Read read) {
-  const YAML::Node node = map.find(key);
-  if (!node.IsDefined()) return;
-  YamlMap inner(node, map.location_of(key));
-  read(inner);
-  inner.finish();
-}
+void read_section(YamlMap& map, const std::string& key, const std::function<void(YamlMap&)>& read);
 
 }  // namespace sidestep

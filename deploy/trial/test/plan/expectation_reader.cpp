@@ -2,7 +2,9 @@
 #include "deploy/trial/test/plan/expectation_reader.hpp"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "common/yaml/yaml_schema.hpp"
 #include "deploy/trial/simulate/system/system_processes.hpp"
 #include "deploy/trial/test/plan/plan_names.hpp"
 
@@ -55,23 +57,24 @@ class ExpectationReader {
 
   RobotSet robots() { return robots_from(map_, key_, scenario_); }
 
-  double number(Range range) { return number_from(map_.require(key_), map_.location_of(key_), range); }
+  double number(Range range) {
+    (void)map_.require(key_);
+    return map_.number(key_, range).value_or(range.low);
+  }
 
   std::optional<double> optional_moment(const char* key) {
-    if (!map_.find(key).IsDefined()) return std::nullopt;
-    return moment_from(map_, key, scenario_);
+    return map_.number(key, {0, scenario_.time_limit_s});
   }
 
   void require_true() {
+    if (YamlSchema* const schema = map_.schema()) return schema->add(key_, {{"const", true}});
     bool value = false;
     map_.read(key_, value);
     if (!value) map_.location_of(key_).fail("expected true");
   }
 
   ExpectNoContact read_no_contact() {
-    ExpectNoContact check{robots(), {}};
-    if (map_.find("except").IsDefined()) check.except = robots_from(map_, "except", scenario_);
-    return check;
+    return {robots(), find_robots(map_, "except", scenario_).value_or(RobotSet{})};
   }
 
   ExpectAtRest read_rest() {
@@ -83,8 +86,7 @@ class ExpectationReader {
   ExpectMaxSpeed read_max_speed() {
     ExpectMaxSpeed check;
     check.speed_mps = number(kSpeed_mps);
-    check.robots = {roster_of(scenario_), true};
-    if (map_.find("robots").IsDefined()) check.robots = robots_from(map_, "robots", scenario_);
+    check.robots = find_robots(map_, "robots", scenario_).value_or(RobotSet{roster_of(scenario_), true});
     check.from_s = optional_moment("from_s").value_or(0);
     check.to_s = optional_moment("to_s");
     if (check.to_s && *check.to_s <= check.from_s) map_.location_of("to_s").fail("expected more than from_s");
@@ -101,28 +103,35 @@ class ExpectationReader {
   TimeSpan span() {
     TimeSpan span;
     span.from_s = start_s();
+    const std::string key = deadline_key();
+    const double time = map_.number(key, {0, 86'400'000}).value_or(0);
+    if (map_.schema()) return span;
+    span.to_s = key == "by_s" ? time : span.from_s + (key == "within_s" ? time : time * 1e-3);
+    if (span.to_s <= span.from_s)
+      map_.location_of(key).fail(fmt::format("expected a time after {:g} s", span.from_s));
+    return span;
+  }
+
+  std::string deadline_key() {
+    const std::vector<std::string> keys{"within_s", "within_ms", "by_s"};
+    if (YamlSchema* const schema = map_.schema()) return schema->choose(keys);
     std::vector<std::string> given;
-    for (const char* key : {"within_s", "within_ms", "by_s"}) {
-      if (map_.find(key).IsDefined()) given.emplace_back(key);
+    for (const std::string& key : keys) {
+      if (map_.find(key).IsDefined()) given.push_back(key);
     }
     if (given.size() != 1) map_.location().fail("expected one of the keys within_s, within_ms and by_s");
-    const double time = number_from(map_.require(given[0]), map_.location_of(given[0]), {0, 86'400'000});
-    span.to_s = given[0] == "by_s" ? time : span.from_s + (given[0] == "within_s" ? time : time * 1e-3);
-    if (span.to_s <= span.from_s)
-      map_.location_of(given[0]).fail(fmt::format("expected a time after {:g} s", span.from_s));
-    return span;
+    return given.front();
   }
 
   /// Reads the start of a span, which by default is the time of the first fault.
   double start_s() {
     const auto after_s = optional_moment("after_s");
-    const YAML::Node fault = map_.find("after_fault");
-    if (!fault.IsDefined()) return after_s.value_or(faults_.empty() ? 0 : faults_.front().at_s);
-    const YamlLocation location = map_.location_of("after_fault");
-    if (after_s) location.fail("cannot be combined with after_s");
-    if (faults_.empty()) location.fail("the scenario has no faults");
-    const Range indices{0, static_cast<double>(faults_.size() - 1)};
-    return faults_[static_cast<std::size_t>(integer_from(fault, location, indices))].at_s;
+    if (faults_.empty() && map_.find("after_fault").IsDefined())
+      map_.location_of("after_fault").fail("the scenario has no faults");
+    const auto fault = map_.integer("after_fault", {0, static_cast<double>(faults_.size()) - 1});
+    if (!fault) return after_s.value_or(faults_.empty() ? 0 : faults_.front().at_s);
+    if (after_s) map_.location_of("after_fault").fail("cannot be combined with after_s");
+    return faults_[static_cast<std::size_t>(*fault)].at_s;
   }
 
   YamlMap& map_;
@@ -136,7 +145,7 @@ class ExpectationReader {
 std::vector<Expectation> read_expectations(YamlMap& map, const Scenario& scenario,
                                            const std::vector<PlannedFault>& faults) {
   std::vector<Expectation> expectations;
-  read_list(map, "expect", kMaxExpectations, [&](YamlMap& inner) {
+  read_optional_list(map, "expect", 1, kMaxExpectations, [&](YamlMap& inner) {
     expectations.push_back(ExpectationReader(inner, scenario, faults).read());
   });
   return expectations;

@@ -10,7 +10,7 @@
 
 namespace sidestep {
 
-/// Reads the key `expect` of a scenario file (deploy/scenarios/README.md). Throws ConfigError.
+/// Reads the optional key `expect` of a scenario file (deploy/scenarios/README.md). Throws ConfigError.
 [[nodiscard]] std::vector<Expectation> read_expectations(YamlMap& map, const Scenario& scenario,
                                                          const std::vector<PlannedFault>& faults);
 

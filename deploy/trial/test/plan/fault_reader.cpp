@@ -16,7 +16,6 @@
 namespace sidestep {
 namespace {
 
-constexpr std::size_t kMaxFaults = 1000;
 constexpr Range kFaultSeconds{0.001, 3600};
 
 /// Reads one fault.
@@ -73,19 +72,16 @@ class FaultReader {
     return subject_ = process_from(map_, key_, names);
   }
 
-  void read_seconds() {
-    if (!map_.find("seconds").IsDefined()) return;
-    map_.read("seconds", kFaultSeconds, seconds_.emplace());
-  }
+  void read_seconds() { seconds_ = map_.number("seconds", kFaultSeconds); }
 
   RestartFault read_restart() {
     ProcessNames names = processes_;
     std::erase(names, "simulator");  // the simulator holds the ground truth
     RestartFault fault{subject_ = process_from(map_, key_, names), {}};
-    const YAML::Node file = map_.find("scenario");
-    if (!file.IsDefined()) return fault;
+    const auto file = map_.text("scenario");
+    if (!file) return fault;
     const YamlLocation location = map_.location_of("scenario");
-    fault.scenario_file = (std::filesystem::path(folder_) / text_from(file, location)).string();
+    fault.scenario_file = (std::filesystem::path(folder_) / *file).string();
     const ProcessNames others = system_process_names(load_scenario(fault.scenario_file));
     const bool is_agent = fault.process.starts_with("agent ");
     if (is_agent && std::ranges::find(others, fault.process) == others.end())
@@ -100,17 +96,16 @@ class FaultReader {
       return std::ranges::find(group, process) != group.end();
     };
     ProcessNames others;
-    if (map_.find("from").IsDefined())
-      others = processes_from(map_, "from", processes_);
+    if (const auto from = find_processes(map_, "from", processes_))
+      others = *from;
     else
       std::ranges::copy_if(processes_, std::back_inserter(others), std::not_fn(is_in_group));
     const auto both = std::ranges::find_if(others, is_in_group);
     if (both != others.end()) map_.location_of("from").fail(*both + " is on both sides");
     if (others.empty()) map_.location_of(key_).fail("no process is on the other side");
-    const bool is_one_way = map_.find("one_way").IsDefined();
-    const bool is_in = is_one_way && process_from(map_, "one_way", {"in", "out"}) == "in";
+    const auto one_way = find_process(map_, "one_way", {"in", "out"});
     read_seconds();
-    return is_in ? Partition{others, group, false} : Partition{group, others, !is_one_way};
+    return one_way == "in" ? Partition{others, group, false} : Partition{group, others, !one_way};
   }
 
   ImpairmentFault read_impairment() {
@@ -125,6 +120,7 @@ class FaultReader {
     read_seconds();
     bool is_clear = false;
     map_.read("clear", is_clear);
+    if (map_.schema()) return fault;
     if (is_clear != (fault.quality == kUnimpairedLink))
       map_.location_of(key_).fail(is_clear
                                       ? "clear cannot be combined with a fault"
@@ -136,14 +132,13 @@ class FaultReader {
   }
 
   void read_delays(LinkQuality& quality) {
-    const YAML::Node node = map_.find("delay_ms");
-    if (!node.IsDefined()) return;
-    const YamlLocation location = map_.location_of("delay_ms");
-    const auto delays_ms = numbers_from(node, location, 3, 3, {0, 10000});
-    quality.delay_min = from_seconds(delays_ms[0] * 1e-3);
-    quality.delay_mean = from_seconds(delays_ms[1] * 1e-3);
-    quality.delay_max = from_seconds(delays_ms[2] * 1e-3);
-    if (!std::ranges::is_sorted(delays_ms)) location.fail("expected MIN, MEAN, MAX in increasing order");
+    const auto delays_ms = map_.numbers("delay_ms", 3, 3, {0, 10000});
+    if (!delays_ms) return;
+    quality.delay_min = from_seconds((*delays_ms)[0] * 1e-3);
+    quality.delay_mean = from_seconds((*delays_ms)[1] * 1e-3);
+    quality.delay_max = from_seconds((*delays_ms)[2] * 1e-3);
+    if (!std::ranges::is_sorted(*delays_ms))
+      map_.location_of("delay_ms").fail("expected MIN, MEAN, MAX in increasing order");
   }
 
   YamlMap& map_;
@@ -158,9 +153,8 @@ class FaultReader {
 
 std::vector<PlannedFault> read_faults(YamlMap& map, const Scenario& scenario, const std::string& folder) {
   std::vector<PlannedFault> faults;
-  if (!map.find("faults").IsDefined()) return faults;
-  read_list(map, "faults", kMaxFaults,
-            [&](YamlMap& inner) { faults.push_back(FaultReader(inner, scenario, folder).read()); });
+  read_optional_list(map, "faults", 1, kMaxFaults,
+                     [&](YamlMap& inner) { faults.push_back(FaultReader(inner, scenario, folder).read()); });
   return faults;
 }
 

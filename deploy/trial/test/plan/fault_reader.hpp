@@ -10,6 +10,8 @@
 
 namespace sidestep {
 
+inline constexpr std::size_t kMaxFaults = 1000;
+
 /// Reads the key `faults` of a scenario file (deploy/scenarios/README.md). Paths in it are relative to
 /// `folder`. Throws ConfigError.
 [[nodiscard]] std::vector<PlannedFault> read_faults(YamlMap& map, const Scenario& scenario,

@@ -12,6 +12,8 @@
 
 namespace sidestep {
 
+class YamlMap;
+
 /// A scenario with faults and with expectations for its runs. All names and times in it are valid.
 struct FaultTest {
   std::string file;
@@ -32,5 +34,8 @@ template <typename Action>
 [[nodiscard]] FaultTest load_fault_test(const std::string& path);
 /// Parses the text of a scenario file with these keys.
 [[nodiscard]] FaultTest parse_fault_test(const std::string& text, const std::string& file);
+
+/// Records the keys `faults` and `expect` in the schema of the map.
+void describe_fault_test(YamlMap& map);
 
 }  // namespace sidestep

@@ -4,14 +4,18 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "common/yaml/yaml_schema.hpp"
 
 namespace sidestep {
 namespace {
 
 constexpr std::size_t kMaxNames = 2048;
+constexpr Range kRobot{0, kMaxRobots - 1};
 
 RobotId robot_from_node(const YAML::Node& node, const YamlLocation& location, const Scenario& scenario) {
-  const auto robot = static_cast<RobotId>(integer_from(node, location, {0, kMaxRobots - 1}));
+  const auto robot = static_cast<RobotId>(integer_from(node, location, kRobot));
   if (!find_robot(scenario, robot)) location.fail(fmt::format("the scenario has no robot {}", robot));
   return robot;
 }
@@ -27,6 +31,7 @@ std::string process_from_node(const YAML::Node& node, const YamlLocation& locati
 }  // namespace
 
 std::string only_key_of(YamlMap& map, const std::vector<std::string>& keys, const char* what) {
+  if (YamlSchema* const schema = map.schema()) return schema->choose(keys);
   std::vector<std::string> found;
   for (const std::string& key : keys) {
     if (map.find(key).IsDefined()) found.push_back(key);
@@ -38,13 +43,24 @@ std::string only_key_of(YamlMap& map, const std::vector<std::string>& keys, cons
 }
 
 RobotId robot_from(YamlMap& map, const std::string& key, const Scenario& scenario) {
-  return robot_from_node(map.require(key), map.location_of(key), scenario);
+  const YAML::Node node = map.require(key);
+  if (YamlSchema* const schema = map.schema()) {
+    schema->add(key, integer_schema(kRobot));
+    return 0;
+  }
+  return robot_from_node(node, map.location_of(key), scenario);
 }
 
-RobotSet robots_from(YamlMap& map, const std::string& key, const Scenario& scenario) {
-  const YAML::Node node = map.require(key);
+std::optional<RobotSet> find_robots(YamlMap& map, const std::string& key, const Scenario& scenario) {
+  if (YamlSchema* const schema = map.schema()) {
+    const JsonSchema robot = integer_schema(kRobot);
+    schema->add(key, any_schema_of({{{"const", "all"}}, robot, list_schema(robot, 1, kMaxNames)}));
+    return std::nullopt;
+  }
+  const YAML::Node node = map.find(key);
+  if (!node.IsDefined()) return std::nullopt;
   const YamlLocation location = map.location_of(key);
-  if (node.IsScalar() && node.Scalar() == "all") return {roster_of(scenario), true};
+  if (node.IsScalar() && node.Scalar() == "all") return RobotSet{roster_of(scenario), true};
   RobotSet robots;
   if (node.IsScalar()) {
     robots.ids.push_back(robot_from_node(node, location, scenario));
@@ -56,15 +72,34 @@ RobotSet robots_from(YamlMap& map, const std::string& key, const Scenario& scena
   return robots;
 }
 
-std::string process_from(YamlMap& map, const std::string& key, const std::vector<std::string>& names) {
-  return process_from_node(map.require(key), map.location_of(key), names);
+RobotSet robots_from(YamlMap& map, const std::string& key, const Scenario& scenario) {
+  (void)map.require(key);
+  return find_robots(map, key, scenario).value_or(RobotSet{});
 }
 
-std::vector<std::string> processes_from(YamlMap& map, const std::string& key,
+std::optional<std::string> find_process(YamlMap& map, const std::string& key,
                                         const std::vector<std::string>& names) {
-  const YAML::Node node = map.require(key);
+  const YAML::Node node = map.find(key);
+  if (YamlSchema* const schema = map.schema()) schema->add(key, name_schema(names));
+  if (!node.IsDefined()) return std::nullopt;
+  return process_from_node(node, map.location_of(key), names);
+}
+
+std::string process_from(YamlMap& map, const std::string& key, const std::vector<std::string>& names) {
+  (void)map.require(key);
+  return find_process(map, key, names).value_or(names.front());
+}
+
+std::optional<std::vector<std::string>> find_processes(YamlMap& map, const std::string& key,
+                                                       const std::vector<std::string>& names) {
+  const YAML::Node node = map.find(key);
+  if (YamlSchema* const schema = map.schema()) {
+    const JsonSchema process = name_schema(names);
+    schema->add(key, any_schema_of({process, list_schema(process, 1, kMaxNames)}));
+  }
+  if (!node.IsDefined()) return std::nullopt;
   const YamlLocation location = map.location_of(key);
-  if (node.IsScalar()) return {process_from_node(node, location, names)};
+  if (node.IsScalar()) return std::vector{process_from_node(node, location, names)};
   std::vector<std::string> processes;
   for (const YAML::Node& element : list_from(node, location, kMaxNames))
     processes.push_back(process_from_node(element, location.of(element, location.what), names));
@@ -72,8 +107,15 @@ std::vector<std::string> processes_from(YamlMap& map, const std::string& key,
   return processes;
 }
 
+std::vector<std::string> processes_from(YamlMap& map, const std::string& key,
+                                        const std::vector<std::string>& names) {
+  (void)map.require(key);
+  return find_processes(map, key, names).value_or(std::vector{names.front()});
+}
+
 double moment_from(YamlMap& map, const std::string& key, const Scenario& scenario) {
-  return number_from(map.require(key), map.location_of(key), {0, scenario.time_limit_s});
+  (void)map.require(key);
+  return map.number(key, {0, scenario.time_limit_s}).value_or(0);
 }
 
 }  // namespace sidestep

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,22 @@ namespace sidestep {
 
 /// Reads a robot of the scenario.
 [[nodiscard]] RobotId robot_from(YamlMap& map, const std::string& key, const Scenario& scenario);
-/// Reads "all", a robot, or a list of robots.
+/// Reads "all", a robot, or a list of robots; nullopt if the key is missing.
+[[nodiscard]] std::optional<RobotSet> find_robots(YamlMap& map, const std::string& key,
+                                                  const Scenario& scenario);
+/// The same under a required key.
 [[nodiscard]] RobotSet robots_from(YamlMap& map, const std::string& key, const Scenario& scenario);
 
-/// Reads one of these names.
+/// Reads one of these names; nullopt if the key is missing.
+[[nodiscard]] std::optional<std::string> find_process(YamlMap& map, const std::string& key,
+                                                      const std::vector<std::string>& names);
+/// The same under a required key.
 [[nodiscard]] std::string process_from(YamlMap& map, const std::string& key,
                                        const std::vector<std::string>& names);
-/// Reads one or several of these names.
+/// Reads one or several of these names; nullopt if the key is missing.
+[[nodiscard]] std::optional<std::vector<std::string>> find_processes(YamlMap& map, const std::string& key,
+                                                                     const std::vector<std::string>& names);
+/// The same under a required key.
 [[nodiscard]] std::vector<std::string> processes_from(YamlMap& map, const std::string& key,
                                                       const std::vector<std::string>& names);
 

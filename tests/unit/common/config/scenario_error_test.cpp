@@ -72,7 +72,8 @@ TEST_CASE("invalid image settings are rejected with their line") {
   CHECK(error_of(images("")) == "accepted");
   CHECK(error_of(images("format: rgb, width_px: 2448, height_px: 2048")) == "accepted");
   CHECK(error_of(images("format: rgb, width_px: 781")) == "accepted");
-  check_rejected(images("format: bayer"), 3, "vision.images.format: expected yuv422 or rgb, got \"bayer\"");
+  check_rejected(images("format: bayer"), 3,
+                 "vision.images.format: expected one of yuv422, rgb, got \"bayer\"");
   check_rejected(images("width_px: 15"), 3, "vision.images.width_px: expected 16 to 4096");
   check_rejected(images("width_px: 781"), 3, "expected an even number");
   check_rejected(images("width_px: 4096, height_px: 4096"), 3, "33554432 bytes, expected at most 16777216");
@@ -128,10 +129,10 @@ TEST_CASE("values of the wrong type are rejected with their line") {
   check_rejected(kRobot + "obstacles: {centre_m: [0, 0]}\n", 2, "expected a list");
   check_rejected(kRobot + "obstacles:\n- 3\n", 3, "expected a mapping");
   check_rejected(kRobot + "restart:\n- agents\n- everything\n", 4,
-                 "expected agents, coordinator, vision or robots");
+                 "restart: expected one of agents, coordinator, vision, robots, got \"everything\"");
   check_rejected(kRobot + "ball: {position_m: [1]}\n", 2, "expected a list of 2 numbers, got 1");
   check_rejected("robots:\n- {id: 0, team: red, start_m: [0, 0], goals_m: [[1, 0]]}\n", 2,
-                 "expected blue or yellow");
+                 "robots[0].team: expected one of blue, yellow, got \"red\"");
   check_rejected("robots:\n- {id: 0, start_m: [0, 0], goals_m: [1, 0]}\n", 2,
                  "expected a list of 2 to 3 numbers");
   check_rejected("robots:\n- id: 0\n  start_m: [0, 0]\n  goals_m:\n  - [1, 0]\n  - [1, 0, 0, 0]\n", 6,
