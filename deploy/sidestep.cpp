@@ -27,6 +27,8 @@
 #include "deploy/trial/fault/attest_command.hpp"
 #include "deploy/trial/fault/fault_command.hpp"
 #include "deploy/trial/planning/plan_command.hpp"
+#include "deploy/trial/scenario/check_command.hpp"
+#include "deploy/trial/scenario/new_command.hpp"
 #include "deploy/trial/simulate/building/building_command.hpp"
 #include "deploy/trial/simulate/simulate_command.hpp"
 #include "deploy/trial/test/test_command.hpp"
@@ -65,6 +67,8 @@ int main(int argc, char** argv) {
   std::function<int()> action;
   add_run_command(app, action);
   add_simulate_command(app, action);
+  add_new_command(app, action);
+  add_check_command(app, action);
   add_building_command(app, action);
   add_topic_command(app, action);
   add_graph_command(app, action);
