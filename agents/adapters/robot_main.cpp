@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -7,6 +8,8 @@
 #include "agents/adapters/league/league_driver.hpp"
 #include "agents/adapters/robot_driver_node.hpp"
 #include "agents/adapters/robot_list.hpp"
+#include "agents/adapters/skeleton/skeleton_camera.hpp"
+#include "agents/adapters/skeleton/skeleton_driver.hpp"
 #include "agents/adapters/velocity/velocity_driver.hpp"
 #include "common/log/log.hpp"
 #include "common/process/bases_bus.hpp"
@@ -27,8 +30,10 @@ struct Options {
 };
 
 void add_options(const CliCommand& app, Options& options) {
-  app.add_option("--driver", options.driver, "driver that moves the robots: league, velocity")
-      .check(one_of({"league", "velocity"}))
+  app.add_option(
+         "--driver", options.driver,
+         "driver that moves the robots: league, velocity; skeleton: ideal bases, the template for drivers")
+      .check(one_of({"league", "velocity", "skeleton"}))
       .required();
   app.add_option("--robots", options.robots, "numbers and ranges of the scenario's robots, such as 0-10,16")
       .show_default();
@@ -49,6 +54,8 @@ void add_options(const CliCommand& app, Options& options) {
 std::unique_ptr<Driver> make_driver(DdsBus& bus, Bus* bases, const Scenario& scenario,
                                     const std::vector<RobotId>& robots, const Options& options) {
   if (bases) return std::make_unique<VelocityDriver>(*bases, robots, options.bases.topic_prefix);
+  if (options.driver == "skeleton")
+    return std::make_unique<SkeletonDriver>(robots, [&bus] { return bus.now(); });
   const LeaguePorts ports{league::parse_unicast_endpoint(options.blue),
                           league::parse_unicast_endpoint(options.yellow)};
   auto driver = std::make_unique<LeagueDriver>(scenario, robots, ports);
@@ -64,11 +71,15 @@ struct Nodes {
         driver(make_driver(bus, bases.get(), scenario, robots, options)),
         node(bus, scenario, robots, incarnation,
              drive_settings(scenario, from_seconds(options.latency_ms * 1e-3)), *driver,
-             options.memory_folder) {}
+             options.memory_folder) {
+    if (const auto* skeleton = dynamic_cast<const SkeletonDriver*>(driver.get()))
+      camera.emplace(bus, scenario, robots, *skeleton, incarnation);
+  }
   std::vector<RobotId> robots;
   std::shared_ptr<Bus> bases;
   std::unique_ptr<Driver> driver;
   RobotDriverNode node;
+  std::optional<SkeletonCamera> camera;  ///< only ideal bases need one
 };
 
 }  // namespace

@@ -123,6 +123,16 @@ TEST_CASE(
        << " m");
 }
 
+TEST_CASE("the template for drivers drives its ideal bases through a whole run", "[both-cores]") {
+  LaunchedRun run(shipped_scenario("bases/four-bases"), {"--driver", "skeleton", "--robots=--latency-ms 0"});
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  CHECK(ended == "exit code 0");
+  const auto report = run.report();
+  require_no_violations(report);
+  CHECK(report["arrived"] == 4);
+}
+
 TEST_CASE("twists and odometry published by another vendor's DDS are decoded") {
   const TestDomain domain;
   DdsBus bus(domain.settings("test"));

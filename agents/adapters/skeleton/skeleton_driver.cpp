@@ -9,7 +9,7 @@ SkeletonDriver::SkeletonDriver(const std::vector<RobotId>& robots, std::function
     : now_(std::move(now)) {
   // Open the connection to your bases here. Throw std::invalid_argument if an option is wrong, and
   // std::runtime_error if the connection cannot be opened.
-  for (const RobotId robot : robots) bases_.push_back({robot, now_(), {0, 0}, 0});
+  for (const RobotId robot : robots) bases_.push_back({{robot, now_(), {0, 0}, 0}, {}});
 }
 
 void SkeletonDriver::send(std::span<const BaseCommand> commands) {
@@ -17,14 +17,19 @@ void SkeletonDriver::send(std::span<const BaseCommand> commands) {
   for (const BaseCommand& command : commands) {
     // Send command.velocity to the base of command.robot here, without waiting. The code below simulates what
     // a base does:
-    const auto base = std::ranges::find(bases_, command.robot, &OdometryReport::robot);
+    const auto base =
+        std::ranges::find_if(bases_, [&](const Base& one) { return one.odometry.robot == command.robot; });
     if (base == bases_.end()) continue;
-    const double elapsed_s = to_seconds(now - base->measured_at);
-    base->position_m += elapsed_s * rotated(command.velocity.linear_mps, base->heading_rad);
-    base->heading_rad += elapsed_s * command.velocity.turn_radps;
-    base->measured_at = now;
+    OdometryReport& odometry = base->odometry;
+    const double elapsed_s = to_seconds(now - odometry.measured_at);
+    const double turn_rad = elapsed_s * base->velocity.turn_radps;
+    odometry.position_m +=
+        elapsed_s * rotated(base->velocity.linear_mps, odometry.heading_rad + turn_rad / 2);
+    odometry.heading_rad += turn_rad;
+    odometry.measured_at = now;
+    base->velocity = command.velocity;
     // When a base reports its odometry, check that its numbers are finite, and pass it on:
-    if (callback_) callback_(*base);
+    if (callback_) callback_(odometry);
   }
 }
 
@@ -33,7 +38,7 @@ void SkeletonDriver::on_odometry(std::function<void(const OdometryReport&)> call
 }
 
 const OdometryReport& SkeletonDriver::base(RobotId robot) const {
-  return *std::ranges::find(bases_, robot, &OdometryReport::robot);
+  return std::ranges::find_if(bases_, [&](const Base& one) { return one.odometry.robot == robot; })->odometry;
 }
 
 }  // namespace sidestep

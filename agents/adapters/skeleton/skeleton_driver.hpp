@@ -7,8 +7,8 @@
 
 namespace sidestep {
 
-/// A template for new drivers. Unchanged, it drives ideal bases, which move exactly as commanded and report
-/// their motion.
+/// A template for new drivers. Unchanged, it drives ideal bases, which move exactly as commanded, without a
+/// latency, and report their motion.
 class SkeletonDriver : public Driver {
  public:
   /// `now` returns the process's time.
@@ -21,9 +21,14 @@ class SkeletonDriver : public Driver {
   const OdometryReport& base(RobotId robot) const;
 
  private:
+  struct Base {
+    OdometryReport odometry;
+    BodyVelocity velocity;  ///< since the odometry's time
+  };
+
   std::function<Time()> now_;
   std::function<void(const OdometryReport&)> callback_;
-  std::vector<OdometryReport> bases_;
+  std::vector<Base> bases_;
 };
 
 }  // namespace sidestep

@@ -34,6 +34,6 @@ FloorProcess vision_process(const FloorOptions& options) {
   return {"vision", "sidestep-vision", arguments};
 }
 
-std::vector<std::string> driver_names() { return {"league", "velocity"}; }
+std::vector<std::string> driver_names() { return {"league", "velocity", "skeleton"}; }
 
 }  // namespace sidestep

@@ -21,7 +21,7 @@ TEST_CASE("the driver template moves ideal bases and reports their positions") {
     driver.send(commands);
   }
   CHECK(driver.base(2).position_m == Vec2(0, 0));
-  CHECK(driver.base(5).position_m.x() == Approx(0.5));
+  CHECK(driver.base(5).position_m.x() == Approx(0.495));  // each command holds until the next
   const auto velocity = measured.mean(now - 10ms, now);
   REQUIRE(velocity);
   CHECK(velocity->linear_mps.y() == Approx(0.1));
