@@ -39,7 +39,7 @@ robots:
 # People, or robots of others, who walk to and fro and do not give way.
 #max_opponent_speed_mps: 1.5         # robots keep clear of whatever moves no faster than this
 #opponents:
-#  - {radius_m: 0.25, speed_mps: 1, path_m: [[-1, -2], [-1, 2]]}
+#  - {radius_m: 0.25, speed_mps: 1, path_m: [[-1.8, -2], [-1.8, 2]]}
 
 # What the simulator's cameras see.
 vision: {rate_hz: 60, position_noise_m: 0.0005, delay_ms: 10}
