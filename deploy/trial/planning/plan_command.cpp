@@ -100,7 +100,12 @@ int plan(const PlanOptions& options) {
     PlanDrawing drawing = planner.draw();
     if (planner.local && planner.local->uses_band && found.arrives() && smoothed.states.size() > 1)
       drawing.band = band_along(smoothed.states, planner, world, obstacles);
-    write_file(options.picture_file, plan_picture(world, query, drawing, found.states, smoothed.states));
+    const std::string subtitle = fmt::format(
+        "query {}, {}: {}", options.query, options.planner,
+        found.arrives() ? fmt::format("{:.2f} m, smoothed {:.2f} m", found.length, smoothed.length)
+                        : std::string(name_of(found.reason)));
+    write_file(options.picture_file,
+               plan_picture(world, query, drawing, found.states, smoothed.states, subtitle));
   }
   require_printed(error);
   return found.arrives() ? 0 : kExitFailure;

@@ -3,59 +3,68 @@
 
 #include <fmt/format.h>
 
-#include "deploy/trial/shape_picture.hpp"
+#include "common/svg/floor_sheet.hpp"
 
 namespace sidestep {
 namespace {
 
-constexpr double kPixelsPerMetre = 100;
+constexpr const char *kTree = "#1f6feb", *kGoalTree = "#9a6700", *kCache = "#8250df", *kCell = "#2da44e",
+                     *kPath = "#57606a", *kSmoothed = "#cf222e", *kStart = "#137a3a";
 
-double x_of(const Vec2& p) { return kPixelsPerMetre * p.x(); }
-/// SVG's y axis points down.
-double y_of(const Vec2& p) { return -kPixelsPerMetre * p.y(); }
-
-std::string line(const Segment& s) {
-  return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x_of(s.from_m), y_of(s.from_m), x_of(s.to_m),
-                     y_of(s.to_m));
+std::string stroke(const char* colour, double width_px, const char* more = "") {
+  return fmt::format("stroke='{}' stroke-width='{}'{}", colour, width_px, more);
 }
 
-std::string lines(const std::vector<Segment>& segments, const char* colour) {
-  if (segments.empty()) return {};
-  std::string path;
-  for (const Segment& segment : segments) path += line(segment);
-  return fmt::format("<path d='{}' fill='none' stroke='{}' stroke-width='1'/>\n", path, colour);
-}
-
-std::string disc(const Vec2& centre, double radius_m, const char* style) {
-  return svg_disc(centre, radius_m, style, kPixelsPerMetre);
-}
-
-std::string polyline(const std::vector<Vec2>& path, const char* style) {
-  return fmt::format("<polyline points='{}' fill='none' {}/>\n", svg_points(path, kPixelsPerMetre), style);
+std::vector<LegendEntry> legend_of(const PlanDrawing& drawing, bool has_path) {
+  std::vector<LegendEntry> legend{
+      dot_entry("start", fmt::format("fill='{}'", kStart)),
+      dot_entry("goal", "fill='none' " + stroke(kSmoothed, 3)),
+      area_entry("obstacle", fmt::format("fill='{}'", kObstacleColour)),
+  };
+  if (has_path) {
+    legend.push_back(line_entry("path", stroke(kPath, 3, " stroke-dasharray='6 4'")));
+    legend.push_back(line_entry("smoothed path", stroke(kSmoothed, 4)));
+  }
+  if (!drawing.tree.empty()) legend.push_back(line_entry("explored", stroke(kTree, 1.5)));
+  if (!drawing.goal_tree.empty())
+    legend.push_back(line_entry("explored from the goal, or equal cost", stroke(kGoalTree, 1.5)));
+  if (!drawing.cells.empty()) legend.push_back(area_entry("cell", "fill='#dafbe1' " + stroke(kCell, 1)));
+  if (!drawing.cache.empty())
+    legend.push_back(dot_entry("waypoint cache", fmt::format("fill='{}'", kCache), 4));
+  if (!drawing.band.empty())
+    legend.push_back(dot_entry(
+        "band", fmt::format("fill='{0}' fill-opacity='0.15' {1}", kGoalTree, stroke(kGoalTree, 1))));
+  return legend;
 }
 
 }  // namespace
 
 std::string plan_picture(const PlanWorld& world, const PlanQuery& query, const PlanDrawing& drawing,
-                         const std::vector<Vec2>& path_m, const std::vector<Vec2>& smoothed_m) {
-  const double width = kPixelsPerMetre * world.field.length_m, height = kPixelsPerMetre * world.field.width_m;
-  std::string svg = fmt::format(
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='{:.1f} {:.1f} {:.1f} {:.1f}'>\n<rect x='{:.1f}' "
-      "y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='#f6f8fa' stroke='#8b949e' stroke-width='2'/>\n",
-      -width / 2, -height / 2, width, height, -width / 2, -height / 2, width, height);
+                         const std::vector<Vec2>& path_m, const std::vector<Vec2>& smoothed_m,
+                         const std::string& subtitle) {
+  const Vec2 corner_m = Vec2(world.field.length_m, world.field.width_m) / 2;
+  FloorSheet sheet;
+  sheet.view = sheet_view({-corner_m, corner_m});
+  sheet.title = world.name;
+  sheet.subtitle = subtitle;
+  const FloorView& view = sheet.view;
+  std::string& svg = sheet.floor;
   for (const ConvexPolygon& cell : drawing.cells)
-    svg += fmt::format("<polygon points='{}' fill='#dafbe1' stroke='#2da44e' stroke-width='0.5'/>\n",
-                       svg_points(cell.corners_m, kPixelsPerMetre));
-  for (const Shape& shape : world.obstacles) svg += svg_obstacle(shape, kPixelsPerMetre);
-  svg += lines(drawing.tree, "#1f6feb") + lines(drawing.goal_tree, "#bf8700");
-  for (const Vec2& point : drawing.cache) svg += disc(point, 0.03, "fill='#8250df'");
+    svg += svg_polygon(view, cell.corners_m, "fill='#dafbe1' " + stroke(kCell, 0.5));
+  for (const Shape& shape : world.obstacles) svg += svg_obstacle(view, shape);
+  svg += svg_segments(view, drawing.tree, stroke(kTree, 1)) +
+         svg_segments(view, drawing.goal_tree, stroke(kGoalTree, 1));
+  for (const Vec2& point : drawing.cache)
+    svg += svg_disc(view, point, 0.03, fmt::format("fill='{}'", kCache));
   for (const Circle& bubble : drawing.band)
-    svg += disc(bubble.centre_m, bubble.radius_m, "fill='#bf8700' fill-opacity='0.15' stroke='#bf8700'");
-  svg += polyline(path_m, "stroke='#8b949e' stroke-width='3' stroke-dasharray='6 4'");
-  svg += polyline(smoothed_m, "stroke='#cf222e' stroke-width='4'");
-  svg += disc(query.start_m, world.radius_m, "fill='#2da44e'");
-  svg += disc(query.goal_m, world.radius_m, "fill='none' stroke='#cf222e' stroke-width='3'");
-  return svg + "</svg>\n";
+    svg += svg_disc(view, bubble.centre_m, bubble.radius_m,
+                    fmt::format("fill='{0}' fill-opacity='0.15' stroke='{0}'", kGoalTree));
+  svg += svg_polyline(view, path_m, stroke(kPath, 3, " stroke-dasharray='6 4'")) +
+         svg_polyline(view, smoothed_m, stroke(kSmoothed, 4));
+  svg += svg_disc(view, query.start_m, world.radius_m, fmt::format("fill='{}'", kStart)) +
+         svg_disc(view, query.goal_m, world.radius_m, "fill='none' " + stroke(kSmoothed, 3));
+  sheet.legend = legend_of(drawing, !path_m.empty());
+  return svg_sheet(sheet);
 }
 
 }  // namespace sidestep

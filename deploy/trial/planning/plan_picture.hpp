@@ -8,9 +8,10 @@
 
 namespace sidestep {
 
-/// Draws the world, its explored part, and the path before and after smoothing, as SVG.
+/// Draws the world, its explored part, and the path before and after smoothing, as SVG. The subtitle says
+/// which planner found what.
 [[nodiscard]] std::string plan_picture(const PlanWorld& world, const PlanQuery& query,
                                        const PlanDrawing& drawing, const std::vector<Vec2>& path_m,
-                                       const std::vector<Vec2>& smoothed_m);
+                                       const std::vector<Vec2>& smoothed_m, const std::string& subtitle = "");
 
 }  // namespace sidestep

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/trial/simulate/laser_picture.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
 
-#include "deploy/trial/shape_picture.hpp"
-#include "deploy/trial/simulate/floor_picture.hpp"
+#include "common/svg/palette.hpp"
+#include "common/svg/svg.hpp"
 
 namespace sidestep {
 namespace {
+
+constexpr double kMinDisc_px = 9;  // radius of a legible robot
+constexpr const char *kSeen = "#2da44e", *kHidden = "#cf222e", *kMoving = "#bf8700", *kAtRest = "#8b949e",
+                     *kUnknown = "#8250df", *kOccupied = "#24292f", *kOtherRobot = "#57606a";
 
 const LaserSpec& laser_of(const Scenario& scenario, RobotId robot) {
   if (!scenario.laser) throw std::invalid_argument("the scenario's robots have no laser");
@@ -17,20 +22,24 @@ const LaserSpec& laser_of(const Scenario& scenario, RobotId robot) {
   return *scenario.laser;
 }
 
-std::string svg_line(const Vec2& from_m, const Vec2& to_m, const char* colour, double width) {
-  return fmt::format(
-      "<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' stroke='{}' stroke-width='{}' "
-      "stroke-linecap='round'/>\n",
-      kPixelsPerMetre * from_m.x(), -kPixelsPerMetre * from_m.y(), kPixelsPerMetre * to_m.x(),
-      -kPixelsPerMetre * to_m.y(), colour, width);
+Box field_of(const Scenario& scenario) {
+  const Vec2 corner_m = Vec2(scenario.field.length_m, scenario.field.width_m) / 2;
+  return {-corner_m, corner_m};
 }
 
-std::string svg_square(const Box& box, const char* colour, double opacity) {
-  const Vec2 size = box.max_m - box.min_m;
-  return fmt::format(
-      "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' fill='{}' fill-opacity='{}'/>\n",
-      kPixelsPerMetre * box.min_m.x(), -kPixelsPerMetre * box.max_m.y(), kPixelsPerMetre * size.x(),
-      kPixelsPerMetre * size.y(), colour, opacity);
+std::string fill(const char* colour, double opacity) {
+  return fmt::format("fill='{}' fill-opacity='{}'", colour, opacity);
+}
+
+std::vector<LegendEntry> legend() {
+  return {dot_entry("the robot that looks", fmt::format("fill='{}'", distinct_colour(0))),
+          dot_entry("other robot", fmt::format("fill='{}'", kOtherRobot)),
+          area_entry("seen by the laser", fill(kSeen, 0.3)),
+          area_entry("hit", fill(kOccupied, 0.6)),
+          line_entry("people may step out here", fmt::format("stroke='{}' stroke-width='4'", kHidden)),
+          area_entry("not known", fill(kUnknown, 0.3)),
+          dot_entry("moves", fmt::format("fill='none' stroke='{}' stroke-width='4'", kMoving)),
+          dot_entry("rests", fmt::format("fill='none' stroke='{}' stroke-width='4'", kAtRest))};
 }
 
 }  // namespace
@@ -38,6 +47,7 @@ std::string svg_square(const Box& box, const char* colour, double opacity) {
 LaserPicture::LaserPicture(const Scenario& scenario, RobotId robot)
     : scenario_(scenario),
       robot_(robot),
+      view_(sheet_view(field_of(scenario))),
       rules_(floor_rules(scenario)),
       decoder_(robot, laser_of(scenario, robot).settings),
       sight_(*scenario.laser, rules_, {.position_error_m = scenario.tracking_bound_m}) {}
@@ -57,48 +67,71 @@ void LaserPicture::add(const msg::LaserScan& message) {
 }
 
 std::string LaserPicture::svg_grid() const {
-  std::string svg;
+  std::vector<Box> hits;
   const LocalGrid& grid = sight_.grid();
-  const Box floor{{-scenario_.field.length_m / 2, -scenario_.field.width_m / 2},
-                  {scenario_.field.length_m / 2, scenario_.field.width_m / 2}};
-  grid.for_each_occupied(floor,
-                         [&](const Cell& cell) { svg += svg_square(grid.box_of(cell), "#24292f", 0.6); });
+  grid.for_each_occupied(field_of(scenario_), [&](const Cell& cell) { hits.push_back(grid.box_of(cell)); });
+  std::string svg;
+  for (const Box& hit : hits) {
+    const Vec2 corner = view_.px(Vec2(hit.min_m.x(), hit.max_m.y())),
+               size = view_.pixels_per_metre * (hit.max_m - hit.min_m);
+    svg += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' {}/>\n", corner.x(),
+                       corner.y(), size.x(), size.y(), fill(kOccupied, 0.6));
+  }
   for (const Circle& square : sight_.unknown())
-    svg += svg_disc(square.centre_m, square.radius_m, "fill='#8250df' fill-opacity='0.15'", kPixelsPerMetre);
+    svg += svg_disc(view_, square.centre_m, square.radius_m, fill(kUnknown, 0.15));
   return svg;
 }
 
 std::string LaserPicture::svg_scan() const {
+  std::vector<Vec2> ends_m;
   const LaserBeams& beams = sight_.beams();
-  std::string points;
-  for (const Beam& beam : beams.all()) {
-    const Vec2 end = beams.end_m(beam);
-    points += fmt::format("{:.1f},{:.1f} ", kPixelsPerMetre * end.x(), -kPixelsPerMetre * end.y());
-  }
-  std::string svg = fmt::format("<polygon points='{}' fill='#2da44e' fill-opacity='0.15'/>\n", points);
+  for (const Beam& beam : beams.all()) ends_m.push_back(beams.end_m(beam));
+  std::string svg = svg_polygon(view_, ends_m, fill(kSeen, 0.15));
   for (const Frontier& frontier : sight_.visibility().frontiers())
-    svg += svg_line(frontier.segment.from_m, frontier.segment.to_m, "#cf222e", 4);
+    svg += svg_segments(view_, std::array{frontier.segment},
+                        fmt::format("stroke='{}' stroke-width='4' stroke-linecap='round'", kHidden));
   return svg;
 }
 
 std::string LaserPicture::svg_people() const {
   std::string svg;
   for (const LaserTrack& track : sight_.tracks()) {
-    const char* colour = track.is_moving ? "#bf8700" : "#8b949e";
-    svg += svg_disc(track.position_m, track.radius_m,
-                    fmt::format("fill='none' stroke='{}' stroke-width='5'", colour), kPixelsPerMetre);
-    if (track.is_moving) svg += svg_line(track.position_m, track.position_m + track.velocity_mps, colour, 5);
+    const std::string stroke =
+        fmt::format("stroke='{}' stroke-width='4'", track.is_moving ? kMoving : kAtRest);
+    svg += svg_disc(view_, track.position_m, track.radius_m, "fill='none' " + stroke);
+    if (track.is_moving)
+      svg += svg_segments(view_, std::array{Segment{track.position_m, track.position_m + track.velocity_mps}},
+                          stroke);
+  }
+  return svg;
+}
+
+std::string LaserPicture::svg_robots() const {
+  std::string svg;
+  const double disc_px = std::max(kMinDisc_px, view_.px(scenario_.radius_m));
+  for (const RobotSpec& robot : scenario_.robots) {
+    const auto at = robots_m_.find(robot.id);
+    if (at == robots_m_.end()) continue;
+    const Vec2 centre = view_.px(at->second);
+    svg += svg_circle(centre, disc_px,
+                      fmt::format("fill='{}'", robot.id == robot_ ? distinct_colour(0) : kOtherRobot)) +
+           svg_text({centre.x(), centre.y() + 4}, std::to_string(robot.id),
+                    "text-anchor='middle' fill='white' font-size='11'");
   }
   return svg;
 }
 
 std::string LaserPicture::svg() const {
-  std::string svg = svg_floor(scenario_);
-  if (sight_.captured_at() != Time{}) svg += svg_scan() + svg_grid() + svg_people();
-  for (const RobotSpec& robot : scenario_.robots)
-    if (const auto at = robots_m_.find(robot.id); at != robots_m_.end())
-      svg += svg_robot(scenario_, robot, at->second);
-  return svg + "</svg>\n";
+  FloorSheet sheet;
+  sheet.view = view_;
+  sheet.title = fmt::format("{}: what the laser of robot {} shows", scenario_.name, robot_);
+  sheet.subtitle = "at the end of the run";
+  if (scenario_.map) sheet.floor += svg_obstacles(view_, scenario_.map->rectangles());
+  for (const Shape& obstacle : scenario_.obstacles) sheet.floor += svg_obstacle(view_, obstacle);
+  if (sight_.captured_at() != Time{}) sheet.floor += svg_scan() + svg_grid() + svg_people();
+  sheet.floor += svg_robots();
+  sheet.legend = legend();
+  return svg_sheet(sheet);
 }
 
 }  // namespace sidestep

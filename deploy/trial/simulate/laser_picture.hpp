@@ -8,6 +8,7 @@
 #include "agents/agent/laser_scan_decoder.hpp"
 #include "agents/perception/laser_sight.hpp"
 #include "common/config/scenario.hpp"
+#include "common/svg/floor_sheet.hpp"
 #include "idl/monitor.hpp"
 
 namespace sidestep {
@@ -28,9 +29,11 @@ class LaserPicture {
   std::string svg_grid() const;
   std::string svg_scan() const;
   std::string svg_people() const;
+  std::string svg_robots() const;
 
   const Scenario& scenario_;
   RobotId robot_;
+  FloorView view_;
   FloorRules rules_;
   LaserScanDecoder decoder_;
   LaserSight sight_;

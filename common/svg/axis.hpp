@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace sidestep {
+
+/// The minimum distance between two labels of a horizontal axis.
+inline constexpr double kTickSpacing_px = 75;
+
+/// The smallest of 1, 2 and 5 times a power of ten that is at least `min`, which must be positive.
+[[nodiscard]] double round_step(double min);
+
+/// The multiples of the step from `from` to `to`.
+[[nodiscard]] std::vector<double> ticks(double from, double to, double step);
+
+/// A multiple of the step with as many decimals as the step needs.
+[[nodiscard]] std::string tick_label(double value, double step);
+
+}  // namespace sidestep
