@@ -11,6 +11,7 @@
 
 #include "common/file/write_file.hpp"
 #include "common/json/json_text.hpp"
+#include "deploy/audit/metrics/floor_trace_json.hpp"
 
 namespace sidestep {
 namespace {
@@ -83,6 +84,30 @@ Json audit_json(const AuditTotals& audit) {
   json["undecided_pairs"] = audit.undecided_pairs;
   json["max_position_error_m"] = rounded(audit.max_position_error_m);
   return json;
+}
+
+/// Adds when each violation was detected, which the audit itself does not know.
+void add_times(Json& violations, const std::vector<Violation>& first, Time zero) {
+  for (std::size_t i = 0; i < first.size(); ++i)
+    violations[i]["at_s"] = rounded(to_seconds(first[i].detected - zero));
+}
+
+/// The report as text: indented, but each part of the floor and each path on one line.
+std::string report_text(const Json& report) {
+  std::string text;
+  for (const auto& [key, value] : report.items()) {
+    text += fmt::format("{}  {}: ", text.empty() ? "" : ",\n", json_text(Json(key)));
+    if ((key == "floor" || key == "paths") && !value.empty()) {
+      std::string lines;
+      for (const auto& [name, part] : value.items())
+        lines +=
+            fmt::format("{}    {}: {}", lines.empty() ? "" : ",\n", json_text(Json(name)), json_text(part));
+      text += "{\n" + lines + "\n  }";
+      continue;
+    }
+    for (const char c : json_text(value, 2)) text += c == '\n' ? "\n  " : std::string(1, c);
+  }
+  return "{\n" + text + "\n}\n";
 }
 
 /// Why the run did not pass.
@@ -258,6 +283,12 @@ std::string to_json(const Report& r) {
     for (const auto& [reason, count] : counts) json["counters"][process][info_of(reason).name] = count;
   }
   json["audit"] = r.audit ? audit_json(*r.audit) : Json(nullptr);
+  if (r.trace) {
+    if (r.audit) add_times(json["audit"]["first"], r.audit->first, r.trace->zero);
+    add_floor_trace(json, *r.trace);
+  } else {
+    json["floor"] = json["paths"] = json["incidents"] = nullptr;
+  }
   Json& wall = json["wall_clock"];
   wall["plan_us"] = quantiles(r.plan, false);
   wall["search_us"] = quantiles(r.search, false);
@@ -272,7 +303,7 @@ std::string to_json(const Report& r) {
                                  {"max_memory_mb", rounded(use.max_memory_mb)}};
     }
   }
-  return json_text(json, 2) + "\n";
+  return report_text(json);
 }
 
 std::string summary(const Report& r) {

@@ -13,6 +13,7 @@
 #include "common/protocol/drop_reasons.hpp"
 #include "common/time/histogram.hpp"
 #include "deploy/audit/audit_totals.hpp"
+#include "deploy/audit/metrics/floor_trace.hpp"
 #include "deploy/audit/metrics/process_use.hpp"
 
 namespace sidestep {
@@ -90,6 +91,7 @@ struct Report {
   /// Numbers of dropped messages, by process and reason; only non-zero ones.
   std::map<std::string, std::map<DropReason, std::uint64_t>> counters;
   std::optional<AuditTotals> audit;  ///< nullopt: the run was not audited
+  std::optional<FloorTrace> trace;   ///< nullopt: not recorded; the report then draws no picture
   double duration_s = 0;             ///< wall-clock time
   std::optional<double> startup_s;   ///< time until all processes ran and the coordinator granted
   std::string fast_dds;              ///< the launcher's version of Fast DDS; empty: not over DDS

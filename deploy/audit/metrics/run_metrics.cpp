@@ -62,7 +62,7 @@ double straight_line_time_s(const RobotSpec& robot, const MotionLimits& limits) 
   return total_s;
 }
 
-RunMetrics::RunMetrics(const Scenario& scenario) : scenario_(scenario) {
+RunMetrics::RunMetrics(const Scenario& scenario) : scenario_(scenario), floor_(scenario) {
   for (const RobotSpec& spec : scenario.robots) {
     RobotRecord robot;
     robot.spec = &spec;
@@ -137,6 +137,7 @@ void RunMetrics::on_truth(const msg::GroundTruth& truth) {
     place(*robot, {state.x_m(), state.y_m()}, std::hypot(state.vx_mps(), state.vy_mps()),
           {scenario_.goal_tolerance_m, kAtRest_mps}, at);
   }
+  floor_.on_truth(truth);
 }
 
 void RunMetrics::on_world_state(const msg::WorldState& world) {
@@ -164,6 +165,7 @@ void RunMetrics::on_world_state(const msg::WorldState& world) {
 
 void RunMetrics::place(RobotRecord& robot, const Vec2& position_m, double speed_mps,
                        const SettledLimits& limits, Time at) {
+  floor_.place(static_cast<std::size_t>(&robot - robots_.data()), {at, position_m, speed_mps});
   robot.position_m = position_m;
   robot.speed_mps = speed_mps;
   robot.is_at_rest = speed_mps < limits.speed_mps;

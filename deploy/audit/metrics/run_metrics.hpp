@@ -14,6 +14,7 @@
 #include "common/protocol/drop_reasons.hpp"
 #include "common/protocol/order.hpp"
 #include "deploy/audit/auditor.hpp"
+#include "deploy/audit/metrics/floor_recorder.hpp"
 #include "deploy/audit/metrics/report.hpp"
 #include "idl/monitor.hpp"
 #include "idl/negotiation.hpp"
@@ -101,9 +102,11 @@ class RunMetrics {
   std::uint64_t dropped_messages() const { return dropped_messages_; }
 
   std::vector<RobotProgress> progress() const;
-  /// The report, except for what only the caller knows: program, seed, wall-clock times, and why the run
-  /// ended.
+  /// The report, except for floor_trace() and what only the caller knows: program, seed, wall-clock times,
+  /// and why the run ended.
   Report report() const;
+  /// What happened on the floor so far. Separate from report(), which callers with a display need often.
+  FloorTrace floor_trace() const { return floor_.trace(granting_since_); }
 
  private:
   struct RobotRecord {
@@ -152,7 +155,8 @@ class RunMetrics {
   const Auditor* auditor_ = nullptr;
   const Bus* bus_ = nullptr;
   bool has_received_orders_ = false;
-  std::vector<RobotRecord> robots_;           ///< sorted by id
+  std::vector<RobotRecord> robots_;  ///< sorted by id
+  FloorRecorder floor_;
   std::vector<msg::GroundTruth> simulators_;  ///< last ground truth of each incarnation, without robots
   std::map<std::pair<std::uint32_t, Incarnation>, std::uint64_t>
       coordinators_;  ///< the last message number, by coordinator number and incarnation

@@ -79,6 +79,9 @@ TEST_CASE("a report's JSON has the keys that readers rely on in a stable order")
                                          "mismatches",
                                          "counters",
                                          "audit",
+                                         "floor",
+                                         "paths",
+                                         "incidents",
                                          "wall_clock"});
   CHECK(json["seed"] == 7);
   CHECK(json["passed"] == false);
@@ -279,6 +282,28 @@ TEST_CASE("a report states the audit's coverage and reference and the causes of 
              ContainsSubstring("4 contacts are excused by disturbances, which excuse 1.50 %") &&
                  ContainsSubstring("3 of robot 2 and robot 5, cause: push") &&
                  ContainsSubstring("1 of robot 7 and an obstacle, cause: slip"));
+}
+
+TEST_CASE("a report has one line for the path of each robot, and says when rules were broken") {
+  Report report = example();
+  CHECK(parse_json(to_json(report))["paths"].is_null());
+  report.trace = FloorTrace{};
+  report.trace->zero = time_from_ns(5'000'000'000);
+  report.trace->robots.push_back({3, Team::kBlue, {0, 0}, {}, {{0, {0, 0}, 0}, {1.5, {1, 0}, 0.5}}});
+  report.trace->robots.push_back({7, Team::kBlue, {0, 1}, {}, {{0, {0, 1}, 0}}});
+  report.audit = AuditTotals{};
+  Violation violation;
+  violation.detected = time_from_ns(7'250'000'000);
+  report.audit->first.push_back(violation);
+  const std::string text = to_json(report);
+  CHECK_THAT(text,
+             ContainsSubstring("\n  \"paths\": {\n    \"3\": [[0.0,0.0,0.0,0.0],[1.5,1.0,0.0,0.5]],\n    "
+                               "\"7\": [[0.0,0.0,1.0,0.0]]\n  },\n"));
+  CHECK(parse_json(text)["audit"]["first"][0]["at_s"] == 2.25);
+  // Everything else is laid out as usual.
+  report.trace.reset();
+  const std::string without = to_json(report);
+  CHECK(without == json_text(parse_ordered_json(without), 2) + "\n");
 }
 
 }  // namespace sidestep::report_test

@@ -515,4 +515,25 @@ TEST_CASE("without ground truth a robot has arrived if its agent and vision repo
   CHECK(metrics.arrived() == 0);
 }
 
+TEST_CASE("the metrics record the robots' paths by ground truth, or by vision where there is none") {
+  RunMetrics metrics(kTwo);
+  metrics.on_truth(truth(1, 0, {body(3, 0, 0), body(7, 0, 1)}));
+  metrics.on_truth(truth(2, 1, {body(3, 0.5, 0, 0.8), body(7, 0, 1)}));
+  const FloorTrace trace = metrics.floor_trace();
+  REQUIRE(trace.robots.size() == 2);
+  REQUIRE(trace.robots[0].path.size() == 2);
+  CHECK(trace.robots[0].path[1].position_m == Vec2(0.5, 0));
+  CHECK(trace.robots[0].path[1].speed_mps == 0.8);
+
+  RunMetrics seen(kTwo);
+  msg::WorldState world;
+  world.valid_at_ns(to_ns(after(2)));
+  world.robots().resize(1);
+  world.robots()[0].robot(7);
+  world.robots()[0].x_m(0.25);
+  seen.on_world_state(world);
+  REQUIRE(seen.floor_trace().robots[1].path.size() == 1);
+  CHECK(seen.floor_trace().robots[1].path[0].position_m == Vec2(0.25, 0));
+}
+
 }  // namespace sidestep::run_metrics_test
