@@ -94,6 +94,7 @@ Report Launcher::run() {
   }
   if (options_.monitor_port) end_monitored_run();
   Report report = metrics_.report();
+  report.trace = metrics_.floor_trace();
   for (const std::string& name : children_.terminate(kTerminationTimeout))
     print(name + " did not stop in time and was killed", LogLevel::kWarning);
   report.program = "run";

@@ -17,6 +17,7 @@
 #include "common/process/process.hpp"
 #include "common/terminal/terminal.hpp"
 #include "deploy/audit/metrics/progress.hpp"
+#include "deploy/audit/picture/run_picture.hpp"
 #include "deploy/run/launch/hosts/run_hosts.hpp"
 #include "deploy/run/launch/launcher.hpp"
 #include "deploy/run/launch/monitor_process.hpp"
@@ -56,6 +57,7 @@ void require_outputs(const RunOptions& options, const std::string& report_path, 
   require_replaceable(report_path);
   require_openable(log_path);
   if (!options.recording_file.empty()) require_openable(options.recording_file);
+  if (!options.picture_file.empty()) require_replaceable(options.picture_file);
 }
 
 /// Prints an error and returns its exit code if another run uses the domain; otherwise returns 0. Listens in
@@ -94,9 +96,11 @@ int run(const RunOptions& given) {
   const std::string report_path =
       options.report_file.empty() ? default_report_path(scenario.name, std::nullopt) : options.report_file;
   const std::string log_path = std::filesystem::path(report_path).replace_extension(".log").string();
-  require_separate_outputs(
-      {{"SCENARIO", options.scenario_file}, {"--hosts", options.hosts_file}},
-      {{"the log", log_path}, {"--report", report_path}, {"--record", options.recording_file}});
+  require_separate_outputs({{"SCENARIO", options.scenario_file}, {"--hosts", options.hosts_file}},
+                           {{"the log", log_path},
+                            {"--report", report_path},
+                            {"--record", options.recording_file},
+                            {"--svg", options.picture_file}});
   require_keys(options, scenario);
   require_outputs(options, report_path, log_path);
   if (options.monitor_port) {
@@ -111,6 +115,7 @@ int run(const RunOptions& given) {
   const auto finish = [&](const Report& report) {
     const std::string problem = try_write_report(report, report_path);
     print_to(stdout, "{}log: {}\n", problem.empty() ? "report: " + report_path + "\n" : "", log_path);
+    if (!options.picture_file.empty()) write_file(options.picture_file, run_picture_from(to_json(report)));
     if (!problem.empty()) throw std::runtime_error(problem);
     return exit_code(report.verdict());
   };

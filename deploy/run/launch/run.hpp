@@ -19,6 +19,7 @@ struct RunOptions {
   std::string hosts_file;      ///< empty: all processes run on this machine, on the interface of `dds`
   std::string report_file;     ///< empty: reports/<scenario>-<time>.json; the log has the same stem
   std::string recording_file;  ///< records all messages except images; empty: none
+  std::string picture_file;    ///< SVG picture of the robots' paths; empty: none
   std::optional<std::string> monitor_port;  ///< port of a page that shows the run; nullopt: no page
   bool has_control = false;                 ///< the page may give orders and cause faults
   bool closes_page = false;   ///< the page ends with the run; otherwise it stays until the user interrupts

@@ -38,6 +38,8 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .needs(command.option("--monitor"));
   command.add_flag("--close", options->closes_page, "the page ends with the run")
       .needs(command.option("--monitor"));
+  command.add_option("--svg", options->picture_file,
+                     "draw the robots' paths to this SVG file, which plays in a browser");
   command.add_option("--report", options->report_file, "report file [reports/<scenario>-<time>.json]");
   command.add_option("--seed", options->floor.seed, "random seed of the simulator's noise")
       .check(non_negative())

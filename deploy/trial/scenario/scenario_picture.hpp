@@ -8,7 +8,7 @@
 namespace sidestep {
 
 /// An SVG picture of a scenario: its obstacles, the robots at their starts with their directions, lines to
-/// their goals in order, the paths of moving obstacles, and the length of a metre.
+/// their goals in order, and the paths of moving obstacles, with coordinates, scale and legend.
 [[nodiscard]] std::string scenario_picture(const Scenario& scenario);
 
 }  // namespace sidestep

@@ -18,11 +18,11 @@
 #include "common/terminal/terminal.hpp"
 #include "common/version/version.hpp"
 #include "deploy/audit/metrics/progress.hpp"
+#include "deploy/audit/picture/run_picture.hpp"
 #include "deploy/inspect/record/recording.hpp"
 #include "deploy/trial/simulate/campaign/campaign.hpp"
 #include "deploy/trial/simulate/campaign/trial.hpp"
 #include "deploy/trial/simulate/laser_picture.hpp"
-#include "deploy/trial/simulate/run_picture.hpp"
 #include "deploy/trial/simulate/system/sim_log.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 
@@ -133,8 +133,8 @@ class SimRecorder {
 class LaserPictureRecorder {
  public:
   /// Throws UsageError if the robot does not exist or has no laser.
-  LaserPictureRecorder(SimNetwork& network, const Scenario& scenario, const SimulateOptions& options)
-      : bus_(network) {
+  LaserPictureRecorder(SimSystem& system, const Scenario& scenario, const SimulateOptions& options)
+      : bus_(system.network()) {
     if (!options.laser_robot) return;
     try {
       picture_.emplace(scenario, *options.laser_robot);
@@ -144,19 +144,20 @@ class LaserPictureRecorder {
     bus_.become_observer();
     bus_.observe<msg::LaserScan>(topics::kScan, *options.laser_robot,
                                  [this](const msg::LaserScan& scan) { picture_->add(scan); });
+    system.on_truth([this](const msg::GroundTruth& truth) { picture_->add(truth); });
   }
   /// The picture; nullptr if none was requested.
-  LaserPicture* picture() { return picture_ ? &*picture_ : nullptr; }
+  const LaserPicture* picture() const { return picture_ ? &*picture_ : nullptr; }
 
  private:
   std::optional<LaserPicture> picture_;
   SimBus bus_;
 };
 
-/// Completes, prints and writes the report, and returns the exit code. Prints it first, because writing may
-/// fail.
+/// Completes, prints and writes the report, draws the run or the picture of a laser, and returns the exit
+/// code. Prints it first, because writing may fail.
 int finish(const SimulateOptions& options, Report& report, SimRecorder& recorder,
-           const std::function<std::string()>& picture, steady_clock::time_point begin) {
+           steady_clock::time_point begin, const LaserPicture* laser = nullptr) {
   report.program = "simulate";
   report.seed = options.seed;
   report.duration_s = std::chrono::duration<double>(steady_clock::now() - begin).count();
@@ -172,7 +173,8 @@ int finish(const SimulateOptions& options, Report& report, SimRecorder& recorder
     print_to(stdout, "failed: {}\n", report.failure_reason());
   const std::string path = report_path(options, report.scenario), problem = try_write_report(report, path);
   if (problem.empty()) print_to(stdout, "report: {}\n", path);
-  if (!options.picture_file.empty()) write_file(options.picture_file, picture());
+  if (!options.picture_file.empty())
+    write_file(options.picture_file, laser ? laser->svg() : run_picture_from(to_json(report)));
   if (!problem.empty()) throw std::runtime_error(problem);
   return exit_code(report.verdict());
 }
@@ -194,7 +196,6 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
   check_paths(options, trial.scenario.name);
   print_to(stdout, "commit {}\n{}\n", kBuildCommit, trial.summary());
   for (const std::string& line : to_lines(trial.plan)) print_to(stdout, "  {}\n", line);
-  RunPicture picture(trial.scenario);
   Report report;
   SimRecorder recorder(options);
   TrialHooks hooks;
@@ -202,13 +203,9 @@ int simulate_trial(const SimulateOptions& options, bool has_faults) {
     log_events_of(system, options.log_level);
     recorder.start(system.network(), trial.scenario);
   };
-  hooks.on_truth = [&](const msg::GroundTruth& truth) {
-    if (!options.picture_file.empty()) picture.add(truth);
-  };
   hooks.on_end = [&] { recorder.stop(); };
   run_trial(trial, &report, hooks);
-  return finish(
-      options, report, recorder, [&] { return picture.svg(); }, begin);
+  return finish(options, report, recorder, begin);
 }
 
 int simulate(const SimulateOptions& options) {
@@ -221,21 +218,15 @@ int simulate(const SimulateOptions& options) {
   const auto begin = steady_clock::now();
   SimSystem system(scenario, options.seed);
   log_events_of(system, options.log_level);
-  RunPicture picture(scenario);
-  LaserPictureRecorder sight(system.network(), scenario, options);
-  if (!options.picture_file.empty()) {
-    system.on_truth([&](const msg::GroundTruth& truth) {
-      sight.picture() ? sight.picture()->add(truth) : picture.add(truth);
-    });
-  }
+  LaserPictureRecorder sight(system, scenario, options);
   SimRecorder recorder(options);
   recorder.start(system.network(), scenario);
   const std::string abort_reason = run_until_arrived(system, options.seconds.value_or(scenario.time_limit_s));
   recorder.stop();
   Report report = system.metrics().report();
+  report.trace = system.metrics().floor_trace();
   report.abort_reason = abort_reason;
-  const auto draw = [&] { return sight.picture() ? sight.picture()->svg() : picture.svg(); };
-  return finish(options, report, recorder, draw, begin);
+  return finish(options, report, recorder, begin, sight.picture());
 }
 
 }  // namespace sidestep

@@ -69,7 +69,8 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
                          "scenario file, see deploy/scenarios/README.md [with --faults: a random scene]");
   command.add_option("--report", run.report_file,
                      "report file [reports/<scenario>-<seed>.json; with --seeds: none]");
-  const Option svg = command.add_option("--svg", run.picture_file, "draw the robots' paths to this SVG file");
+  const Option svg = command.add_option("--svg", run.picture_file,
+                                        "draw the robots' paths to this SVG file, which plays in a browser");
   command.add_option("--sight", run.laser_robot, "draw what this robot's laser shows at the end instead")
       .check(non_negative())
       .needs(scenario)

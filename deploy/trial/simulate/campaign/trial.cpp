@@ -201,10 +201,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   result.robot_s = result.robots * to_seconds(trial.duration);
   SimSystem system(trial.scenario, trial.seed, trial.plan.clocks, SimSystem::kBegin, trial.base_latency);
   DistanceMeter meter(system.begin() + std::min(trial.plan.healed_at + kRecoveryTime, trial.duration));
-  system.on_truth([&](const msg::GroundTruth& truth) {
-    meter.add(truth);
-    if (hooks.on_truth) hooks.on_truth(truth);
-  });
+  system.on_truth([&](const msg::GroundTruth& truth) { meter.add(truth); });
   if (hooks.on_start) hooks.on_start(system);
   FaultPlayer player(system, trial.scenario, trial.plan);
   player.run_until(trial.duration - std::min(trial.duration, kMaxRobotWait));
@@ -226,6 +223,7 @@ TrialResult run_trial(const Trial& trial, Report* report, const TrialHooks& hook
   std::ranges::copy(player.order_failures(), std::back_inserter(result.failures));
   if (report) {
     *report = final_report;
+    report->trace = system.metrics().floor_trace();
     report->must_arrive = false;
     report->abort_reason = fmt::format("{}", fmt::join(result.failures, "; "));
   }

@@ -52,7 +52,6 @@ void add_failures(const Trial& trial, const std::vector<RobotProgress>& progress
 /// Callbacks for a closer look at one trial; each may be empty.
 struct TrialHooks {
   std::function<void(SimSystem&)> on_start;
-  std::function<void(const msg::GroundTruth&)> on_truth;
   std::function<void()> on_end;
 };
 

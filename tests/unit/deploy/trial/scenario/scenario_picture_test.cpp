@@ -13,26 +13,29 @@ int count_of(const std::string& text, const std::string& part) {
 }
 
 TEST_CASE(
-    "the picture of a scenario shows starts with directions, goals, obstacles, moving obstacles and a "
-    "metre") {
+    "the picture of a scenario shows starts with directions, goals, obstacles, moving obstacles, scale and "
+    "legend") {
   const Scenario scenario = parse_scenario(
       "field: {length_m: 6, width_m: 4}\n"
       "obstacles: [{box: {min_m: [0, 0.5], max_m: [0.1, 2]}}]\n"
       "opponents: [{radius_m: 0.1, speed_mps: 1, path_m: [[-2.5, -1.5], [2.5, -1.5]]}]\n"
       "robots:\n"
-      "  - {id: 3, start_m: [-2, 1], heading_rad: 1.5708, goals_m: [[-1, 0], [2, 1]]}\n"
+      "  - {id: 23, start_m: [-2, 1], heading_rad: 1.5708, goals_m: [[-1, 0], [2, 1]]}\n"
       "  - {id: 12, start_m: [2, 0]}\n",
       "hall.yaml");
   const std::string svg = scenario_picture(scenario);
   CHECK(svg.starts_with("<svg "));
   CHECK(svg.ends_with("</svg>\n"));
-  CHECK(count_of(svg, ">3</text>") == 2);   // start and last goal
+  CHECK(count_of(svg, ">23</text>") == 2);  // start and last goal
   CHECK(count_of(svg, ">12</text>") == 1);  // has no goal
   CHECK(count_of(svg, "<polygon") == 1);
-  CHECK(count_of(svg, "#cf222e") == 2);  // the opponent and its path
-  CHECK_THAT(svg, ContainsSubstring(">1 m   disc"));
-  // 200 pixels per metre: the direction of robot 3 points up, from (-400, -200).
-  CHECK_THAT(svg, ContainsSubstring("<polyline points='-400.0,-200.0 -400.0,-230.6 '"));
+  CHECK(count_of(svg, "#cf222e") == 3);  // the opponent, its path and its symbol in the legend
+  CHECK_THAT(svg, ContainsSubstring(">0.5 m</text>"));
+  for (const char* entry :
+       {"start and direction", "last goal", "earlier goal", "obstacle", "moving obstacle"})
+    CHECK_THAT(svg, ContainsSubstring(std::string(">") + entry + "</text>"));
+  // 188.3 pixels per metre: the direction of robot 23 points up.
+  CHECK_THAT(svg, ContainsSubstring("<polyline points='236.3,248.3 236.3,219.5 '"));
 }
 
 TEST_CASE("robots in a wide hall are drawn large enough to read their numbers") {
