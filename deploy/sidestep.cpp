@@ -10,6 +10,7 @@
 #include "common/process/process.hpp"
 #include "common/version/version.hpp"
 #include "deploy/audit/audit_command.hpp"
+#include "deploy/audit/page/report_command.hpp"
 #include "deploy/inspect/record/bag_command.hpp"
 #include "deploy/inspect/record/record_command.hpp"
 #include "deploy/inspect/record/replay_command.hpp"
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
   add_conformance_command(app, action);
   add_referee_command(app, action);
   add_audit_command(app, action);
+  add_report_command(app, action);
   add_monitor_command(app, action);
   add_record_command(app, action);
   add_bag_command(app, action);

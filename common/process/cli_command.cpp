@@ -178,7 +178,7 @@ Option CliCommand::add_optional_value(const std::string& name, std::optional<std
     value = is_left_out ? default_value : given.front();
   };
   CLI::Option* option = app_->add_option_function<std::vector<std::string>>(
-      name, take, fmt::format("{} [{}]", description, default_value));
+      name, take, default_value.empty() ? description : fmt::format("{} [{}]", description, default_value));
   option->expected(0, 1);
   return Option(*option);
 }

@@ -66,7 +66,7 @@ class CliCommand {
   /// An option whose value is passed to `take`, which throws UsageError if it rejects the value.
   Option add_option(const std::string& name, std::function<void(const std::string&)> take,
                     const std::string& description) const;
-  /// An option whose value may be omitted; it is then `default_value`.
+  /// An option whose value may be omitted; it is then `default_value`, which --help shows unless it is empty.
   Option add_optional_value(const std::string& name, std::optional<std::string>& value,
                             const std::string& default_value, const std::string& description) const;
   Option option(const std::string& name) const;

@@ -104,7 +104,7 @@ void RecordingWriter::add_event(Time at, const std::string& kind, const std::str
 }
 
 void RecordingWriter::add_report(Time now, const std::string& json) {
-  McapAttachment report = attachment("report.json", "application/json", json);
+  McapAttachment report = attachment(kReportFile, "application/json", json);
   report.logged_ns = unsigned_ns(to_ns(now));
   mcap_.add_attachment(report);
 }

@@ -20,7 +20,7 @@ inline constexpr const char* kRecordingMetadata = "sidestep";
 inline constexpr const char* kEventMetadata = "sidestep event";
 // Names of the attachments.
 inline constexpr const char *kScenarioFile = "scenario.yaml", *kMapFile = "map.yaml",
-                            *kMapImageFile = "map.pgm";
+                            *kMapImageFile = "map.pgm", *kReportFile = "report.json";
 
 /// A recording's description of its run.
 struct RecordingHeader {
