@@ -26,7 +26,7 @@ struct ProcessGraph {
 /// Formats the graph as text: a paragraph per host and a line per process.
 [[nodiscard]] std::string to_text(const ProcessGraph& graph);
 
-/// Draws the graph: processes on the left, topics on the right, lines between them; hosts as boxes.
-[[nodiscard]] std::string to_svg(const ProcessGraph& graph);
+/// Combines the channels of one topic: "feedback/3" becomes "feedback/*".
+[[nodiscard]] std::string without_channel(const std::string& topic);
 
 }  // namespace sidestep

@@ -11,6 +11,7 @@
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "deploy/inspect/topic/graph.hpp"
+#include "deploy/inspect/topic/graph_picture.hpp"
 
 namespace sidestep {
 namespace {
@@ -30,7 +31,7 @@ int show_graph(const GraphOptions& options) {
   listener.run_until(listener.now() + from_seconds(options.discovery_s));
   const ProcessGraph graph = graph_of(listener.endpoints());
   const int error = write_text(stdout, to_text(graph));
-  if (!options.picture_file.empty()) write_file(options.picture_file, to_svg(graph));
+  if (!options.picture_file.empty()) write_file(options.picture_file, graph_picture(graph));
   require_printed(error);
   return graph.processes.empty() ? kExitFailure : 0;
 }
