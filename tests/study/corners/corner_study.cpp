@@ -86,18 +86,19 @@ int study_scenes(const std::string& name, std::span<const char* const> kinds, Sc
       "kind",    "first_seed", "cases",    "time_ratio", "laser_s",           "camera_s",
       "arrived", "blocked",    "contacts", "crashes",    "crashes_in_motion", "failed_audits"};
   Plot plot{"time with a laser over time with cameras above the floor", "kind of scene", "ratio"};
+  plot.categories.assign(kinds.begin(), kinds.end());
   experiment.table.plots.push_back(plot);
+  const std::string line = fmt::format("median and extremes of batches of {} cases", kBatch);
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     for (std::uint64_t done = 0; done < of_kind; done += kBatch) {
       const std::uint64_t first = options.seed * 1'000'000 + done, cases = std::min(kBatch, of_kind - done);
-      experiment.runs.push_back(
-          {kinds[kind], static_cast<double>(kind), cells(kinds[kind], first, cases), [=] {
-             const Batch b = run_batch(scene_of, kind, first, cases);
-             return fmt::format("{:.3f},{:.3f},{:.3f},{},{},{},{},{},{}",
-                                b.camera_s > 0 ? b.laser_s / b.camera_s : 1.0, b.laser_s, b.camera_s,
-                                b.arrived, b.blocked, b.contacts, b.crashes, b.crashes_in_motion,
-                                b.failed_audits);
-           }});
+      experiment.runs.push_back({line, static_cast<double>(kind), cells(kinds[kind], first, cases), [=] {
+                                   const Batch b = run_batch(scene_of, kind, first, cases);
+                                   return fmt::format("{:.3f},{:.3f},{:.3f},{},{},{},{},{},{}",
+                                                      b.camera_s > 0 ? b.laser_s / b.camera_s : 1.0,
+                                                      b.laser_s, b.camera_s, b.arrived, b.blocked, b.contacts,
+                                                      b.crashes, b.crashes_in_motion, b.failed_audits);
+                                 }});
     }
   }
   measure(experiment);

@@ -24,10 +24,16 @@ struct Plot {
   double min_y = 0;  ///< lower end of a y axis that is not logarithmic
   std::vector<PlotLine> lines{};
   std::optional<double> marked_x{};  ///< position of a vertical line; nullopt: no line
+  /// Names of the positions 0, 1, ... of the x axis if these are categories, for example kinds of scenes.
+  /// Each line then becomes a series of bars, because there is nothing between two categories.
+  std::vector<std::string> categories{};
 };
 
 /// Throws std::runtime_error, which names the package to install, if gnuplot is not installed.
 void require_gnuplot();
+
+/// The commands by which gnuplot draws the plot.
+[[nodiscard]] std::string gnuplot_script(const Plot& plot);
 
 /// Draws plots side by side into a PNG file with gnuplot. Throws std::runtime_error if that fails.
 void draw(const std::vector<Plot>& plots, const std::string& png_file);
