@@ -70,7 +70,8 @@ std::string clear_message(const CLI::ParseError& error, const CLI::App& root, co
   const std::vector<std::string> rest = app->remaining(), all_rest = root.remaining(true);
   if (app->get_require_subcommand_min() > 0 && !rest.empty() && !rest.front().starts_with("-"))
     return unknown_command(rest.front(), *app, program);
-  const auto option = std::ranges::find_if(all_rest, [](const auto& word) { return word.starts_with("--"); });
+  const auto option = std::ranges::find_if(
+      all_rest, [](const auto& word) { return word.starts_with("--") && word.size() > 2; });
   if (error.get_name() != "ExtrasError" || option == all_rest.end()) return error.what();
   std::vector<std::string> names;
   for (const OptionInfo& known : command_info(*app, "").options)
