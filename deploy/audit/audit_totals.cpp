@@ -63,6 +63,10 @@ std::string shortfall(const AuditTotals& totals) {
   const Coverage& coverage = totals.coverage;
   add_part(coverage.messages, "of the messages were missed");
   add_part(coverage.versions, "of the executed versions lack a proposal, a grant or a command");
+  if (coverage.versions >= Coverage::kMinimum && totals.untraced_first_versions > 0)
+    add(fmt::format("the audit is too short: {} executed versions may have been granted before it joined",
+                    totals.untraced_first_versions));
+  if (totals.lacks_ledger) add("no page of the ledger was received");
   add_part(coverage.pairs, "of the compared pairs of versions are undecided");
   add_part(coverage.time, "of the time passed with at least one robot silent");
   if (totals.reference == AuditReference::kNone)

@@ -52,7 +52,11 @@ struct AuditTotals {
   /// Number of pairs that are too close but may be excused by a missed message.
   std::uint64_t undecided_pairs = 0;
   Coverage coverage;
-  bool is_cut_off = false;  ///< the messages come from a recording that lacks an unknown part of the run
+  /// If the audit is too short for its coverage of versions to count: the number of executed versions that
+  /// may have been granted before it joined; otherwise 0.
+  std::uint64_t untraced_first_versions = 0;
+  bool lacks_ledger = false;  ///< robots could move, but no page of the ledger was received
+  bool is_cut_off = false;    ///< the messages come from a recording that lacks an unknown part of the run
   /// Duration of the part of the run in which a silent robot lowers the coverage, see
   /// RunCoverage::begin_run().
   double run_s = 0;

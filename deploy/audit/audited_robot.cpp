@@ -75,7 +75,7 @@ KnownVersion& AuditedRobot::find_or_insert(VersionNumber number) {
     const auto excluded = std::ranges::find_if(versions, is_excluded);
     const auto evicted = excluded == versions.end() ? versions.begin() : excluded;
     max_evicted_version = std::max(max_evicted_version, evicted->number);
-    forgotten_.add(*evicted, traceable_from_ns);
+    count_forgotten(*evicted);
     if (evicted - versions.begin() < static_cast<std::ptrdiff_t>(first_recent)) --first_recent;
     versions.erase(evicted);
   }
@@ -126,16 +126,30 @@ double AuditedRobot::distance_from_version_m(const Vec2& position_m, std::int64_
   return std::hypot(position_m.x() - place.x, position_m.y() - place.y);
 }
 
-void AuditedRobot::ExecutedVersions::add(const KnownVersion& version, std::int64_t from_ns) {
+void AuditedRobot::ExecutedVersions::add(const KnownVersion& version, std::int64_t after_ns,
+                                         std::int64_t until_ns) {
   const bool is_agent_kind = version.number != 0 && !version.is_own_stop;
-  if (!version.was_executed || !is_agent_kind || version.path.start_ns() <= from_ns) return;
+  const std::int64_t start_ns = version.path.start_ns();
+  if (!version.was_executed || !is_agent_kind || start_ns <= after_ns || start_ns > until_ns) return;
   ++all;
   traced += version.is_traced();
 }
 
+void AuditedRobot::count_forgotten(const KnownVersion& version) {
+  forgotten_.add(version, traceable_from_ns, kNever);
+  forgotten_first_.add(version, traceable_from_ns - kMaxLead_ns, traceable_from_ns);
+}
+
 AuditedRobot::ExecutedVersions AuditedRobot::executed_versions() const {
   ExecutedVersions total = forgotten_;
-  for (const KnownVersion& known : versions) total.add(known, traceable_from_ns);
+  for (const KnownVersion& known : versions) total.add(known, traceable_from_ns, kNever);
+  return total;
+}
+
+AuditedRobot::ExecutedVersions AuditedRobot::first_executed_versions() const {
+  ExecutedVersions total = forgotten_first_;
+  for (const KnownVersion& known : versions)
+    total.add(known, traceable_from_ns - kMaxLead_ns, traceable_from_ns);
   return total;
 }
 
@@ -144,7 +158,7 @@ void AuditedRobot::forget(std::int64_t before_ns) {
   std::erase_if(versions, [&](const KnownVersion& known) {
     if (known.excluded_ns >= before_ns) return false;
     max_evicted_version = std::max(max_evicted_version, known.number);
-    forgotten_.add(known, traceable_from_ns);
+    count_forgotten(known);
     return true;
   });
   first_recent = 0;
@@ -168,11 +182,12 @@ ProposalRecord& AuditedRobot::add_proposal() {
 void AuditedRobot::reset() {
   const RobotId kept_id = id;
   const Epoch last_epoch = std::max(forgotten_until_epoch, registered ? registered->epoch : 0);
-  const ExecutedVersions kept_versions = executed_versions();
+  const ExecutedVersions kept_versions = executed_versions(), kept_first = first_executed_versions();
   *this = AuditedRobot();
   id = kept_id;
   forgotten_until_epoch = last_epoch;
   forgotten_ = kept_versions;
+  forgotten_first_ = kept_first;
 }
 
 void AuditedRobot::forget_times() {

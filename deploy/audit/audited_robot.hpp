@@ -180,10 +180,16 @@ class AuditedRobot {
   Epoch attested_in = 0;  ///< the newest epoch at the time of the latest attestation
 
   /// Number of executed versions, and number of traced ones among them. Counts only versions that an agent
-  /// made and that were granted during the audit.
+  /// made.
   struct ExecutedVersions {
     std::uint64_t all = 0, traced = 0;
-    void add(const KnownVersion& version, std::int64_t from_ns);
+    /// Counts the version if it starts later than `after_ns` and not later than `until_ns`.
+    void add(const KnownVersion& version, std::int64_t after_ns, std::int64_t until_ns);
+    ExecutedVersions& operator+=(const ExecutedVersions& others) {
+      all += others.all;
+      traced += others.traced;
+      return *this;
+    }
   };
   Epoch newest_granted_in = 0;
   VersionNumber newest_granted = 0;
@@ -201,8 +207,11 @@ class AuditedRobot {
   const KnownVersion* executed_at(VersionNumber latest, std::int64_t at_ns) const;
   /// Distance of a position from the version that the robot executes; infinite if that version is unknown.
   double distance_from_version_m(const Vec2& position_m, std::int64_t at_ns) const;
-  /// The counts since the audit began.
+  /// Versions that were granted during the audit.
   ExecutedVersions executed_versions() const;
+  /// Versions to which the robot switched in the first kMaxLead_ns after its first report. Some may have been
+  /// granted before the audit.
+  ExecutedVersions first_executed_versions() const;
   /// The version's record, inserted if it is new. If there is no room, evicts the least relevant record.
   KnownVersion& find_or_insert(VersionNumber number);
   /// The newest proposal with this number. Several agents of a robot may use the same number, because a
@@ -226,7 +235,9 @@ class AuditedRobot {
   void forget_times();
 
  private:
-  ExecutedVersions forgotten_;
+  void count_forgotten(const KnownVersion& version);
+
+  ExecutedVersions forgotten_, forgotten_first_;  ///< counts of versions that are no longer in `versions`
 };
 
 /// Whether and why the report proves that the robot no longer executes the version.

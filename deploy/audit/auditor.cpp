@@ -96,6 +96,7 @@ void Auditor::on_ledger(const msg::LedgerPage& page, Time now) {
     return;
   }
   coverage_.begin_run();
+  coverage_.hear_ledger();
   ledger_.on_page(page, reception);
 }
 

@@ -50,11 +50,15 @@ void RunCoverage::use_reference(AuditReference reference) {
 }
 
 void RunCoverage::add_to(AuditTotals& totals, const MessageTimes& times) const {
-  AuditedRobot::ExecutedVersions versions;
+  AuditedRobot::ExecutedVersions versions, first;
   for (const AuditedRobot& robot : robots_.all()) {
-    const auto executed = robot.executed_versions();
-    versions.all += executed.all;
-    versions.traced += executed.traced;
+    versions += robot.executed_versions();
+    first += robot.first_executed_versions();
+  }
+  // If no version was certainly granted during the audit, the audit must know all those that may have been.
+  if (versions.all == 0) {
+    versions = first;
+    totals.untraced_first_versions = first.all - first.traced;
   }
   Coverage& coverage = totals.coverage;
   // Agents' messages count only through their effect (see coverage.versions), because messages from a host
@@ -69,6 +73,7 @@ void RunCoverage::add_to(AuditTotals& totals, const MessageTimes& times) const {
   if (reference_coverage_) coverage.reference = reference_coverage_->share(findings_.now, counts_silence);
   totals.received = times.trace().received() + times.agent_trace().received();
   totals.missed = times.trace().missed() + times.agent_trace().missed();
+  totals.lacks_ledger = begun_at_ && !has_heard_ledger_;
   if (begun_at_) totals.run_s = std::max(0.0, to_seconds(findings_.now - *begun_at_));
 }
 

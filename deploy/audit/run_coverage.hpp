@@ -18,6 +18,7 @@ class RunCoverage {
   /// Called when a message shows that robots may move. Once every robot has been heard, or after a second at
   /// the latest, silence lowers the coverage.
   void begin_run();
+  void hear_ledger() { has_heard_ledger_ = true; }
   /// Records a report. Precondition: robot.last_report is the report before it.
   void hear_robot_report(const AuditedRobot& robot, VersionNumber executing, const Reception& reception);
   /// Excuses the robot's next silence.
@@ -37,6 +38,7 @@ class RunCoverage {
   const AuditedRun& run_;
   RobotRecords& robots_;
   AuditFindings& findings_;
+  bool has_heard_ledger_ = false;
   std::optional<Time> motion_sign_at_, begun_at_;  ///< first sign that robots may move; start of the period
   ReceptionCoverage report_coverage_;              ///< reports of all robots
   std::optional<ReceptionCoverage> reference_coverage_;

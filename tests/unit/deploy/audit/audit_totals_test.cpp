@@ -61,6 +61,19 @@ TEST_CASE("a run is not judged if any coverage share is below the minimum, and t
     totals.coverage.versions = 0.9;
     reason = "10.0 % of the executed versions lack a proposal, a grant or a command";
   }
+  SECTION("the audit is too short") {
+    totals.untraced_first_versions = 3;
+    reason = "the audit is too short: 3 executed versions may have been granted before it joined";
+  }
+  SECTION("the audit is too short and knows few versions") {
+    totals.untraced_first_versions = 3;
+    totals.coverage.versions = 0.9;
+    reason = "10.0 % of the executed versions lack a proposal, a grant or a command";
+  }
+  SECTION("there is no ledger") {
+    totals.lacks_ledger = true;
+    reason = "no page of the ledger was received";
+  }
   SECTION("pairs are undecided") {
     totals.coverage.pairs = 0.9;
     reason = "10.0 % of the compared pairs of versions are undecided";

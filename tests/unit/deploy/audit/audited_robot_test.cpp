@@ -159,6 +159,35 @@ TEST_CASE("executed versions stay counted even after they are forgotten") {
   CHECK(robot.forgotten_until_epoch == 7);
 }
 
+TEST_CASE("versions to which a robot switches soon after its first report are counted separately") {
+  AuditedRobot robot;
+  constexpr std::int64_t kFirstReport_ns = 5'000'000'000;
+  robot.traceable_from_ns = kFirstReport_ns + kMaxLead_ns;
+  const std::vector<std::int64_t> starts_ns{kFirstReport_ns, kFirstReport_ns + 1, robot.traceable_from_ns,
+                                            robot.traceable_from_ns + 1};
+  for (VersionNumber number = 1; number <= starts_ns.size(); ++number) {
+    add_content(robot, number, number - 1, starts_ns[number - 1]);
+    KnownVersion& known = robot.find_or_insert(number);
+    known.was_executed = true;
+    known.excluded_ns = 10;
+  }
+  KnownVersion& traced = robot.find_or_insert(2);
+  traced.is_proposed = traced.is_content_checked = traced.is_pair_checked = true;
+  traced.granted_in = 7;
+  traced.sent_ns = 50;
+  const auto check = [&] {
+    CHECK(robot.executed_versions().all == 1);        // version 4
+    CHECK(robot.first_executed_versions().all == 2);  // versions 2 and 3; the robot reported version 1 first
+    CHECK(robot.first_executed_versions().traced == 1);  // version 2
+  };
+  check();
+  robot.forget(11);
+  CHECK(robot.versions.empty());
+  check();
+  robot.reset();
+  check();
+}
+
 TEST_CASE("a robot's initial rest does not count as an agent's version, but version 1 does") {
   for (const VersionNumber number : {0u, 1u}) {
     AuditedRobot robot;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The share of a run that an audit covered, and the resulting verdict.
+#include <map>
+
 #include "common/config/shared_rules.hpp"
 #include "deploy/trial/simulate/system/sim_system.hpp"
 #include "tests/catch.hpp"
@@ -42,6 +44,65 @@ TEST_CASE("an audit that hears 60 % of the messages does not pass") {
   CHECK(totals.verdict() == AuditVerdict::kNotJudged);
   CHECK(totals.coverage.messages == Approx(0.6).margin(0.1));
   CHECK_THAT(verdict_line(totals), ContainsSubstring("% of the messages were missed"));
+}
+
+/// The crossing from one time to another, since its first message.
+History crossing_between(Duration from, Duration until) {
+  History history = crossing();
+  const Time begin = history.messages.front().at;
+  std::erase_if(history.messages, [&](const ReceivedMessage& received) {
+    return received.at < begin + from || received.at >= begin + until;
+  });
+  return history;
+}
+
+TEST_CASE("an audit of less than two seconds judges a run that it hears completely from the start") {
+  const AuditInput input = GENERATE(kComplete, AuditInput{});
+  CAPTURE(input.is_complete);
+  require_covered(audit_of(crossing_between(0ms, 1900ms), input));
+}
+
+TEST_CASE("an audit of less than two seconds that joins a run does not pass") {
+  const AuditTotals totals = audit_of(crossing_between(1200ms, 3000ms), {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.violations == 0);
+  CHECK(totals.untraced_first_versions > 0);
+  CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+  CHECK_THAT(verdict_line(totals), ContainsSubstring("executed versions"));
+}
+
+TEST_CASE("an audit of robot reports and ground truth alone does not pass, however short it is") {
+  const Duration until = GENERATE(Duration(1'500'000'000), Duration(2'500'000'000), Duration(4'000'000'000));
+  CAPTURE(to_seconds(until));
+  History history = crossing_between(0ms, until);
+  std::erase_if(history.messages, [](const ReceivedMessage& received) {
+    return !std::holds_alternative<msg::Feedback>(received.message) &&
+           !std::holds_alternative<msg::GroundTruth>(received.message);
+  });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.violations == 0);
+  CHECK(totals.coverage.versions == 0);
+  CHECK(totals.verdict() == AuditVerdict::kNotJudged);
+  CHECK_THAT(verdict_line(totals), ContainsSubstring("100.0 % of the executed versions lack a proposal") &&
+                                       ContainsSubstring("no page of the ledger was received"));
+}
+
+TEST_CASE("an audit without the ledger does not pass even if no robot executes a version") {
+  History history = crossing();
+  std::erase_if(history.messages, [](const ReceivedMessage& received) {
+    return !std::holds_alternative<msg::Feedback>(received.message) &&
+           !std::holds_alternative<msg::GroundTruth>(received.message) &&
+           !std::holds_alternative<msg::CoordinatorState>(received.message);
+  });
+  history.each<msg::Feedback>(
+      [first = std::map<RobotId, msg::Version>()](msg::Feedback& feedback, Time) mutable {
+        feedback.executing(first.try_emplace(feedback.robot(), feedback.executing()).first->second);
+      });
+  const AuditTotals totals = audit_of(history, {});
+  INFO(verdict_line(totals) << "\n" << lines(totals));
+  CHECK(totals.verdict() != AuditVerdict::kPassed);
+  CHECK_THAT(shortfall(totals), ContainsSubstring("no page of the ledger was received"));
 }
 
 TEST_CASE("an audit that finds a violation fails the run even with low coverage") {
