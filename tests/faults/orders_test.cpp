@@ -111,6 +111,34 @@ TEST_CASE(
   check_random_goals(minutes(10));
 }
 
+TEST_CASE("with --until-idle a run passes only if all robots have finished their orders") {
+  const bool has_unfinished = GENERATE(false, true);
+  CAPTURE(has_unfinished);
+  LaunchedRun run(waiting_robots(), {"--until-idle", "--seconds", "20"});
+  const auto command = [&](std::vector<std::string> arguments) {
+    for (const std::string& argument : run.dds_arguments()) arguments.push_back(argument);
+    return run.command(arguments);
+  };
+  REQUIRE(run.wait_until([&] { return run.printed("the coordinator grants"); }));
+  if (has_unfinished) {
+    CHECK(command({"fault", "lift", "4"}) == "exit code 0");
+    CHECK(command({"zone", "1", "0,0", "--radius", "0.5"}) == "exit code 0");
+    CHECK(command({"go", "5", "0,0"}) == "exit code 0");
+  } else {
+    CHECK(command({"go", "5", "2,1.5"}) == "exit code 0");
+  }
+  const std::string ended = run.wait_for_end();
+  INFO(run.output());
+  CHECK(ended == (has_unfinished ? "exit code 1" : "exit code 0"));
+  const auto report = run.report();
+  CHECK(report["passed"] == !has_unfinished);
+  CHECK(report["not_arrived"].size() == (has_unfinished ? 2 : 0));
+  if (!has_unfinished) return;
+  CHECK(report["failure"] == "0 of 2 arrived");
+  CHECK(report["not_arrived"]["4"] == "it is off the floor");
+  CHECK_THAT(report["not_arrived"].value("5", ""), StartsWith("zone 1 covers its goal"));
+}
+
 TEST_CASE(
     "robots held from the command line stay held until they are resumed, although the coordinator is "
     "killed") {

@@ -46,7 +46,7 @@ struct Report {
       recording_failure;  ///< why the recording lacks messages; empty: it is complete, or there is none
   int robots = 0;
   int arrived = 0;
-  int without_goal = 0;     ///< number of robots with nothing to arrive at
+  int without_goal = 0;     ///< number of robots at rest with nothing to arrive at
   bool must_arrive = true;  ///< whether the run passes only if all robots arrive
   std::uint64_t contacts = 0;
   double penetration_m_s = 0;
@@ -60,7 +60,8 @@ struct Report {
   std::optional<double> mean_arrival_s;            ///< mean over the robots that arrived
   std::optional<double> straight_line_time_ratio;  ///< mean of arrival time / straight_line_time_s()
   std::map<RobotId, std::optional<double>> arrival_s;
-  std::map<RobotId, std::string> not_arrived;  ///< reason for each robot that has not arrived
+  std::map<RobotId, std::string>
+      not_arrived;  ///< reason for each robot that has not arrived, unless it has no goal
   std::uint64_t proposals = 0;
   std::uint64_t grants = 0;
   std::uint64_t denials = 0;

@@ -91,10 +91,7 @@ double RunMetrics::distance_to_go_m(const RobotRecord& robot) const {
 }
 
 bool RunMetrics::is_without_goal(const RobotRecord& robot) const {
-  if (!robot.spec->goals.empty()) return false;
-  const msg::AgentStatus* const status = robot.status();
-  return !status || (status->agent_state() != msg::AgentState::AGENT_DRIVING &&
-                     status->agent_state() != msg::AgentState::AGENT_ARRIVED);
+  return is_done(robot) && robot.status()->agent_state() == msg::AgentState::AGENT_WITHOUT_ORDER;
 }
 
 bool RunMetrics::is_done(const RobotRecord& robot) const {

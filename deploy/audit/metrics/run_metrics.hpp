@@ -28,7 +28,7 @@ struct RobotProgress {
   Team team = Team::kBlue;
   std::optional<msg::AgentState> agent_state;  ///< nullopt: no status received yet
   bool arrived = false;
-  bool is_without_goal = false;  ///< nothing to arrive at: no goal in the scenario, and no order under way
+  bool is_without_goal = false;  ///< at rest with nothing to arrive at: no goal in the scenario, and no order
   bool is_done = false;          ///< at rest, and arrived or without a goal
   double distance_to_go_m = 0;   ///< distance to the last goal, according to ground truth or vision
   double speed_mps = 0;
@@ -75,7 +75,7 @@ class RunMetrics {
   /// a goal in the scenario has arrived if it has finished its orders.
   bool all_arrived() const;
   int arrived() const;
-  /// Number of robots that have no goal in the scenario, and no order.
+  /// Number of robots at rest that have no goal in the scenario, and no order.
   int without_goal() const;
   /// Whether all robots are at rest, according to ground truth or vision.
   bool all_at_rest() const;

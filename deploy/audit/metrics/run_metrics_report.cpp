@@ -72,6 +72,7 @@ void RunMetrics::add_ground_truth(Report& report) const {
 
 std::string RunMetrics::reason_not_arrived(const RobotRecord& robot) const {
   if (!robot.status()) return "its agent has sent no status";
+  const bool awaits_orders = robot.spec->goals.empty();
   switch (robot.status()->agent_state()) {
     case msg::AgentState::AGENT_FENCING:
       return "it does not answer its agent";
@@ -86,14 +87,18 @@ std::string RunMetrics::reason_not_arrived(const RobotRecord& robot) const {
     case msg::AgentState::AGENT_HELD:
       return "an order holds it";
     case msg::AgentState::AGENT_WITHOUT_ORDER:
-      return "its order was cancelled";
+      return awaits_orders ? "it has no order, but was not seen at rest" : "its order was cancelled";
     case msg::AgentState::AGENT_ARRIVED:
+      if (awaits_orders) return "it was not seen at rest, although its agent reports arrival";
       return fmt::format("it is {:.2f} m from its last goal, although its agent reports arrival",
                          distance_to_go_m(robot));
     case msg::AgentState::AGENT_DRIVING:
       break;
   }
   if (robot.blockage) return to_text(*robot.blockage);
+  // Only the agent knows the goals that clients have given.
+  if (awaits_orders)
+    return fmt::format("it was under way, {:.2f} m from its goal", robot.status()->distance_to_go_m());
   return fmt::format("it was under way, {:.2f} m from its last goal", distance_to_go_m(robot));
 }
 
@@ -104,8 +109,7 @@ void RunMetrics::add_arrivals(Report& report) const {
   int ratios = 0;
   for (const RobotRecord& robot : robots_) {
     auto& arrival_s = report.arrival_s[robot.spec->id];
-    if (!has_arrived(robot) && !robot.spec->goals.empty())
-      report.not_arrived[robot.spec->id] = reason_not_arrived(robot);
+    if (!is_done(robot)) report.not_arrived[robot.spec->id] = reason_not_arrived(robot);
     if (!has_arrived(robot) || !granting_since_) continue;
     arrival_s = std::max(0.0, to_seconds(*robot.settled_since - *granting_since_));
     latest_s = std::max(latest_s, *arrival_s);

@@ -100,7 +100,7 @@ Report Launcher::run() {
   report.program = "run";
   report.seed = options_.floor.seed;
   report.abort_reason = abort_reason_;
-  report.must_arrive = !metrics_.awaits_orders();
+  report.must_arrive = !metrics_.awaits_orders() || options_.until_idle;
   report.duration_s = to_seconds(bus_.now() - began_ + before_.age);
   report.fast_dds = fast_dds_version();
   if (ready_at_) report.startup_s = to_seconds(*ready_at_ - began_);

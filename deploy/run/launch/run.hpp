@@ -39,9 +39,10 @@ struct RunOptions {
 /// Starts all processes of the system, monitors them until all robots have arrived, the time limit has passed
 /// or the user interrupts, stops them, and writes the report. If the scenario gives no robot a goal, clients
 /// give the orders. The run then lasts until the user interrupts, RunOptions::seconds have passed or, with
-/// `until_idle`, all robots have finished their orders; no robot needs to arrive. If a page shows the run,
-/// this returns only when the user interrupts, unless RunOptions::closes_page. Returns the exit code: 0
-/// only if all robots arrived without contact and the auditor found no violation; kExitNotJudged if nothing
+/// `until_idle`, all robots have finished their orders. If a page shows the run, this returns only when the
+/// user interrupts, unless RunOptions::closes_page. Returns the exit code: 0 only if no robot had an
+/// unexcused contact, the auditor found no violation, and all robots arrived, that is, finished their orders
+/// if clients give them; without `until_idle` such robots need not arrive. Returns kExitNotJudged if nothing
 /// went wrong but the audit covered too little. Throws ConfigError, and std::runtime_error if a process
 /// cannot be started or a file cannot be written.
 int run(const RunOptions& options);

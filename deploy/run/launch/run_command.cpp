@@ -46,7 +46,8 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .show_default();
   command.add_option("--seconds", options->seconds, "time limit [the scenario's]").check(positive());
   command.add_flag("--until-idle", options->until_idle,
-                   "if clients give the goals: end when all robots have finished their orders");
+                   "if clients give the goals: end when all robots have finished their orders, and fail if "
+                   "the run ends before");
   command.add_option("--planner", options->planner, "planner of all robots' paths [the scenario's]")
       .check(one_of(driving_planners()));
   command

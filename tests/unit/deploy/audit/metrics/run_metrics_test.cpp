@@ -175,6 +175,52 @@ TEST_CASE("a run in which no robot has a goal has no arrivals") {
   CHECK_FALSE(metrics.report().mean_arrival_s);
 }
 
+TEST_CASE("each robot that has not finished a client's order is named with the cause") {
+  const Scenario scenario = parse_scenario(
+      "robots:\n- {id: 1, start_m: [0, 0]}\n- {id: 2, start_m: [0, 1]}\n- {id: 3, start_m: [0, 2]}\n"
+      "- {id: 4, start_m: [1, 0]}\n- {id: 5, start_m: [1, 1]}\n- {id: 6, start_m: [1, 2]}\n"
+      "- {id: 7, start_m: [2, 0]}\n",
+      "ordered.yaml");
+  RunMetrics metrics(scenario);
+  metrics.on_coordinator(state(1, 0, kGranting));
+  metrics.on_truth(truth(1, 1,
+                         {body(1, 0, 0), body(2, 0, 1), body(3, 0, 2), body(4, 1, 0), body(5, 1, 1),
+                          body(6, 1, 2, 0.5), body(7, 2, 0, 0.5)}));
+  metrics.on_status(status(1, 1, msg::AgentState::AGENT_WITHOUT_ORDER));
+  metrics.on_status(status(2, 1, kArrived));
+  metrics.on_status(status(3, 1, msg::AgentState::AGENT_ABSENT));
+  metrics.on_status(status(4, 1, kDriving));
+  msg::OrderStatus blocked;
+  blocked.robot(4);
+  blocked.header().sender(4);
+  blocked.client(static_cast<std::uint32_t>(Sender::kOperator));
+  blocked.order_number(12);
+  blocked.order_state(msg::OrderState::ORDER_BLOCKED);
+  blocked.block_reason(msg::BlockReason::BLOCK_ZONE);
+  blocked.blocker(1);
+  blocked.remaining_s(-1);
+  metrics.on_order_status(blocked);
+  msg::AgentStatus under_way = status(5, 1, kDriving);
+  under_way.distance_to_go_m(1.25);
+  metrics.on_status(under_way);
+  metrics.on_status(status(6, 1, kArrived));
+  Report report = metrics.report();
+  CHECK(report.arrived == 1);
+  CHECK(report.without_goal == 1);
+  REQUIRE(report.not_arrived.size() == 5);
+  CHECK(report.not_arrived.at(3) == "it is off the floor");
+  CHECK_THAT(report.not_arrived.at(4), StartsWith("zone 1 "));
+  CHECK(report.not_arrived.at(5) == "it was under way, 1.25 m from its goal");
+  CHECK(report.not_arrived.at(6) == "it was not seen at rest, although its agent reports arrival");
+  CHECK(report.not_arrived.at(7) == "its agent has sent no status");
+  CHECK_THAT(summary(report), ContainsSubstring("robot 3 has not arrived: it is off the floor\n"));
+  // Whether that matters is the caller's decision.
+  report.must_arrive = false;
+  CHECK(report.failure_reason().empty());
+  report.must_arrive = true;
+  CHECK(report.failure_reason() == "1 of 6 arrived");
+}
+
 TEST_CASE("the straight-line time agrees with slow integration") {
   for (const double goal_m : {0.01, 0.5, 1.06, 1.07, 3.0, 12.0}) {
     CAPTURE(goal_m);
