@@ -217,21 +217,26 @@ void OrderClient::on_status(const msg::OrderStatus& status) {
 
 void OrderClient::on_memory(const msg::OrderMemory& memory) {
   const auto page = decode(memory, bus_.now());
-  if (!page || !is_coordinator(page->process) || page->count == 0 || !page->is_complete) return;
+  if (!page || !is_coordinator(page->process)) return;
+  const auto memory_known = memories_.find(page->process);
+  if (page->count == 0 && memory_known != memories_.end())
+    for (const RememberedOrder& order : page->orders) memory_known->second.merge(order);
+  if (page->count == 0 || !page->is_complete) return;
   Round& round = rounds_[page->process];
   if (page->index == 0) round = {};
   if (page->index != round.next_page) return;
   for (const RememberedOrder& order : page->orders) round.book.merge(order);
   if (++round.next_page != page->count) return;
-  zones_[page->process] = round.book.zones();
+  memories_[page->process] = round.book;
   compare(page->process, round.book);
 }
 
-std::optional<std::vector<Order>> OrderClient::remembered_zones() const {
-  if (zones_.empty()) return std::nullopt;
-  std::vector<Order> all;
-  for (const auto& [coordinator, zones] : zones_) all.insert(all.end(), zones.begin(), zones.end());
-  return all;
+std::optional<OrderBook> OrderClient::remembered_orders() const {
+  if (memories_.empty()) return std::nullopt;
+  OrderBook merged;
+  for (const auto& [coordinator, memory] : memories_)
+    for (const RememberedOrder& order : memory.all()) merged.merge(order);
+  return merged;
 }
 
 bool OrderClient::count_lacking_memory(const SentOrder& sent, std::uint32_t coordinator) {

@@ -73,9 +73,9 @@ class OrderClient {
   const SentOrder* find(OrderHandle handle) const;
   /// The latest report of each robot.
   const std::map<RobotId, OrderReport>& reports() const { return reports_; }
-  /// The zones in the latest complete memories of coordinators; nullopt if none was received yet.
-  /// Coordinators repeat their memories once a second. A zone may be listed by several.
-  std::optional<std::vector<Order>> remembered_zones() const;
+  /// The orders in the latest complete memories of coordinators, and those that these have announced since;
+  /// nullopt if no complete memory was received yet. Coordinators repeat their memories once a second.
+  std::optional<OrderBook> remembered_orders() const;
   /// Calls back whenever the phase or goal of an order has changed.
   void on_change(std::function<void(const SentOrder&)> callback) { on_change_ = std::move(callback); }
 
@@ -123,9 +123,8 @@ class OrderClient {
   /// Number of consecutive complete order memories of each coordinator that lack the order.
   std::map<OrderHandle, std::map<std::uint32_t, int>> missing_;
   std::map<RobotId, OrderReport> reports_;
-  std::map<std::uint32_t, Round> rounds_;  // keyed by coordinator
-  /// The zones in the last complete memory of each coordinator.
-  std::map<std::uint32_t, std::vector<Order>> zones_;
+  std::map<std::uint32_t, Round> rounds_;        // keyed by coordinator
+  std::map<std::uint32_t, OrderBook> memories_;  // the last complete memory of each coordinator
   std::function<void(const SentOrder&)> on_change_;
   Writer<msg::Order> writer_;
 };

@@ -269,15 +269,33 @@ bool OrderBook::stands(const Order& order) const {
          !is_later(known->second.order, order) && !is_later(order, known->second.order);
 }
 
+bool OrderBook::holds_robot(const Order& hold, RobotId robot) const {
+  return !has_resumed(hold.client, robot, hold.number) && !has_resumed(kOperator, robot, hold.number);
+}
+
 bool OrderBook::is_held(RobotId robot) const {
   return std::ranges::any_of(std::array{robot, kAllRobots}, [&](RobotId scope) {
     return std::any_of(orders_.lower_bound({Kind::kHold, scope, 0, 0}),
-                       orders_.upper_bound({Kind::kHold, scope, ~0U, ~0U}), [&](const auto& entry) {
-                         const Order& hold = entry.second.order;
-                         return !has_resumed(hold.client, robot, hold.number) &&
-                                !has_resumed(kOperator, robot, hold.number);
-                       });
+                       orders_.upper_bound({Kind::kHold, scope, ~0U, ~0U}),
+                       [&](const auto& entry) { return holds_robot(entry.second.order, robot); });
   });
+}
+
+std::vector<Order> OrderBook::holds_of(RobotId robot) const {
+  std::vector<Order> found = holds();
+  std::erase_if(found, [&](const Order& hold) {
+    const bool concerns = hold.robot == robot || hold.robot == kAllRobots;
+    return !concerns || !holds_robot(hold, robot);
+  });
+  return found;
+}
+
+std::vector<Order> OrderBook::holds() const {
+  std::vector<Order> holds;
+  const auto end = orders_.upper_bound({Kind::kHold, kAllRobots, ~0U, ~0U});
+  for (auto hold = orders_.lower_bound({Kind::kHold, 0, 0, 0}); hold != end; ++hold)
+    holds.push_back(hold->second.order);
+  return holds;
 }
 
 const RememberedOrder* OrderBook::drive_order(RobotId robot, Rank rank) const {

@@ -46,6 +46,11 @@ class OrderBook {
 
   /// Whether there is a hold on the robot that neither its owner nor an operator has resumed.
   bool is_held(RobotId robot) const;
+  /// The holds on the robot that are in force.
+  std::vector<Order> holds_of(RobotId robot) const;
+  /// The holds in force, in the order of their robots. Single robots may be excepted from a hold of all
+  /// robots.
+  std::vector<Order> holds() const;
   /// Whether a resume in the book lifts this hold, for its robot or for all robots.
   bool is_lifted(const Order& hold) const;
   /// Whether the book lacks this order but lists another order that it replaces, cancels, lifts or removes.
@@ -95,6 +100,8 @@ class OrderBook {
   bool may_be_forgotten(const Order& order) const;
   /// Whether the client has lifted its hold with this number, of this robot or of all robots.
   bool has_resumed(ClientId client, RobotId robot, OrderNumber number) const;
+  /// Whether this hold, of the robot or of all robots, holds the robot.
+  bool holds_robot(const Order& hold, RobotId robot) const;
   /// Whether a later resume lifts everything that this one lifts.
   bool is_redundant(const Order& resume) const;
   /// Whether the resume ends any hold, at least for one robot.

@@ -77,10 +77,11 @@ std::optional<std::vector<Order>> OrderSession::zones_without(std::uint32_t numb
   };
   for (const Time deadline = bus_.now() + kMemoryTimeout; bus_.now() < deadline;) {
     bus_.run_until(bus_.now() + kPollPeriod);
-    const auto zones = client_.remembered_zones();
-    if (zones && std::ranges::any_of(*zones, is_wanted)) return std::nullopt;
+    const auto remembered = client_.remembered_orders();
+    if (remembered && std::ranges::any_of(remembered->zones(), is_wanted)) return std::nullopt;
   }
-  return client_.remembered_zones();
+  const auto remembered = client_.remembered_orders();
+  return remembered ? std::optional(remembered->zones()) : std::nullopt;
 }
 
 void OrderSession::print_timeout() const {

@@ -89,24 +89,53 @@ TEST_CASE("the orders of a client carry its name") {
 
 TEST_CASE("a client knows the zones that any coordinator remembers once it has heard a whole memory") {
   System system;
-  CHECK_FALSE(system.client.remembered_zones());
+  const auto zones = [&] { return system.client.remembered_orders()->zones(); };
+  CHECK_FALSE(system.client.remembered_orders());
   system.tell_memory();
-  REQUIRE(system.client.remembered_zones());
-  CHECK(system.client.remembered_zones()->empty());
+  REQUIRE(system.client.remembered_orders());
+  CHECK(zones().empty());
   OrderBook other;
   Order zone{msg::OrderKind::ORDER_ZONE, kAllRobots, kClient + 1, 5};
   zone.zone_number = 7;
   zone.zone = disc(1);
   (void)other.merge({zone});
   system.tell_memory(kCoordinator + 1, other);
-  REQUIRE(system.client.remembered_zones()->size() == 1);
-  CHECK(system.client.remembered_zones()->front().zone_number == 7);
-  CHECK(system.client.remembered_zones()->front().client == kClient + 1);
+  REQUIRE(zones().size() == 1);
+  CHECK(zones().front().zone_number == 7);
+  CHECK(zones().front().client == kClient + 1);
   zone.kind = msg::OrderKind::ORDER_REMOVE_ZONE;
   zone.number = 6;
   (void)other.merge({zone});
   system.tell_memory(kCoordinator + 1, other);
-  CHECK(system.client.remembered_zones()->empty());
+  CHECK(zones().empty());
+}
+
+TEST_CASE("a client knows who holds a robot, also if one of two coordinators has died since") {
+  System system;
+  const auto is_held = [&] { return system.client.remembered_orders()->is_held(3); };
+  const Order hold{msg::OrderKind::ORDER_HOLD, 3, kClient + 1, 5};
+  OrderBook other;
+  (void)other.merge({hold});
+  system.tell_memory(kCoordinator + 1, other);
+  system.tell_memory();
+  REQUIRE(system.client.remembered_orders()->holds_of(3).size() == 1);
+  CHECK(system.client.remembered_orders()->holds_of(3).front().client == kClient + 1);
+  CHECK(system.client.remembered_orders()->holds_of(4).empty());
+  SECTION("the other one lifts the hold, and repeats all orders") {
+    (void)system.book.merge({{msg::OrderKind::ORDER_RESUME, 3, kClient + 1, 6}});
+    system.tell_memory();
+    CHECK_FALSE(is_held());
+  }
+  SECTION("the other one announces that the hold is lifted") {
+    const RememberedOrder resume{{msg::OrderKind::ORDER_RESUME, 3, kClient + 1, 6}};
+    for (msg::OrderMemory& page : encode(std::span(&resume, 1), true, true)) {
+      page.process(kCoordinator);
+      page.header().sender(kCoordinator);
+      system.memory.publish(page, system.coordinator_bus.now());
+    }
+    system.run_for(10ms);
+    CHECK_FALSE(is_held());
+  }
 }
 
 TEST_CASE("a zone is not reported as replaced if its own client moves it") {

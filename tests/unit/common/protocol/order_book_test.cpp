@@ -88,6 +88,7 @@ TEST_CASE("order books that merge the same orders in any sequence agree with eac
     CHECK(first.hold_count() == second.hold_count());
     for (RobotId robot = 0; robot < 3; ++robot) {
       CHECK(first.is_held(robot) == reference_is_held(orders, robot));
+      CHECK(first.is_held(robot) == !first.holds_of(robot).empty());
       CHECK(second.is_held(robot) == first.is_held(robot));
       for (std::size_t rank = 0; rank < kRanks; ++rank) {
         const Order* expected = reference_drive_order(orders, robot, static_cast<Rank>(rank));
@@ -115,6 +116,26 @@ TEST_CASE("only a hold's owner or an operator can lift the hold, even for one ro
   book.merge(hold(4, kOperator, 17));
   book.merge(resume(4, kReferee, 18));
   CHECK(book.is_held(4));
+}
+
+TEST_CASE("a book names the holds on a robot") {
+  OrderBook book;
+  book.merge(hold(3, kAnna, 10));
+  book.merge(hold(kAllRobots, kBert, 11));
+  book.merge(hold(4, kOperator, 12));
+  const auto clients = [&](RobotId robot) {
+    std::vector<ClientId> found;
+    for (const Order& order : book.holds_of(robot)) found.push_back(order.client);
+    return found;
+  };
+  CHECK(clients(3) == std::vector<ClientId>{kAnna, kBert});
+  CHECK(clients(4) == std::vector<ClientId>{kOperator, kBert});
+  CHECK(book.holds().size() == 3);
+  book.merge(resume(3, kBert, 13));
+  CHECK(clients(3) == std::vector<ClientId>{kAnna});
+  CHECK(clients(5) == std::vector<ClientId>{kBert});
+  book.merge(resume(kAllRobots, kOperator, 14));
+  CHECK(book.holds().empty());
 }
 
 TEST_CASE("an order is identified by its number, and a late order changes nothing") {
