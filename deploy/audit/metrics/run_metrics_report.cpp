@@ -6,6 +6,7 @@
 
 #include "common/messaging/blockage_text.hpp"
 #include "common/messaging/histogram_codec.hpp"
+#include "common/protocol/agent_state_text.hpp"
 #include "common/protocol/process_names.hpp"
 #include "deploy/audit/metrics/run_metrics.hpp"
 
@@ -73,28 +74,15 @@ void RunMetrics::add_ground_truth(Report& report) const {
 std::string RunMetrics::reason_not_arrived(const RobotRecord& robot) const {
   if (!robot.status()) return "its agent has sent no status";
   const bool awaits_orders = robot.spec->goals.empty();
-  switch (robot.status()->agent_state()) {
-    case msg::AgentState::AGENT_FENCING:
-      return "it does not answer its agent";
-    case msg::AgentState::AGENT_REGISTERING:
-      return "no coordinator has registered it";
-    case msg::AgentState::AGENT_WAITING:
-      return "its agent waits for other robots, vision or a coordinator";
-    case msg::AgentState::AGENT_CLOCK_OUT_OF_BOUND:
-      return "clocks differ by more than the safety budget allows";
-    case msg::AgentState::AGENT_ABSENT:
-      return "it is off the floor";
-    case msg::AgentState::AGENT_HELD:
-      return "an order holds it";
-    case msg::AgentState::AGENT_WITHOUT_ORDER:
-      return awaits_orders ? "it has no order, but was not seen at rest" : "its order was cancelled";
-    case msg::AgentState::AGENT_ARRIVED:
-      if (awaits_orders) return "it was not seen at rest, although its agent reports arrival";
-      return fmt::format("it is {:.2f} m from its last goal, although its agent reports arrival",
-                         distance_to_go_m(robot));
-    case msg::AgentState::AGENT_DRIVING:
-      break;
-  }
+  const msg::AgentState state = robot.status()->agent_state();
+  if (const char* const text = hindrance_text(state)) return text;
+  if (state == msg::AgentState::AGENT_WITHOUT_ORDER)
+    return awaits_orders ? "it has no order, but was not seen at rest" : "its order was cancelled";
+  if (state == msg::AgentState::AGENT_ARRIVED && awaits_orders)
+    return "it was not seen at rest, although its agent reports arrival";
+  if (state == msg::AgentState::AGENT_ARRIVED)
+    return fmt::format("it is {:.2f} m from its last goal, although its agent reports arrival",
+                       distance_to_go_m(robot));
   if (robot.blockage) return to_text(*robot.blockage);
   // Only the agent knows the goals that clients have given.
   if (awaits_orders)
