@@ -162,7 +162,11 @@ TEST_CASE(
     return run.bus().now() - killed > seconds(4);
   }));
   CHECK(fastest_mps < 0.03);
+  CHECK(command({"go", "0", "0,0", "--wait", "--timeout", "3"}) == "exit code 1");
+  CHECK(run.printed("go 0: not driving: it is held by the operator"));
+  CHECK(run.printed("after 3 s: go 0: not driving: it is held by the operator"));
   CHECK(command({"resume", "all", "--client", "stranger"}) == "exit code 0");
+  CHECK(run.printed("still held: all robots by the operator"));
   CHECK(command({"resume", "all"}) == "exit code 0");
   CHECK(run.wait_until([&] { return run.max_speed_mps() > 0.3; }));
   CHECK(command({"go", "9", "0,0"}) == "exit code 1");

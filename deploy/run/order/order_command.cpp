@@ -23,6 +23,7 @@
 #include "deploy/run/order/goal_text.hpp"
 #include "deploy/run/order/order_session.hpp"
 #include "deploy/run/order/order_text.hpp"
+#include "deploy/run/order/robot_watch.hpp"
 #include "deploy/run/order/zone_text.hpp"
 
 namespace sidestep {
@@ -30,6 +31,9 @@ namespace {
 
 constexpr Duration kTablePeriod = std::chrono::milliseconds(200);
 constexpr Duration kOnceDuration = std::chrono::milliseconds(1500);
+// How much longer `--once` may take to find out what hinders the robots.
+constexpr int kMaxOncePolls = 20;
+constexpr Duration kOncePollPeriod = std::chrono::milliseconds(100);
 
 GoalLists goals_of(const OrderOptions& options) {
   if (!options.file.empty())
@@ -63,12 +67,16 @@ int show_status(const OrderOptions& options) {
   DdsBus bus(dds_of(options));
   const StopSignals stop_signals([&bus] { bus.stop(); });
   const OrderClient client(bus, client_of(options));
+  RobotWatch watch(bus, client);
+  watch.watch_all();
   if (options.once || !terminal_of(STDOUT_FILENO).can_redraw) {
     bus.run_until(bus.now() + kOnceDuration);
-    fmt::print("{}", to_table(client.reports()));
+    for (int i = 0; i < kMaxOncePolls && !watch.is_complete(); ++i)
+      bus.run_until(bus.now() + kOncePollPeriod);
+    fmt::print("{}", to_table(client.reports(), watch.all_hindrances()));
   } else {
     RedrawnText table(stdout);
-    const auto refresh = [&] { table.draw(to_table(client.reports())); };
+    const auto refresh = [&] { table.draw(to_table(client.reports(), watch.all_hindrances())); };
     refresh();
     call_periodically(bus, kTablePeriod, refresh);
     bus.run();
@@ -107,7 +115,8 @@ void add_go(const CliCommand& root, std::function<int()>& action) {
       .check(in_range(kMinSpeedLimit_mps, kMaxSpeed_mps));
   command.add_option("--tolerance", options->tolerance_m, "distance from a goal that counts as arrival, m")
       .check(in_range(kMinTolerance_m, kMaxTolerance_m));
-  const auto wait = command.add_flag("--wait", options->waits, "wait until all robots have arrived");
+  const auto wait = command.add_flag("--wait", options->waits,
+                                     "wait until all robots have arrived, and say what hinders them");
   command.add_option("--timeout", options->timeout_s, "give up waiting after this time, s [never]")
       .check(positive())
       .needs(wait);
@@ -136,7 +145,9 @@ void add_simple(const CliCommand& root, std::function<int()>& action, const char
     if (!allows_all && options->robot == kAllRobots) throw UsageError("expected one robot");
     action = [=] {
       OrderSession session(*options);
-      return session.finish({(session.client().*send)(options->robot)});
+      const OrderHandle handle = (session.client().*send)(options->robot);
+      const bool may_leave_holds = send == &OrderClient::resume && !options->client.empty();
+      return may_leave_holds ? session.finish_resume(handle) : session.finish({handle});
     };
   });
 }
@@ -190,7 +201,8 @@ void add_order_commands(const CliCommand& root, std::function<int()>& action) {
   add_simple(root, action, "resume", "Ends the holds of this client; without --client, ends all holds", true,
              &OrderClient::resume);
   add_zone(root, action);
-  const CliCommand status = root.add_subcommand("status", "Shows how robots carry out their orders");
+  const CliCommand status =
+      root.add_subcommand("status", "Shows how robots carry out their orders, and what hinders them");
   const Options options = add_command(status);
   status.add_flag("--once", options->once, "print the table once, and exit");
   status.on_parsed([options, &action] { action = [options] { return show_status(*options); }; });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <fmt/format.h>
 
 #include "common/process/exit_code.hpp"
@@ -17,6 +18,9 @@ constexpr Duration kAnswerTimeout = std::chrono::seconds(5);
 // Coordinators repeat their memories once a second.
 constexpr Duration kMemoryTimeout = std::chrono::milliseconds(2500);
 constexpr Duration kPollPeriod = std::chrono::milliseconds(20);
+constexpr Duration kHindrancePeriod = std::chrono::milliseconds(200);
+// Shorter hindrances are not worth a line: a takeover by another coordinator takes less time.
+constexpr Duration kMinHindrance = std::chrono::seconds(1);
 
 bool is_answered(const SentOrder& sent) { return sent.phase != OrderPhase::kSent; }
 bool is_over(const SentOrder& sent) { return is_final(sent.phase); }
@@ -38,10 +42,7 @@ OrderSession::OrderSession(const OrderOptions& options)
       bus_(dds_of(options)),
       stop_signals_([this] { bus_.stop(); }),
       client_(bus_, client_of(options), options.client) {
-  client_.on_change([this](const SentOrder& sent) {
-    fmt::print("{}\n", to_line(sent));
-    if (are_all(options_.waits ? is_over : is_answered)) bus_.stop();
-  });
+  client_.on_change([this](const SentOrder& sent) { on_change(sent); });
   bus_.subscribe(topics::kCoordinator, [this](const msg::CoordinatorState& state) {
     is_coordinator_heard_ |= state.coordinator_mode() == msg::CoordinatorMode::COORDINATOR_GRANTING;
   });
@@ -52,8 +53,65 @@ bool OrderSession::are_all(Condition condition) const {
   return std::ranges::all_of(handles_, [&](OrderHandle handle) { return condition(*client_.find(handle)); });
 }
 
+bool OrderSession::is_done() const {
+  if (!are_all(options_.waits ? is_over : is_answered)) return false;
+  return !names_holders_ || client_.remembered_orders().has_value();
+}
+
+void OrderSession::stop_if_done() {
+  if (is_done()) bus_.stop();
+}
+
+void OrderSession::on_change(const SentOrder& sent) {
+  // Its phase is not news while the robot is known not to drive.
+  if (is_over(sent) || shown_[sent.handle].printed.empty()) {
+    fmt::print("{}\n", to_line(sent));
+    std::fflush(stdout);
+  }
+  stop_if_done();
+}
+
+void OrderSession::print_hindrances() {
+  for (const OrderHandle handle : handles_) {
+    const SentOrder& sent = *client_.find(handle);
+    if (!is_answered(sent) || is_over(sent)) continue;
+    const std::vector<Hindrance> hindrances = watch_->hindrances(sent.order.robot);
+    Shown& shown = shown_[handle];
+    if (const std::string text = lasting_text(hindrances); text != shown.latest) {
+      shown.latest = text;
+      shown.latest_since = bus_.now();
+    }
+    if (shown.latest == shown.printed || bus_.now() - shown.latest_since < kMinHindrance) continue;
+    shown.printed = shown.latest;
+    fmt::print("{}\n", to_line(sent, hindrances));
+    std::fflush(stdout);
+  }
+}
+
+void OrderSession::print_remaining_holds(const SentOrder& resume) const {
+  std::optional<OrderBook> remembered = client_.remembered_orders();
+  if (!remembered) return;
+  (void)remembered->merge({resume.order});  // memories may be older than it
+  const RobotId robot = resume.order.robot;
+  const std::vector<Order> holds = robot == kAllRobots ? remembered->holds() : remembered->holds_of(robot);
+  if (!holds.empty()) fmt::print("{}\n", still_held_text(holds));
+}
+
+int OrderSession::finish_resume(OrderHandle handle) {
+  names_holders_ = true;
+  call_periodically(bus_, kPollPeriod, [this] { stop_if_done(); });
+  const int code = finish({handle});
+  if (code == 0) print_remaining_holds(*client_.find(handle));
+  return code;
+}
+
 int OrderSession::finish(const std::vector<OrderHandle>& handles) {
   handles_ = handles;
+  if (options_.waits) {
+    watch_.emplace(bus_, client_);
+    for (const OrderHandle handle : handles_) watch_->watch(client_.find(handle)->order.robot);
+    call_periodically(bus_, kHindrancePeriod, [this] { print_hindrances(); });
+  }
   const Time deadline = options_.timeout_s ? bus_.now() + from_seconds(*options_.timeout_s) : Time::max();
   bus_.run_until(std::min(deadline, bus_.now() + kAnswerTimeout));
   if (options_.waits && are_all(is_answered) && !are_all(is_over)) bus_.run_until(deadline);
@@ -87,8 +145,10 @@ std::optional<std::vector<Order>> OrderSession::zones_without(std::uint32_t numb
 void OrderSession::print_timeout() const {
   for (const OrderHandle handle : handles_) {
     const SentOrder& sent = *client_.find(handle);
-    if (!is_over(sent))
-      fmt::print(stderr, "sidestep: after {:g} s: {}\n", *options_.timeout_s, to_line(sent));
+    if (is_over(sent)) continue;
+    const auto hindrances =
+        watch_ && is_answered(sent) ? watch_->hindrances(sent.order.robot) : std::vector<Hindrance>();
+    fmt::print(stderr, "sidestep: after {:g} s: {}\n", *options_.timeout_s, to_line(sent, hindrances));
   }
   fmt::print(stderr, "sidestep: the robots drive on; `sidestep cancel ROBOT` ends an order\n");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "common/client/order_client.hpp"
 #include "common/messaging/dds/bus.hpp"
 #include "common/process/stop_signals.hpp"
+#include "deploy/run/order/robot_watch.hpp"
 
 namespace sidestep {
 
@@ -41,16 +43,32 @@ class OrderSession {
 
   OrderClient& client() { return client_; }
 
-  /// Waits until these orders are accepted or, with `waits`, over. Returns the exit code.
+  /// Waits until these orders are accepted or, with `waits`, over. While it waits for robots that do not
+  /// drive, it says what hinders them. Returns the exit code.
   int finish(const std::vector<OrderHandle>& handles);
+
+  /// Like finish(), for a resume; also says which of its robots others still hold.
+  int finish_resume(OrderHandle handle);
 
   /// Listens until a coordinator's memory lists this zone of the client; then, or if no coordinator tells its
   /// memory, returns nullopt. Otherwise returns the zones in force.
   std::optional<std::vector<Order>> zones_without(std::uint32_t number);
 
  private:
+  /// What was printed about the hindrances of an order's robot, and what would be printed now.
+  struct Shown {
+    std::string printed, latest;
+    Time latest_since{};
+  };
   template <typename Condition>
   bool are_all(Condition condition) const;
+  /// Whether nothing remains to be waited for.
+  bool is_done() const;
+  void stop_if_done();
+  void on_change(const SentOrder& sent);
+  /// Prints the hindrances that have changed and then lasted for a moment.
+  void print_hindrances();
+  void print_remaining_holds(const SentOrder& resume) const;
   /// Says which orders are not over, and that they stay in force.
   void print_timeout() const;
   std::string unconfirmed_text() const;
@@ -59,7 +77,10 @@ class OrderSession {
   DdsBus bus_;
   StopSignals stop_signals_;
   OrderClient client_;
+  std::optional<RobotWatch> watch_;  // only for finish() that waits for robots
   std::vector<OrderHandle> handles_;
+  std::map<OrderHandle, Shown> shown_;
+  bool names_holders_ = false;  // finish() also waits until the holds in force are known
   bool is_coordinator_heard_ = false;
 };
 

@@ -49,13 +49,36 @@ std::string state_text(const OrderReport& report) {
   return kStates[static_cast<std::size_t>(report.progress.state)];
 }
 
-std::string remaining_text(const OrderReport& report) {
-  return report.remaining_s && !report.is_held ? fmt::format("{:.1f}", *report.remaining_s) : "-";
+/// The client as a part of a sentence: "the operator", "client kitchen".
+std::string owner_text(ClientId client, const ClientName& name) {
+  const bool is_named = rank_of(client) == Rank::kClient;
+  return (is_named ? "" : "the ") + client_text(client, name);
+}
+
+/// A line of the table of robots.
+struct TableRow {
+  std::string state, owner = "-", goal = "-", remaining = "-", why;
+};
+
+TableRow row_of(const OrderReport& report, const std::vector<Hindrance>& hindrances) {
+  TableRow row;
+  row.state = hindrances.empty() ? state_text(report) : hindrances.front().state;
+  if (report.number != 0) {
+    row.owner = client_text(report.client, report.client_name);
+    row.goal = std::to_string(report.progress.goal_index + 1);
+  }
+  if (report.remaining_s && !report.is_held && hindrances.empty())
+    row.remaining = fmt::format("{:.1f}", *report.remaining_s);
+  row.why = to_text(hindrances);
+  if (report.blockage) row.why += (row.why.empty() ? "" : "; ") + to_text(*report.blockage);
+  return row;
 }
 
 }  // namespace
 
 std::string client_text(ClientId client, const ClientName& name) {
+  if (is_coordinator(client))
+    return fmt::format("coordinator {}", client - static_cast<ClientId>(Sender::kCoordinator));
   switch (rank_of(client)) {
     case Rank::kOperator:
       return "operator";
@@ -72,17 +95,37 @@ std::string client_text(ClientId client, const ClientName& name) {
 
 std::string unknown_zone_text(std::uint32_t number, ClientId client, const ClientName& name,
                               const std::vector<Order>& zones) {
-  const auto owner = [](ClientId id, const ClientName& of) {
-    return (rank_of(id) == Rank::kClient ? "" : "the ") + client_text(id, of);
-  };
   std::set<std::string> known;
   for (const Order& zone : zones)
-    known.insert(fmt::format("{} of {}", zone.zone_number, owner(zone.client, zone.client_name)));
-  return fmt::format("remove zone {}: refused, {} has no zone {}; {}", number, owner(client, name), number,
+    known.insert(fmt::format("{} of {}", zone.zone_number, owner_text(zone.client, zone.client_name)));
+  return fmt::format("remove zone {}: refused, {} has no zone {}; {}", number, owner_text(client, name),
+                     number,
                      known.empty() ? "there are no zones" : fmt::format("zones: {}", fmt::join(known, ", ")));
 }
 
-std::string to_line(const SentOrder& sent) {
+std::string held_text(const std::vector<Order>& holds) {
+  std::set<std::string> owners;
+  for (const Order& hold : holds) owners.insert(owner_text(hold.client, hold.client_name));
+  return owners.empty() ? "it is held" : fmt::format("it is held by {}", fmt::join(owners, " and "));
+}
+
+std::string still_held_text(const std::vector<Order>& holds) {
+  std::map<std::string, std::set<RobotId>> robots_of;
+  for (const Order& hold : holds) robots_of[owner_text(hold.client, hold.client_name)].insert(hold.robot);
+  std::vector<std::string> parts;
+  for (const auto& [owner, robots] : robots_of) {
+    const bool is_for_all = robots.contains(kAllRobots);
+    parts.push_back(is_for_all ? fmt::format("all robots by {}", owner)
+                               : fmt::format("robot{} {} by {}", robots.size() > 1 ? "s" : "",
+                                             fmt::join(robots, ", "), owner));
+  }
+  return fmt::format("still held: {}; a hold is ended by its client or by the operator",
+                     fmt::join(parts, ", and "));
+}
+
+std::string to_line(const SentOrder& sent, const std::vector<Hindrance>& hindrances) {
+  if (!hindrances.empty() && !is_final(sent.phase))
+    return fmt::format("{}: not driving: {}", order_name(sent.order), to_text(hindrances));
   std::string line = fmt::format("{}: {}", order_name(sent.order), phase_text(sent.phase));
   if (sent.phase == OrderPhase::kRefused) line += fmt::format(", {}", refusal_text(sent.refusal));
   if (sent.phase == OrderPhase::kDriving)
@@ -91,21 +134,21 @@ std::string to_line(const SentOrder& sent) {
   return line;
 }
 
-std::string to_table(const std::map<RobotId, OrderReport>& reports) {
+std::string to_table(const std::map<RobotId, OrderReport>& reports,
+                     const std::map<RobotId, std::vector<Hindrance>>& hindrances) {
   constexpr const char* kHeading = "ordered by";
-  const auto owner = [](const OrderReport& report) {
-    return report.number != 0 ? client_text(report.client, report.client_name) : std::string("-");
-  };
+  std::map<RobotId, TableRow> rows;
   std::size_t width = std::string_view(kHeading).size();
-  for (const auto& [robot, report] : reports) width = std::max(width, owner(report).size());
+  for (const auto& [robot, report] : reports) {
+    const auto found = hindrances.find(robot);
+    rows[robot] = row_of(report, found == hindrances.end() ? std::vector<Hindrance>() : found->second);
+    width = std::max(width, rows[robot].owner.size());
+  }
   std::string table = fmt::format("{:>5}  {:<9} {:<{}} {:>4} {:>6}  {}\n", "robot", "state", kHeading, width,
                                   "goal", "left s", "why");
-  for (const auto& [robot, report] : reports) {
-    const bool has_order = report.number != 0;
-    table += fmt::format("{:>5}  {:<9} {:<{}} {:>4} {:>6}  {}\n", robot, state_text(report), owner(report),
-                         width, has_order ? std::to_string(report.progress.goal_index + 1) : "-",
-                         remaining_text(report), report.blockage ? to_text(*report.blockage) : "");
-  }
+  for (const auto& [robot, row] : rows)
+    table += fmt::format("{:>5}  {:<9} {:<{}} {:>4} {:>6}  {}\n", robot, row.state, row.owner, width,
+                         row.goal, row.remaining, row.why);
   return table;
 }
 

@@ -6,21 +6,30 @@
 #include <vector>
 
 #include "common/client/order_client.hpp"
+#include "deploy/run/order/hindrance.hpp"
 
 namespace sidestep {
 
-/// One line that describes the state of an order.
-[[nodiscard]] std::string to_line(const SentOrder& sent);
+/// One line that describes the state of an order, or says what hinders its robot: "go 3: not driving: it is
+/// off the floor".
+[[nodiscard]] std::string to_line(const SentOrder& sent, const std::vector<Hindrance>& hindrances = {});
 
-/// The client in words: "operator", "referee", "scenario" or "client kitchen"; if it has no name, "client
-/// 2936412733".
+/// The client in words: "operator", "referee", "scenario", "coordinator 0" or "client kitchen"; if it has no
+/// name, "client 2936412733".
 [[nodiscard]] std::string client_text(ClientId client, const ClientName& name);
 
 /// Why a zone cannot be removed that none of the remembered zones is, and which zones there are.
 [[nodiscard]] std::string unknown_zone_text(std::uint32_t number, ClientId client, const ClientName& name,
                                             const std::vector<Order>& zones);
 
+/// Who holds a robot: "it is held by client bob and the operator". "it is held" if no hold is known.
+[[nodiscard]] std::string held_text(const std::vector<Order>& holds);
+
+/// Which robots are still held after a resume, by whom, and who can resume them.
+[[nodiscard]] std::string still_held_text(const std::vector<Order>& holds);
+
 /// A table of the robots' activities, with one line per robot.
-[[nodiscard]] std::string to_table(const std::map<RobotId, OrderReport>& reports);
+[[nodiscard]] std::string to_table(const std::map<RobotId, OrderReport>& reports,
+                                   const std::map<RobotId, std::vector<Hindrance>>& hindrances);
 
 }  // namespace sidestep

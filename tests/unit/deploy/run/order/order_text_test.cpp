@@ -43,12 +43,67 @@ TEST_CASE("the table names who has ordered a robot, and a robot without an order
   reports[2] = {2, 0, 0, {}};
   reports[3] = {3, client_id("kitchen"), 7, {msg::OrderState::ORDER_DRIVING, 0}};
   reports[3].client_name = client_name("kitchen");
-  CHECK(to_table(reports) ==
+  CHECK(to_table(reports, {}) ==
         "robot  state     ordered by        goal left s  why\n"
         "    0  arrived   operator             2      -  \n"
         "    1  driving   client 4000000000    1      -  \n"
         "    2  no order  -                    -      -  \n"
         "    3  driving   client kitchen       1      -  \n");
+}
+
+TEST_CASE("the table says what hinders a robot, and estimates no time for it") {
+  std::map<RobotId, OrderReport> reports;
+  for (const RobotId robot : {0u, 1u, 2u, 3u}) {
+    reports[robot] = {
+        robot, static_cast<ClientId>(Sender::kOperator), 5, {msg::OrderState::ORDER_DRIVING, 0}};
+    reports[robot].remaining_s = 1.5;
+  }
+  reports[2].is_held = true;
+  reports[2].blockage = Blockage{msg::BlockReason::BLOCK_ROBOT, 1, {}, {1, 2}};
+  const std::map<RobotId, std::vector<Hindrance>> hindrances{
+      {1,
+       {{"silent", "it has sent no report", std::chrono::seconds(12)}, {"off floor", "it is off the floor"}}},
+      {2, {{"held", "it is held by client bob"}}}};
+  CHECK(to_table(reports, hindrances) ==
+        "robot  state     ordered by goal left s  why\n"
+        "    0  driving   operator      1    1.5  \n"
+        "    1  silent    operator      1      -  it has sent no report for 12 s; it is off the floor\n"
+        "    2  held      operator      1      -  it is held by client bob; robot 1 stands on its goal; it "
+        "goes "
+        "to 1.00,2.00 instead\n"
+        "    3  driving   operator      1    1.5  \n");
+}
+
+TEST_CASE("the line of an order says what hinders its robot, until the order is over") {
+  Order order{msg::OrderKind::ORDER_GO, 3};
+  order.goals.resize(2);
+  SentOrder sent{1, order, true, OrderPhase::kDriving};
+  const std::vector<Hindrance> lifted{{"off floor", "it is off the floor"}};
+  CHECK(to_line(sent) == "go 3: driving to goal 1 of 2");
+  CHECK(to_line(sent, lifted) == "go 3: not driving: it is off the floor");
+  sent.phase = OrderPhase::kReplaced;
+  CHECK(to_line(sent, lifted) == "go 3: replaced by a later order");
+}
+
+TEST_CASE("holders are named, and after a resume the robots that they still hold") {
+  const auto hold = [](RobotId robot, ClientId client, const char* name = "") {
+    Order order{msg::OrderKind::ORDER_HOLD, robot, client, 1};
+    order.client_name = client_name(name);
+    return order;
+  };
+  constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
+  constexpr auto kCoordinator = static_cast<ClientId>(Sender::kCoordinator);
+  const Order bob = hold(5, client_id("bob"), "bob"), bobs_second = hold(7, client_id("bob"), "bob");
+  CHECK(held_text({}) == "it is held");
+  CHECK(held_text({bob}) == "it is held by client bob");
+  CHECK(held_text({bob, hold(kAllRobots, kOperator), hold(kAllRobots, kCoordinator + 1)}) ==
+        "it is held by client bob and coordinator 1 and the operator");
+  CHECK(still_held_text({bob}) ==
+        "still held: robot 5 by client bob; a hold is ended by its client or by the operator");
+  CHECK(
+      still_held_text({bob, bobs_second, hold(kAllRobots, kOperator)}) ==
+      "still held: robots 5, 7 by client bob, and all robots by the operator; a hold is ended by its client "
+      "or by the operator");
 }
 
 }  // namespace sidestep::order_text_test
