@@ -37,7 +37,7 @@ Json number_or_none(const Json& number) {
   return number.get<std::uint32_t>() == msg::NO_ROBOT ? Json("none") : number;
 }
 
-Json name(const Json& octets) {
+Json client_name_text(const Json& octets) {
   std::string text;
   for (const Json& octet : octets) {
     if (octet == 0) break;
@@ -78,8 +78,8 @@ std::map<std::string, Described> described_types() {
   const Rewrites rewrites{{"sidestep::msg::Header.rules", fingerprint},
                           {"sidestep::msg::Order.robot", number_or_all},
                           {"sidestep::msg::RememberedOrder.robot", number_or_all},
-                          {"sidestep::msg::OrderTerms.client_name", name},
-                          {"sidestep::msg::OrderStatus.client_name", name},
+                          {"sidestep::msg::OrderTerms.client_name", client_name_text},
+                          {"sidestep::msg::OrderStatus.client_name", client_name_text},
                           {"sidestep::msg::NetworkFault.target", number_or_all},
                           {"sidestep::msg::ContactPair.second", number_or_none},
                           {"sidestep::msg::Counter.robot", number_or_none},

@@ -3,7 +3,7 @@
 
 #include "tests/catch.hpp"
 
-namespace sidestep {
+namespace sidestep::similar_name_test {
 
 using Names = std::vector<std::string>;
 
@@ -34,4 +34,4 @@ TEST_CASE("the question lists the names, and is empty without any") {
   CHECK(did_you_mean("explode", kCommands).empty());
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::similar_name_test

@@ -5,7 +5,7 @@
 
 #include "tests/catch.hpp"
 
-namespace sidestep {
+namespace sidestep::version_test {
 
 TEST_CASE("the version of the programs is that of the project and thereby of the package") {
   CHECK(std::string(kVersion) == SIDESTEP_PROJECT_VERSION);
@@ -19,4 +19,4 @@ TEST_CASE("--version prints the version, the commit and the version of Fast DDS"
   CHECK(std::regex_match(text, expected));
 }
 
-}  // namespace sidestep
+}  // namespace sidestep::version_test
