@@ -254,6 +254,7 @@ TEST_CASE("every command that writes refuses a full, read-only or closed folder,
   placeholders["frame"] = runner.file("frame.png");
   run({"sidestep", "simulate", placeholders["scenario"], "--seconds", "0.2", "--record",
        placeholders["recording"]});
+  placeholders["report"] = runner.file("reports/crossing-1.json");
   run({"sidestep", "frame", placeholders["images"], placeholders["frame"]});
   const std::vector<WritingCommand> commands = writing_commands(runner.table());
   REQUIRE(commands.size() > 20);

@@ -229,7 +229,8 @@ TEST_CASE("a command whose output cannot be written says so, and still writes it
   };
   const auto [command, file] = GENERATE_REF(
       Case{"keys init new-keys", "new-keys/private"}, Case{"building b --cells 200 --robots 2", "b/map.pgm"},
-      Case{"plan empty --svg p.svg", "p.svg"}, Case{"frame " + kImages + " p.png --detections", "p.png"},
+      Case{"plan empty --svg p.svg", "p.svg"}, Case{"check " + kScenario + " --svg c.svg", "c.svg"},
+      Case{"frame " + kImages + " p.png --detections", "p.png"},
       Case{"topic list --domain " + std::to_string(f.domain.number()), ""});
   const auto [output, cause] =
       GENERATE(std::pair(">/dev/full", "No space left on device"), std::pair(">&-", "it is closed"),

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 
+#include "common/file/console.hpp"
 #include "common/process/exit_code.hpp"
 #include "common/protocol/senders.hpp"
 #include "deploy/run/order/order_text.hpp"
@@ -65,7 +66,7 @@ void OrderSession::stop_if_done() {
 void OrderSession::on_change(const SentOrder& sent) {
   // Its phase is not news while the robot is known not to drive.
   if (is_over(sent) || shown_[sent.handle].printed.empty()) {
-    fmt::print("{}\n", to_line(sent));
+    print_output("{}\n", to_line(sent));
     std::fflush(stdout);
   }
   stop_if_done();
@@ -83,7 +84,7 @@ void OrderSession::print_hindrances() {
     }
     if (shown.latest == shown.printed || bus_.now() - shown.latest_since < kMinHindrance) continue;
     shown.printed = shown.latest;
-    fmt::print("{}\n", to_line(sent, hindrances));
+    print_output("{}\n", to_line(sent, hindrances));
     std::fflush(stdout);
   }
 }
@@ -94,7 +95,7 @@ void OrderSession::print_remaining_holds(const SentOrder& resume) const {
   (void)remembered->merge({resume.order});  // memories may be older than it
   const RobotId robot = resume.order.robot;
   const std::vector<Order> holds = robot == kAllRobots ? remembered->holds() : remembered->holds_of(robot);
-  if (!holds.empty()) fmt::print("{}\n", still_held_text(holds));
+  if (!holds.empty()) print_output("{}\n", still_held_text(holds));
 }
 
 int OrderSession::finish_resume(OrderHandle handle) {

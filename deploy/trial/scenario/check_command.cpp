@@ -2,6 +2,7 @@
 #include "deploy/trial/scenario/check_command.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "common/config/scenario_loader.hpp"
+#include "common/file/console.hpp"
 #include "common/file/write_file.hpp"
 #include "common/process/exit_code.hpp"
 #include "common/process/output_paths.hpp"
@@ -67,21 +69,25 @@ bool check(const std::string& file, bool draws, const std::string& picture_file)
         fmt::format("{} and {}: `sidestep test {}` runs it\n", counted(test.faults.size(), "fault", "faults"),
                     counted(test.expectations.size(), "expectation", "expectations"), file);
   }
-  if (draws) fmt::print("{}", text_picture(scenario, picture_columns()));
-  if (!picture_file.empty()) write_file(picture_file, scenario_picture(scenario));
+  if (!picture_file.empty()) require_replaceable(picture_file);
+  std::string text = draws ? text_picture(scenario, picture_columns()) : "";
   const auto unreachable = unreachable_goals(scenario);
   const bool is_good = !unreachable || unreachable->empty();
-  fmt::print("{}: {}, {}\n{}", file, is_good ? "valid" : "valid, but goals cannot be reached",
-             summary(scenario), faults);
-  if (scenario.map && !scenario.map->notice().empty()) fmt::print("{}\n", scenario.map->notice());
+  text += fmt::format("{}: {}, {}\n{}", file, is_good ? "valid" : "valid, but goals cannot be reached",
+                      summary(scenario), faults);
+  if (scenario.map && !scenario.map->notice().empty()) text += scenario.map->notice() + "\n";
   if (!unreachable)
-    fmt::print("whether robots can reach their goals was not examined: the map has too many walls\n");
-  for (const std::string& problem : unreachable.value_or(std::vector<std::string>{}))
-    fmt::print("{}\n", problem);
+    text += "whether robots can reach their goals was not examined: the map has too many walls\n";
+  for (const std::string& problem : unreachable.value_or(std::vector<std::string>{})) text += problem + "\n";
+  const int error = write_text(stdout, text);
+  if (!picture_file.empty()) write_file(picture_file, scenario_picture(scenario));
+  require_printed(error);
   return is_good;
 }
 
 int check_files(const CheckOptions& options) {
+  // The picture is drawn even if the reader of the output disappears.
+  std::signal(SIGPIPE, SIG_IGN);
   if (options.prints_schema) {
     fmt::print("{}", scenario_schema());
     return 0;
