@@ -75,16 +75,13 @@ class Negotiation {
   bool has_upcoming_version(Time now) const;
   /// The start of a version that should be proposed again because its answer is overdue.
   std::optional<Time> retry_start(Time now) const;
-  /// Number of cycles to propose ahead, and upper bound of the number of cycles for which an acceleration is
-  /// held.
+  /// Number of cycles to propose ahead. An acceleration is held for at most as many cycles.
   int lead() const { return pacing_.lead(); }
   /// Whether a report since the last proposal shows that the robot does not execute the version that the
   /// proposal assumed.
   bool is_contradicted() const { return contradicted_; }
-
-  /// Whether the agent should ask for another coordinator by repeating its registration. It should if it
-  /// hears no active coordinator, if the coordinator does not answer, or if the coordinator does not know
-  /// which versions the robot executes.
+  /// Whether the agent should repeat its registration to find another coordinator: no coordinator is active,
+  /// it does not answer, or it does not know which versions the robot executes.
   bool needs_other_coordinator(Time now) const;
 
   Registration registration();

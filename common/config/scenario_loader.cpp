@@ -158,6 +158,7 @@ void read_laser(YamlMap& map, Scenario& scenario) {
     inner.read("range_error_m", {0, 0.5}, laser.range_error_m);
     inner.read("dropout_probability", kProbability, laser.dropout_probability);
     inner.read("person_radius_m", {0.01, 1}, laser.person_radius_m);
+    if (inner.schema()) return;  // the opponents are placeholders
     for (std::size_t i = 0; i < scenario.opponents.size(); ++i) {
       if (scenario.opponents[i].radius_m >= laser.person_radius_m) continue;
       inner.location_of("person_radius_m")

@@ -72,11 +72,15 @@ std::string clear_message(const CLI::ParseError& error, const CLI::App& root, co
     return unknown_command(rest.front(), *app, program);
   const auto option = std::ranges::find_if(
       all_rest, [](const auto& word) { return word.starts_with("--") && word.size() > 2; });
-  if (error.get_name() != "ExtrasError" || option == all_rest.end()) return error.what();
+  // An unknown option is the cause also if the library misses something that would have come after it.
+  const auto code = static_cast<CLI::ExitCodes>(error.get_exit_code());
+  const bool is_of_option = code == CLI::ExitCodes::ExtrasError || code == CLI::ExitCodes::RequiredError;
+  if (!is_of_option || option == all_rest.end()) return error.what();
   std::vector<std::string> names;
   for (const OptionInfo& known : command_info(*app, "").options)
     names.insert(names.end(), known.names.begin(), known.names.end());
-  return error.what() + did_you_mean(option->substr(0, option->find('=')), names);
+  return fmt::format("The following argument was not expected: {}{}", *option,
+                     did_you_mean(option->substr(0, option->find('=')), names));
 }
 
 }  // namespace

@@ -194,16 +194,16 @@ TEST_CASE("a recording on a full disk ends with a clear word, and keeps what was
 TEST_CASE("a campaign whose results file is full goes on, and keeps the results before") {
   const TemporaryFolder folder;
   const std::string command =
-      "(ulimit -f 2; exec \"$0\" simulate --faults none --seeds 1..30 --seconds 1 --jobs 1 --results "
+      "(ulimit -f 2; exec \"$0\" simulate --faults none --seeds 1..8 --seconds 12 --jobs 1 --results "
       "results) | cat >out";
   const ProgramRun run = run_in_shell(command, folder);
   CAPTURE(run.errors);
   CHECK(run.exit_code == 1);
   CHECK_THAT(run.errors,
              ContainsSubstring("cannot write results: File too large; the campaign continues without it"));
-  CHECK_THAT(text_of(folder.file("out")), ContainsSubstring("30 seeds"));
+  CHECK_THAT(text_of(folder.file("out")), ContainsSubstring("8 seeds"));
   const ProgramRun resumed = run_in_shell(
-      "\"$0\" simulate --faults none --seeds 1..30 --seconds 1 --jobs 1 --results results >out", folder);
+      "\"$0\" simulate --faults none --seeds 1..8 --seconds 12 --jobs 1 --results results >out", folder);
   CHECK_THAT(text_of(folder.file("out")), ContainsSubstring("resuming after "));
   CHECK_THAT(resumed.errors, !ContainsSubstring("cannot"));
 }

@@ -104,6 +104,7 @@ TEST_CASE("a client knows the zones that any coordinator remembers once it has h
   CHECK(zones().front().zone_number == 7);
   CHECK(zones().front().client == kClient + 1);
   zone.kind = msg::OrderKind::ORDER_REMOVE_ZONE;
+  zone.zone = {};
   zone.number = 6;
   (void)other.merge({zone});
   system.tell_memory(kCoordinator + 1, other);

@@ -175,6 +175,8 @@ TEST_CASE("an unknown option is named with the option that is meant") {
   CHECK_THROWS_WITH(Commands().line.parse({"other", "--sped=3"}),
                     ContainsSubstring("--sped=3") && EndsWith("; did you mean --speed?"));
   CHECK_THROWS_WITH(Commands().line.parse({"other", "--nonsense"}), EndsWith("--nonsense"));
+  CHECK_THROWS_WITH(Commands().line.parse({"outer", "inner", "--fil"}), EndsWith("not expected: --fil"));
+  CHECK_THROWS_WITH(Commands().line.parse({"--hlp"}), EndsWith("--hlp; did you mean --help?"));
 }
 
 TEST_CASE("the help command prints the help of the program or of a command") {

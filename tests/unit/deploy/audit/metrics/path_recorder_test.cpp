@@ -31,7 +31,7 @@ TEST_CASE("even motion and rest are recorded as their ends") {
   // The robot stops within one period, at whose two ends there is a point each.
   CHECK(points.size() == 4);
   CHECK(points.front().position_m == Vec2(0, 0));
-  CHECK(points.back().at == at(20, {}).at);
+  CHECK(points.back().at == at(20, Vec2(0, 0)).at);
   CHECK(points.back().speed_mps == 0);
 }
 
@@ -61,8 +61,8 @@ TEST_CASE("a full recorder keeps the whole run with fewer points, and its end") 
   for (int i = 0; i <= last; ++i) recorder.add(at(0.05 * i, {i % 2 ? 1.0 : 0.0, 0.05 * i}));
   const std::vector<Point> points = recorder.points();
   CHECK(points.size() <= 101);
-  CHECK(points.front().at == at(0, {}).at);
-  CHECK(points.back().at == at(0.05 * last, {}).at);
+  CHECK(points.front().at == at(0, Vec2(0, 0)).at);
+  CHECK(points.back().at == at(0.05 * last, Vec2(0, 0)).at);
 }
 
 TEST_CASE("points that are not later than the last one are ignored") {

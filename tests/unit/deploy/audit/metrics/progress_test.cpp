@@ -87,14 +87,14 @@ TEST_CASE("a progress table fits into the width of the screen, and the most impo
                     at_120 = progress_table(metrics, Time{}, {120, 24});
   CHECK_THAT(at_60, StartsWith("starting  0 of 5 arrived  0 contacts  clearance ?\n"
                                "123 grants  0 denials  0.00 % missed\n"
-                               "negotiation 0.00 / 0.00 ms\n"
+                               "negotiation 0.00 / 0.00 ms  clocks 0.00 +- 0.00 ms\n"
                                "robot  team    state           to go      speed   grants\n"
                                "    0  blue    silent  "));
   CHECK_THAT(at_60, ContainsSubstring("\n    2  blue    driving  ") &&
                         ContainsSubstring("   0.00 m/s      123\n    3  yellow  silent  "));
   CHECK_THAT(at_80,
              StartsWith("starting  0 of 5 arrived  0 contacts  clearance ?  123 grants  0 denials\n"
-                        "0.00 % missed  negotiation 0.00 / 0.00 ms\n"
+                        "0.00 % missed  negotiation 0.00 / 0.00 ms  clocks 0.00 +- 0.00 ms\n"
                         "robot  team    state           to go      speed   grants  denials  p50 / p99 ms\n"));
   CHECK_THAT(at_80, ContainsSubstring("   0.00 m/s      123        0   0.00 / 0.00\n"));
   CHECK_THAT(at_120, ContainsSubstring(" denials  negotiation p50 / p99 ms\n"));

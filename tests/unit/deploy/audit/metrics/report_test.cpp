@@ -79,9 +79,9 @@ TEST_CASE("a report's JSON has the keys that readers rely on in a stable order")
                                          "mismatches",
                                          "counters",
                                          "audit",
-                                         "floor",
-                                         "paths",
                                          "incidents",
+                                         "paths",
+                                         "floor",
                                          "wall_clock"});
   CHECK(json["seed"] == 7);
   CHECK(json["passed"] == false);

@@ -59,7 +59,7 @@ TEST_CASE("the table says what hinders a robot, and estimates no time for it") {
     reports[robot].remaining_s = 1.5;
   }
   reports[2].is_held = true;
-  reports[2].blockage = Blockage{msg::BlockReason::BLOCK_ROBOT, 1, {}, {1, 2}};
+  reports[2].blockage = Blockage{msg::BlockReason::BLOCK_ROBOT, 1, Vec2(0, 0), {1, 2}};
   const std::map<RobotId, std::vector<Hindrance>> hindrances{
       {1,
        {{"silent", "it has sent no report", std::chrono::seconds(12)}, {"off floor", "it is off the floor"}}},

@@ -30,10 +30,10 @@ TEST_CASE("a floor is drawn with its robots, goals and obstacles, the positive d
         "+------------------------------+\n"
         "|              ##              |\n"
         "|              ##              |\n"
-        "|    0         ##       (0)    |\n"
+        "|     0        ##        (0)   |\n"
         "|              ##              |\n"
-        "|              ##              |\n"
-        "|         +              12    |\n"
+        "|                              |\n"
+        "|          +             12    |\n"
         "|                              |\n"
         "|                              |\n"
         "|  !.........................  |\n"
@@ -76,7 +76,8 @@ TEST_CASE("a tall floor is no higher than a screen") {
 }
 
 TEST_CASE("robots whose names would overlap are drawn as one character each") {
-  const Scenario scenario = parse_scenario("circle: {count: 100, spacing_m: 0.2}\n", "circle.yaml");
+  const Scenario scenario = parse_scenario(
+      "field: {length_m: 8, width_m: 8}\ncircle: {count: 100, spacing_m: 0.2}\n", "circle.yaml");
   const std::string picture = text_picture(scenario, 60);
   CHECK_THAT(picture, ContainsSubstring("o of another"));
   CHECK_THAT(picture, ContainsSubstring("x of another"));

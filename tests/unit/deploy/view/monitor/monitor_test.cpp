@@ -211,14 +211,16 @@ TEST_CASE("a recording opens at its first granted moment, beside the verdict on 
   CHECK(std::ranges::any_of(run.scenario.robots, is_granted));
   // The panels are of this moment too, but the verdict is on all that was read.
   CHECK(run.viewer.states.at("panels").at("at_s") == first_grant_s);
-  CHECK(run.promise().at("state") == "not judged");
+  const double judged_s = run.promise().at("run_s");
+  CHECK(judged_s < 1);
   CHECK(run.viewer.states.at("whole").at("is_over") == false);
   run.monitor.set_progress(1);
   run.monitor.take_last_snapshot();
   run.monitor.update_viewers(run.bus.now());
   CHECK(run.viewer.states.at("whole").at("is_over") == true);
   CHECK(run.viewer.states.at("whole").at("promise").at("state") == "kept");
-  CHECK(run.promise().at("state") == "not judged");
+  CHECK(run.viewer.states.at("whole").at("promise").at("run_s") > 3);
+  CHECK(run.promise().at("run_s") == judged_s);
   // From there, it plays.
   CHECK(run.send(R"({"op":"play","speed":1})"));
   run.system.run_for(1s);

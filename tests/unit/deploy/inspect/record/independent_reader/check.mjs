@@ -39,8 +39,10 @@ function fail(path, ours, theirs) {
 function compareText(path, ours, theirs) {
   if (theirs instanceof Uint8Array || Array.isArray(theirs)) {
     const bytes = Uint8Array.from(theirs);
-    const text = new TextDecoder().decode(bytes);
-    return ours === text || ours === `${bytes.length} bytes` || fail(path, ours, theirs);
+    const decoder = new TextDecoder(), end = bytes.indexOf(0);
+    // A name in an array of fixed length ends at the first zero.
+    const isName = end >= 0 && ours === decoder.decode(bytes.subarray(0, end));
+    return isName || ours === decoder.decode(bytes) || ours === `${bytes.length} bytes` || fail(path, ours, theirs);
   }
   if (ours === String(theirs) || ours === `unknown ${theirs}`) return true;
   if (/^[0-9a-f]{16}$/.test(ours) && BigInt("0x" + ours) === BigInt(theirs)) return true;
