@@ -151,7 +151,11 @@ void OrderSession::print_timeout() const {
         watch_ && is_answered(sent) ? watch_->hindrances(sent.order.robot) : std::vector<Hindrance>();
     fmt::print(stderr, "sidestep: after {:g} s: {}\n", *options_.timeout_s, to_line(sent, hindrances));
   }
-  fmt::print(stderr, "sidestep: the robots drive on; `sidestep cancel ROBOT` ends an order\n");
+  const bool is_any_answered = std::ranges::any_of(
+      handles_, [this](OrderHandle handle) { return is_answered(*client_.find(handle)); });
+  fmt::print(
+      stderr, "sidestep: {}\n",
+      is_any_answered ? "the robots drive on; `sidestep cancel ROBOT` ends an order" : unconfirmed_text());
 }
 
 std::string OrderSession::unconfirmed_text() const {
