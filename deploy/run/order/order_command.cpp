@@ -17,6 +17,7 @@
 #include "common/messaging/version_codec.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
+#include "common/protocol/client_text.hpp"
 #include "common/terminal/redrawn_text.hpp"
 #include "common/terminal/terminal.hpp"
 #include "common/yaml/yaml_document.hpp"

@@ -9,6 +9,7 @@
 
 #include "common/messaging/blockage_text.hpp"
 #include "common/messaging/refusal_text.hpp"
+#include "common/protocol/client_text.hpp"
 
 namespace sidestep {
 namespace {
@@ -49,12 +50,6 @@ std::string state_text(const OrderReport& report) {
   return kStates[static_cast<std::size_t>(report.progress.state)];
 }
 
-/// The client as a part of a sentence: "the operator", "client kitchen".
-std::string owner_text(ClientId client, const ClientName& name) {
-  const bool is_named = rank_of(client) == Rank::kClient;
-  return (is_named ? "" : "the ") + client_text(client, name);
-}
-
 /// A line of the table of robots.
 struct TableRow {
   std::string state, owner = "-", goal = "-", remaining = "-", why;
@@ -76,42 +71,15 @@ TableRow row_of(const OrderReport& report, const std::vector<Hindrance>& hindran
 
 }  // namespace
 
-std::string client_text(ClientId client, const ClientName& name) {
-  if (is_coordinator(client))
-    return fmt::format("coordinator {}", client - static_cast<ClientId>(Sender::kCoordinator));
-  switch (rank_of(client)) {
-    case Rank::kOperator:
-      return "operator";
-    case Rank::kReferee:
-      return "referee";
-    case Rank::kScenario:
-      return "scenario";
-    case Rank::kClient:
-      break;
-  }
-  const std::string text = to_text(name);
-  return "client " + (text.empty() ? std::to_string(client) : text);
-}
-
-std::string unknown_zone_text(std::uint32_t number, ClientId client, const ClientName& name,
-                              const std::vector<Order>& zones) {
-  std::set<std::string> known;
-  for (const Order& zone : zones)
-    known.insert(fmt::format("{} of {}", zone.zone_number, owner_text(zone.client, zone.client_name)));
-  return fmt::format("remove zone {}: refused, {} has no zone {}; {}", number, owner_text(client, name),
-                     number,
-                     known.empty() ? "there are no zones" : fmt::format("zones: {}", fmt::join(known, ", ")));
-}
-
 std::string held_text(const std::vector<Order>& holds) {
   std::set<std::string> owners;
-  for (const Order& hold : holds) owners.insert(owner_text(hold.client, hold.client_name));
+  for (const Order& hold : holds) owners.insert(client_phrase(hold.client, hold.client_name));
   return owners.empty() ? "it is held" : fmt::format("it is held by {}", fmt::join(owners, " and "));
 }
 
 std::string still_held_text(const std::vector<Order>& holds) {
   std::map<std::string, std::set<RobotId>> robots_of;
-  for (const Order& hold : holds) robots_of[owner_text(hold.client, hold.client_name)].insert(hold.robot);
+  for (const Order& hold : holds) robots_of[client_phrase(hold.client, hold.client_name)].insert(hold.robot);
   std::vector<std::string> parts;
   for (const auto& [owner, robots] : robots_of) {
     const bool is_for_all = robots.contains(kAllRobots);

@@ -14,14 +14,6 @@ namespace sidestep {
 /// off the floor".
 [[nodiscard]] std::string to_line(const SentOrder& sent, const std::vector<Hindrance>& hindrances = {});
 
-/// The client in words: "operator", "referee", "scenario", "coordinator 0" or "client kitchen"; if it has no
-/// name, "client 2936412733".
-[[nodiscard]] std::string client_text(ClientId client, const ClientName& name);
-
-/// Why a zone cannot be removed that none of the remembered zones is, and which zones there are.
-[[nodiscard]] std::string unknown_zone_text(std::uint32_t number, ClientId client, const ClientName& name,
-                                            const std::vector<Order>& zones);
-
 /// Who holds a robot: "it is held by client bob and the operator". "it is held" if no hold is known.
 [[nodiscard]] std::string held_text(const std::vector<Order>& holds);
 

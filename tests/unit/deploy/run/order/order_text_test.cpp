@@ -17,25 +17,6 @@ TEST_CASE("an order is described by its robot and a zone by its number") {
   CHECK(line(msg::OrderKind::ORDER_REMOVE_ZONE, kAllRobots) == "remove zone 7: accepted");
 }
 
-TEST_CASE("a zone that is not there cannot be removed, and the zones that are there are named") {
-  constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
-  CHECK(unknown_zone_text(7, kOperator, {}, {}) ==
-        "remove zone 7: refused, the operator has no zone 7; there are no zones");
-  const auto zone = [](ClientId client, std::uint32_t number, const char* name = "") {
-    Order order{msg::OrderKind::ORDER_ZONE, kAllRobots, client, 1};
-    order.zone_number = number;
-    order.client_name = client_name(name);
-    return order;
-  };
-  // Two coordinators list the same zone.
-  CHECK(
-      unknown_zone_text(7, client_id("bob"), client_name("bob"),
-                        {zone(kOperator, 1), zone(client_id("kitchen"), 7, "kitchen"), zone(2'000'001, 8),
-                         zone(kOperator, 1)}) ==
-      "remove zone 7: refused, client bob has no zone 7; zones: 1 of the operator, 7 of client kitchen, 8 of "
-      "client 2000001");
-}
-
 TEST_CASE("the table names who has ordered a robot, and a robot without an order has none") {
   std::map<RobotId, OrderReport> reports;
   reports[0] = {0, static_cast<ClientId>(Sender::kOperator), 5, {msg::OrderState::ORDER_ARRIVED, 1}};
