@@ -71,25 +71,43 @@ struct Client::Impl {
     return id;
   }
 
-  /// `send_order` makes the order client forget its earlier orders about this zone.
   OrderId send_zone(std::uint32_t number, Send send_order) {
     const OrderId id = states.add();
     bus.post([this, id, number, send_order = std::move(send_order)] {
-      const OrderHandle handle = send_order(orders);
-      ids[handle] = id;
-      if (const auto earlier = zones.find(number); earlier != zones.end()) {
-        ids.erase(earlier->second.first);
-        update(earlier->second.second, {OrderPhase::kReplaced, Refusal::kNone, 0, true}, true);
-      }
-      zones[number] = {handle, id};
+      replace_zone(number, send_order(orders), id);
     });
     return id;
   }
 
+  OrderId remove_zone(std::uint32_t number) {
+    const OrderId id = states.add();
+    bus.post([this, id, number] {
+      if (orders.may_have_zone(number))
+        replace_zone(number, orders.remove_zone(number), id);
+      else
+        mark_refused(id, Refusal::kUnknownZone);
+    });
+    return id;
+  }
+
+  /// The order client forgets its earlier orders about a zone.
+  void replace_zone(std::uint32_t number, OrderHandle handle, OrderId id) {
+    ids[handle] = id;
+    if (const auto earlier = zones.find(number); earlier != zones.end()) {
+      ids.erase(earlier->second.first);
+      update(earlier->second.second, {OrderPhase::kReplaced, Refusal::kNone, 0, true}, true);
+    }
+    zones[number] = {handle, id};
+  }
+
   OrderId refuse(Refusal refusal) {
     const OrderId id = states.add();
-    bus.post([this, id, refusal] { update(id, {OrderPhase::kRefused, refusal, 0, true}, true); });
+    bus.post([this, id, refusal] { mark_refused(id, refusal); });
     return id;
+  }
+
+  void mark_refused(OrderId id, Refusal refusal) {
+    update(id, {OrderPhase::kRefused, refusal, 0, true}, true);
   }
 
   OrderId send_to(RobotId robot, OrderHandle (OrderClient::*order)(sidestep::RobotId)) {
@@ -164,9 +182,7 @@ OrderId Client::set_zone(std::uint32_t number, const Zone& zone) {
   });
 }
 
-OrderId Client::remove_zone(std::uint32_t number) {
-  return impl_->send_zone(number, [number](OrderClient& client) { return client.remove_zone(number); });
-}
+OrderId Client::remove_zone(std::uint32_t number) { return impl_->remove_zone(number); }
 
 std::optional<OrderState> Client::state(OrderId order) const { return impl_->states.find(order); }
 

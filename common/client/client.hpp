@@ -70,7 +70,8 @@ enum class Refusal {
   kMalformed,     ///< no goals or corners, too many of them, or a number that is NaN or out of bounds
   kUnknownRobot,  ///< the scenario has no such robot
   kOutsideField,  ///< a goal lies outside the field
-  kTooMany        ///< the coordinator cannot remember more holds or zones
+  kTooMany,       ///< the coordinator cannot remember more holds or zones
+  kUnknownZone    ///< this client has no zone of this number that could be removed
 };
 
 struct OrderState {
@@ -147,6 +148,8 @@ class [[gnu::visibility("default")]] Client {
   /// Sets this client's zone with this number, for all robots. Setting it again replaces the zone, so a zone
   /// can move. It remains in force after the client exits.
   OrderId set_zone(std::uint32_t number, const Zone& zone);
+  /// Refused if coordinators do not remember such a zone of this client. Until one has told what it
+  /// remembers, which takes about a second after the start, every removal is accepted.
   OrderId remove_zone(std::uint32_t number);
 
   /// nullopt if the order is unknown or forgotten. The client remembers the last 1000 orders that are over.

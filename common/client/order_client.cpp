@@ -239,6 +239,18 @@ std::optional<OrderBook> OrderClient::remembered_orders() const {
   return merged;
 }
 
+bool OrderClient::may_have_zone(std::uint32_t number) const {
+  const auto is_this_zone = [&](const Order& order) {
+    return order.kind == msg::OrderKind::ORDER_ZONE && order.client == client_ && order.zone_number == number;
+  };
+  const auto has_set = [&](const auto& entry) {
+    return is_this_zone(entry.second.order) && !is_final(entry.second.phase);
+  };
+  if (std::ranges::any_of(sent_, has_set)) return true;
+  const std::optional<OrderBook> remembered = remembered_orders();
+  return !remembered || std::ranges::any_of(remembered->zones(), is_this_zone);
+}
+
 bool OrderClient::count_lacking_memory(const SentOrder& sent, std::uint32_t coordinator) {
   return ++missing_[sent.handle][coordinator] % kRoundsUntilForgotten == 0;
 }

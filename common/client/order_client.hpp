@@ -76,6 +76,9 @@ class OrderClient {
   /// The orders in the latest complete memories of coordinators, and those that these have announced since;
   /// nullopt if no complete memory was received yet. Coordinators repeat their memories once a second.
   std::optional<OrderBook> remembered_orders() const;
+  /// Whether this client has set this zone, coordinators remember that it did, or none has told its memory
+  /// yet.
+  bool may_have_zone(std::uint32_t number) const;
   /// Calls back whenever the phase or goal of an order has changed.
   void on_change(std::function<void(const SentOrder&)> callback) { on_change_ = std::move(callback); }
 

@@ -131,13 +131,9 @@ int OrderSession::finish(const std::vector<OrderHandle>& handles) {
 }
 
 std::optional<std::vector<Order>> OrderSession::zones_without(std::uint32_t number) {
-  const auto is_wanted = [&, client = client_of(options_)](const Order& zone) {
-    return zone.client == client && zone.zone_number == number;
-  };
   for (const Time deadline = bus_.now() + kMemoryTimeout; bus_.now() < deadline;) {
     bus_.run_until(bus_.now() + kPollPeriod);
-    const auto remembered = client_.remembered_orders();
-    if (remembered && std::ranges::any_of(remembered->zones(), is_wanted)) return std::nullopt;
+    if (client_.remembered_orders() && client_.may_have_zone(number)) return std::nullopt;
   }
   const auto remembered = client_.remembered_orders();
   return remembered ? std::optional(remembered->zones()) : std::nullopt;

@@ -14,6 +14,7 @@
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/refusal_text.hpp"
 #include "common/messaging/version_codec.hpp"
+#include "common/protocol/client_text.hpp"
 #include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/robot_disturbance.hpp"
 #include "common/yaml/heading.hpp"
@@ -21,6 +22,8 @@
 
 namespace sidestep {
 namespace {
+
+constexpr auto kOperator = static_cast<ClientId>(Sender::kOperator);
 
 using Json = nlohmann::json;
 using Kind = msg::DisturbanceKind;
@@ -174,7 +177,7 @@ WebResponse accepted(OrderHandle handle) { return json_response(200, {{"order", 
 
 ControlApi::ControlApi(Bus& bus, ControlHooks hooks)
     : hooks_(std::move(hooks)),
-      client_(bus, static_cast<ClientId>(Sender::kOperator)),
+      client_(bus, kOperator),
       disturbance_writer_(bus.relay(topics::kDisturbance, topics::kDisturbance.name)),
       disturbances_(bus, *disturbance_writer_) {}
 
@@ -250,7 +253,7 @@ WebResponse ControlApi::command_robot(RobotId robot, const std::string& what, co
 }
 
 WebResponse ControlApi::command_zone(std::uint32_t number, const WebRequest& request) {
-  if (request.method == "DELETE") return accepted(client_.remove_zone(number));
+  if (request.method == "DELETE") return remove_zone(number);
   if (request.method != "POST") return error_response(405, "expected POST or DELETE");
   const Json json = parse_body(request.body);
   require_known_keys(json, {"corners", "radius_m", "speed_limit_mps"});
@@ -262,6 +265,11 @@ WebResponse ControlApi::command_zone(std::uint32_t number, const WebRequest& req
     zone.speed_limit_mps =
         number_in(json, "speed_limit_mps", kMinSpeedLimit_mps, kMaxSpeed_mps, std::nullopt);
   return accepted(client_.zone(number, std::move(zone)));
+}
+
+WebResponse ControlApi::remove_zone(std::uint32_t number) {
+  if (client_.may_have_zone(number)) return accepted(client_.remove_zone(number));
+  return error_response(404, unknown_zone_text(number, kOperator, {}, client_.remembered_orders()->zones()));
 }
 
 void ControlApi::disturb(RobotId robot, const std::string& body, const WebReply& reply) {

@@ -30,7 +30,7 @@ struct ControlHooks {
 /// | POST /api/robots/3/cancel, hold, resume | none |
 /// | POST /api/hold, /api/resume | none; all robots |
 /// | POST /api/zones/1 | {"corners": [[0, 0], [1, 0], [1, 1]], "radius_m": 0.1, "speed_limit_mps": 0.5} |
-/// | DELETE /api/zones/1 | none |
+/// | DELETE /api/zones/1 | none; status 404 if the operator has no such zone |
 /// | POST /api/robots/3/fault | {"kind": "push", "vx_mps": 1, "vy_mps": 0} and others, see below |
 /// | POST /api/recording/start, stop | none; answer {"file": …}: what is or was recorded |
 /// | POST /api/bookmark | {"text": "here"} |
@@ -54,6 +54,7 @@ class ControlApi {
                                      const WebReply& reply);
   WebResponse command_robot(RobotId robot, const std::string& what, const std::string& body);
   WebResponse command_zone(std::uint32_t number, const WebRequest& request);
+  WebResponse remove_zone(std::uint32_t number);
   WebResponse record(bool begins);
   void disturb(RobotId robot, const std::string& body, const WebReply& reply);
   WebResponse order_state(OrderHandle handle) const;

@@ -35,7 +35,8 @@ class FakeCoordinator {
   explicit FakeCoordinator(const TestDomain& domain)
       : bus_(domain.settings("coordinator")),
         answers_(bus_.advertise(topics::kOrderAnswer)),
-        statuses_(bus_.advertise(topics::kOrderStatus)) {
+        statuses_(bus_.advertise(topics::kOrderStatus)),
+        memory_(bus_.advertise(topics::kOrderMemory)) {
     bus_.subscribe(topics::kOrder, [this](const msg::Order& message) { on_order(message); });
     report();
     thread_ = std::thread([this] { bus_.run(); });
@@ -48,6 +49,8 @@ class FakeCoordinator {
   FakeCoordinator& operator=(const FakeCoordinator&) = delete;
 
   std::uint32_t last_sender() const { return last_sender_; }
+  /// From now on, tells that it remembers no order.
+  void tell_empty_memory() { tells_memory_ = true; }
 
  private:
   void on_order(const msg::Order& message) {
@@ -73,13 +76,20 @@ class FakeCoordinator {
     status_.robot(5);
     status_.header().sender(5);
     statuses_.publish(status_, bus_.now());
+    if (!tells_memory_) return;
+    msg::OrderMemory memory = encode({}, true, false).front();
+    memory.process(static_cast<std::uint32_t>(Sender::kCoordinator));
+    memory.header().sender(memory.process());
+    memory_.publish(memory, bus_.now());
   }
 
   DdsBus bus_;
   Writer<msg::OrderAnswer> answers_;
   Writer<msg::OrderStatus> statuses_;
+  Writer<msg::OrderMemory> memory_;
   msg::OrderStatus status_;
   std::atomic<std::uint32_t> last_sender_{0};
+  std::atomic<bool> tells_memory_{false};
   std::thread thread_;
 };
 
@@ -123,6 +133,22 @@ TEST_CASE("a zone is set once a coordinator accepts the order, and setting the z
   CHECK(client.wait(client.remove_zone(1), kTimeout)->phase == OrderPhase::kAccepted);
   CHECK(client.state(second)->phase == OrderPhase::kReplaced);
   CHECK(client.state(other)->phase == OrderPhase::kAccepted);
+}
+
+TEST_CASE("the removal of an unknown zone is refused once a coordinator has told what it remembers") {
+  const TestDomain domain;
+  FakeCoordinator coordinator(domain);
+  Client client(settings_for(domain));
+  CHECK(client.wait(client.remove_zone(1), kTimeout)->phase == OrderPhase::kAccepted);
+  coordinator.tell_empty_memory();
+  OrderState removal;
+  const auto deadline = std::chrono::steady_clock::now() + kTimeout;
+  while (removal.phase != OrderPhase::kRefused && std::chrono::steady_clock::now() < deadline)
+    removal = client.wait(client.remove_zone(1), kTimeout).value();
+  CHECK(removal == OrderState{OrderPhase::kRefused, Refusal::kUnknownZone, 0, true});
+  const OrderId zone = client.set_zone(1, {{{0, 0}}, 0.3});
+  CHECK(client.wait(client.remove_zone(1), kTimeout)->phase == OrderPhase::kAccepted);
+  CHECK(client.state(zone)->phase == OrderPhase::kReplaced);
 }
 
 TEST_CASE("a callback may give orders, and wait() returns immediately in a callback") {

@@ -111,6 +111,27 @@ TEST_CASE("a client knows the zones that any coordinator remembers once it has h
   CHECK(zones().empty());
 }
 
+TEST_CASE("a client may have a zone that it has set, that coordinators remember, or as long as none tells") {
+  System system;
+  CHECK(system.client.may_have_zone(7));
+  system.tell_memory();
+  CHECK_FALSE(system.client.may_have_zone(7));
+  system.client.zone(7, disc(1));
+  CHECK(system.client.may_have_zone(7));
+  CHECK_FALSE(system.client.may_have_zone(8));
+  system.run_for(100ms);
+  system.tell_memory();
+  // Another process of the same client.
+  OrderClient other(system.client_bus, kClient);
+  system.tell_memory();
+  CHECK(other.may_have_zone(7));
+  system.client.remove_zone(7);
+  system.run_for(100ms);
+  system.tell_memory();
+  CHECK_FALSE(system.client.may_have_zone(7));
+  CHECK_FALSE(other.may_have_zone(7));
+}
+
 TEST_CASE("a client knows who holds a robot, also if one of two coordinators has died since") {
   System system;
   const auto is_held = [&] { return system.client.remembered_orders()->is_held(3); };

@@ -100,6 +100,30 @@ TEST_CASE("HTTP requests set zones, remove zones and cause faults") {
   CHECK(run.bookmarks == "here");
 }
 
+TEST_CASE("an HTTP request cannot remove a zone that is not there, and is told which zones are") {
+  ControlledRun run;
+  const auto error = [&](const char* path) {
+    const WebResponse answer = run.request("DELETE", path);
+    CHECK(answer.status == 404);
+    return parse_json(answer.body).value("error", "");
+  };
+  run.system.run_for(2s);  // coordinators tell once a second what they remember
+  CHECK(error("/api/zones/1") == "remove zone 1: refused, the operator has no zone 1; there are no zones");
+  (void)run.request("POST", "/api/zones/2", R"({"corners": [[0, 1]], "radius_m": 0.1})");
+  run.system.run_for(2s);
+  CHECK(error("/api/zones/1") ==
+        "remove zone 1: refused, the operator has no zone 1; zones: 2 of the operator");
+  CHECK(run.request("DELETE", "/api/zones/2").status == 200);
+  run.system.run_for(3s);
+  CHECK(error("/api/zones/2") == "remove zone 2: refused, the operator has no zone 2; there are no zones");
+}
+
+TEST_CASE("an HTTP request can remove a zone that was set a moment before") {
+  ControlledRun run;
+  (void)run.request("POST", "/api/zones/1", R"({"corners": [[0, 1]], "radius_m": 0.1})");
+  CHECK(run.request("DELETE", "/api/zones/1").status == 200);
+}
+
 TEST_CASE("an HTTP request starts or stops a recording, and the answer names what is or was recorded") {
   ControlledRun run;
   const WebResponse nothing = run.request("POST", "/api/recording/stop");
