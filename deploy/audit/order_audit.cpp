@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "common/protocol/client_text.hpp"
 #include "common/protocol/senders.hpp"
 #include "deploy/audit/audited_robot.hpp"
 
@@ -114,6 +115,7 @@ OrderAudit::OrderAudit(std::vector<RobotId> roster, bool is_complete, const Comp
 OrderAudit::Terms OrderAudit::terms_of(std::uint32_t robot, std::uint32_t client,
                                        const msg::OrderTerms& terms) {
   Terms order{{}, client, terms.order_number(), terms.order_kind(), robot};
+  if (is_name_of(terms.client_name(), client)) order.client_name = terms.client_name();
   switch (order.kind) {
     case msg::OrderKind::ORDER_GO:
     case msg::OrderKind::ORDER_CANCEL:
@@ -292,11 +294,11 @@ void OrderAudit::judge_grants(const Memory& memory, Coordinator& coordinator) {
         ++grant;
         continue;
       }
-      report_(
-          AuditRule::kHeld, robot, granted.version, granted.epoch,
-          fmt::format("was granted {:.3f} s after the coordinator had announced hold {} of client {}, which "
-                      "is still in force",
-                      static_cast<double>(granted.stamp_ns - told->second) * 1e-9, hold.number, hold.client));
+      report_(AuditRule::kHeld, robot, granted.version, granted.epoch,
+              fmt::format("was granted {:.3f} s after the coordinator had announced hold {} of {}, which "
+                          "is still in force",
+                          static_cast<double>(granted.stamp_ns - told->second) * 1e-9, hold.number,
+                          client_phrase(hold.client, hold.client_name)));
       grant = coordinator.grants.erase(grant);
     }
   }
@@ -321,9 +323,9 @@ void OrderAudit::judge_confirmed(const Memory& memory, std::uint32_t sender, con
     if (memory.accounts_for(order)) return false;
     report_(AuditRule::kForgottenOrder, order.robot == msg::ALL_ROBOTS ? roster_.front() : order.robot, 0,
             coordinator.epoch,
-            fmt::format("{} {} of client {}, confirmed by coordinator {}, is not in the memory of "
+            fmt::format("{} {} of {}, confirmed by coordinator {}, is not in the memory of "
                         "coordinator {}, and nothing has replaced it",
-                        name_of(order.kind), order.number, order.client,
+                        name_of(order.kind), order.number, client_phrase(order.client, order.client_name),
                         confirmed.coordinator - static_cast<std::uint32_t>(Sender::kCoordinator),
                         sender - static_cast<std::uint32_t>(Sender::kCoordinator)));
     return true;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/motion/version.hpp"
+#include "common/protocol/client_name.hpp"
 #include "deploy/audit/audit_rules.hpp"
 #include "deploy/audit/comparable_stamps.hpp"
 #include "idl/negotiation.hpp"
@@ -49,6 +50,7 @@ class OrderAudit {
     std::uint64_t number = 0;
     msg::OrderKind kind = msg::OrderKind::ORDER_GO;
     std::uint32_t robot = 0;
+    ClientName client_name{};
   };
   using Key = std::pair<std::uint64_t, std::uint32_t>;  // number and client of an order
   /// An agent that is known to remember an order.

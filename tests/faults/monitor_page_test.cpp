@@ -105,7 +105,7 @@ TEST_CASE("the page shows a run and gives orders to its robots", "[both-cores]")
 
   // Each order appears as an event. No keyboard shortcut causes an error, and no request of the page is
   // refused.
-  CHECK(page.wait_until("monitor.events.some((e) => e.text === 'operator sends robot 0 to a goal')"));
+  CHECK(page.wait_until("monitor.events.some((e) => e.text === 'the operator sends robot 0 to a goal')"));
   for (const char* key : {"1", "2", "m", "t", "f", "[", "]", ",", ".", "l"}) page.press(key);
   CHECK(page.logged_errors() == "");
 }

@@ -11,6 +11,7 @@
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/order_codec.hpp"
 #include "common/messaging/refusal_text.hpp"
+#include "common/protocol/client_text.hpp"
 #include "common/protocol/disturbance_text.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/role_cause.hpp"
@@ -24,12 +25,6 @@ constexpr std::size_t kMaxSenders = 1000;
 
 std::string who(std::uint32_t robot) {
   return robot == msg::ALL_ROBOTS ? std::string("all robots") : fmt::format("robot {}", robot);
-}
-
-std::string name_of_client(std::uint32_t client) {
-  if (client == static_cast<std::uint32_t>(Sender::kScenario)) return "the scenario";
-  return client >= static_cast<std::uint32_t>(Sender::kClient) ? fmt::format("client {}", client)
-                                                               : process_name(client);
 }
 
 std::vector<RobotId> robots_of(std::uint32_t robot) {
@@ -50,9 +45,17 @@ bool EventWatch::store_if_changed(Watched what, std::uint32_t id, std::uint64_t 
   return true;
 }
 
-bool EventWatch::store_order(std::uint32_t sender, std::uint64_t number) {
+bool EventWatch::store_order(const msg::Order& order) {
+  const ClientId sender = order.header().sender();
   if (sent_orders_.size() >= kMaxSenders && !sent_orders_.contains(sender)) sent_orders_.clear();
-  return std::exchange(sent_orders_[sender], number) != number;
+  SentOrder& last = sent_orders_[sender];
+  last.name = is_name_of(order.terms().client_name(), sender) ? order.terms().client_name() : ClientName{};
+  return std::exchange(last.number, order.terms().order_number()) != order.terms().order_number();
+}
+
+std::string EventWatch::phrase_of(ClientId client) const {
+  const auto known = sent_orders_.find(client);
+  return client_phrase(client, known == sent_orders_.end() ? ClientName{} : known->second.name);
 }
 
 void EventWatch::on(const msg::GroundTruth& truth, Time now) {
@@ -164,11 +167,9 @@ void EventWatch::on(const msg::Order& order, Time now) {
   const msg::OrderKind kind = order.terms().order_kind();
   if (!is_enumerator(kind, msg::OrderKind::ORDER_REMOVE_ZONE)) return;
   // A client repeats its order until a coordinator answers.
-  if (!store_order(order.header().sender(), order.terms().order_number()) ||
-      !external_event_limit_.admit(now))
-    return;
+  if (!store_order(order) || !external_event_limit_.admit(now)) return;
   add(Severity::kInfo, "order",
-      name_of_client(order.header().sender()) + " " +
+      phrase_of(order.header().sender()) + " " +
           fmt::format(fmt::runtime(kTexts[static_cast<std::size_t>(kind)]), who(order.robot())),
       now, robots_of(order.robot()));
 }
@@ -181,8 +182,7 @@ void EventWatch::on(const msg::OrderAnswer& answer, Time now) {
       !external_event_limit_.admit(now))
     return;
   add(Severity::kWarning, "order",
-      fmt::format("an order from {} was refused: {}", name_of_client(answer.client()), refusal_text(result)),
-      now);
+      fmt::format("an order from {} was refused: {}", phrase_of(answer.client()), refusal_text(result)), now);
 }
 
 void EventWatch::on(const msg::Disturbance& disturbance, Time now) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/protocol/order.hpp"
 #include "common/time/rate_limit.hpp"
 #include "deploy/audit/audit_rules.hpp"
 #include "deploy/inspect/floor/floor_state.hpp"
@@ -62,14 +63,21 @@ class EventWatch {
   bool store_if_changed(Watched what, std::uint32_t id, std::uint64_t value, std::uint64_t normal = 0);
   void watch_silence(std::uint32_t id, bool is_silent, const std::string& name, bool is_robot, Time now);
 
-  /// Stores the sender's last order. Returns false if the order is a repetition.
-  bool store_order(std::uint32_t sender, std::uint64_t number);
+  /// Stores the number and the client's name of the sender's last order. Returns false if the order is a
+  /// repetition.
+  bool store_order(const msg::Order& order);
+  /// "the operator", "client kitchen"; the number of a client whose name no order has told.
+  std::string phrase_of(ClientId client) const;
 
   EventLog& log_;
   /// Limits events that any participant in the network can cause.
   RateLimit external_event_limit_{1000, std::chrono::milliseconds(10)};
-  std::map<std::uint32_t, std::uint64_t> sent_orders_;  ///< the last order number, by sender
-  std::set<std::uint32_t> refused_;                     ///< senders whose messages were refused
+  struct SentOrder {
+    std::uint64_t number = 0;
+    ClientName name{};
+  };
+  std::map<ClientId, SentOrder> sent_orders_;  ///< the last order, by sender
+  std::set<std::uint32_t> refused_;            ///< senders whose messages were refused
   std::map<std::pair<Watched, std::uint32_t>, std::uint64_t> last_;
   struct TruthTotals {
     std::uint64_t incarnation = 0, contacts = 0, crashes = 0, violations = 0;

@@ -8,6 +8,7 @@
 
 #include "common/messaging/enumerator.hpp"
 #include "common/messaging/histogram_codec.hpp"
+#include "common/protocol/client_text.hpp"
 #include "common/protocol/process_names.hpp"
 #include "common/protocol/reason_text.hpp"
 #include "deploy/view/monitor/unix_time.hpp"
@@ -174,7 +175,7 @@ Json zones_json(const FloorState& floor) {
   for (const Order& order : floor.orders().zones()) {
     Json corners = Json::array();
     for (const Vec2& corner : order.zone.corners_m) corners.push_back({corner.x(), corner.y()});
-    Json zone{{"client", order.client},
+    Json zone{{"client", client_text(order.client, order.client_name)},
               {"number", order.zone_number},
               {"corners", corners},
               {"radius_m", order.zone.radius_m}};

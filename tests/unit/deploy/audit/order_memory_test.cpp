@@ -21,6 +21,20 @@ TEST_CASE("a grant between two memories with the same hold of its robot is repor
   CHECK(run.found.back() == Found{AuditRule::kHeld, 4, 33, 8});
 }
 
+TEST_CASE("violations name the client whose order was ignored") {
+  Run run;
+  msg::RememberedOrder named = hold(4, 100, client_id("kitchen"));
+  named.terms().client_name(client_name("kitchen"));
+  for (const msg::RememberedOrder& remembered : {named, hold(3, 101, kOperator)}) {
+    run.remember(kFirst, {remembered});
+    run.grant(kFirst, remembered.robot(), 31);
+    run.remember(kFirst, {remembered});
+  }
+  REQUIRE(run.details.size() == 2);
+  CHECK_THAT(run.details[0], ContainsSubstring("had announced hold 100 of client kitchen, which"));
+  CHECK_THAT(run.details[1], ContainsSubstring("had announced hold 101 of the operator, which"));
+}
+
 TEST_CASE(
     "a single message can announce a hold, but only a complete memory shows that it is still in force") {
   Run run;

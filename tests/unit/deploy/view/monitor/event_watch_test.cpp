@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "deploy/view/monitor/event_watch.hpp"
 
-#include "common/protocol/senders.hpp"
+#include "common/protocol/client_name.hpp"
 #include "tests/catch.hpp"
 
 namespace sidestep::event_watch_test {
@@ -112,8 +112,38 @@ TEST_CASE("a refused order is an event with the reason, and an accepted or repla
     w.hear(answer);
   }
   REQUIRE(w.kinds() == "order order ");
-  CHECK(w.log.since(0)[0].text == "an order from operator was refused: a goal is outside the field");
-  CHECK(w.log.since(0)[1].text == "an order from operator was refused: the scenario has no such robot");
+  CHECK(w.log.since(0)[0].text == "an order from the operator was refused: a goal is outside the field");
+  CHECK(w.log.since(0)[1].text == "an order from the operator was refused: the scenario has no such robot");
+}
+
+TEST_CASE("events about orders name their client") {
+  Watched w;
+  msg::OrderAnswer answer;
+  answer.client(client_id("kitchen"));
+  answer.result(msg::OrderResult::RESULT_OUTSIDE_FIELD);
+  w.hear(answer);
+  msg::Order order;
+  order.header().sender(client_id("kitchen"));
+  order.robot(3);
+  order.terms().order_kind(msg::OrderKind::ORDER_GO);
+  order.terms().order_number(5);
+  order.terms().client_name(client_name("kitchen"));
+  w.hear(order);
+  w.hear(answer);
+  // Anybody could claim another client's name.
+  order.header().sender(client_id("garden"));
+  w.hear(order);
+  order.header().sender(static_cast<std::uint32_t>(Sender::kOperator));
+  order.terms().client_name({});
+  w.hear(order);
+  std::vector<std::string> texts;
+  for (const MonitorEvent& event : w.log.since(0)) texts.push_back(event.text);
+  const std::string refused = " was refused: a goal is outside the field";
+  CHECK(texts == std::vector<std::string>{
+                     "an order from client " + std::to_string(client_id("kitchen")) + refused,
+                     "client kitchen sends robot 3 to a goal", "an order from client kitchen" + refused,
+                     "client " + std::to_string(client_id("garden")) + " sends robot 3 to a goal",
+                     "the operator sends robot 3 to a goal"});
 }
 
 TEST_CASE("a disturbance that the simulator refuses causes an event with the reason") {
