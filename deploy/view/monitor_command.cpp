@@ -86,7 +86,8 @@ void add_monitor_command(const CliCommand& root, std::function<int()>& action) {
       .comma_separated();
   command.add_flag("--control", options->has_control,
                    "viewers with the printed token may give orders and cause faults");
-  command.add_option("--record", options->recording_file, "also write all messages to this MCAP file");
+  command.add_option("--record", options->recording_file,
+                     "also write all messages to this MCAP file; an earlier file is replaced");
   command.add_flag(
       "--of-run", options->is_of_run,
       "for `sidestep run`, whose monitor this is: read from stdin the token, and whether the run "

@@ -59,7 +59,8 @@ class Runner {
       std::ofstream(folder_.file(name), std::ios::binary) << text;
       return folder_.file(name);
     };
-    for (const char* name : {"out", "fifo-keys"}) fs::create_directory(folder_.file(name));
+    for (const char* name : {"out", "fifo-keys", "building"}) fs::create_directory(folder_.file(name));
+    write("building/map.pgm", "P5\n");
     mkfifo(folder_.file("fifo").c_str(), 0600);
     mkfifo(folder_.file("out/fifo").c_str(), 0600);
     fs::create_directory(folder_.file("out/fifo-keys"));
@@ -77,6 +78,7 @@ class Runner {
             {"test", scenarios + "faults/agent-killed.yaml"},
             {"folder", folder_.file("out")},
             {"fifo", folder_.file("fifo")},
+            {"building", folder_.file("building")},
             {"keys", keys},
             {"magic", write("magic.mcap", "\x89MCAP0\r\n")},
             {"long", std::string(5000, 'x')},

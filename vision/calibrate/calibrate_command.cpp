@@ -82,7 +82,8 @@ int calibrate_command(int argc, char** argv) {
                  "format of the frames to which the thresholds will apply [the scenario's]")
       .check(one_of({"yuv422", "rgb"}))
       .excludes(geometry);
-  app.add_option("--out", options.out_file, "file for the thresholds or cameras [standard output]");
+  app.add_option("--out", options.out_file,
+                 "file for the thresholds or cameras; an earlier file is replaced [standard output]");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   return run_and_report_errors(kName, [&] {
     if (!options.out_file.empty()) require_replaceable(options.out_file);

@@ -12,6 +12,7 @@
 #include "common/league/multicast.hpp"
 #include "common/messaging/dds/event_loop.hpp"
 #include "common/process/command_line.hpp"
+#include "common/process/output_paths.hpp"
 #include "common/process/process.hpp"
 #include "common/process/stop_signals.hpp"
 #include "vision/league/replay.hpp"
@@ -29,6 +30,7 @@ struct LogOptions {
   std::string interface = league::kLeagueInterface;
   double seek_s = 0;
   double speed = 1;
+  bool overwrites = false;
 };
 
 void add_log_options(const CliCommand& app, LogOptions& options) {
@@ -106,13 +108,14 @@ class Recorder {
 };
 
 int record(const LogOptions& options) {
+  require_new_output({"FILE", options.file}, options.overwrites);
   EventLoop loop;
   const StopSignals stop_signals([&loop] { loop.stop(); });
   std::optional<league::LogWriter> log;
   Recorder vision(loop, log, options.vision, options.interface, LogType::kVision);
   Recorder tracked(loop, log, options.tracked, options.interface, LogType::kTracked);
   Recorder referee(loop, log, options.referee, options.interface, LogType::kReferee);
-  // Only now, because an earlier log of this name is lost.
+  // Only now, because with --force an earlier log of this name is lost.
   log.emplace(options.file);
   fmt::print(stderr, "sidestep-vision record: recording to {}, stop with SIGINT\n", options.file);
   loop.run_until(Time::max());
@@ -142,6 +145,7 @@ int record_command(int argc, char** argv) {
   const CliCommand app = command_line.root();
   LogOptions options;
   add_log_options(app, options);
+  app.add_flag("--force", options.overwrites, "overwrite the file if it exists");
   if (const auto exit_code = command_line.parse(argc, argv)) return *exit_code;
   return run_and_report_errors("sidestep-vision record", [&] { return record(options); });
 }

@@ -86,12 +86,13 @@ void add_report_command(const CliCommand& root, std::function<int()>& action) {
       .add_option("FILE", options->file,
                   "report, e.g. reports/crossing-1.json; or a recording of `run` or `simulate` (.mcap)")
       .required();
-  command.add_optional_value(
-      "--html", options->page_file, "",
-      "write a page that needs no other file: verdict, paths, speeds, latencies, events "
-      "[FILE with the ending .html]");
-  command.add_option("--svg", options->picture_file,
-                     "draw the robots' paths to this SVG file, which plays in a browser");
+  command.add_optional_value("--html", options->page_file, "",
+                             "write a page that needs no other file: verdict, paths, speeds, latencies, "
+                             "events; an earlier file is replaced "
+                             "[FILE with the ending .html]");
+  command.add_option(
+      "--svg", options->picture_file,
+      "draw the robots' paths to this SVG file, which plays in a browser; an earlier file is replaced");
   command.on_parsed([options, &action] { action = [options] { return show_report(*options); }; });
 }
 

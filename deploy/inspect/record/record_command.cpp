@@ -20,6 +20,7 @@ struct RecordOptions {
   std::string recording_file;
   std::optional<double> seconds;
   bool is_compressed = false;
+  bool overwrites = false;
   DdsSettings dds;
 };
 
@@ -52,11 +53,13 @@ void add_record_command(const CliCommand& root, std::function<int()>& action) {
       root.add_subcommand("record", "Records all messages of a running system except camera images");
   command.add_option("SCENARIO", options->scenario_file, "scenario file").required();
   command.add_option("--out", options->recording_file, "MCAP file to write").required();
+  command.add_flag("--force", options->overwrites, "overwrite the file if it exists");
   command.add_flag("--compress", options->is_compressed, "compress the messages with zstd");
   command.add_option("--seconds", options->seconds, "duration [until Ctrl-C]").check(positive());
   add_dds_options(command, options->dds);
   command.on_parsed([options, &action] {
     require_separate_outputs({{"SCENARIO", options->scenario_file}}, {{"--out", options->recording_file}});
+    require_new_output({"--out", options->recording_file}, options->overwrites);
     action = [options] { return record_messages(*options); };
   });
 }

@@ -43,7 +43,8 @@ void add_graph_command(const CliCommand& root, std::function<int()>& action) {
   options->dds.participant = "sidestep-graph";
   const CliCommand command = root.add_subcommand(
       "graph", "Shows the processes of a DDS domain, and which topics they write and read");
-  command.add_option("--svg", options->picture_file, "also draw the graph to this SVG file");
+  command.add_option("--svg", options->picture_file,
+                     "also draw the graph to this SVG file; an earlier file is replaced");
   command.add_option("--seconds", options->discovery_s, "duration of discovery")
       .check(positive())
       .show_default();

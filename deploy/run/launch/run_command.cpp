@@ -28,7 +28,8 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       root.add_subcommand("run", "Runs a scenario over DDS, with one process for each part of the system");
   command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
       .required();
-  command.add_option("--record", options->recording_file, "record all messages to this file");
+  command.add_option("--record", options->recording_file,
+                     "record all messages to this file; an earlier file is replaced");
   command.add_optional_value("--monitor", options->monitor_port, "8080",
                              "show the run in the browser, on this port of this machine; the page stays when "
                              "the run is over, until Ctrl-C");
@@ -38,9 +39,11 @@ void add_run_command(const CliCommand& root, std::function<int()>& action) {
       .needs(command.option("--monitor"));
   command.add_flag("--close", options->closes_page, "the page ends with the run")
       .needs(command.option("--monitor"));
-  command.add_option("--svg", options->picture_file,
-                     "draw the robots' paths to this SVG file, which plays in a browser");
-  command.add_option("--report", options->report_file, "report file [reports/<scenario>-<time>.json]");
+  command.add_option(
+      "--svg", options->picture_file,
+      "draw the robots' paths to this SVG file, which plays in a browser; an earlier file is replaced");
+  command.add_option("--report", options->report_file,
+                     "report file; an earlier file is replaced [reports/<scenario>-<time>.json]");
   command.add_option("--seed", options->floor.seed, "random seed of the simulator's noise")
       .check(non_negative())
       .show_default();

@@ -103,7 +103,7 @@ void add_frame_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<FrameOptions>();
   command.add_option("SCENARIO", options->scenario_file, "scenario file, see deploy/scenarios/README.md")
       .required();
-  command.add_option("PICTURE", options->picture_file, "file to write")
+  command.add_option("PICTURE", options->picture_file, "file to write; an earlier file is replaced")
       .required()
       .check([](const std::string& path) {
         return path.ends_with(".png") ? std::string() : "expected a name that ends in .png";

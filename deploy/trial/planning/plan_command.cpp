@@ -126,7 +126,8 @@ void add_plan_command(const CliCommand& root, std::function<int()>& action) {
       .show_default();
   command.add_option(
       "--svg", options->picture_file,
-      "draw the world, the tree, the cache, the path and a local method's band into this file");
+      "draw the world, the tree, the cache, the path and a local method's band into this file; an earlier "
+      "file is replaced");
   command.add_option("--query", options->query, "index of the world's query to plan, from 0")
       .check(in_range(0, 99'999))
       .show_default();

@@ -109,8 +109,8 @@ void add_check_command(const CliCommand& root, std::function<int()>& action) {
       "check", "Checks scenario files without running them, and draws the floor if there is one file");
   const Option files =
       command.add_option("FILE", options->files, "scenario files, see deploy/scenarios/README.md");
-  const Option svg =
-      command.add_option("--svg", options->picture_file, "draw the scenario to this SVG file, too");
+  const Option svg = command.add_option(
+      "--svg", options->picture_file, "draw the scenario to this SVG file, too; an earlier file is replaced");
   const Option schema = command.add_flag("--schema", options->prints_schema,
                                          "print the JSON schema of scenario files instead, for editors");
   schema.excludes(files).excludes(svg);

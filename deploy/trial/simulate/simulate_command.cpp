@@ -67,16 +67,18 @@ void add_simulate_command(const CliCommand& root, std::function<int()>& action) 
   const Option scenario =
       command.add_option("SCENARIO", run.scenario_file,
                          "scenario file, see deploy/scenarios/README.md [with --faults: a random scene]");
-  command.add_option("--report", run.report_file,
-                     "report file [reports/<scenario>-<seed>.json; with --seeds: none]");
-  const Option svg = command.add_option("--svg", run.picture_file,
-                                        "draw the robots' paths to this SVG file, which plays in a browser");
+  command.add_option(
+      "--report", run.report_file,
+      "report file; an earlier file is replaced [reports/<scenario>-<seed>.json; with --seeds: none]");
+  const Option svg = command.add_option(
+      "--svg", run.picture_file,
+      "draw the robots' paths to this SVG file, which plays in a browser; an earlier file is replaced");
   command.add_option("--sight", run.laser_robot, "draw what this robot's laser shows at the end instead")
       .check(non_negative())
       .needs(scenario)
       .needs(svg);
-  const Option recording =
-      command.add_option("--record", run.recording_file, "record all messages to this file");
+  const Option recording = command.add_option(
+      "--record", run.recording_file, "record all messages to this file; an earlier file is replaced");
   const Option seed =
       command.add_option("--seed", run.seed, "random seed").check(non_negative()).show_default();
   command

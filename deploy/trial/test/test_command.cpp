@@ -100,7 +100,8 @@ void add_test_command(const CliCommand& root, std::function<int()>& action) {
       .add_option("FILE", options->files,
                   "scenario files with the key expect, see deploy/scenarios/README.md")
       .required();
-  command.add_option("--junit", options->junit_file, "write the results to this file, as JUnit XML");
+  command.add_option("--junit", options->junit_file,
+                     "write the results to this file, as JUnit XML; an earlier file is replaced");
   const Option seed =
       command.add_option("--seed", options->seeds.first, "random seed").check(non_negative()).show_default();
   const Option seeds = command.add_option(

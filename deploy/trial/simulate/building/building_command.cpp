@@ -5,12 +5,14 @@
 #include <memory>
 
 #include "common/process/command_line.hpp"
+#include "common/process/output_paths.hpp"
 #include "deploy/trial/simulate/building/building.hpp"
 
 namespace sidestep {
 
 void add_building_command(const CliCommand& root, std::function<int()>& action) {
   const auto options = std::make_shared<BuildingOptions>();
+  const auto overwrites = std::make_shared<bool>(false);
   const CliCommand command =
       root.add_subcommand("building", "Writes a random building: a map, and a scenario with robots in it");
   command.add_option("FOLDER", options->folder, "receives map.yaml, map.pgm and scenario.yaml").required();
@@ -28,7 +30,10 @@ void add_building_command(const CliCommand& root, std::function<int()>& action) 
       .show_default();
   command.add_option("--robots", options->robots, "number of robots").check(in_range(1, 100)).show_default();
   command.add_option("--goals", options->goals, "goals of each robot").check(in_range(1, 100)).show_default();
-  command.on_parsed([&action, options] {
+  command.add_flag("--force", *overwrites, "overwrite these files if they exist");
+  command.on_parsed([&action, options, overwrites] {
+    for (const char* file : {"map.yaml", "map.pgm", "scenario.yaml"})
+      require_new_output({"FOLDER", options->folder + "/" + file}, *overwrites);
     action = [options] {
       write_building(*options);
       fmt::print("{0}/map.yaml, {0}/map.pgm, {0}/scenario.yaml\n", options->folder);
